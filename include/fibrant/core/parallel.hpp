@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Loops over independent items, and sums whose bits do not depend on the number of threads.
+
+#include <fibrant/core/types.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <vector>
+
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
+
+namespace fibrant::core {
+
+/// Threads that parallel loops use: OpenMP's setting, 1 without OpenMP.
+inline int threads() noexcept {
+#if defined(_OPENMP)
+    return omp_get_max_threads();
+#else
+    return 1;
+#endif
+}
+
+/// Calls body(k) for k in [0, n), in any order and on any thread. Items must not share what they write.
+/// The first exception that a body throws is thrown again here.
+template <class Body>
+void parallel_for(Index n, const Body& body, [[maybe_unused]] Index grain = 1) {
+#if defined(_OPENMP)
+    if (n > grain && threads() > 1 && omp_in_parallel() == 0) {
+        std::exception_ptr failure;
+#pragma omp parallel for schedule(static)
+        for (Index k = 0; k < n; ++k) {
+            try {
+                body(k);
+            } catch (...) {
+#pragma omp critical(fibrant_parallel_for)
+                if (!failure) failure = std::current_exception();
+            }
+        }
+        if (failure) std::rethrow_exception(failure);
+        return;
+    }
+#endif
+    for (Index k = 0; k < n; ++k) body(k);
+}
+
+/// Sum over [0, n) of body(first, last), taken on blocks of fixed length and added in their order.
+///
+/// The blocks depend on n alone, so the bits do not depend on the number of threads.
+template <class Value, class Body>
+Value ordered_sum(Index n, Value zero, const Body& body, Index block = 2048) {
+    const Index blocks = (n + block - 1) / block;
+    if (blocks <= 1) return n > 0 ? Value(zero + body(Index{0}, n)) : zero;
+    std::vector<Value> part(at(blocks), zero);
+    parallel_for(blocks, [&](Index b) { part[at(b)] = body(b * block, std::min(n, (b + 1) * block)); });
+    Value total = zero;
+    for (const Value& value : part) total += value;
+    return total;
+}
+
+/// Dot product with bits that do not depend on the number of threads.
+inline double dot(const Vector& a, const Vector& b) {
+    return ordered_sum(a.size(), 0.0, [&](Index first, Index last) {
+        return a.segment(first, last - first).dot(b.segment(first, last - first));
+    }, 8192);
+}
+
+}  // namespace fibrant::core

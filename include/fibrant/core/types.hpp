@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file The numbers of the whole toolkit: double precision, columns of three components.
+
+#include <fibrant/core/config.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+#include <cstddef>
+#include <span>
+
+namespace fibrant {
+
+using Index = Eigen::Index;                                    ///< signed; -1 means "none"
+using Vec3 = Eigen::Vector3d;                                  ///< position, director or force in space
+using Mat3 = Eigen::Matrix3d;                                  ///< projector or stiffness between two 3-vectors
+using Vector = Eigen::VectorXd;                                ///< unknowns or residual: component k % 3 of 3-vector k / 3
+using Matrix = Eigen::MatrixXd;                                ///< dense, column-major
+using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+
+}  // namespace fibrant
+
+namespace fibrant::core {
+
+/// Container index from a signed one; the sign was checked where the index was made.
+template <class I>
+constexpr std::size_t at(I index) noexcept {
+    return static_cast<std::size_t>(index);
+}
+
+/// Signed size of a container.
+template <class Container>
+constexpr Index count(const Container& container) noexcept {
+    return static_cast<Index>(container.size());
+}
+
+}  // namespace fibrant::core

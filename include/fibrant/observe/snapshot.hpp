@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What an observer is shown after an accepted increment: plain data, free of the model's types.
+
+#include <fibrant/core/types.hpp>
+#include <fibrant/scene/cross_section.hpp>
+
+#include <string>
+#include <vector>
+
+namespace fibrant::observe {
+
+/// One fibre: values at its nodes, in order.
+struct FibreSnapshot {
+    std::vector<Vec3> position;      ///< centreline x_0 [length]
+    std::vector<Vec3> displacement;  ///< since the rest shape [length]
+    std::vector<Vec3> director_1;    ///< g_1 [1]
+    std::vector<Vec3> director_2;    ///< g_2 [1]
+    std::vector<double> curvature;   ///< of the centreline, |x' x x''| / |x'|^3 [1 / length]
+    scene::CrossSection section;     ///< at rest
+    Index group = -1;                ///< innermost group of the scene
+};
+
+/// One contact element; fibre i < j, the normal points from i to j.
+struct ContactSnapshot {
+    Index fibre_i = -1, fibre_j = -1;
+    double abscissa_i = 0, abscissa_j = 0;  ///< rest arc length [length]
+    Vec3 position = Vec3::Zero();           ///< middle of the two particles [length]
+    Vec3 normal = Vec3::Zero();             ///< N [1]
+    double gap = 0;                         ///< < 0 in penetration [length]
+    double reaction = 0;                    ///< R_N >= 0 [force], on fibre j along +N
+    Vec3 friction = Vec3::Zero();           ///< R_T on fibre i [force]
+    double stiffness = 0;                   ///< k_N of the zone [force / length]
+    bool crossing = false;                  ///< one element for the whole zone
+};
+
+/// State after an accepted increment.
+struct Snapshot {
+    Index increment = 0;      ///< accepted increments so far
+    std::string stage;        ///< name of the loading stage
+    double progress = 0;      ///< of the whole loading, in [0, 1]
+    std::vector<FibreSnapshot> fibres;
+    std::vector<ContactSnapshot> contacts;  ///< active ones and candidates, sorted by fibres and abscissa
+};
+
+}  // namespace fibrant::observe

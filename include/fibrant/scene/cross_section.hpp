@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Elliptical cross-sections at rest, and the macro-fibre that stands for several fibres.
+
+#include <fibrant/core/parameters.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fibrant::scene {
+
+/// Section of a fibre at rest: an ellipse with semi-axes along the directors g_1 and g_2.
+struct CrossSection {
+    double semi_axis_1 = core::unset;  ///< along g_1 [length], > 0
+    double semi_axis_2 = core::unset;  ///< along g_2 [length], > 0
+    double inertia_factor = 1.0;       ///< multiplies the second moments in bending and torsion [1], > 0
+
+    void validate() const {
+        core::require_positive("CrossSection.semi_axis_1", semi_axis_1);
+        core::require_positive("CrossSection.semi_axis_2", semi_axis_2);
+        core::require_positive("CrossSection.inertia_factor", inertia_factor);
+    }
+    /// [length^2]
+    double area() const noexcept { return std::numbers::pi * semi_axis_1 * semi_axis_2; }
+    /// Integral of xi_1^2 [length^4]: bending that turns g_1.
+    double second_moment_1() const noexcept {
+        return inertia_factor * 0.25 * area() * semi_axis_1 * semi_axis_1;
+    }
+    /// Integral of xi_2^2 [length^4].
+    double second_moment_2() const noexcept {
+        return inertia_factor * 0.25 * area() * semi_axis_2 * semi_axis_2;
+    }
+    /// Circumscribed radius [length]: what a search has to reach.
+    double radius() const noexcept { return std::max(semi_axis_1, semi_axis_2); }
+    /// True over kinematic torsion constant of the ellipse, 4 a^2 b^2 / (a^2 + b^2)^2 [1]; 1 for a circle.
+    double torsion_factor() const noexcept {
+        const double p = semi_axis_1 * semi_axis_1, q = semi_axis_2 * semi_axis_2;
+        return 4.0 * p * q / ((p + q) * (p + q));
+    }
+};
+
+/// @param radius  [length], > 0
+inline CrossSection circular(double radius, double inertia_factor = 1.0) {
+    core::require_positive("circular.radius", radius);
+    return {radius, radius, inertia_factor};
+}
+
+/// @param semi_axis_1, semi_axis_2  [length], > 0
+inline CrossSection elliptical(double semi_axis_1, double semi_axis_2, double inertia_factor = 1.0) {
+    const CrossSection section{semi_axis_1, semi_axis_2, inertia_factor};
+    section.validate();
+    return section;
+}
+
+/// Section of each of `macro_fibres` that stand for `fibres` real ones: the total area is kept and the second moments
+/// are those of the real fibres (Durville, eq. 3 and 4).
+///
+/// @param fibres        real fibres in the bundle, >= macro_fibres
+/// @param diameter      of a real fibre [length], > 0
+/// @param macro_fibres  that represent them, >= 1
+inline CrossSection macro_fibre(double fibres, double diameter, double macro_fibres) {
+    core::require_positive("macro_fibre.diameter", diameter);
+    core::require(std::isfinite(macro_fibres) && macro_fibres >= 1.0, "macro_fibre.macro_fibres", macro_fibres, ">= 1");
+    core::require(std::isfinite(fibres) && fibres >= macro_fibres, "macro_fibre.fibres", fibres,
+                  ">= macro_fibres = " + core::text(macro_fibres));
+    return circular(0.5 * diameter * std::sqrt(fibres / macro_fibres), macro_fibres / fibres);
+}
+
+}  // namespace fibrant::scene

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file How the unknowns are laid out: all of them in 3-vectors, in chains of consecutive nodes.
+
+#include <fibrant/core/types.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace fibrant::scene {
+
+/// Consecutive nodes with equally many unknown 3-vectors: a fibre, a rigid body, a line of solid nodes.
+struct Chain {
+    Index first_vector = 0;      ///< of the chain's first node
+    Index nodes = 0;             ///< in the chain, >= 1
+    Index vectors_per_node = 3;  ///< director beam 3, Hermite cable 2, bar 1
+    Index reach = 0;             ///< furthest node coupled along the chain: quadratic element 2, linear 1, none 0
+    Index group = -1;            ///< innermost group of the scene; -1 where it names none
+};
+
+/// A rigid translation moves positions only.
+enum class VectorKind : std::uint8_t { position, direction };
+
+/// The system is the identity outside `free`, a symmetric projector: prescribed components.
+struct HeldVector {
+    Index vector = -1;
+    Mat3 free = Mat3::Zero();
+};
+
+/// Layout of a system: unknown k is component k % 3 of vector k / 3.
+struct DofLayout {
+    std::vector<Chain> chains;
+    std::vector<VectorKind> kind;  ///< of each vector
+    std::vector<Vec3> value;       ///< of each vector: current position [length] or director [1]
+    std::vector<double> length;    ///< makes a vector a displacement: 1 for a position, the radius for a director
+    std::vector<HeldVector> held;  ///< sorted by vector, each vector at most once
+
+    Index vectors() const noexcept { return core::count(kind); }
+    Index unknowns() const noexcept { return 3 * vectors(); }
+};
+
+}  // namespace fibrant::scene
