@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Contract of the laws that push fibres apart.
+
+#include <fibrant/core/parameters.hpp>
+
+#include <concepts>
+
+namespace fibrant::law {
+
+/// Reaction of one contact element and its slope.
+struct NormalResponse {
+    double reaction;  ///< R_N >= 0 [force]
+    double slope;     ///< dR_N / dgap <= 0 [force / length]
+};
+
+/// Normal reaction as a function of the gap.
+/// Owed beyond the syntax, and checked by tests/law/normal_law_contract.hpp: the reaction is zero once open, never
+/// negative, never falls with penetration, `slope` is its derivative, and -reaction that of `energy`.
+template <class L>
+concept NormalLaw = core::Policy<L> && requires(const L law, double gap, double stiffness) {
+    { law.response(gap, stiffness) } -> std::same_as<NormalResponse>;
+    { law.energy(gap, stiffness) } -> std::same_as<double>;
+};
+
+/// A normal law that shifts the gap of each contact element by an amount chosen when an increment starts.
+template <class L>
+concept GapShifting = NormalLaw<L> && requires(const L law, double gap) {
+    { law.gap_shift(gap) } -> std::same_as<double>;
+};
+
+/// A normal law whose response turns from quadratic to linear at a depth that a stiffness adaptation should respect.
+template <class L>
+concept Regularised = NormalLaw<L> && requires(const L law) {
+    { law.regularisation_depth() } -> std::same_as<double>;
+};
+
+/// Depth lost to the quadratic start: R_N = k_N (penetration - depth / 2) beyond it; 0 for a law without one [length].
+template <NormalLaw L>
+double regularisation_depth(const L& law) noexcept {
+    if constexpr (Regularised<L>) {
+        return law.regularisation_depth();
+    } else {
+        return 0.0;
+    }
+}
+
+}  // namespace fibrant::law
