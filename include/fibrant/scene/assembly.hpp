@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file A scene as a user writes it: fibres, groups of fibres in any hierarchy, and what is imposed on them.
+
+#include <fibrant/scene/conditions.hpp>
+#include <fibrant/scene/cross_section.hpp>
+#include <fibrant/scene/elastic_material.hpp>
+#include <fibrant/scene/reference_shape.hpp>
+
+#include <Eigen/Geometry>
+
+#include <string>
+#include <vector>
+
+namespace fibrant::scene {
+
+/// One fibre: a straight one by its two ends, or a curved one by `curve`.
+struct FibreSpecification {
+    Vec3 from = Vec3::Constant(core::unset);  ///< centre of the first section [length]
+    Vec3 to = Vec3::Constant(core::unset);    ///< centre of the last section [length]
+    Curve curve;                              ///< rest shape of a curved fibre; takes the place of from and to
+    CrossSection section;
+    ElasticMaterial material;
+    Index elements = 0;                       ///< along the fibre, >= 1
+    Vec3 director = Vec3::Zero();             ///< g_1 at the first end, less its axial part; zero: any
+    Index group = -1;                         ///< from Assembly::add_group, or -1
+
+    void validate() const {
+        section.validate();
+        material.validate();
+        core::require_at_least("fibre.elements", elements, 1);
+        if (!curve) {
+            for (int k = 0; k < 3; ++k) {
+                core::require_finite("fibre.from", from[k]);
+                core::require_finite("fibre.to", to[k]);
+            }
+        }
+    }
+};
+
+/// A named set of fibres and of other groups.
+struct Group {
+    std::string name;
+    Index parent = -1;  ///< the group it belongs to, or -1
+};
+
+/// Forces the normal between the fibres of two groups, whatever their present positions (Durville, section 15.3.5).
+///
+/// Where centrelines of the two groups cross, fibres of `above` are pushed along `axis`, those of `below` against it,
+/// until they are on their sides.
+struct ForcedOrder {
+    Index above = -1, below = -1;  ///< groups
+    Vec3 axis = Vec3::UnitZ();     ///< from below to above, unit
+};
+
+/// A scene: everything that does not depend on how it is computed.
+class Assembly {
+public:
+    /// @returns index of the fibre, counted from 0
+    /// @throws std::invalid_argument naming the field that is wrong
+    Index add(const FibreSpecification& fibre) {
+        fibre.validate();
+        if (fibre.group < -1 || fibre.group >= core::count(groups_))
+            core::refuse("fibre.group", std::to_string(fibre.group), "-1 or a group of this assembly");
+        fibres_.push_back(fibre);
+        return core::count(fibres_) - 1;
+    }
+
+    /// @param parent  the group that holds this one, or -1
+    Index add_group(std::string name, Index parent = -1) {
+        if (parent < -1 || parent >= core::count(groups_))
+            core::refuse("group.parent", std::to_string(parent), "-1 or an earlier group");
+        groups_.push_back({std::move(name), parent});
+        return core::count(groups_) - 1;
+    }
+
+    /// Holds components of a nodal vector on a path.
+    void hold(const Hold& condition) {
+        check(condition.at);
+        holds_.push_back(condition);
+    }
+
+    /// Holds the centre of a section in the given directions.
+    void hold_position(Station at, const Mat3& directions = Mat3::Identity()) {
+        Hold condition;
+        condition.at = at;
+        condition.directions = directions;
+        hold(condition);
+    }
+
+    /// Moves the centre of a section by a displacement [length] as the channel goes to 1; all components are prescribed.
+    void prescribe(Station at, const Vec3& displacement, const std::string& channel = "motion") {
+        Hold condition;
+        condition.at = at;
+        condition.displacement = displacement;
+        condition.channel = channel;
+        hold(condition);
+    }
+
+    /// Moves both ends of a fibre by the same displacement [length].
+    void prescribe_ends(Index fibre, const Vec3& displacement, const std::string& channel = "motion") {
+        prescribe(first_end(fibre), displacement, channel);
+        prescribe(last_end(fibre), displacement, channel);
+    }
+
+    /// Holds position and rotation of a section and leaves its stretches free. With a rotation vector the section turns
+    /// by amplitude * angle about `pivot`; with a displacement it moves.
+    void clamp(Station at, const Vec3& displacement = Vec3::Zero(), const Vec3& rotation = Vec3::Zero(),
+               const Vec3& pivot = Vec3::Zero(), const std::string& channel = "motion") {
+        Hold condition;
+        condition.at = at;
+        condition.channel = channel;
+        condition.pivot = pivot;
+        if (rotation.norm() > 0.0) {
+            condition.rotation = [rotation](double amplitude) {
+                return Mat3(Eigen::AngleAxisd(amplitude * rotation.norm(), rotation.normalized()));
+            };
+        }
+        condition.displacement = displacement;
+        hold(condition);
+        condition.displacement = Vec3::Zero();
+        condition.axes = Axes::section;
+        condition.vector = NodeVector::director_1;
+        condition.directions = Vec3(0, 1, 1).asDiagonal();  // not its own stretch
+        hold(condition);
+        condition.vector = NodeVector::director_2;
+        condition.directions = Vec3(1, 0, 1).asDiagonal();
+        hold(condition);
+    }
+
+    /// Holds the rotation of a section about the fibre's own axis. Both off-axis components are held: one alone would let
+    /// the torque enter through one director.
+    void hold_axial_rotation(Station at) {
+        Hold condition;
+        condition.at = at;
+        condition.axes = Axes::section;
+        condition.vector = NodeVector::director_1;
+        condition.directions = Vec3(0, 1, 0).asDiagonal();
+        hold(condition);
+        condition.vector = NodeVector::director_2;
+        condition.directions = Vec3(1, 0, 0).asDiagonal();
+        hold(condition);
+    }
+
+    void apply(const DeadForce& load) {
+        check(load.at);
+        for (int k = 0; k < 3; ++k) core::require_finite("DeadForce.force", load.force[k]);
+        forces_.push_back(load);
+    }
+
+    void apply(const Moment& load) {
+        check(load.at);
+        for (int k = 0; k < 3; ++k) core::require_finite("Moment.moment", load.moment[k]);
+        if (load.director == NodeVector::position) core::refuse("Moment.director", "position", "a director");
+        moments_.push_back(load);
+    }
+
+    void force_order(const ForcedOrder& order) {
+        for (const Index group : {order.above, order.below})
+            if (group < 0 || group >= core::count(groups_))
+                core::refuse("ForcedOrder.group", std::to_string(group), "a group of this assembly");
+        orders_.push_back(order);
+    }
+
+    // What stands in the scene, in the order in which it was added.
+    const std::vector<FibreSpecification>& fibres() const noexcept { return fibres_; }
+    const std::vector<Group>& groups() const noexcept { return groups_; }
+    const std::vector<Hold>& holds() const noexcept { return holds_; }
+    const std::vector<DeadForce>& forces() const noexcept { return forces_; }
+    const std::vector<Moment>& moments() const noexcept { return moments_; }
+    const std::vector<ForcedOrder>& orders() const noexcept { return orders_; }
+
+private:
+    void check(const Station& at) const {
+        if (at.fibre < 0 || at.fibre >= core::count(fibres_))
+            core::refuse("Station.fibre", std::to_string(at.fibre), "a fibre of this assembly");
+        core::require_between("Station.fraction", at.fraction, 0.0, 1.0);
+    }
+
+    std::vector<FibreSpecification> fibres_;
+    std::vector<Group> groups_;
+    std::vector<Hold> holds_;
+    std::vector<DeadForce> forces_;
+    std::vector<Moment> moments_;
+    std::vector<ForcedOrder> orders_;
+};
+
+}  // namespace fibrant::scene

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What a user imposes on fibres, as data: held components, dead forces, moments, and the channels that scale them.
+
+#include <fibrant/core/parameters.hpp>
+#include <fibrant/core/types.hpp>
+
+#include <functional>
+#include <string>
+
+namespace fibrant::scene {
+
+/// A material point on a fibre's centreline; it falls on the nearest node.
+struct Station {
+    Index fibre = -1;
+    double fraction = 0.0;  ///< of the rest length, in [0, 1]
+};
+
+inline Station first_end(Index fibre) { return {fibre, 0.0}; }
+inline Station last_end(Index fibre) { return {fibre, 1.0}; }
+
+/// Index of a vector of a node: 0 the centreline position, 1 and 2 the directors g_1 and g_2 (where the beam has them).
+enum class NodeVector : int { position = 0, director_1 = 1, director_2 = 2 };
+
+/// Axes in which directions are given: those of space, or (g_1, g_2, tangent) of the section at rest.
+enum class Axes { space, section };
+
+/// Components of a nodal vector that follow a prescribed path.
+///
+/// The vector is held at rotation(a) * rest + displacement(a) in the directions rotation(a) * directions; a is the
+/// amplitude of the channel. A rotation of a director turns the direction; of a position, turns it about the origin of
+/// `pivot`.
+struct Hold {
+    Station at;
+    NodeVector vector = NodeVector::position;
+    Mat3 directions = Mat3::Identity();  ///< symmetric projector on what is held
+    Axes axes = Axes::space;             ///< of `directions`
+    std::string channel = "motion";
+    Vec3 displacement = Vec3::Zero();    ///< at amplitude 1 [length], or [1] for a director
+    std::function<Vec3(double)> path;    ///< displacement at amplitude a, where it is not proportional
+    std::function<Mat3(double)> rotation;  ///< at amplitude a; none: identity
+    Vec3 pivot = Vec3::Zero();           ///< of the rotation of a position [length]
+};
+
+/// A force that keeps its direction and size. On a director it is a force at the material point one length unit off the
+/// axis, so a force Q at xi_1 = r acts as Q on the position and r Q on g_1.
+struct DeadForce {
+    Station at;
+    NodeVector vector = NodeVector::position;
+    Vec3 force = Vec3::Zero();  ///< at amplitude 1 [force], [force * length] on a director
+    std::string channel = "load";
+};
+
+/// A moment about a fixed axis, applied to a section through one director: force M x g / |g|^2 (METHOD 1.3). The moment
+/// must stay perpendicular to that director; the tangent is symmetrised, exact while the director turns in a plane.
+struct Moment {
+    Station at;
+    NodeVector director = NodeVector::director_1;
+    Vec3 moment = Vec3::Zero();  ///< at amplitude 1 [force * length]
+    std::string channel = "load";
+};
+
+}  // namespace fibrant::scene

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Rest shape of a fibre: nodes at equal arc length on a curve, with directors that do not twist about it.
+
+#include <fibrant/core/parameters.hpp>
+#include <fibrant/core/types.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+namespace fibrant::scene {
+
+/// Centreline position as a function of a parameter in [0, 1]; evaluated inside that interval only.
+using Curve = std::function<Vec3(double)>;
+
+/// Frame of a section at rest: unit and orthogonal, director_1 x director_2 = tangent.
+struct NodeFrame {
+    Vec3 position = Vec3::Zero();
+    Vec3 tangent = Vec3::UnitZ();
+    Vec3 director_1 = Vec3::UnitX();
+    Vec3 director_2 = Vec3::UnitY();
+    /// Columns g_1, g_2, tangent: section components to space.
+    Mat3 basis() const {
+        Mat3 columns;
+        columns << director_1, director_2, tangent;
+        return columns;
+    }
+};
+
+namespace detail {
+
+/// Derivative of a curve by five-point differences that stay inside [0, 1].
+inline Vec3 curve_derivative(const Curve& curve, double t, double step) {
+    const double low = std::clamp(t - 2.0 * step, 0.0, 1.0 - 4.0 * step);
+    const double u = (t - low) / step;  // 2 inside, 0 and 4 at the ends
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < 5; ++k) {  // derivative of the Lagrange polynomial of node k at u
+        double weight = 0.0;
+        for (int m = 0; m < 5; ++m) {
+            if (m == k) continue;
+            double term = 1.0 / (k - m);
+            for (int l = 0; l < 5; ++l)
+                if (l != k && l != m) term *= (u - l) / (k - l);
+            weight += term;
+        }
+        sum += weight * curve(low + k * step);
+    }
+    return sum / step;
+}
+
+/// One step of parallel transport by two reflections (Wang et al. 2008), fourth order in the step.
+inline Vec3 transported(const Vec3& director, const Vec3& chord, const Vec3& tangent, const Vec3& next_tangent) {
+    const double square = chord.squaredNorm();
+    const Vec3 left = director - 2.0 / square * chord.dot(director) * chord;
+    const Vec3 turned = tangent - 2.0 / square * chord.dot(tangent) * chord;
+    const Vec3 second = next_tangent - turned;
+    const double size = second.squaredNorm();
+    Vec3 result = size > 0.0 ? Vec3(left - 2.0 / size * second.dot(left) * second) : left;
+    result -= result.dot(next_tangent) * next_tangent;
+    return result.normalized();
+}
+
+}  // namespace detail
+
+/// Any unit vector perpendicular to `tangent`, chosen without regard to handedness of the axes.
+inline Vec3 any_perpendicular(const Vec3& tangent) {
+    Index axis = 0;
+    tangent.cwiseAbs().minCoeff(&axis);
+    const Vec3 direction = Vec3::Unit(axis);
+    return (direction - direction.dot(tangent) * tangent).normalized();
+}
+
+/// Frames at `nodes` points of equal arc length.
+///
+/// Directors are carried along by parallel transport: rest directors that twist about the axis would cost an error of
+/// (r x twist rate)^2.
+/// @param curve     regular (its derivative does not vanish)
+/// @param nodes     >= 2
+/// @param director  g_1 at the start is its part perpendicular to the tangent; zero: any
+/// @throws std::invalid_argument if the curve is not finite or stands still
+inline std::vector<NodeFrame> reference_frames(const Curve& curve, Index nodes, const Vec3& director = Vec3::Zero()) {
+    core::require_at_least("reference_frames.nodes", nodes, 2);
+    constexpr Index fine = 16;  // substeps between nodes, for arc length and transport
+    const Index steps = (nodes - 1) * fine;
+    std::vector<double> arc(core::at(steps + 1), 0.0);
+    Vec3 last = curve(0.0);
+    for (Index k = 1; k <= steps; ++k) {
+        const Vec3 next = curve(static_cast<double>(k) / static_cast<double>(steps));
+        arc[core::at(k)] = arc[core::at(k - 1)] + (next - last).norm();
+        last = next;
+    }
+    const double length = arc.back();
+    core::require(std::isfinite(length) && length > 0.0, "fibre.curve: length", length, "finite and > 0");
+
+    const double difference = 0.25 / static_cast<double>(steps);
+    std::vector<NodeFrame> frames;
+    frames.reserve(core::at(nodes));
+    NodeFrame frame;
+    Index k = 0;
+    for (Index m = 0; m <= steps; ++m) {  // march through points of equal arc length
+        const double wanted = length * static_cast<double>(m) / static_cast<double>(steps);
+        while (k + 1 < steps && arc[core::at(k + 1)] < wanted) ++k;
+        const double span = arc[core::at(k + 1)] - arc[core::at(k)];
+        core::require(span > 0.0, "fibre.curve: speed", span, "> 0 everywhere");
+        const double t =
+            m == steps ? 1.0
+                       : (static_cast<double>(k) + (wanted - arc[core::at(k)]) / span) / static_cast<double>(steps);
+        const Vec3 position = curve(std::clamp(t, 0.0, 1.0));
+        const Vec3 tangent = detail::curve_derivative(curve, std::clamp(t, 0.0, 1.0), difference).normalized();
+        if (m == 0) {
+            const Vec3 start = director - director.dot(tangent) * tangent;
+            frame.director_1 =
+                start.norm() > 1e-6 * director.norm() && director.norm() > 0.0 ? start.normalized() : any_perpendicular(tangent);
+        } else {
+            frame.director_1 = detail::transported(frame.director_1, position - frame.position, frame.tangent, tangent);
+        }
+        frame.position = position;
+        frame.tangent = tangent;
+        frame.director_2 = tangent.cross(frame.director_1);
+        if (m % fine == 0) frames.push_back(frame);
+    }
+    return frames;
+}
+
+/// Frames of a straight fibre.
+/// @throws std::invalid_argument if the ends are not finite or coincide
+inline std::vector<NodeFrame> straight_frames(const Vec3& from, const Vec3& to, Index nodes,
+                                              const Vec3& director = Vec3::Zero()) {
+    core::require_at_least("straight_frames.nodes", nodes, 2);
+    const double length = (to - from).norm();
+    core::require(std::isfinite(length) && length > 0.0, "fibre.to: distance from fibre.from", length, "finite and > 0");
+    NodeFrame frame;
+    frame.tangent = (to - from) / length;
+    const Vec3 start = director - director.dot(frame.tangent) * frame.tangent;
+    frame.director_1 = start.norm() > 1e-6 * director.norm() && director.norm() > 0.0 ? start.normalized()
+                                                                                      : any_perpendicular(frame.tangent);
+    frame.director_2 = frame.tangent.cross(frame.director_1);
+    std::vector<NodeFrame> frames(core::at(nodes), frame);
+    for (Index k = 0; k < nodes; ++k) {
+        const double t = static_cast<double>(k) / static_cast<double>(nodes - 1);
+        frames[core::at(k)].position = (1.0 - t) * from + t * to;
+    }
+    return frames;
+}
+
+}  // namespace fibrant::scene
