@@ -1,0 +1,30 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# A small program outside the source tree is built against fibrant and run.
+# usage: downstream.sh install|subdirectory SOURCE BUILD COMPILER
+#   install       installs BUILD to a prefix of its own; the program finds the package there
+#   subdirectory  the program adds SOURCE through FetchContent
+set -eu
+way=$1 source=$2 build=$3 compiler=$4
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+cp -R "$source/tests/checks/downstream" "$place/project"
+case $way in
+  install)
+    cmake --install "$build" --prefix "$place/prefix" > "$place/install.log" || { cat "$place/install.log"; exit 1; }
+    set -- -DCMAKE_PREFIX_PATH="$place/prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
+    ;;
+  subdirectory)
+    set -- -DFIBRANT_SOURCE="$source"
+    ;;
+  *)
+    echo "unknown way: $way"
+    exit 1
+    ;;
+esac
+cmake -S "$place/project" -B "$place/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$compiler" "$@"
+cmake --build "$place/build"
+if [ "$way" = install ]; then  # nothing of the source tree is used
+  ! grep -rqF "$source/include" "$place/build/build.ninja" "$place/prefix"
+fi
+"$place/build/downstream"

@@ -1,0 +1,26 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# What can be seen in the text of the headers: licence, guard and purpose first; short enough to be read in one sitting;
+# no printing outside observe/; a third party's header (nanoflann, a solver library) included in one place.
+# usage: house_rules.sh INCLUDE_FOLDER
+set -eu
+cd "$1"
+failed=0
+complain() { echo "$1"; failed=1; }
+
+for header in $(find fibrant -name '*.hpp' | sort); do
+  [ "$(head -n 1 "$header")" = '// SPDX-License-Identifier: MIT' ] || complain "$header: the first line is not the SPDX licence tag"
+  [ "$(sed -n 2p "$header")" = '#pragma once' ] || complain "$header: the second line is not #pragma once"
+  grep -q '^/// @file ' "$header" || complain "$header: no /// @file sentence"
+  size=$(wc -c < "$header")
+  [ "$size" -le 24000 ] || complain "$header: $size bytes, but at most 24000"
+  case $header in fibrant/observe/*) continue ;; esac
+  found=$(grep -nE 'std::(cout|cerr|clog)|printf *\(|\bputs *\(' "$header") && complain "$header prints: $found"
+done
+
+# Standard headers have no suffix; Eigen's own are used everywhere, its bindings to other libraries are not.
+for name in $(find fibrant -name '*.hpp' | sort | xargs sed -nE 's/^[[:space:]]*#[[:space:]]*include[[:space:]]*<([^>]*)>.*/\1/p' |
+  grep -E '\.h|Support$' | grep -v '^fibrant/' | sort | uniq -d); do
+  complain "<$name> is included by more than one header: $(grep -rl --include='*.hpp' "<$name>" fibrant | sort | tr '\n' ' ')"
+done
+exit $failed
