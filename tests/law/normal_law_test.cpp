@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include <fibrant/law/limited_gap.hpp>
+#include <fibrant/law/linear_penalty.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
+
+#include <law/normal_law_contract.hpp>
+#include <refusal.hpp>
+
+#include <limits>
+
+using namespace fibrant;
+using law::LimitedGap;
+using law::LinearPenalty;
+using law::RegularisedPenalty;
+
+TEST_CASE("a normal law pushes fibres apart and never pulls them together") {
+    for (const double depth : {1e-6, 1e-3, 0.3})
+        for (const double stiffness : {0.02, 50.0, 1e7}) {
+            CAPTURE(depth);
+            CAPTURE(stiffness);
+            test::check_normal_law(RegularisedPenalty{{.regularisation_depth = depth}}, stiffness, depth);
+            test::check_normal_law(LinearPenalty{}, stiffness, depth, true);
+            // The wrapper moves the gap before the law sees it; the law itself is unchanged.
+            test::check_normal_law(
+                LimitedGap<RegularisedPenalty>{{.law = {.regularisation_depth = depth}, .limit = 2.0 * depth}}, stiffness,
+                depth);
+            test::check_normal_law(LimitedGap<LinearPenalty>{{.law = {}, .limit = depth}}, stiffness, depth, true);
+        }
+}
+
+TEST_CASE("the regularised penalty follows the three branches of the chapter's equation 10") {
+    // Powers of two, so that every figure below is exact: k_N = 8, p_reg = 1/4.
+    const RegularisedPenalty law{{.regularisation_depth = 0.25}};
+    CHECK(law.regularisation_depth() == 0.25);
+    CHECK(law.response(0.5, 8.0).reaction == 0.0);
+    CHECK(law.response(-0.125, 8.0).reaction == 0.25);  // k_N p^2 / (2 p_reg)
+    CHECK(law.response(-0.125, 8.0).slope == -4.0);     // -k_N p / p_reg
+    CHECK(law.response(-1.0, 8.0).reaction == 7.0);     // k_N (p - p_reg / 2)
+    CHECK(law.response(-1.0, 8.0).slope == -8.0);
+}
+
+TEST_CASE("the regularised penalty is continuous with its slope at the threshold, which the misprint would break") {
+    const double depth = 1e-3, stiffness = 50.0;
+    const RegularisedPenalty law{{.regularisation_depth = depth}};
+    const law::NormalResponse at = law.response(-depth, stiffness);
+    const law::NormalResponse before = law.response(std::nextafter(-depth, 0.0), stiffness);
+    // Neighbouring numbers: only round-off may part them.
+    CHECK(at.reaction == doctest::Approx(before.reaction).epsilon(1e-14));
+    CHECK(at.slope == doctest::Approx(before.slope).epsilon(1e-14));
+    CHECK(at.reaction == doctest::Approx(0.5 * stiffness * depth).epsilon(1e-14));
+    CHECK(law.energy(-depth, stiffness) == doctest::Approx(law.energy(std::nextafter(-depth, 0.0), stiffness)).epsilon(1e-14));
+}
+
+TEST_CASE("a law tells the depth that its quadratic start loses, and the linear one loses none") {
+    CHECK(law::regularisation_depth(RegularisedPenalty{{.regularisation_depth = 0.25}}) == 0.25);
+    CHECK(law::regularisation_depth(LinearPenalty{}) == 0.0);
+    CHECK(law::regularisation_depth(
+              LimitedGap<RegularisedPenalty>{{.law = {.regularisation_depth = 0.25}, .limit = 1.0}}) == 0.25);
+    static_assert(!law::Regularised<LimitedGap<LinearPenalty>>);
+    static_assert(law::GapShifting<LimitedGap<LinearPenalty>>);
+    static_assert(!law::GapShifting<RegularisedPenalty>);
+}
+
+TEST_CASE("a limited gap is an offset: a deep overlap is shown at the limit and keeps its full stiffness") {
+    const double limit = 0.25, stiffness = 8.0;
+    const LimitedGap<LinearPenalty> law{{.law = {}, .limit = limit}};
+    const double overlap = -3.0;  // at the start of the increment, 12 limits deep
+    const double offset = law.gap_shift(overlap);
+    CHECK(offset == 2.75);
+    CHECK(law.response(overlap + offset, stiffness).reaction == stiffness * limit);
+    // During the increment the offset stays, so the reaction follows the motion with the law's own slope: it falls to
+    // zero after the limit, and rises when the overlap deepens. A clamp of the gap would do neither.
+    CHECK(law.response(overlap + 0.125 + offset, stiffness).reaction == stiffness * 0.125);
+    CHECK(law.response(overlap + limit + offset, stiffness).reaction == 0.0);
+    CHECK(law.response(overlap - 0.125 + offset, stiffness).reaction == stiffness * 0.375);
+    for (const double motion : {0.125, 0.0, -0.125})
+        CHECK(law.response(overlap + motion + offset, stiffness).slope == -stiffness);
+}
+
+TEST_CASE("a gap within the limit, or open, is not moved") {
+    const LimitedGap<RegularisedPenalty> law{{.law = {.regularisation_depth = 0.125}, .limit = 0.25}};
+    for (const double gap : {1.0, 0.0, -0.125, -0.25}) CHECK(law.gap_shift(gap) == 0.0);
+    CHECK(law.gap_shift(-0.5) == 0.25);
+    CHECK(law.with_limit(0.5).gap_shift(-0.5) == 0.0);
+    CHECK(law.with_limit(0.125).limit() == 0.125);
+    const LimitedGap<RegularisedPenalty> off = law.with_limit(std::numeric_limits<double>::infinity());
+    CHECK(off.gap_shift(-1e6) == 0.0);
+}
+
+TEST_CASE("parameters that cannot hold are refused with field, value and bound") {
+    const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+    CHECK(test::refusal([] { RegularisedPenalty{{.regularisation_depth = -0.001}}; }) ==
+          "RegularisedPenalty.regularisation_depth = -0.001, but it must be finite and > 0");
+    for (const double depth : {0.0, nan, infinity, core::unset})
+        CHECK(test::refusal([&] { RegularisedPenalty{{.regularisation_depth = depth}}; })
+                  .starts_with("RegularisedPenalty.regularisation_depth = "));
+    CHECK(test::refusal([] { RegularisedPenalty{{}}; }) ==
+          "RegularisedPenalty.regularisation_depth = nan, but it must be finite and > 0");
+    CHECK(test::refusal([] { LimitedGap<LinearPenalty>{{.law = {}, .limit = -2.0}}; }) ==
+          "LimitedGap.limit = -2, but it must be > 0");
+    CHECK(test::refusal([] { LimitedGap<LinearPenalty>{{}}; }) == "LimitedGap.limit = nan, but it must be > 0");
+    CHECK(test::refusal([] { LimitedGap<LinearPenalty>{{.law = {}, .limit = 1.0}}.with_limit(0.0); }) ==
+          "LimitedGap.limit = 0, but it must be > 0");
+    CHECK(test::refusal([] { LimitedGap<RegularisedPenalty>{{.law = {}, .limit = 1.0}}; }) ==
+          "RegularisedPenalty.regularisation_depth = nan, but it must be finite and > 0");
+    CHECK(test::refusal([] { LimitedGap<LinearPenalty>{{.law = {}, .limit = 1.0}}; }).empty());
+}
