@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Contract of a linear system that may never be formed, and the projector of its held vectors.
+
+#include <fibrant/assembly/terms.hpp>
+#include <fibrant/scene/dof_layout.hpp>
+
+#include <cassert>
+#include <concepts>
+#include <vector>
+
+namespace fibrant::assembly {
+
+/// The symmetric tangent A of one iteration, known by what it does.
+///
+/// With K the sum of all terms and F the projector of the held vectors (the identity elsewhere), A = F K F + (I - F).
+/// m = 3 vectors_per_node is the size of a chain's node block.
+/// - apply(x, y): y = A x. Both have layout().unknowns() entries, x and y are different vectors.
+/// - node_blocks(chain, blocks): nodes m x m, the diagonal block of node a at row a m.
+/// - chain_band(chain, blocks): nodes m x (reach + 1) m, the lower block band of the chain: A(a, a - d) (row node a,
+///   column node a - d) at row a m and column d m; zero where a < d. Contact elements within the chain included.
+/// - visit(visitor): visitor.point(PointTerm) or visitor.dense(DenseTerm) once for each term of K, in a fixed order,
+///   not projected: the visitor applies F.
+/// `blocks` is resized by the system. node_blocks and chain_band may be called from several threads at once, for
+/// different chains. Every vector belongs to exactly one chain.
+template <class T>
+concept LinearSystem = requires(const T system, const Vector& x, Vector& y, Index chain, Matrix& blocks,
+                                IgnoredTerms& terms) {
+    { system.layout() } -> std::same_as<const scene::DofLayout&>;
+    system.apply(x, y);
+    system.node_blocks(chain, blocks);
+    system.chain_band(chain, blocks);
+    system.visit(terms);
+};
+
+/// A system that forms its matrix: all of A, both triangles, F included. The pattern depends on the terms' vectors only.
+template <class T>
+concept AssembledSystem = LinearSystem<T> && requires(const T system, SparseMatrix& a) { system.assemble(a); };
+
+/// The projector F of a layout's held vectors. A view: the layout must outlive it.
+class HeldProjector {
+public:
+    explicit HeldProjector(const scene::DofLayout& layout) : layout_{&layout}, slot_(core::at(layout.vectors()), -1) {
+        for (Index k = 0; k < core::count(layout.held); ++k) {
+            slot_[core::at(layout.held[core::at(k)].vector)] = static_cast<int>(k);
+        }
+    }
+
+    /// Projector of a vector; null where it is the identity.
+    const Mat3* free(Index vector) const noexcept {
+        const int k = slot_[core::at(vector)];
+        return k < 0 ? nullptr : &layout_->held[core::at(k)].free;
+    }
+    /// x <- F x
+    void project(Vector& x) const noexcept {
+        for (const scene::HeldVector& held : layout_->held) {
+            const Vec3 v = x.segment<3>(3 * held.vector);
+            x.segment<3>(3 * held.vector) = held.free * v;
+        }
+    }
+    /// y <- F y + (I - F) x: makes A x of y = K F x.
+    void complete(const Vector& x, Vector& y) const noexcept {
+        for (const scene::HeldVector& held : layout_->held) {
+            const Vec3 difference = y.segment<3>(3 * held.vector) - x.segment<3>(3 * held.vector);
+            y.segment<3>(3 * held.vector) = x.segment<3>(3 * held.vector) + held.free * difference;
+        }
+    }
+    /// F_i block F_j of the 3 x 3 block between two vectors of K; the diagonal one gains I - F_i.
+    void project(Index i, Index j, Mat3& block) const noexcept {
+        const Mat3* left = free(i);
+        const Mat3* right = free(j);
+        if (left != nullptr) block = (*left * block).eval();
+        if (right != nullptr) block = (block * *right).eval();
+        if (i == j && left != nullptr) block += Mat3::Identity() - *left;
+    }
+
+private:
+    const scene::DofLayout* layout_;
+    std::vector<int> slot_;  // of each vector in `held`, or -1
+};
+
+}  // namespace fibrant::assembly
