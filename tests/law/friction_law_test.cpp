@@ -141,7 +141,9 @@ TEST_CASE("on random slips: bound, symmetry, tangent, memory and dissipation hol
     std::normal_distribution<double> normal;
     int stuck = 0, slid = 0;
     for (int n = 0; n < 400; ++n) {
-        const auto vector = [&](double size) { return Vec3(size * normal(random), size * normal(random), size * normal(random)); };
+        const auto vector = [&](double size) {
+            return Vec3(size * normal(random), size * normal(random), size * normal(random));
+        };
         History history{.reversible = vector(0.5 * range)};
         if (history.reversible.norm() > range) history.reversible *= range / history.reversible.norm();
         const Vec3 slip = vector(n % 2 == 0 ? 0.3 * range : 3.0 * range);

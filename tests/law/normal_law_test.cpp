@@ -22,8 +22,8 @@ TEST_CASE("a normal law pushes fibres apart and never pulls them together") {
             test::check_normal_law(LinearPenalty{}, stiffness, depth, true);
             // The wrapper moves the gap before the law sees it; the law itself is unchanged.
             test::check_normal_law(
-                LimitedGap<RegularisedPenalty>{{.law = {.regularisation_depth = depth}, .limit = 2.0 * depth}}, stiffness,
-                depth);
+                LimitedGap<RegularisedPenalty>{{.law = {.regularisation_depth = depth}, .limit = 2.0 * depth}},
+                stiffness, depth);
             test::check_normal_law(LimitedGap<LinearPenalty>{{.law = {}, .limit = depth}}, stiffness, depth, true);
         }
 }
@@ -48,7 +48,8 @@ TEST_CASE("the regularised penalty is continuous with its slope at the threshold
     CHECK(at.reaction == doctest::Approx(before.reaction).epsilon(1e-14));
     CHECK(at.slope == doctest::Approx(before.slope).epsilon(1e-14));
     CHECK(at.reaction == doctest::Approx(0.5 * stiffness * depth).epsilon(1e-14));
-    CHECK(law.energy(-depth, stiffness) == doctest::Approx(law.energy(std::nextafter(-depth, 0.0), stiffness)).epsilon(1e-14));
+    CHECK(law.energy(-depth, stiffness) ==
+          doctest::Approx(law.energy(std::nextafter(-depth, 0.0), stiffness)).epsilon(1e-14));
 }
 
 TEST_CASE("a law tells the depth that its quadratic start loses, and the linear one loses none") {
@@ -92,8 +93,9 @@ TEST_CASE("parameters that cannot hold are refused with field, value and bound")
     CHECK(test::refusal([] { RegularisedPenalty{{.regularisation_depth = -0.001}}; }) ==
           "RegularisedPenalty.regularisation_depth = -0.001, but it must be finite and > 0");
     for (const double depth : {0.0, nan, infinity, core::unset})
-        CHECK(test::refusal([&] { RegularisedPenalty{{.regularisation_depth = depth}}; })
-                  .starts_with("RegularisedPenalty.regularisation_depth = "));
+        CHECK(test::refusal([&] {
+                  RegularisedPenalty{{.regularisation_depth = depth}};
+              }).starts_with("RegularisedPenalty.regularisation_depth = "));
     CHECK(test::refusal([] { RegularisedPenalty{{}}; }) ==
           "RegularisedPenalty.regularisation_depth = nan, but it must be finite and > 0");
     CHECK(test::refusal([] { LimitedGap<LinearPenalty>{{.law = {}, .limit = -2.0}}; }) ==
