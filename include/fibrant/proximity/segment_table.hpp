@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Segments of all fibres under one numbering, which of them may pair, and the exact filter all searches share.
+
+#include <fibrant/proximity/proximity_search.hpp>
+#include <fibrant/proximity/segment_distance.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace fibrant::proximity::detail {
+
+/// What the filter reads of a segment, in one cache line.
+struct alignas(64) SegmentRecord {
+    Plain3 start, chord;
+    double half;             ///< radius + inflation
+    std::int32_t segment;    ///< global number
+    std::int32_t group;      ///< its family, or -1 - fibre: segments of one group do not pair, but by self_skip
+};
+static_assert(sizeof(SegmentRecord) == 64);
+
+/// Validated view of the fibres, segment by segment. It reads the vertices of the centrelines and does not copy them.
+class SegmentTable {
+public:
+    SegmentTable(std::span<const Centreline> fibres, double reach) : fibres_(fibres), reach_(reach) {
+        core::require_not_negative("reach", reach);
+        first_.resize(fibres.size() + 1);
+        std::size_t total = 0;
+        for (std::size_t f = 0; f < fibres.size(); ++f) {
+            check(f);
+            first_[f] = static_cast<std::int32_t>(total);
+            total += fibres[f].points.size() - 1;
+            core::require(total < at_most, "segments of all fibres", static_cast<double>(total), "below 2^31 - 64");
+            selfish_ = selfish_ || std::isfinite(fibres[f].self_skip);
+        }
+        first_.back() = static_cast<std::int32_t>(total);
+        fibre_.resize(total);
+        for (std::size_t f = 0; f < fibres.size(); ++f)
+            std::fill(fibre_.begin() + first_[f], fibre_.begin() + first_[f + 1], static_cast<std::int32_t>(f));
+        if (selfish_) measure_arcs();
+    }
+
+    std::int32_t size() const noexcept { return static_cast<std::int32_t>(fibre_.size()); }
+    std::int32_t fibres() const noexcept { return static_cast<std::int32_t>(fibres_.size()); }
+    double reach() const noexcept { return reach_; }
+    bool selfish() const noexcept { return selfish_; }  ///< some fibre may pair with itself
+    const Centreline& centreline(std::int32_t f) const noexcept { return fibres_[core::at(f)]; }
+    std::int32_t first(std::int32_t f) const noexcept { return first_[core::at(f)]; }  ///< segment of fibre f
+    std::int32_t fibre(std::int32_t segment) const noexcept { return fibre_[core::at(segment)]; }
+
+    SegmentRecord record(std::int32_t segment) const noexcept {
+        const std::int32_t f = fibre(segment);
+        const Centreline& line = centreline(f);
+        const std::size_t k = core::at(segment - first(f));
+        const Plain3 start = plain(line.points[k]), end = plain(line.points[k + 1]);
+        return {start, end - start, line.radius + (line.inflation.empty() ? 0.0 : line.inflation[k]), segment,
+                line.family >= 0 ? static_cast<std::int32_t>(line.family) : -1 - f};
+    }
+
+    /// Records of all segments in order.
+    std::vector<SegmentRecord> records() const {
+        std::vector<SegmentRecord> all(core::at(size()));
+        for (std::int32_t k = 0; k < size(); ++k) all[core::at(k)] = record(k);
+        return all;
+    }
+
+    /// Whether segments i < j of one group may pair: only on one fibre, far enough along it.
+    bool may_pair_in_group(std::int32_t i, std::int32_t j) const noexcept {
+        if (!selfish_ || fibre(i) != fibre(j) || j - i < 2) return false;
+        return arc_[core::at(j)] - arc_[core::at(i)] - length_[core::at(i)] > centreline(fibre(i)).self_skip;
+    }
+
+private:
+    static constexpr std::size_t at_most = 2147483647u - 64u;
+
+    void check(std::size_t f) const {
+        const Centreline& line = fibres_[f];
+        const std::string name = "fibre " + std::to_string(f);
+        core::require_at_least(name + ": vertices", core::count(line.points), 2);
+        core::require_positive(name + ": radius", line.radius);
+        core::require(!(line.self_skip < 0.0) && !std::isnan(line.self_skip), name + ": self_skip", line.self_skip,
+                      ">= 0 (infinite: never)");
+        core::require(line.family < 2147483647, name + ": family", static_cast<double>(line.family), "below 2^31 - 1");
+        for (std::size_t k = 0; k < line.points.size(); ++k)
+            if (!line.points[k].allFinite()) {
+                const Vec3& x = line.points[k];
+                core::refuse(name + ", vertex " + std::to_string(k),
+                             "(" + core::text(x[0]) + ", " + core::text(x[1]) + ", " + core::text(x[2]) + ")", "finite");
+            }
+        if (line.inflation.empty()) return;
+        if (line.inflation.size() + 1 != line.points.size())
+            core::refuse(name + ": inflations", std::to_string(line.inflation.size()),
+                         "none or one a segment, " + std::to_string(line.points.size() - 1));
+        for (std::size_t k = 0; k < line.inflation.size(); ++k)
+            if (!(line.inflation[k] >= 0.0) || !std::isfinite(line.inflation[k]))
+                core::require_not_negative(name + ", segment " + std::to_string(k) + ": inflation", line.inflation[k]);
+    }
+
+    void measure_arcs() {
+        arc_.resize(fibre_.size());
+        length_.resize(fibre_.size());
+        for (std::size_t f = 0; f < fibres_.size(); ++f) {
+            double arc = 0.0;
+            for (std::size_t k = 0; k + 1 < fibres_[f].points.size(); ++k) {
+                const std::size_t segment = core::at(first_[f]) + k;
+                arc_[segment] = arc;
+                length_[segment] = (fibres_[f].points[k + 1] - fibres_[f].points[k]).norm();
+                arc += length_[segment];
+            }
+        }
+    }
+
+    std::span<const Centreline> fibres_;
+    double reach_;
+    bool selfish_ = false;
+    std::vector<std::int32_t> first_, fibre_;
+    std::vector<double> arc_, length_;  // of each segment, only where a fibre may pair with itself
+};
+
+/// Two positions in a list of records that may be close.
+struct Candidate {
+    std::int32_t a, b;
+};
+
+/// Appends the pairs of the candidates that are close. The one filter of all searches: it takes each pair in the order
+/// of its segments and is compiled once (never inlined), so that a pair on the very threshold is decided alike by all.
+#if defined(__GNUC__)
+__attribute__((noinline))
+#endif
+inline void keep_close(const SegmentTable& table, const SegmentRecord* records, std::span<const Candidate> candidates,
+                       std::vector<SegmentPair>& close) {
+    const double reach = table.reach();
+    for (const Candidate& candidate : candidates) {
+        const bool ordered = records[candidate.a].segment < records[candidate.b].segment;
+        const SegmentRecord& i = records[ordered ? candidate.a : candidate.b];
+        const SegmentRecord& j = records[ordered ? candidate.b : candidate.a];
+        if (i.group == j.group && !table.may_pair_in_group(i.segment, j.segment)) continue;
+        const double threshold = i.half + j.half + reach;
+        if (segment_distance(i.start - j.start, i.chord, j.chord).squared < threshold * threshold)
+            close.push_back({i.segment, j.segment});
+    }
+}
+
+}  // namespace fibrant::proximity::detail
