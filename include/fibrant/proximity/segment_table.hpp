@@ -31,7 +31,7 @@ public:
             check(f);
             first_[f] = static_cast<std::int32_t>(total);
             total += fibres[f].points.size() - 1;
-            core::require(total < at_most, "segments of all fibres", static_cast<double>(total), "below 2^31 - 64");
+            if (total >= at_most) core::refuse("segments of all fibres", std::to_string(total), "below 2^31 - 64");
             selfish_ = selfish_ || std::isfinite(fibres[f].self_skip);
         }
         first_.back() = static_cast<std::int32_t>(total);
@@ -74,27 +74,28 @@ public:
 private:
     static constexpr std::size_t at_most = 2147483647u - 64u;
 
+    /// Names are made only once something is wrong: this runs over all vertices at every search.
     void check(std::size_t f) const {
         const Centreline& line = fibres_[f];
-        const std::string name = "fibre " + std::to_string(f);
-        core::require_at_least(name + ": vertices", core::count(line.points), 2);
-        core::require_positive(name + ": radius", line.radius);
-        core::require(!(line.self_skip < 0.0) && !std::isnan(line.self_skip), name + ": self_skip", line.self_skip,
-                      ">= 0 (infinite: never)");
-        core::require(line.family < 2147483647, name + ": family", static_cast<double>(line.family), "below 2^31 - 1");
+        const auto name = [f](const char* part) { return ("fibre " + std::to_string(f)).append(part); };
+        if (line.points.size() < 2) core::require_at_least(name(": vertices"), core::count(line.points), 2);
+        if (!(line.radius > 0.0) || !std::isfinite(line.radius)) core::require_positive(name(": radius"), line.radius);
+        if (!(line.self_skip >= 0.0)) core::refuse(name(": self_skip"), core::text(line.self_skip), ">= 0 (infinite: never)");
+        if (line.family >= 2147483647) core::refuse(name(": family"), std::to_string(line.family), "below 2^31 - 1");
         for (std::size_t k = 0; k < line.points.size(); ++k)
             if (!line.points[k].allFinite()) {
                 const Vec3& x = line.points[k];
-                core::refuse(name + ", vertex " + std::to_string(k),
+                core::refuse(name(", vertex ").append(std::to_string(k)),
                              "(" + core::text(x[0]) + ", " + core::text(x[1]) + ", " + core::text(x[2]) + ")", "finite");
             }
         if (line.inflation.empty()) return;
         if (line.inflation.size() + 1 != line.points.size())
-            core::refuse(name + ": inflations", std::to_string(line.inflation.size()),
+            core::refuse(name(": inflations"), std::to_string(line.inflation.size()),
                          "none or one a segment, " + std::to_string(line.points.size() - 1));
         for (std::size_t k = 0; k < line.inflation.size(); ++k)
             if (!(line.inflation[k] >= 0.0) || !std::isfinite(line.inflation[k]))
-                core::require_not_negative(name + ", segment " + std::to_string(k) + ": inflation", line.inflation[k]);
+                core::require_not_negative(name(", segment ").append(std::to_string(k)).append(": inflation"),
+                                           line.inflation[k]);
     }
 
     void measure_arcs() {
