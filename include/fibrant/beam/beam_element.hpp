@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What a beam element owes: energy, force and tangent from nodal 3-vectors, with stresses that may be independent.
+
+#include <fibrant/core/parameters.hpp>
+#include <fibrant/core/types.hpp>
+#include <fibrant/scene/cross_section.hpp>
+#include <fibrant/scene/dof_layout.hpp>
+#include <fibrant/scene/elastic_material.hpp>
+
+#include <array>
+#include <concepts>
+
+namespace fibrant::beam {
+
+/// Unknowns of one element, node by node, each node with its `vectors_per_node` 3-vectors (director beam: x_0 [length],
+/// g_1, g_2 [1]); also the forces conjugate to them.
+template <class B>
+using ElementVector = Eigen::Matrix<double, B::nodes * B::dofs_per_node, 1>;
+
+/// Symmetric, rows and columns as ElementVector.
+template <class B>
+using ElementMatrix = Eigen::Matrix<double, B::nodes * B::dofs_per_node, B::nodes * B::dofs_per_node>;
+
+/// One scalar for each nodal 3-vector y_a of an element: a point of the fibre is x = sum of w_a y_a.
+template <class B>
+using ElementWeights = std::array<double, static_cast<std::size_t>(B::nodes * B::vectors_per_node)>;
+
+/// An element of a fibre: consecutive nodes, one shared by neighbours.
+///
+/// `Rest` is what an element keeps of its rest shape, section and material; `Stresses` are the conjugates of all its
+/// strains at all its points, so that Newton may treat them as independent (METHOD of mixed integration points).
+/// Owed beyond the syntax, and checked by tests/beam/beam_element_contract.hpp: force and tangent are derivatives of the
+/// energy, a rigid motion changes nothing, the rest shape is free of stress, the predicted stresses are the
+/// stresses to first order, and what `without_compression` leaves makes the geometric stiffness positive semidefinite.
+template <class B>
+concept BeamElement = core::Policy<B> && requires {
+    { B::nodes } -> std::convertible_to<int>;
+    { B::vectors_per_node } -> std::convertible_to<int>;
+    { B::dofs_per_node } -> std::convertible_to<int>;
+    { B::reach } -> std::convertible_to<int>;
+    { B::kinds[0] } -> std::convertible_to<scene::VectorKind>;
+    typename B::Rest;
+    typename B::Stresses;
+} && requires(const B beam, const scene::CrossSection& section, const scene::ElasticMaterial& material,
+              const typename B::Rest& rest, const ElementVector<B>& current, const ElementVector<B>& step,
+              const typename B::Stresses& geometric, ElementVector<B>& force, ElementMatrix<B>& tangent) {
+    { beam.rest(section, material, current) } -> std::same_as<typename B::Rest>;
+    { beam.energy(rest, current) } -> std::same_as<double>;
+    { beam.internal_force(rest, current) } -> std::same_as<ElementVector<B>>;
+    { beam.tangent_stiffness(rest, current) } -> std::same_as<ElementMatrix<B>>;
+    { beam.tangent_stiffness(rest, current, geometric) } -> std::same_as<ElementMatrix<B>>;
+    beam.residual_and_tangent(rest, current, geometric, force, tangent);
+    { beam.stresses(rest, current) } -> std::same_as<typename B::Stresses>;
+    { beam.predicted_stresses(rest, current, step) } -> std::same_as<typename B::Stresses>;
+    { B::without_compression(geometric) } -> std::same_as<typename B::Stresses>;
+} && requires(double xi) {
+    { B::shape(xi)[0] } -> std::convertible_to<double>;
+    { B::shape_derivative(xi)[0] } -> std::convertible_to<double>;
+    { B::centreline_weights(xi) } -> std::same_as<ElementWeights<B>>;
+    { B::centreline_derivative_weights(xi) } -> std::same_as<ElementWeights<B>>;
+    { B::particle_weights(xi, xi, xi) } -> std::same_as<ElementWeights<B>>;
+};
+
+}  // namespace fibrant::beam

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Fibres cut into beam elements: numbering of the unknowns, rest configuration, positions along a fibre.
+
+#include <fibrant/beam/beam_element.hpp>
+#include <fibrant/core/parallel.hpp>
+#include <fibrant/scene/assembly.hpp>
+#include <fibrant/scene/dof_layout.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace fibrant::beam {
+
+/// Vectors of a node at rest: position and directors, unless the beam says what else its nodes carry.
+template <BeamElement B>
+std::array<Vec3, static_cast<std::size_t>(B::vectors_per_node)> nodal_vectors(const scene::NodeFrame& frame) {
+    if constexpr (requires { B::nodal_vectors(frame); }) {
+        return B::nodal_vectors(frame);
+    } else {
+        static_assert(B::vectors_per_node == 3, "a beam whose nodes are not position and two directors gives nodal_vectors");
+        return {frame.position, frame.director_1, frame.director_2};
+    }
+}
+
+/// Weights of director g_1 (which = 1) or g_2 (which = 2) at xi in [-1, 1].
+template <BeamElement B>
+ElementWeights<B> director_weights(double xi, int which) noexcept {
+    ElementWeights<B> weights = B::particle_weights(xi, which == 1 ? 1.0 : 0.0, which == 2 ? 1.0 : 0.0);
+    const ElementWeights<B> centre = B::centreline_weights(xi);
+    for (std::size_t a = 0; a < weights.size(); ++a) weights[a] -= centre[a];
+    return weights;
+}
+
+/// A fibre of a mesh. Its unknowns are consecutive, node after node.
+struct MeshFibre {
+    Index first_vector;
+    Index elements;
+    double element_length;  ///< at rest [length]
+    scene::CrossSection section;
+    scene::ElasticMaterial material;
+    Index group;
+
+    double length() const noexcept { return element_length * static_cast<double>(elements); }
+};
+
+/// All fibres of a scene in elements of one kind. Abscissae u along a fibre are counted in elements, 0 <= u <= elements;
+/// rest arc length is u * element_length.
+template <BeamElement B>
+class Mesh {
+public:
+    static constexpr Index vectors_per_element_step = (B::nodes - 1) * B::vectors_per_node;
+    static constexpr Index element_unknowns = B::nodes * B::dofs_per_node;
+
+    Mesh(const scene::Assembly& assembly, const B& beam) {
+        Index first = 0;
+        for (const scene::FibreSpecification& fibre : assembly.fibres()) {
+            const Index nodes = fibre.elements * (B::nodes - 1) + 1;
+            const std::vector<scene::NodeFrame> frames =
+                fibre.curve ? scene::reference_frames(fibre.curve, nodes, fibre.director)
+                            : scene::straight_frames(fibre.from, fibre.to, nodes, fibre.director);
+            double length = 0.0;
+            for (std::size_t k = 1; k < frames.size(); ++k) length += (frames[k].position - frames[k - 1].position).norm();
+            fibres_.push_back({first, fibre.elements, length / static_cast<double>(fibre.elements), fibre.section,
+                               fibre.material, fibre.group});
+            layout_.chains.push_back({first, nodes, B::vectors_per_node, B::reach, fibre.group});
+            for (const scene::NodeFrame& frame : frames) {
+                frames_.push_back(frame);
+                const std::array<Vec3, static_cast<std::size_t>(B::vectors_per_node)> vectors =
+                    nodal_vectors<B>(frame);
+                for (std::size_t v = 0; v < vectors.size(); ++v) {
+                    layout_.kind.push_back(B::kinds[v]);
+                    layout_.length.push_back(B::kinds[v] == scene::VectorKind::position ? 1.0 : fibre.section.radius());
+                    layout_.value.push_back(vectors[v]);
+                }
+            }
+            first += nodes * B::vectors_per_node;
+        }
+        rest_state_.resize(3 * first);
+        for (Index v = 0; v < first; ++v) rest_state_.segment<3>(3 * v) = layout_.value[core::at(v)];
+        first_element_.assign(1, 0);
+        for (const MeshFibre& fibre : fibres_) first_element_.push_back(first_element_.back() + fibre.elements);
+        rest_.resize(core::at(first_element_.back()));
+        core::parallel_for(fibre_count(), [&](Index f) {
+            const MeshFibre& fibre = fibres_[core::at(f)];
+            for (Index e = 0; e < fibre.elements; ++e)
+                rest_[core::at(first_element_[core::at(f)] + e)] =
+                    beam.rest(fibre.section, fibre.material, element(rest_state_, f, e));
+        });
+    }
+
+    Index fibre_count() const noexcept { return core::count(fibres_); }
+    Index element_count() const noexcept { return first_element_.back(); }
+    const std::vector<MeshFibre>& fibres() const noexcept { return fibres_; }
+    const MeshFibre& fibre(Index f) const noexcept { return fibres_[core::at(f)]; }
+    const scene::DofLayout& layout() const noexcept { return layout_; }
+    const Vector& rest_state() const noexcept { return rest_state_; }
+    const typename B::Rest& rest(Index f, Index e) const noexcept {
+        return rest_[core::at(first_element_[core::at(f)] + e)];
+    }
+    /// Number of element e of fibre f in the whole mesh.
+    Index element_index(Index f, Index e) const noexcept { return first_element_[core::at(f)] + e; }
+    Index node_count(Index f) const noexcept { return fibre(f).elements * (B::nodes - 1) + 1; }
+    Index node_vector(Index f, Index node, Index vector = 0) const noexcept {
+        return fibre(f).first_vector + node * B::vectors_per_node + vector;
+    }
+    /// Rest frame of a node.
+    const scene::NodeFrame& frame(Index f, Index node) const noexcept {
+        return frames_[core::at(fibre(f).first_vector / B::vectors_per_node + node)];
+    }
+    /// First unknown of an element; its unknowns follow in one piece.
+    Index first_unknown(Index f, Index e) const noexcept {
+        return 3 * (fibre(f).first_vector + e * vectors_per_element_step);
+    }
+    auto element(const Vector& state, Index f, Index e) const noexcept {
+        return state.segment<element_unknowns>(first_unknown(f, e));
+    }
+    /// Element that holds the abscissa u (clamped to the fibre), and its natural coordinate in [-1, 1].
+    std::pair<Index, double> locate(Index f, double u) const noexcept {
+        const double end = static_cast<double>(fibre(f).elements);
+        const double inside = std::clamp(u, 0.0, end);
+        const Index e = std::min(fibre(f).elements - 1, static_cast<Index>(inside));
+        return {e, std::clamp(2.0 * (inside - static_cast<double>(e)) - 1.0, -1.0, 1.0)};
+    }
+    /// Weighted sum of the vectors of an element.
+    static Vec3 point(const Vector& state, Index first_unknown, const ElementWeights<B>& weights) noexcept {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t a = 0; a < weights.size(); ++a)
+            sum += weights[a] * state.segment<3>(first_unknown + 3 * static_cast<Index>(a));
+        return sum;
+    }
+    Vec3 position(const Vector& state, Index f, double u) const noexcept {
+        const auto [e, xi] = locate(f, u);
+        return point(state, first_unknown(f, e), B::centreline_weights(xi));
+    }
+    /// Derivative of the centreline by u [length].
+    Vec3 derivative(const Vector& state, Index f, double u) const noexcept {
+        const auto [e, xi] = locate(f, u);
+        return 2.0 * point(state, first_unknown(f, e), B::centreline_derivative_weights(xi));
+    }
+    /// Second derivative of the centreline by u [length], exact for centrelines up to degree two in an element.
+    Vec3 second_derivative(const Vector& state, Index f, double u) const noexcept {
+        const auto [e, xi] = locate(f, u);
+        const Index first = first_unknown(f, e);
+        return 2.0 * (point(state, first, B::centreline_derivative_weights(1.0)) -
+                      point(state, first, B::centreline_derivative_weights(-1.0)));
+    }
+
+private:
+    std::vector<MeshFibre> fibres_;
+    std::vector<Index> first_element_;
+    std::vector<typename B::Rest> rest_;
+    std::vector<scene::NodeFrame> frames_;
+    scene::DofLayout layout_;
+    Vector rest_state_;
+};
+
+}  // namespace fibrant::beam
