@@ -65,13 +65,10 @@ public:
             y.segment<3>(3 * held.vector) = x.segment<3>(3 * held.vector) + held.free * difference;
         }
     }
-    /// F_i block F_j of the 3 x 3 block between two vectors of K; the diagonal one gains I - F_i.
+    /// block <- F_i block F_j, for a 3 x 3 block of K between the vectors i and j. I - F is left to the caller.
     void project(Index i, Index j, Mat3& block) const noexcept {
-        const Mat3* left = free(i);
-        const Mat3* right = free(j);
-        if (left != nullptr) block = (*left * block).eval();
-        if (right != nullptr) block = (block * *right).eval();
-        if (i == j && left != nullptr) block += Mat3::Identity() - *left;
+        if (const Mat3* left = free(i)) block = (*left * block).eval();
+        if (const Mat3* right = free(j)) block = (block * *right).eval();
     }
 
 private:
