@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file True least distance between the surfaces of all fibres.
+
+#include <fibrant/compositions/weave/measures.hpp>
+#include <fibrant/core/parallel.hpp>
+#include <fibrant/proximity/proximity_search.hpp>
+#include <fibrant/proximity/segment_distance.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+namespace fibrant::compositions::weave {
+
+/// The closest two fibres.
+struct LeastGap {
+    double gap = std::numeric_limits<double>::infinity();  ///< between surfaces, < 0 in penetration [length]
+    double gap_over_radius = std::numeric_limits<double>::infinity();  ///< over the smaller radius at rest [1]
+    Index fibre_i = -1, fibre_j = -1;
+    Vec3 position = Vec3::Zero();  ///< half way between the two axes [length]
+};
+
+namespace detail {
+
+/// Parameters of the closest points of two curves within one node interval each, from a first guess.
+///
+/// Newton's method on the squared distance with a Levenberg-Marquardt damping, which near-parallel curves need, kept in
+/// the intervals; the distance never rises.
+inline void closest_points(const NodalCurve& a, const NodalCurve& b, double a_from, double b_from, double& t,
+                           double& u) {
+    const auto half_square = [&](double p, double q) { return 0.5 * (a.position(p) - b.position(q)).squaredNorm(); };
+    double value = half_square(t, u), damping = 1e-6;
+    for (int iteration = 0; iteration < 40 && damping < 1e6; ++iteration) {
+        const Vec3 d = a.position(t) - b.position(u), p = a.tangent(t), q = b.tangent(u);
+        double gt = d.dot(p), gu = -d.dot(q);
+        double tt = p.squaredNorm() + std::max(0.0, d.dot(a.second(t)));
+        double uu = q.squaredNorm() + std::max(0.0, -d.dot(b.second(u)));
+        double tu = -p.dot(q);
+        // A parameter at its bound that would leave the interval is held there.
+        if ((t <= a_from && gt > 0.0) || (t >= a_from + 1.0 && gt < 0.0)) gt = tu = 0.0;
+        if ((u <= b_from && gu > 0.0) || (u >= b_from + 1.0 && gu < 0.0)) gu = tu = 0.0;
+        tt *= 1.0 + damping;
+        uu *= 1.0 + damping;
+        const double determinant = tt * uu - tu * tu;
+        const double next_t = std::clamp(t - (uu * gt - tu * gu) / determinant, a_from, a_from + 1.0);
+        const double next_u = std::clamp(u - (tt * gu - tu * gt) / determinant, b_from, b_from + 1.0);
+        const double next = half_square(next_t, next_u);
+        if (!(next < value)) {
+            damping *= 10.0;
+            continue;
+        }
+        const bool settled = std::abs(next_t - t) + std::abs(next_u - u) < 1e-10;
+        t = next_t;
+        u = next_u;
+        value = next;
+        damping = std::max(0.1 * damping, 1e-12);
+        if (settled) break;
+    }
+}
+
+}  // namespace detail
+
+/// The least distance between the surfaces of any two fibres, also within a tow.
+///
+/// A search over the half elements, inflated by their deviation from the chord, gives the candidates; the closest
+/// points are then found on the curves, and the sections' extents taken along the line that joins them. Candidates whose
+/// lower bound exceeds the best gap so far are passed over. Never quadratic: the reach grows from zero until a pair is met.
+template <proximity::ProximitySearch Search>
+LeastGap least_gap(const observe::Snapshot& snapshot, Search search) {
+    const auto fibres = core::count(snapshot.fibres);
+    std::vector<proximity::Centreline> lines(core::at(fibres));
+    std::vector<std::vector<double>> inflation(core::at(fibres));
+    std::vector<Index> first(core::at(fibres) + 1, 0), owner;
+    double greatest_radius = 0.0, extent = 0.0;
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+        const observe::FibreSnapshot& fibre = snapshot.fibres[k];
+        const NodalCurve curve{fibre.position};
+        double radius = 0.0;  // of the section as it is deformed
+        for (std::size_t node = 0; node < fibre.position.size(); ++node)
+            radius = std::max({radius, fibre.section.semi_axis_1 * fibre.director_1[node].norm(),
+                               fibre.section.semi_axis_2 * fibre.director_2[node].norm()});
+        // Half an element deviates from its chord by |x''| (1/2)^2 / 2, x'' over the parameter of one node interval.
+        for (std::size_t piece = 0; piece + 1 < fibre.position.size(); ++piece) {
+            inflation[k].push_back(curve.second(static_cast<double>(piece)).norm() / 8.0);
+            owner.push_back(static_cast<Index>(k));
+        }
+        lines[k] = {fibre.position, radius, inflation[k], -1};
+        first[k + 1] = core::count(owner);
+        greatest_radius = std::max(greatest_radius, radius);
+        for (const Vec3& node : fibre.position) extent = std::max(extent, (node - snapshot.fibres[0].position[0]).norm());
+    }
+
+    LeastGap least;
+    double best_reach = 0.0;
+    for (double reach = 0.0; std::isinf(least.gap) || least.gap > best_reach;
+         reach = std::max({2.0 * reach, 0.1 * greatest_radius, std::isinf(least.gap) ? 0.0 : least.gap})) {
+        best_reach = reach;
+        struct Candidate {
+            double bound, t, u;  ///< parameters of the closest points of the chords
+            Index i, j, p, q;    ///< fibres, and node intervals
+        };
+        const std::vector<proximity::SegmentPair> pairs = search.pairs(lines, reach);
+        std::vector<Candidate> candidates(pairs.size());
+        core::parallel_for(core::count(pairs), [&](Index n) {
+            const proximity::SegmentPair& pair = pairs[core::at(n)];
+            const Index i = owner[core::at(pair.i)], j = owner[core::at(pair.j)];
+            const Index p = pair.i - first[core::at(i)], q = pair.j - first[core::at(j)];
+            const auto &a = lines[core::at(i)].points, &b = lines[core::at(j)].points;
+            const Vec3 u = a[core::at(p + 1)] - a[core::at(p)], v = b[core::at(q + 1)] - b[core::at(q)];
+            const auto near = proximity::segment_distance(a[core::at(p)], u, b[core::at(q)], v);
+            candidates[core::at(n)] = {std::sqrt(near.squared) - inflation[core::at(i)][core::at(p)] -
+                                           inflation[core::at(j)][core::at(q)] - lines[core::at(i)].radius -
+                                           lines[core::at(j)].radius,
+                                       static_cast<double>(p) + near.s, static_cast<double>(q) + near.t, i, j, p, q};
+        });
+        std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+            if (a.bound != b.bound) return a.bound < b.bound;
+            return std::tie(a.i, a.p, a.j, a.q) < std::tie(b.i, b.p, b.j, b.q);
+        });
+        for (const Candidate& candidate : candidates) {
+            if (candidate.bound >= least.gap) break;
+            const observe::FibreSnapshot &fibre_i = snapshot.fibres[core::at(candidate.i)],
+                                         &fibre_j = snapshot.fibres[core::at(candidate.j)];
+            const NodalCurve a{fibre_i.position}, b{fibre_j.position};
+            double t = candidate.t, u = candidate.u;
+            detail::closest_points(a, b, static_cast<double>(candidate.p), static_cast<double>(candidate.q), t, u);
+            const Vec3 p = a.position(t), q = b.position(u), apart = q - p;
+            const double distance = apart.norm();
+            const Vec3 direction = distance > 0.0 ? Vec3(apart / distance) : Vec3(Vec3::UnitZ());
+            const double gap = distance - section_extent(fibre_i, a, t, direction) - section_extent(fibre_j, b, u, direction);
+            if (gap >= least.gap) continue;
+            const double radius = std::min({fibre_i.section.semi_axis_1, fibre_i.section.semi_axis_2,
+                                            fibre_j.section.semi_axis_1, fibre_j.section.semi_axis_2});
+            least = {gap, gap / radius, candidate.i, candidate.j, 0.5 * (p + q)};
+        }
+        if (reach > 2.0 * extent) break;  // a single fibre
+    }
+    return least;
+}
+
+}  // namespace fibrant::compositions::weave

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Figures of a settled fabric: crimp of fibres and tows, curvature, thickness.
+
+#include <fibrant/compositions/weave/tow_geometry.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace fibrant::compositions::weave {
+
+/// Arc length over projected length, less 1, of the part of a curve between two planes across an axis [1].
+/// @param axis      0 for x, 1 for y, 2 for z
+/// @param from, to  where the part begins and ends on that axis, from < to [length]; NaN is returned unless the curve
+///                  reaches both
+inline double crimp(const NodalCurve& curve, Index axis, double from, double to) {
+    const Vec3 normal = Vec3::Unit(axis);
+    const auto a = curve.meets(normal, from), b = curve.meets(normal, to);
+    if (!a || !b || !(to > from)) return std::numeric_limits<double>::quiet_NaN();
+    return curve.length(std::min(*a, *b), std::max(*a, *b)) / (to - from) - 1.0;
+}
+
+/// Crimp between the outermost crossings.
+struct CrimpMeasures {
+    std::vector<double> fibres;              ///< of each fibre of the fabric [1]
+    std::vector<double> warp_tows, weft_tows;  ///< of each tow's centre line [1]
+    double warp = 0, weft = 0;               ///< mean over the fibres of the family [1]
+};
+
+/// Part of a fabric between the middles of its outermost tows [length].
+struct Outline {
+    double x_from = 0, x_to = 0, y_from = 0, y_to = 0;
+};
+
+namespace detail {
+
+struct Span {
+    double from = 0, to = 0;
+};
+
+/// Where a tow's centre line crosses the first and the last tow of the other family, along its own axis.
+inline Span outermost_crossings(const observe::Snapshot& snapshot, const FabricParameters& fabric, Family family,
+                                Index tow) {
+    const std::vector<Vec3> own = tow_centreline(snapshot, fabric, family, tow);
+    const auto across = [&](Index k) {
+        const std::vector<Vec3> nodes = tow_centreline(snapshot, fabric, other(family), k);
+        const bool is_warp = family == Family::warp;
+        double place = std::numeric_limits<double>::quiet_NaN();
+        const NodalCurve warp{is_warp ? own : nodes}, weft{is_warp ? nodes : own};
+        for_each_plan_crossing(warp, weft, [&](const PlanCrossing& crossing) {
+            place = is_warp ? warp.position(crossing.warp).x() : weft.position(crossing.weft).y();
+        });
+        return place;
+    };
+    return {across(0), across(fabric.tows(other(family)) - 1)};
+}
+
+}  // namespace detail
+
+/// Crimp of every fibre and tow; a fibre that does not reach its outermost crossings has NaN and makes the mean NaN.
+inline CrimpMeasures crimp_measures(const observe::Snapshot& snapshot, const FabricParameters& fabric) {
+    require_snapshot_of(snapshot, fabric);
+    CrimpMeasures answer;
+    answer.fibres.resize(core::at(fabric.fibres()));
+    for (const Family family : {Family::warp, Family::weft}) {
+        const Index axis = axis_of(family), fibres = fabric.tow(family).fibres;
+        double sum = 0.0;
+        for (Index tow = 0; tow < fabric.tows(family); ++tow) {
+            const detail::Span span = detail::outermost_crossings(snapshot, fabric, family, tow);
+            const std::vector<Vec3> centre = tow_centreline(snapshot, fabric, family, tow);
+            (family == Family::warp ? answer.warp_tows : answer.weft_tows)
+                .push_back(crimp(NodalCurve{centre}, axis, span.from, span.to));
+            for (Index k = 0; k < fibres; ++k) {
+                const std::size_t fibre = core::at(fabric.fibre(family, tow, k));
+                answer.fibres[fibre] =
+                    crimp(NodalCurve{snapshot.fibres[fibre].position}, axis, span.from, span.to);
+                sum += answer.fibres[fibre];
+            }
+        }
+        (family == Family::warp ? answer.warp : answer.weft) =
+            sum / static_cast<double>(fabric.tows(family) * fibres);
+    }
+    return answer;
+}
+
+/// Outline of the woven part: what is measured does not depend on the free ends.
+inline Outline outline(const observe::Snapshot& snapshot, const FabricParameters& fabric) {
+    require_snapshot_of(snapshot, fabric);
+    const auto middle = [&](Family family, Index tow) {
+        const std::vector<Vec3> nodes = tow_centreline(snapshot, fabric, family, tow);
+        double sum = 0.0;
+        for (const Vec3& node : nodes) sum += node[axis_of(other(family))];
+        return sum / static_cast<double>(nodes.size());
+    };
+    return {middle(Family::weft, 0), middle(Family::weft, fabric.weft_tows - 1), middle(Family::warp, 0),
+            middle(Family::warp, fabric.warp_tows - 1)};
+}
+
+/// Half extent of a fibre's deformed section along a unit direction [length].
+inline double section_extent(const observe::FibreSnapshot& fibre, const NodalCurve& curve, double t,
+                             const Vec3& direction) {
+    const double p = fibre.section.semi_axis_1 *
+                     curve.interpolate(std::span<const Vec3>{fibre.director_1}, t).dot(direction);
+    const double q = fibre.section.semi_axis_2 *
+                     curve.interpolate(std::span<const Vec3>{fibre.director_2}, t).dot(direction);
+    return std::sqrt(p * p + q * q);
+}
+
+/// Height between the lowest and the highest surface of the fibres within the outline [length].
+inline double thickness(const observe::Snapshot& snapshot, const FabricParameters& fabric) {
+    const Outline part = outline(snapshot, fabric);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    const Index steps = 4 * (fabric.nodes_per_fibre() - 1);  // a quarter of a node interval
+    for (const observe::FibreSnapshot& fibre : snapshot.fibres) {
+        const NodalCurve curve{fibre.position};
+        for (Index k = 0; k <= steps; ++k) {
+            const double t = 0.25 * static_cast<double>(k);
+            const Vec3 x = curve.position(t);
+            if (x.x() < part.x_from || x.x() > part.x_to || x.y() < part.y_from || x.y() > part.y_to) continue;
+            const double extent = section_extent(fibre, curve, t, Vec3::UnitZ());
+            low = std::min(low, x.z() - extent);
+            high = std::max(high, x.z() + extent);
+        }
+    }
+    return high - low;
+}
+
+/// Curvature of one tow's fibres, weighted by arc length [1 / length].
+struct CurvatureStatistics {
+    double mean = 0, root_mean_square = 0, greatest = 0;
+};
+
+inline CurvatureStatistics curvature_statistics(const observe::Snapshot& snapshot, const FabricParameters& fabric,
+                                                Family family, Index tow) {
+    CurvatureStatistics answer;
+    double length = 0.0;
+    for (Index k = 0; k < fabric.tow(family).fibres; ++k) {
+        const NodalCurve curve{snapshot.fibres[core::at(fabric.fibre(family, tow, k))].position};
+        curve.integrate(0.0, curve.end(), [&](double t, double weight) {
+            const double kappa = curve.curvature(t);
+            length += weight;
+            answer.mean += weight * kappa;
+            answer.root_mean_square += weight * kappa * kappa;
+            answer.greatest = std::max(answer.greatest, kappa);
+        });
+    }
+    answer.mean /= length;
+    answer.root_mean_square = std::sqrt(answer.root_mean_square / length);
+    return answer;
+}
+
+}  // namespace fibrant::compositions::weave
