@@ -9,6 +9,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <memory>
 
 namespace fibrant::solver {
 
@@ -55,5 +56,36 @@ inline double scaled_norm(const scene::DofLayout& layout, const Vector& r) {
         return sum;
     }));
 }
+
+/// |b - A x| / |b| in `scaled_norm`; r is set to b - A x.
+///
+/// @param norm  of b, > 0
+template <assembly::LinearSystem System>
+double relative_residual(const System& system, const Vector& b, double norm, const Vector& x, Vector& r) {
+    r.resize(b.size());
+    system.apply(x, r);
+    r = b - r;
+    return scaled_norm(system.layout(), r) / norm;
+}
+
+/// What a solver works with, and a copy of it does not take along.
+template <class Value>
+class Workspace {
+public:
+    Workspace() : value_{std::make_unique<Value>()} {}
+    Workspace(const Workspace&) : Workspace() {}
+    Workspace(Workspace&&) noexcept = default;
+    Workspace& operator=(const Workspace& other) {
+        if (this != &other) value_ = std::make_unique<Value>();
+        return *this;
+    }
+    Workspace& operator=(Workspace&&) noexcept = default;
+    ~Workspace() = default;
+    Value& operator*() const noexcept { return *value_; }
+    Value* operator->() const noexcept { return value_.get(); }
+
+private:
+    std::unique_ptr<Value> value_;
+};
 
 }  // namespace fibrant::solver

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Factors of all chains of a system: the preconditioner that is exact while nothing touches.
+
+#include <fibrant/solver/block_band_cholesky.hpp>
+#include <fibrant/solver/linear_solver.hpp>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace fibrant::solver {
+
+/// B^-1 of the block diagonal B that has the band of each chain, its contact elements included, as a block.
+class ChainFactors {
+public:
+    static constexpr double least_pivot = 1e-12;  ///< over the diagonal entry: below it a chain counts as not held
+    static constexpr double least_shift = 1e-6;   ///< of a chain that nothing holds, times its node blocks
+
+    /// Sorts the chains into packs of equal shape.
+    void analyse(const scene::DofLayout& layout) {
+        std::map<std::tuple<int, int, int>, std::vector<Index>> shapes;
+        for (Index c = 0; c < core::count(layout.chains); ++c) {
+            const BandShape shape = shape_of(layout.chains[core::at(c)]);
+            shapes[{shape.nodes, shape.block, shape.reach}].push_back(c);
+        }
+        packs_.clear();
+        for (const auto& entry : shapes) {
+            const std::vector<Index>& chains = entry.second;
+            std::size_t first = 0;
+            while (first < chains.size()) {
+                const std::size_t left = chains.size() - first;
+                const std::size_t take = left >= lanes ? lanes : left > 2 ? left : 1;  // two lanes of eight are no gain
+                packs_.push_back({std::vector<Index>(chains.begin() + static_cast<std::ptrdiff_t>(first),
+                                                     chains.begin() + static_cast<std::ptrdiff_t>(first + take)),
+                                  make(shape_of(layout.chains[core::at(chains[first])]), take > 1)});
+                first += take;
+            }
+        }
+    }
+
+    /// Factors of the present values. A chain whose band is not positive definite is shifted until it is: `apply` is
+    /// positive definite whatever the status, unless it is not_finite.
+    ///
+    /// @param see  see(chain, band) is called for each chain with its band, from several threads at once
+    template <assembly::LinearSystem System, class See>
+    SolveStatus prepare(const System& system, const See& see) {
+        std::vector<SolveStatus> status(packs_.size(), SolveStatus::converged);
+        core::parallel_for(core::count(packs_), [&](Index p) {
+            Pack& pack = packs_[core::at(p)];
+            status[core::at(p)] = std::visit([&](auto& band) { return prepare(system, pack.chains, band, see); }, pack.factor);
+        });
+        SolveStatus worst = SolveStatus::converged;
+        for (const SolveStatus s : status) {
+            if (s == SolveStatus::not_finite) return s;
+            if (s == SolveStatus::indefinite) worst = s;
+        }
+        return worst;
+    }
+    template <assembly::LinearSystem System>
+    SolveStatus prepare(const System& system) {
+        return prepare(system, [](Index, const Matrix&) {});
+    }
+
+    /// z = B^-1 r
+    void apply(const scene::DofLayout& layout, const Vector& r, Vector& z) const {
+        core::parallel_for(core::count(packs_), [&](Index p) {
+            const Pack& pack = packs_[core::at(p)];
+            std::visit([&](const auto& band) { solve(layout, pack.chains, band, r, z); }, pack.factor);
+        });
+    }
+
+    /// Bytes of the factors.
+    std::size_t bytes() const {
+        std::size_t sum = 0;
+        for (const Pack& pack : packs_) sum += std::visit([](const auto& band) { return band.bytes(); }, pack.factor);
+        return sum;
+    }
+
+private:
+    static constexpr std::size_t lanes = 8;
+    template <int Block>
+    using One = BlockBandCholesky<Block, 1>;
+    template <int Block>
+    using Several = BlockBandCholesky<Block, static_cast<int>(lanes)>;
+    // Director beam 9, Hermite cable 6, bar or node of a solid 3; 0 serves all others.
+    using Factor = std::variant<One<0>, One<3>, One<6>, One<9>, Several<0>, Several<3>, Several<6>, Several<9>>;
+    struct Pack {
+        std::vector<Index> chains;  // fewer than the lanes: the others repeat the first
+        Factor factor;
+    };
+
+    static BandShape shape_of(const scene::Chain& chain) {
+        return {static_cast<int>(chain.nodes), static_cast<int>(3 * chain.vectors_per_node), static_cast<int>(chain.reach)};
+    }
+    static Factor make(const BandShape& shape, bool several) {
+        switch (shape.block) {
+            case 3: return several ? Factor(Several<3>(shape)) : Factor(One<3>(shape));
+            case 6: return several ? Factor(Several<6>(shape)) : Factor(One<6>(shape));
+            case 9: return several ? Factor(Several<9>(shape)) : Factor(One<9>(shape));
+            default: return several ? Factor(Several<0>(shape)) : Factor(One<0>(shape));
+        }
+    }
+
+    template <class System, int Block, int Lanes, class See>
+    static SolveStatus prepare(const System& system, const std::vector<Index>& chains,
+                               BlockBandCholesky<Block, Lanes>& factor, const See& see) {
+        std::array<Matrix, core::at(Lanes)> bands;
+        for (std::size_t lane = 0; lane < bands.size(); ++lane) {
+            if (lane >= chains.size()) {
+                bands[lane] = bands[0];
+                continue;
+            }
+            system.chain_band(chains[lane], bands[lane]);
+            if (!bands[lane].allFinite()) return SolveStatus::not_finite;
+            see(chains[lane], std::as_const(bands[lane]));
+        }
+        SolveStatus status = SolveStatus::converged;
+        std::array<Matrix, core::at(Lanes)> shifted;
+        for (int attempt = 0;; ++attempt) {
+            const auto accepted = factor.factor(std::span<const Matrix, core::at(Lanes)>(attempt == 0 ? bands : shifted), least_pivot);
+            if (std::find(accepted.begin(), accepted.end(), false) == accepted.end()) return status;
+            if (attempt == 0) shifted = bands;
+            if (attempt > 0) status = SolveStatus::indefinite;  // the least shift cures what merely floats
+            for (std::size_t lane = 0; lane < bands.size(); ++lane) {
+                if (!accepted[lane]) shift(factor.shape(), bands[lane], attempt, shifted[lane]);
+            }
+        }
+    }
+
+    /// Band that a refused one is replaced by: ever closer to a positive diagonal, which is reached in the end.
+    static void shift(const BandShape& shape, const Matrix& band, int attempt, Matrix& shifted) {
+        const int m = shape.block;
+        shifted = band;
+        if (attempt == 0) {
+            shifted.leftCols(m) *= 1.0 + least_shift;
+            return;
+        }
+        double largest = 0.0;
+        for (Index k = 0; k < band.rows(); ++k) largest = std::max(largest, std::abs(band(k, k % m)));
+        if (largest == 0.0) largest = 1.0;
+        const double share = std::pow(10.0, attempt - 5);  // 1e-4, 1e-3, ... 100 times the magnitude of the diagonal
+        if (attempt > 7) shifted.setZero();
+        for (Index k = 0; k < band.rows(); ++k) {
+            shifted(k, k % m) += share * std::max(std::abs(band(k, k % m)), 1e-9 * largest);
+        }
+    }
+
+    template <int Block, int Lanes>
+    static void solve(const scene::DofLayout& layout, const std::vector<Index>& chains,
+                      const BlockBandCholesky<Block, Lanes>& factor, const Vector& r, Vector& z) {
+        using Kept = typename BlockBandCholesky<Block, Lanes>::Kept;
+        const Index size = static_cast<Index>(factor.shape().nodes) * factor.shape().block;
+        std::vector<Kept> buffer(core::at(size));
+        std::array<Index, core::at(Lanes)> start{};
+        for (std::size_t lane = 0; lane < start.size(); ++lane) {
+            start[lane] = 3 * layout.chains[core::at(chains[lane < chains.size() ? lane : 0])].first_vector;
+        }
+        for (Index k = 0; k < size; ++k)
+            for (int lane = 0; lane < Lanes; ++lane) buffer[core::at(k)][lane] = static_cast<float>(r[start[core::at(lane)] + k]);
+        factor.solve(buffer.data());
+        for (Index k = 0; k < size; ++k)
+            for (int lane = 0; lane < static_cast<int>(chains.size()); ++lane)
+                z[start[core::at(lane)] + k] = static_cast<double>(buffer[core::at(k)][lane]);
+    }
+
+    std::vector<Pack> packs_;
+};
+
+}  // namespace fibrant::solver

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Preconditioned conjugate gradients that notice an indefinite system.
+
+#include <fibrant/solver/linear_solver.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace fibrant::solver {
+
+/// Vectors of conjugate gradients, kept from solve to solve.
+struct ConjugateGradientVectors {
+    Vector r, z, p, product;
+};
+
+namespace detail {
+
+/// x += alpha p, r -= alpha product, in one pass. Returns the squared scaled norm of r.
+inline double advance(const scene::DofLayout& layout, double alpha, const ConjugateGradientVectors& cg, Vector& x, Vector& r) {
+    return core::ordered_sum(layout.vectors(), 0.0, [&](Index first, Index last) {
+        double sum = 0.0;
+        for (Index v = first; v < last; ++v) {
+            x.segment<3>(3 * v) += alpha * cg.p.segment<3>(3 * v);
+            r.segment<3>(3 * v) -= alpha * cg.product.segment<3>(3 * v);
+            const double length = layout.length[core::at(v)];
+            sum += r.segment<3>(3 * v).squaredNorm() / (length * length);
+        }
+        return sum;
+    });
+}
+
+}  // namespace detail
+
+/// Solves A x = b by conjugate gradients from x = 0, all vectors in double.
+///
+/// The held part of b is the held part of x from the start; the rest is sought among free vectors. When the recursive
+/// residual has reached the tolerance the true one is computed; should it have not, the iteration starts again from it.
+///
+/// @param precondition     precondition(r, z): z = M^-1 r, symmetric positive definite
+/// @param iteration_limit  > 0
+template <assembly::LinearSystem System, class Precondition>
+SolveReport conjugate_gradient(const System& system, const Precondition& precondition, const Vector& b, double tolerance,
+                               int iteration_limit, ConjugateGradientVectors& cg, Vector& x) {
+    const scene::DofLayout& layout = system.layout();
+    const assembly::HeldProjector held(layout);
+    x.setZero(b.size());
+    if (!b.allFinite()) return {};
+    const double norm = scaled_norm(layout, b);
+    if (norm == 0.0) return {SolveStatus::converged, 0, 0.0, core::unset};
+
+    cg.r = b;
+    held.project(cg.r);
+    for (const scene::HeldVector& h : layout.held) {
+        x.segment<3>(3 * h.vector) = b.segment<3>(3 * h.vector) - cg.r.segment<3>(3 * h.vector);
+    }
+    cg.z.resize(b.size());
+    cg.product.resize(b.size());
+    cg.p.setZero(b.size());
+    SolveReport report{SolveStatus::iteration_limit, 0, scaled_norm(layout, cg.r) / norm, core::unset};
+    double before = 0.0, weight = 0.0;  // r.z of the iteration before, and p.M p
+    bool exact = true;                  // whether the residual is that of x, not the recursive one
+    double reached = std::numeric_limits<double>::infinity();  // true residual at the last restart
+    while (report.iterations < iteration_limit) {
+        if (report.residual <= tolerance) {
+            if (!exact) report.residual = relative_residual(system, b, norm, x, cg.r);
+            held.project(cg.r);
+            if (report.residual <= tolerance) {
+                report.status = SolveStatus::converged;
+                break;
+            }
+            if (report.residual > 0.5 * reached) break;  // rounding allows no less
+            reached = report.residual;
+            exact = true;
+            before = 0.0;
+        }
+        precondition(std::as_const(cg.r), cg.z);
+        held.project(cg.z);
+        const double rz = core::dot(cg.r, cg.z);
+        const double beta = before > 0.0 ? rz / before : 0.0;
+        core::parallel_for((b.size() + 8191) / 8192, [&](Index block) {
+            const Index first = 8192 * block, size = std::min<Index>(8192, b.size() - first);
+            cg.p.segment(first, size) = cg.z.segment(first, size) + beta * cg.p.segment(first, size);
+        });
+        weight = rz + beta * beta * weight;  // r is orthogonal to the directions before
+        system.apply(cg.p, cg.product);
+        const double curvature = core::dot(cg.p, cg.product);
+        if (!std::isfinite(curvature) || !std::isfinite(rz)) {
+            report.status = SolveStatus::not_finite;
+            return report;
+        }
+        if (!(report.curvature <= curvature / weight)) report.curvature = curvature / weight;
+        if (curvature <= 0.0) {
+            report.status = SolveStatus::indefinite;
+            if (report.iterations == 0) x += cg.z;
+            break;
+        }
+        const double square = detail::advance(layout, rz / curvature, cg, x, cg.r);
+        report.residual = std::sqrt(square) / norm;
+        exact = false;
+        before = rz;
+        ++report.iterations;
+    }
+    if (report.status != SolveStatus::converged) report.residual = relative_residual(system, b, norm, x, cg.r);
+    if (report.status == SolveStatus::iteration_limit && report.residual <= tolerance) report.status = SolveStatus::converged;
+    if (!std::isfinite(report.residual)) report.status = SolveStatus::not_finite;
+    return report;
+}
+
+}  // namespace fibrant::solver

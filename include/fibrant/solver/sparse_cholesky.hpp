@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Direct solution with Eigen's sparse Cholesky: for tests and small scenes.
+
+#include <fibrant/assembly/term_assembly.hpp>
+#include <fibrant/solver/linear_solver.hpp>
+
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+
+namespace fibrant::solver {
+
+/// LDL^T of the assembled matrix (simplicial, minimum degree), with a few steps of refinement.
+///
+/// Exact and simple; beyond some 20,000 unknowns in contact the fill makes it slower by orders of magnitude than the
+/// iterative solvers. Pivots <= 0 are replaced by their magnitude, which makes the result a descent direction.
+/// Curvature reported: 1 if all pivots are > 0, else the least pivot over the largest.
+class SparseCholesky {
+public:
+    struct Parameters {
+        int refinements = 3;  ///< steps of iterative refinement at most, taken while the tolerance is not met; >= 0
+        void validate() const { core::require_at_least("SparseCholesky.refinements", refinements, 0); }
+    };
+    SparseCholesky() : SparseCholesky(Parameters{}) {}
+    explicit SparseCholesky(const Parameters& parameters) : parameters_{core::validated(parameters)} {}
+
+    template <assembly::LinearSystem System>
+    void analyse(const System& system) {
+        if constexpr (!assembly::AssembledSystem<System>) work_->terms.analyse(system);
+        assemble(system);
+        work_->factor.analyzePattern(work_->a);
+    }
+
+    template <assembly::LinearSystem System>
+    SolveStatus prepare(const System& system) {
+        Work& work = *work_;
+        assemble(system);
+        work.pivots.resize(0);
+        if (!Eigen::Map<const Vector>(work.a.valuePtr(), work.a.nonZeros()).allFinite()) {
+            return work.status = SolveStatus::not_finite;
+        }
+        work.factor.factorize(work.a);
+        work.status = SolveStatus::indefinite;
+        work.curvature = 0.0;
+        if (work.factor.info() != Eigen::Success) return work.status;  // a pivot is exactly zero
+        work.pivots = work.factor.vectorD();
+        if (!work.pivots.allFinite()) {
+            work.pivots.resize(0);
+            return work.status;
+        }
+        const double least = work.pivots.size() > 0 ? work.pivots.minCoeff() : 1.0;
+        work.curvature = least > 0.0 ? 1.0 : least / work.pivots.cwiseAbs().maxCoeff();
+        if (least > 0.0) work.status = SolveStatus::converged;
+        return work.status;
+    }
+
+    template <assembly::LinearSystem System>
+    SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
+        Work& work = *work_;
+        x.setZero(b.size());
+        if (work.status == SolveStatus::not_finite || !b.allFinite()) return {};
+        const double norm = scaled_norm(system.layout(), b);
+        if (norm == 0.0) return {SolveStatus::converged, 0, 0.0, work.curvature};
+        SolveReport report{SolveStatus::iteration_limit, 0, 1.0, work.curvature};
+        if (work.status == SolveStatus::indefinite) {
+            descend(b, x);
+            report.iterations = 1;
+            report.residual = relative_residual(system, b, norm, x, work.residual);
+            report.status = x.allFinite() ? SolveStatus::indefinite : SolveStatus::not_finite;
+            return report;
+        }
+        Vector best = x;
+        work.residual = b;
+        for (; report.iterations <= parameters_.refinements && report.residual > tolerance; ++report.iterations) {
+            x += work.factor.solve(work.residual);
+            const double residual = relative_residual(system, b, norm, x, work.residual);
+            if (!std::isfinite(residual)) return {SolveStatus::not_finite, report.iterations, residual, work.curvature};
+            if (report.iterations > 0 && residual >= report.residual) {  // refinement has reached its floor
+                x = best;
+                break;
+            }
+            report.residual = residual;
+            best = x;
+        }
+        if (report.residual <= tolerance) report.status = SolveStatus::converged;
+        if (b.dot(x) <= 0.0) report.status = SolveStatus::indefinite;
+        return report;
+    }
+
+private:
+    struct Work {
+        assembly::TermAssembly terms;
+        SparseMatrix a;
+        Eigen::SimplicialLDLT<SparseMatrix> factor;
+        Vector pivots, residual;
+        SolveStatus status = SolveStatus::not_finite;
+        double curvature = 0.0;
+    };
+
+    template <assembly::LinearSystem System>
+    void assemble(const System& system) {
+        if constexpr (assembly::AssembledSystem<System>) {
+            system.assemble(work_->a);
+        } else {
+            work_->terms.fill(system, work_->a);
+        }
+    }
+
+    /// x = L^-T |D|^-1 L^-1 b, or b scaled by the diagonal where there is no factor.
+    void descend(const Vector& b, Vector& x) const {
+        const Work& work = *work_;
+        if (work.pivots.size() == 0) {
+            const Vector diagonal = work.a.diagonal().cwiseAbs();
+            const double floor = 1e-12 * diagonal.maxCoeff();
+            x = floor > 0.0 ? Vector(b.cwiseQuotient(diagonal.cwiseMax(floor))) : b;
+            return;
+        }
+        const Vector magnitude = work.pivots.cwiseAbs();
+        x = work.factor.permutationP() * b;
+        work.factor.matrixL().solveInPlace(x);
+        x = x.cwiseQuotient(magnitude.cwiseMax(1e-14 * magnitude.maxCoeff())).eval();
+        work.factor.matrixU().solveInPlace(x);
+        x = (work.factor.permutationPinv() * x).eval();
+    }
+
+    Parameters parameters_;
+    Workspace<Work> work_;
+};
+
+}  // namespace fibrant::solver
