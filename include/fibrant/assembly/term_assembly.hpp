@@ -71,7 +71,7 @@ public:
         assert(n == system.layout().vectors());
         a.resize(3 * n, 3 * n);
         a.resizeNonZeros(9 * core::count(row_));
-        Eigen::Map<Vector>(a.valuePtr(), a.nonZeros()).setZero();
+        Eigen::Map<Vector>(a.valuePtr(), 9 * core::count(row_)).setZero();
         for (Index v = 0; v < n; ++v) {
             const Index blocks = column_[core::at(v + 1)] - column_[core::at(v)];
             for (Index c = 0; c < 3; ++c) {
