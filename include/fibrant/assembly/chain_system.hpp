@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file The tangent of one iteration, never formed as one matrix: a block band for every fibre, and a point term for every
+/// contact element.
+
+#include <fibrant/assembly/linear_system.hpp>
+#include <fibrant/beam/mesh.hpp>
+#include <fibrant/core/parallel.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fibrant::assembly {
+
+/// Symmetric tangent of fibres whose elements are B, coupled by point terms between two elements.
+///
+/// Memory: (reach + 1) blocks a node, and about 250 bytes a contact that carries force. Every sum has a fixed order, so the
+/// bits of a product do not depend on the number of threads.
+template <beam::BeamElement B>
+class ChainSystem {
+public:
+    static constexpr int block = B::dofs_per_node;
+    static constexpr int reach = B::reach;
+    static constexpr int vectors = B::nodes * B::vectors_per_node;  ///< of an element
+    using Row = Eigen::Matrix<double, block, (reach + 1) * block>;  ///< blocks A(a, a - reach) ... A(a, a)
+    /// Stiffness between two particles of two elements.
+    struct Point {
+        std::int32_t first_i, first_j;  ///< first unknown of either element
+        std::int32_t fibre_i, fibre_j;
+        beam::ElementWeights<B> weights_i, weights_j;
+        Mat3 stiffness;
+    };
+
+    explicit ChainSystem(const beam::Mesh<B>& mesh) : mesh_{&mesh}, layout_{mesh.layout()} {
+        Index nodes = 0;
+        for (const scene::Chain& chain : layout_.chains) {
+            first_node_.push_back(nodes);
+            nodes += chain.nodes;
+        }
+        rows_.resize(core::at(nodes));
+    }
+
+    const scene::DofLayout& layout() const noexcept { return layout_; }
+    scene::DofLayout& layout() noexcept { return layout_; }
+    std::vector<Point>& points() noexcept { return points_; }
+    const std::vector<Point>& points() const noexcept { return points_; }
+
+    /// Sets the values of the current state, which preconditioners read.
+    void place(const Vector& state) {
+        for (Index v = 0; v < layout_.vectors(); ++v) layout_.value[core::at(v)] = state.segment<3>(3 * v);
+    }
+
+    /// Sets a fibre's band to zero.
+    void clear(Index fibre) {
+        for (Index a = 0; a < mesh_->node_count(fibre); ++a) row(fibre, a).setZero();
+    }
+    /// Adds an element's stiffness.
+    void add(Index fibre, Index element, const beam::ElementMatrix<B>& stiffness) {
+        for (Index a = 0; a < B::nodes; ++a)
+            for (Index b = 0; b <= a; ++b)
+                row(fibre, element * (B::nodes - 1) + a).template block<block, block>(0, (reach - (a - b)) * block) +=
+                    stiffness.template block<block, block>(a * block, b * block);
+    }
+    /// Adds a stiffness of one nodal vector with itself.
+    void add_diagonal(Index vector, const Mat3& stiffness) {
+        const Index node = vector / B::vectors_per_node, v = vector % B::vectors_per_node;
+        rows_[core::at(node)].template block<3, 3>(3 * v, reach * block + 3 * v) += stiffness;
+    }
+    Row& row(Index fibre, Index node) noexcept { return rows_[core::at(first_node_[core::at(fibre)] + node)]; }
+    const Row& row(Index fibre, Index node) const noexcept { return rows_[core::at(first_node_[core::at(fibre)] + node)]; }
+
+    /// To be called once the points are complete: lists the points of each fibre.
+    void index_points() {
+        side_first_.assign(core::at(mesh_->fibre_count() + 1), 0);
+        for (const Point& point : points_) {
+            ++side_first_[core::at(point.fibre_i) + 1];
+            ++side_first_[core::at(point.fibre_j) + 1];
+        }
+        for (std::size_t f = 1; f < side_first_.size(); ++f) side_first_[f] += side_first_[f - 1];
+        sides_.resize(2 * points_.size());
+        std::vector<std::int32_t> next(side_first_.begin(), side_first_.end() - 1);
+        for (std::int32_t k = 0; k < static_cast<std::int32_t>(points_.size()); ++k) {
+            sides_[core::at(next[core::at(points_[core::at(k)].fibre_i)]++)] = 2 * k;
+            sides_[core::at(next[core::at(points_[core::at(k)].fibre_j)]++)] = 2 * k + 1;
+        }
+        force_.resize(points_.size());
+    }
+
+    /// y = A x, the identity outside the free directions of held vectors.
+    void apply(const Vector& x, Vector& y) const {
+        free_ = x;
+        for (const scene::HeldVector& held : layout_.held)
+            free_.segment<3>(3 * held.vector) = held.free * x.segment<3>(3 * held.vector);
+        apply_unheld(free_, y);
+        for (const scene::HeldVector& held : layout_.held) {
+            const Vec3 whole = x.segment<3>(3 * held.vector);
+            y.segment<3>(3 * held.vector) =
+                held.free * y.segment<3>(3 * held.vector) + whole - held.free * whole;
+        }
+    }
+
+    /// y = K x, as if nothing were held.
+    void apply_unheld(const Vector& x, Vector& y) const {
+        core::parallel_for(core::count(points_), [&](Index k) {
+            const Point& point = points_[core::at(k)];
+            force_[core::at(k)] = point.stiffness * (beam::Mesh<B>::point(x, point.first_j, point.weights_j) -
+                                                     beam::Mesh<B>::point(x, point.first_i, point.weights_i));
+        }, 512);
+        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
+            const Index nodes = mesh_->node_count(f), first = 3 * mesh_->fibre(f).first_vector;
+            y.segment(first, nodes * block).setZero();
+            for (Index a = 0; a < nodes; ++a) {
+                const Index before = std::min<Index>(a, reach);
+                if (before == reach) {
+                    const Row& r = row(f, a);
+                    const Index low = first + (a - reach) * block;
+                    y.template segment<block>(first + a * block).noalias() += r * x.template segment<(reach + 1) * block>(low);
+                    y.template segment<reach * block>(low).noalias() +=
+                        r.template leftCols<reach * block>().transpose() * x.template segment<block>(first + a * block);
+                } else {
+                    for (Index d = 0; d <= before; ++d) {
+                        const auto b = row(f, a).template block<block, block>(0, (reach - d) * block);
+                        y.template segment<block>(first + a * block).noalias() += b * x.template segment<block>(first + (a - d) * block);
+                        if (d > 0)
+                            y.template segment<block>(first + (a - d) * block).noalias() +=
+                                b.transpose() * x.template segment<block>(first + a * block);
+                    }
+                }
+            }
+            for (Index s = side_first_[core::at(f)]; s < side_first_[core::at(f) + 1]; ++s) {
+                const std::int32_t side = sides_[core::at(s)];
+                const Point& point = points_[core::at(side / 2)];
+                const bool of_j = side % 2 == 1;
+                const Vec3 value = of_j ? force_[core::at(side / 2)] : Vec3(-force_[core::at(side / 2)]);
+                const beam::ElementWeights<B>& weights = of_j ? point.weights_j : point.weights_i;
+                const Index start = of_j ? point.first_j : point.first_i;
+                for (std::size_t a = 0; a < weights.size(); ++a)
+                    y.template segment<3>(start + 3 * static_cast<Index>(a)) += weights[a] * value;
+            }
+        });
+    }
+
+    /// Lower block band of a fibre with its own part of every contact: block (a, d) is A(a, a - d).
+    void chain_band(Index fibre, Matrix& blocks) const {
+        const Index nodes = mesh_->node_count(fibre);
+        blocks.setZero(nodes * block, (reach + 1) * block);
+        for (Index a = 0; a < nodes; ++a)
+            for (Index d = 0; d <= std::min<Index>(a, reach); ++d)
+                blocks.block<block, block>(a * block, d * block) = row(fibre, a).template block<block, block>(0, (reach - d) * block);
+        for_own_points(fibre, [&](Index node, const beam::ElementWeights<B>& weights, const Mat3& stiffness) {
+            for (Index a = 0; a < B::nodes; ++a)
+                for (Index b = 0; b <= a; ++b)
+                    for (Index v = 0; v < B::vectors_per_node; ++v)
+                        for (Index w = 0; w < B::vectors_per_node; ++w) {
+                            const double scale = weights[core::at(a * B::vectors_per_node + v)] * weights[core::at(b * B::vectors_per_node + w)];
+                            blocks.block<3, 3>((node + a) * block + 3 * v, (a - b) * block + 3 * w) += scale * stiffness;
+                        }
+        });
+        project_band(fibre, blocks);
+    }
+
+    /// Diagonal blocks of a fibre's nodes.
+    void node_blocks(Index fibre, Matrix& blocks) const {
+        Matrix band;
+        chain_band(fibre, band);
+        blocks = band.leftCols(block);
+    }
+
+    /// Every node's row of beam stiffness and every point once, in a fixed order; not projected.
+    template <class Terms>
+    void visit(Terms& terms) const {
+        std::array<Index, core::at((reach + 1) * B::vectors_per_node)> numbers{};
+        Matrix dense;
+        for (Index f = 0; f < mesh_->fibre_count(); ++f) {
+            for (Index a = 0; a < mesh_->node_count(f); ++a) {
+                const Index before = std::min<Index>(a, reach), size = (before + 1) * block;
+                const Index first = mesh_->fibre(f).first_vector + (a - before) * B::vectors_per_node;
+                for (Index k = 0; k < size / 3; ++k) numbers[core::at(k)] = first + k;
+                dense.setZero(size, size);
+                dense.bottomRows(block) = row(f, a).rightCols(size);
+                dense.rightCols(block).topRows(size - block) = dense.bottomRows(block).leftCols(size - block).transpose();
+                terms.dense(DenseTerm{std::span<const Index>(numbers.data(), core::at(size / 3)), dense});
+            }
+        }
+        std::array<Index, core::at(2 * vectors)> both{};
+        std::array<double, core::at(2 * vectors)> weights{};
+        for (const Point& point : points_) {
+            for (Index k = 0; k < vectors; ++k) {
+                both[core::at(k)] = point.first_i / 3 + k, both[core::at(vectors + k)] = point.first_j / 3 + k;
+                weights[core::at(k)] = -point.weights_i[core::at(k)], weights[core::at(vectors + k)] = point.weights_j[core::at(k)];
+            }
+            terms.point(PointTerm{both, weights, point.stiffness});
+        }
+    }
+
+private:
+    template <class Visit>
+    void for_own_points(Index fibre, const Visit& see) const {
+        const Index first = 3 * mesh_->fibre(fibre).first_vector;
+        for (Index s = side_first_[core::at(fibre)]; s < side_first_[core::at(fibre) + 1]; ++s) {
+            const std::int32_t side = sides_[core::at(s)];
+            const Point& point = points_[core::at(side / 2)];
+            if (side % 2 == 1)
+                see((point.first_j - first) / block, point.weights_j, point.stiffness);
+            else
+                see((point.first_i - first) / block, point.weights_i, point.stiffness);
+        }
+    }
+
+    void project_band(Index fibre, Matrix& blocks) const {
+        const scene::Chain& chain = layout_.chains[core::at(fibre)];
+        const Index last = chain.first_vector + chain.nodes * chain.vectors_per_node;
+        auto held = std::lower_bound(layout_.held.begin(), layout_.held.end(), chain.first_vector,
+                                     [](const scene::HeldVector& h, Index v) { return h.vector < v; });
+        for (; held != layout_.held.end() && held->vector < last; ++held) {
+            const Index local = held->vector - chain.first_vector, a = local / B::vectors_per_node, v = local % B::vectors_per_node;
+            for (Index d = 0; d <= std::min<Index>(a, reach); ++d)  // its row
+                blocks.block<3, block>(a * block + 3 * v, d * block) = (held->free * blocks.block<3, block>(a * block + 3 * v, d * block)).eval();
+            for (Index d = 0; d <= std::min<Index>(chain.nodes - 1 - a, reach); ++d)  // its column, in rows below
+                blocks.block<block, 3>((a + d) * block, d * block + 3 * v) = (blocks.block<block, 3>((a + d) * block, d * block + 3 * v) * held->free).eval();
+            blocks.block<3, 3>(a * block + 3 * v, 3 * v) += Mat3::Identity() - held->free;
+        }
+    }
+
+    const beam::Mesh<B>* mesh_;
+    scene::DofLayout layout_;
+    std::vector<Index> first_node_;
+    std::vector<Row> rows_;
+    std::vector<Point> points_;
+    std::vector<std::int32_t> sides_, side_first_;
+    mutable std::vector<Vec3> force_;  // scratch of a product: one system serves one thread at a time
+    mutable Vector free_;
+};
+
+}  // namespace fibrant::assembly

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Equilibrium of a mesh with its contacts, loads and prescribed motion: residual, tangent, energies.
+
+#include <fibrant/assembly/chain_system.hpp>
+#include <fibrant/connection/applied_load.hpp>
+#include <fibrant/connection/prescribed_motion.hpp>
+#include <fibrant/contact/contact_set.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace fibrant::assembly {
+
+/// Residual R = internal - external forces, and what its size is measured by. Norms divide forces on directors by the
+/// radius (layout length), so they are forces throughout.
+struct ResidualFigures {
+    double residual = 0.0;  ///< norm of the free part [force]
+    double scale = 0.0;     ///< norm of loads, reactions and contact forces [force]
+    double relative() const noexcept { return scale > 0.0 ? residual / scale : residual; }
+};
+
+/// The mechanical problem of one increment.
+template <beam::BeamElement B, class Contacts>
+class Equilibrium {
+public:
+    using System = ChainSystem<B>;
+    static constexpr Index element_unknowns = beam::Mesh<B>::element_unknowns;
+
+    Equilibrium(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const B& beam, Contacts& contacts,
+                const connection::Channels& channels)
+        : mesh_{&mesh}, beam_{beam}, contacts_{&contacts}, motion_{assembly, mesh, channels},
+          load_{assembly, mesh, channels}, system_{mesh}, stresses_(core::at(mesh.element_count())) {}
+
+    const System& system() const noexcept { return system_; }
+    const std::vector<Vec3>& targets() const noexcept { return targets_; }
+    const beam::Mesh<B>& mesh() const noexcept { return *mesh_; }
+
+    /// Sets what is imposed, and the state from which the increment starts.
+    void begin(std::span<const double> amplitudes, const Vector& state) {
+        amplitudes_.assign(amplitudes.begin(), amplitudes.end());
+        motion_.at(amplitudes, system_.layout().held, targets_);
+        reset_stresses(state);
+    }
+
+    /// Point stresses that belong to a state: the start of an increment, or the fallback of the mixed iteration.
+    void reset_stresses(const Vector& state) {
+        for_elements([&](Index f, Index e) { stress(f, e) = beam_.stresses(mesh_->rest(f, e), mesh_->element(state, f, e)); });
+    }
+    /// Point stresses predicted for state + step, as independent unknowns (METHOD 1.6): only the geometric stiffness sees them.
+    void predict_stresses(const Vector& state, const Vector& step) {
+        for_elements([&](Index f, Index e) {
+            stress(f, e) = beam_.predicted_stresses(mesh_->rest(f, e), mesh_->element(state, f, e), mesh_->element(step, f, e));
+        });
+    }
+
+    /// Part of a step that moves held components to their targets.
+    void prescribed_step(const Vector& state, Vector& step) const {
+        step.setZero(state.size());
+        const auto& held = system_.layout().held;
+        for (std::size_t k = 0; k < held.size(); ++k) {
+            const Vec3 value = state.segment<3>(3 * held[k].vector);
+            step.segment<3>(3 * held[k].vector) = targets_[k] - (value - held[k].free * value);
+        }
+    }
+
+    /// Residual of a state whose contacts have been evaluated.
+    ResidualFigures residual(const Vector& state, Vector& residual) {
+        residual.setZero(state.size());
+        contacts_->add_forces(residual);
+        const double contact = norm(residual);
+        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
+            for (Index e = 0; e < mesh_->fibre(f).elements; ++e)
+                residual.template segment<element_unknowns>(mesh_->first_unknown(f, e)) +=
+                    beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e));
+        });
+        external_.setZero(state.size());
+        load_.add_forces(amplitudes_, state, external_);
+        residual -= external_;
+        const double load = norm(external_);
+        const double all = norm(residual);
+        reaction_ = residual;
+        for (const scene::HeldVector& held : system_.layout().held)
+            residual.segment<3>(3 * held.vector) = held.free * residual.segment<3>(3 * held.vector);
+        reaction_ -= residual;
+        ResidualFigures figures;
+        figures.residual = norm(residual);
+        const double reaction = std::sqrt(std::max(0.0, all * all - figures.residual * figures.residual));
+        figures.scale = std::sqrt(contact * contact + load * load + reaction * reaction);
+        return figures;
+    }
+
+    /// Tangent of a state whose contacts have been evaluated.
+    /// @param tension_only  leave compression out of the geometric stiffness: positive semidefinite
+    /// @param shift         added on every vector, as a spring on positions [force / length]
+    void linearise(const Vector& state, bool tension_only, double shift) {
+        system_.place(state);
+        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
+            system_.clear(f);
+            for (Index e = 0; e < mesh_->fibre(f).elements; ++e) {
+                const typename B::Stresses geometric = tension_only ? B::without_compression(stress(f, e)) : stress(f, e);
+                system_.add(f, e, beam_.tangent_stiffness(mesh_->rest(f, e), mesh_->element(state, f, e), geometric));
+            }
+            if (shift > 0.0) {
+                const scene::Chain& chain = system_.layout().chains[core::at(f)];
+                for (Index v = chain.first_vector; v < chain.first_vector + chain.nodes * chain.vectors_per_node; ++v) {
+                    const double length = system_.layout().length[core::at(v)];
+                    system_.add_diagonal(v, shift * length * length * Mat3::Identity());
+                }
+            }
+        });
+        load_.add_stiffness(amplitudes_, state, [&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
+        auto& points = system_.points();
+        points.clear();
+        const auto& elements = contacts_->elements();
+        for (Index k = 0; k < core::count(elements); ++k) {
+            if (contacts_->responses()[core::at(k)].slope == 0.0) continue;
+            const auto& element = elements[core::at(k)];
+            points.push_back({element.first_i, element.first_j, element.fibre_i, element.fibre_j, element.weights_i,
+                              element.weights_j, contacts_->tangent(k)});
+        }
+        system_.index_points();
+    }
+
+    double elastic_energy(const Vector& state) const {
+        std::vector<double> part(core::at(mesh_->fibre_count()));
+        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
+            for (Index e = 0; e < mesh_->fibre(f).elements; ++e)
+                part[core::at(f)] += beam_.energy(mesh_->rest(f, e), mesh_->element(state, f, e));
+        });
+        double sum = 0.0;
+        for (const double value : part) sum += value;
+        return sum;
+    }
+    /// External forces, and forces on held components, of the last residual.
+    const Vector& external() const noexcept { return external_; }
+    const Vector& reaction() const noexcept { return reaction_; }
+
+    /// Norm with forces on directors divided by the radius [force].
+    double norm(const Vector& forces) const {
+        const std::vector<double>& length = system_.layout().length;
+        return std::sqrt(core::ordered_sum(core::count(length), 0.0, [&](Index first, Index last) {
+            double sum = 0.0;
+            for (Index v = first; v < last; ++v) sum += forces.segment<3>(3 * v).squaredNorm() / (length[core::at(v)] * length[core::at(v)]);
+            return sum;
+        }));
+    }
+    /// Greatest displacement of a step, directors counted at the surface [length].
+    double greatest(const Vector& step) const {
+        const std::vector<double>& length = system_.layout().length;
+        double most = 0.0;
+        for (Index v = 0; v < core::count(length); ++v)
+            most = std::max(most, step.segment<3>(3 * v).squaredNorm() * length[core::at(v)] * length[core::at(v)]);
+        return std::sqrt(most);
+    }
+
+private:
+    typename B::Stresses& stress(Index f, Index e) noexcept { return stresses_[core::at(mesh_->element_index(f, e))]; }
+    template <class Body>
+    void for_elements(const Body& body) {
+        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
+            for (Index e = 0; e < mesh_->fibre(f).elements; ++e) body(f, e);
+        });
+    }
+
+    const beam::Mesh<B>* mesh_;
+    B beam_;
+    Contacts* contacts_;
+    connection::PrescribedMotion<B> motion_;
+    connection::AppliedLoad<B> load_;
+    System system_;
+    std::vector<typename B::Stresses> stresses_;
+    std::vector<double> amplitudes_;
+    std::vector<Vec3> targets_;
+    Vector external_, reaction_;
+};
+
+}  // namespace fibrant::assembly

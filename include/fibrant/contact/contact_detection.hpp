@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Proximity zones of a deformed mesh, by any search policy; forced orders are searched across their axis.
+
+#include <fibrant/beam/mesh.hpp>
+#include <fibrant/contact/zone_stiffness.hpp>
+#include <fibrant/core/parallel.hpp>
+#include <fibrant/proximity/proximity_search.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace fibrant::contact {
+
+/// How centrelines are cut into segments for the search, and which fibres may meet themselves.
+struct Detection {
+    double chord_bound = 0.02;    ///< deviation of a curve from its segments, over the radius [1], > 0
+    Index finest_cut = 8;         ///< segments an element, at most; what they miss is added to the reach
+    bool self_contact = false;    ///< search each fibre against itself, beyond an arc of max(pi r, 1.5 elements)
+    void validate() const {
+        core::require_positive("Detection.chord_bound", chord_bound);
+        core::require_at_least("Detection.finest_cut", finest_cut, 1);
+    }
+};
+
+/// Which groups are in a forced order: read from a scene once.
+class ForcedOrders {
+public:
+    ForcedOrders() = default;
+    template <class B>
+    ForcedOrders(const scene::Assembly& assembly, const beam::Mesh<B>& mesh) : orders_(assembly.orders()) {
+        const Index groups = core::count(assembly.groups());
+        if (orders_.empty()) return;
+        group_count_ = groups;
+        table_.assign(core::at(groups * groups), -1);
+        std::vector<std::vector<Index>> neighbours(core::at(groups));
+        for (Index k = 0; k < core::count(orders_); ++k) {
+            const Index above = orders_[core::at(k)].above, below = orders_[core::at(k)].below;
+            table_[core::at(above * groups + below)] = table_[core::at(below * groups + above)] = k;
+            neighbours[core::at(above)].push_back(below);
+            neighbours[core::at(below)].push_back(above);
+        }
+        // Two families, if the orders allow it: fibres of one are then never searched against each other.
+        std::vector<Index> family(core::at(groups), -1);
+        bool two = true;
+        for (Index start = 0; start < groups; ++start) {
+            if (family[core::at(start)] >= 0 || neighbours[core::at(start)].empty()) continue;
+            family[core::at(start)] = 0;
+            std::vector<Index> queue{start};
+            while (!queue.empty()) {
+                const Index group = queue.back();
+                queue.pop_back();
+                for (const Index next : neighbours[core::at(group)]) {
+                    if (family[core::at(next)] < 0) {
+                        family[core::at(next)] = 1 - family[core::at(group)];
+                        queue.push_back(next);
+                    } else if (family[core::at(next)] == family[core::at(group)]) {
+                        two = false;
+                    }
+                }
+            }
+        }
+        for (const beam::MeshFibre& fibre : mesh.fibres()) {
+            Index group = fibre.group;  // or the nearest ancestor that is in an order
+            while (group >= 0 && neighbours[core::at(group)].empty()) group = assembly.groups()[core::at(group)].parent;
+            group_.push_back(group);
+            family_.push_back(group >= 0 && two ? family[core::at(group)] : Index{-1});
+        }
+    }
+
+    bool empty() const noexcept { return orders_.empty(); }
+    /// Forced order between two fibres, or -1.
+    Index between(Index i, Index j) const noexcept {
+        if (orders_.empty() || group_[core::at(i)] < 0 || group_[core::at(j)] < 0) return -1;
+        return table_[core::at(group_[core::at(i)] * group_count_ + group_[core::at(j)])];
+    }
+    /// Direction from fibre i to fibre j that the order asks for, unit.
+    Vec3 direction(Index order, Index i) const noexcept {
+        const scene::ForcedOrder& forced = orders_[core::at(order)];
+        return group_[core::at(i)] == forced.below ? forced.axis : Vec3(-forced.axis);
+    }
+    bool takes_part(Index fibre) const noexcept { return !orders_.empty() && group_[core::at(fibre)] >= 0; }
+    Index family(Index fibre) const noexcept { return family_[core::at(fibre)]; }
+    const Vec3& axis() const noexcept { return orders_.front().axis; }
+
+private:
+    std::vector<scene::ForcedOrder> orders_;
+    std::vector<Index> table_, group_, family_;
+    Index group_count_ = 0;
+};
+
+/// Polylines of all fibres in a state; owns the points that the centrelines look at.
+template <class B>
+struct SampledCentrelines {
+    std::vector<Vec3> points;
+    std::vector<double> inflation;
+    std::vector<proximity::Centreline> centrelines;
+    std::vector<Index> fibre;      ///< of each centreline
+    std::vector<double> cut;       ///< segments an element of each centreline
+
+    /// @param wanted  called with a fibre: is it searched?
+    /// @param flat    projector on the space that is searched: identity, or across an axis
+    template <class Wanted>
+    SampledCentrelines(const beam::Mesh<B>& mesh, const Vector& state, const Detection& detection, const Mat3& flat,
+                       const Wanted& wanted) {
+        struct Piece { Index fibre, cut, first_point, first_segment; double bend; };
+        std::vector<Piece> pieces;
+        Index points_total = 0, segments_total = 0;
+        for (Index f = 0; f < mesh.fibre_count(); ++f) {
+            if (!wanted(f)) continue;
+            double bend = 0.0;  // greatest |x0 - 2 x1 + x2| of the fibre
+            for (Index e = 0; e < mesh.fibre(f).elements; ++e)
+                bend = std::max(bend, 0.25 * mesh.second_derivative(state, f, static_cast<double>(e) + 0.5).norm());
+            const double bound = detection.chord_bound * mesh.fibre(f).section.radius();
+            const Index cut = std::clamp<Index>(static_cast<Index>(std::ceil(std::sqrt(0.5 * bend / bound))), 1, detection.finest_cut);
+            pieces.push_back({f, cut, points_total, segments_total, bend});
+            points_total += mesh.fibre(f).elements * cut + 1;
+            segments_total += mesh.fibre(f).elements * cut;
+        }
+        points.resize(core::at(points_total));
+        inflation.resize(core::at(segments_total));
+        core::parallel_for(core::count(pieces), [&](Index p) {
+            const Piece& piece = pieces[core::at(p)];
+            const Index count = mesh.fibre(piece.fibre).elements * piece.cut;
+            const double n = static_cast<double>(piece.cut);
+            for (Index k = 0; k <= count; ++k)
+                points[core::at(piece.first_point + k)] = flat * mesh.position(state, piece.fibre, static_cast<double>(k) / n);
+            for (Index k = 0; k < count; ++k)  // an element's chords deviate by |x''| / (2 n^2)
+                inflation[core::at(piece.first_segment + k)] =
+                    0.125 * mesh.second_derivative(state, piece.fibre, std::floor(static_cast<double>(k) / n) + 0.5).norm() / (n * n);
+        });
+        for (const Piece& piece : pieces) {
+            const beam::MeshFibre& fibre_data = mesh.fibre(piece.fibre);
+            const Index count = fibre_data.elements * piece.cut;
+            proximity::Centreline line;
+            line.points = std::span<const Vec3>(points).subspan(core::at(piece.first_point), core::at(count + 1));
+            line.inflation = std::span<const double>(inflation).subspan(core::at(piece.first_segment), core::at(count));
+            line.radius = fibre_data.section.radius();
+            if (detection.self_contact)
+                line.self_skip = std::max(std::numbers::pi * fibre_data.section.radius(), 1.5 * fibre_data.element_length);
+            centrelines.push_back(line);
+            fibre.push_back(piece.fibre);
+            cut.push_back(static_cast<double>(piece.cut));
+        }
+    }
+
+    /// A zone of the polylines, in fibres and elements of the mesh.
+    proximity::ProximityZone in_elements(proximity::ProximityZone zone) const {
+        const std::size_t i = core::at(zone.fibre_i), j = core::at(zone.fibre_j);
+        zone.a_i /= cut[i], zone.b_i /= cut[i], zone.closest_i /= cut[i];
+        zone.a_j /= cut[j], zone.b_j /= cut[j], zone.closest_j /= cut[j];
+        zone.fibre_i = fibre[i], zone.fibre_j = fibre[j];
+        return zone;
+    }
+};
+
+/// Zones of a state, sorted by fibres and abscissa.
+///
+/// @param reach   beyond the sum of the radii [length], >= 0
+/// @param forced  search pairs in a forced order across its axis, whatever their distance along it, and leave their
+///                ordinary zones out
+template <class B, proximity::ProximitySearch Search>
+std::vector<Zone> find_zones(const beam::Mesh<B>& mesh, const Vector& state, Search& search, const Detection& detection,
+                             const ForcedOrders& orders, double reach, bool forced) {
+    std::vector<Zone> zones;
+    const SampledCentrelines<B> lines(mesh, state, detection, Mat3::Identity(), [](Index) { return true; });
+    for (const proximity::ProximityZone& found : search.find(lines.centrelines, reach)) {
+        Zone zone;
+        zone.span = lines.in_elements(found);
+        zone.order = orders.between(zone.span.fibre_i, zone.span.fibre_j);
+        if (forced && zone.order >= 0) continue;
+        zones.push_back(zone);
+    }
+    if (forced && !orders.empty()) {
+        const Mat3 flat = Mat3::Identity() - orders.axis() * orders.axis().transpose();
+        SampledCentrelines<B> plan(mesh, state, detection, flat, [&](Index f) { return orders.takes_part(f); });
+        for (std::size_t k = 0; k < plan.centrelines.size(); ++k) {
+            plan.centrelines[k].family = orders.family(plan.fibre[k]);
+            plan.centrelines[k].self_skip = std::numeric_limits<double>::infinity();
+            plan.centrelines[k].radius *= 1e-3;  // only where they cross in plan
+        }
+        for (const proximity::ProximityZone& found : search.find(plan.centrelines, 0.0)) {
+            Zone zone;
+            zone.span = plan.in_elements(found);
+            zone.order = orders.between(zone.span.fibre_i, zone.span.fibre_j);
+            if (zone.order < 0) continue;
+            zone.forced = zone.crossing = true;
+            zones.push_back(zone);
+        }
+        std::stable_sort(zones.begin(), zones.end(), [](const Zone& a, const Zone& b) {
+            return a.span.fibre_i != b.span.fibre_i ? a.span.fibre_i < b.span.fibre_i : a.span.fibre_j < b.span.fibre_j;
+        });
+    }
+    for (Zone& zone : zones) {
+        const beam::MeshFibre &i = mesh.fibre(zone.span.fibre_i), &j = mesh.fibre(zone.span.fibre_j);
+        zone.reference = 0.5 * (section_stiffness(i.material, 0.5 * i.element_length) +
+                                section_stiffness(j.material, 0.5 * j.element_length));
+    }
+    return zones;
+}
+
+}  // namespace fibrant::contact

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file A contact element: a pair of material particles, the normal between them, and what its laws make it carry.
+
+#include <fibrant/beam/mesh.hpp>
+#include <fibrant/law/friction_law.hpp>
+#include <fibrant/law/normal_law.hpp>
+
+#include <cstdint>
+
+namespace fibrant::contact {
+
+/// Shift of the gap, for laws that ask for one; nothing otherwise.
+template <law::NormalLaw Normal>
+struct GapShift {
+    double value() const noexcept { return 0.0; }
+};
+template <law::GapShifting Normal>
+struct GapShift<Normal> {
+    double shift = 0.0;
+    double value() const noexcept { return shift; }
+};
+
+/// Memory of friction, for laws that have one; nothing otherwise.
+template <law::FrictionLaw Friction>
+struct FrictionState {};
+template <law::FrictionLaw Friction>
+    requires core::Active<Friction>
+struct FrictionState<Friction> {
+    typename Friction::History history;        ///< of the last accepted state, turned with the fibres
+    Vec3 accepted_offset = Vec3::Zero();       ///< particle j - particle i in the last accepted state [length]
+};
+
+/// Two particles that are predicted to touch (Durville, eq. 8). Fibre i <= fibre j, the normal points from i to j.
+template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
+struct ContactElement {
+    double u_i = 0.0, u_j = 0.0;           ///< abscissae, in elements
+    beam::ElementWeights<B> weights_i{}, weights_j{};  ///< of the nodal vectors of each side's element
+    Vec3 normal = Vec3::Zero();
+    double cap = 0.0;                      ///< radii of fibre ends in contact, taken off the gap [length]
+    std::int32_t fibre_i = -1, fibre_j = -1;
+    std::int32_t first_i = 0, first_j = 0;  ///< first unknown of each side's element
+    std::int32_t zone = -1;
+    bool crossing = false, end_i = false, end_j = false;
+    [[no_unique_address]] GapShift<Normal> shift;
+    [[no_unique_address]] FrictionState<Friction> friction;
+
+    /// Particle j - particle i [length].
+    Vec3 offset(const Vector& state) const noexcept {
+        return beam::Mesh<B>::point(state, first_j, weights_j) - beam::Mesh<B>::point(state, first_i, weights_i);
+    }
+    /// True gap, < 0 in penetration [length] (Durville, eq. 9, with the normal from i to j).
+    double gap(const Vector& state) const noexcept { return normal.dot(offset(state)) - cap; }
+};
+
+/// State of one contact element in the current iteration.
+struct ContactResponse {
+    double gap = 0.0;       ///< with the shift of the law [length]
+    double reaction = 0.0;  ///< R_N [force]
+    double slope = 0.0;     ///< dR_N / dgap [force / length]
+};
+
+}  // namespace fibrant::contact

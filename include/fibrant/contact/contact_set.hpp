@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file All contact elements of a mesh, through the three loops: detected, turned to new normals, evaluated, accepted.
+
+#include <fibrant/contact/contact_detection.hpp>
+#include <fibrant/contact/contact_element.hpp>
+#include <fibrant/contact/contact_record.hpp>
+#include <fibrant/contact/intermediate_geometry.hpp>
+#include <fibrant/contact/particle.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace fibrant::contact {
+
+/// Parameters of contact that no law holds.
+struct ContactParameters {
+    Detection detection;
+    ContactSpacing spacing;
+    NormalRule normal;
+    StiffnessAdaptation stiffness;
+    void validate() const {
+        detection.validate();
+        spacing.validate();
+        normal.validate();
+        stiffness.validate();
+    }
+};
+
+/// Figures of the contacts in a state.
+struct ContactFigures {
+    Index elements = 0;              ///< contact elements, candidates included
+    Index active = 0;                ///< with a reaction
+    Index shifted = 0;               ///< still shown a limited gap
+    double greatest_penetration = 0; ///< true, of all elements; 0 if none [length]
+    double work = 0;                 ///< stored by the normal law [force * length]
+    double dissipated = 0;           ///< by sliding since the last accepted state [force * length]
+    double reaction_sum = 0;         ///< sum of R_N [force]
+};
+
+/// The contacts of a mesh. The order of elements and of every sum is fixed by fibres and abscissae, so results do not
+/// depend on the number of threads.
+template <beam::BeamElement B, proximity::ProximitySearch Search, law::NormalLaw Normal, law::FrictionLaw Friction>
+class ContactSet {
+public:
+    using Element = ContactElement<B, Normal, Friction>;
+    using Memory = ContactMemory<Friction>;
+
+    ContactSet(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const ContactParameters& parameters,
+               Search search, Normal normal, Friction friction)
+        : mesh_{&mesh}, parameters_{core::validated(parameters)}, orders_{assembly, mesh}, search_{std::move(search)},
+          normal_{normal}, friction_{friction} {}
+
+    Normal& normal_law() noexcept { return normal_; }
+    Friction& friction_law() noexcept { return friction_; }
+    ContactParameters& parameters() noexcept { return parameters_; }
+    const std::vector<Element>& elements() const noexcept { return elements_; }
+    const std::vector<ContactResponse>& responses() const noexcept { return responses_; }
+    const std::vector<law::FrictionResponse<typename Friction::History>>& frictions() const noexcept { return frictions_; }
+    const std::vector<Zone>& zones() const noexcept { return zones_; }
+    const Memory& accepted_memory() const noexcept { return accepted_; }
+    const ForcedOrders& orders() const noexcept { return orders_; }
+    double stiffness(const Element& element) const noexcept { return zones_[core::at(element.zone)].stiffness; }
+
+    /// Outer loop: zones, stations and particles anew. What contacts remember comes from the elements that they replace.
+    /// @param state     current
+    /// @param accepted  last accepted state: gap shifts and slips count from there
+    /// @param reach     beyond touching [length]
+    /// @param forced    keep forced orders
+    void detect(const Vector& state, const Vector& accepted, double reach, bool forced) {
+        std::vector<Zone> found = find_zones(*mesh_, state, search_, parameters_.detection, orders_, reach, forced);
+        for (Zone& zone : found) inherit(zone, state);
+        zones_.swap(found);
+        Memory last;
+        last.assign(records(state));
+        const Memory& memory = last.records().empty() ? accepted_ : last;
+        generate(state, accepted, memory);
+        index_sides();
+    }
+
+    /// Middle loop: normals and particles at the same stations.
+    /// @returns the largest turn of a normal that carries force [radian]
+    double refresh(const Vector& state, const Vector& accepted) {
+        std::vector<double> turned(elements_.size(), 0.0);
+        core::parallel_for(core::count(elements_), [&](Index k) {
+            Element& element = elements_[core::at(k)];
+            const Vec3 before = element.normal;
+            place_particles(element, state, accepted, before);
+            if (k < core::count(responses_) && responses_[core::at(k)].reaction > 0.0)
+                turned[core::at(k)] = std::atan2(before.cross(element.normal).norm(), before.dot(element.normal));
+        });
+        return turned.empty() ? 0.0 : *std::max_element(turned.begin(), turned.end());
+    }
+
+    /// Inner loop: gaps, reactions and friction of a state.
+    void evaluate(const Vector& state) {
+        responses_.resize(elements_.size());
+        if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
+        core::parallel_for(core::count(elements_), [&](Index k) {
+            const Element& element = elements_[core::at(k)];
+            const Vec3 offset = element.offset(state);
+            const double gap = element.normal.dot(offset) - element.cap + element.shift.value();
+            const law::NormalResponse response = normal_.response(gap, stiffness(element));
+            responses_[core::at(k)] = {gap, response.reaction, response.slope};
+            if constexpr (core::Active<Friction>) {
+                Vec3 slip = offset - element.friction.accepted_offset;
+                slip -= slip.dot(element.normal) * element.normal;
+                frictions_[core::at(k)] = friction_.response(slip, response.reaction, element.friction.history);
+            }
+        });
+    }
+
+    /// Force of element k on the particle of fibre j, against the internal forces [force].
+    Vec3 force(Index k) const noexcept {
+        Vec3 sum = -responses_[core::at(k)].reaction * elements_[core::at(k)].normal;
+        if constexpr (core::Active<Friction>) sum += frictions_[core::at(k)].force;
+        return sum;
+    }
+    /// Stiffness of element k between its two particles, symmetric and positive semidefinite [force / length]. The
+    /// reaction in the friction bound is taken as constant, which keeps it symmetric.
+    Mat3 tangent(Index k) const noexcept {
+        const Vec3& normal = elements_[core::at(k)].normal;
+        Mat3 sum = -responses_[core::at(k)].slope * normal * normal.transpose();
+        if constexpr (core::Active<Friction>) {
+            if (responses_[core::at(k)].reaction > 0.0) {
+                const Mat3 plane = Mat3::Identity() - normal * normal.transpose();
+                sum += plane * frictions_[core::at(k)].tangent * plane;
+            }
+        }
+        return sum;
+    }
+
+    /// Adds contact forces to a residual (internal minus external forces).
+    void add_forces(Vector& residual) const {
+        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
+            for (const std::int32_t side : sides(f)) {
+                const Index k = side / 2;
+                if (responses_[core::at(k)].reaction == 0.0) continue;
+                const Element& element = elements_[core::at(k)];
+                const bool of_j = side % 2 == 1;
+                const Vec3 value = of_j ? force(k) : Vec3(-force(k));
+                const beam::ElementWeights<B>& weights = of_j ? element.weights_j : element.weights_i;
+                const Index first = of_j ? element.first_j : element.first_i;
+                for (std::size_t a = 0; a < weights.size(); ++a)
+                    residual.segment<3>(first + 3 * static_cast<Index>(a)) += weights[a] * value;
+            }
+        });
+    }
+
+    /// Sides of contact elements on a fibre, 2 k for fibre i and 2 k + 1 for fibre j of element k, in order.
+    std::span<const std::int32_t> sides(Index fibre) const noexcept {
+        const std::size_t first = core::at(side_first_[core::at(fibre)]), last = core::at(side_first_[core::at(fibre) + 1]);
+        return std::span<const std::int32_t>(sides_).subspan(first, last - first);
+    }
+
+    ContactFigures figures(const Vector& state) const {
+        ContactFigures sum;
+        sum.elements = core::count(elements_);
+        for (Index k = 0; k < core::count(elements_); ++k) {
+            const Element& element = elements_[core::at(k)];
+            const ContactResponse& response = responses_[core::at(k)];
+            if (response.reaction > 0.0) ++sum.active;
+            if (element.shift.value() > 0.0) ++sum.shifted;
+            sum.greatest_penetration = std::max(sum.greatest_penetration, -element.gap(state));
+            sum.work += normal_.energy(response.gap, stiffness(element));
+            sum.reaction_sum += response.reaction;
+            if constexpr (core::Active<Friction>) sum.dissipated += frictions_[core::at(k)].dissipated;
+        }
+        return sum;
+    }
+
+    /// Keeps normals, friction and zones of an accepted state, and adapts the stiffness of the zones to it.
+    void accept(const Vector& state) {
+        accepted_.assign(records(state));
+        const double depth = law::regularisation_depth(normal_);
+        for (Zone& zone : zones_) {
+            double penetration = 0.0;
+            for (Index k = zone.first; k < zone.last; ++k)
+                penetration = std::max(penetration, -responses_[core::at(k)].gap);
+            zone.stiffness = parameters_.stiffness.adapted(zone.stiffness, zone.reference, penetration, depth);
+        }
+        accepted_zones_ = zones_;
+    }
+
+    /// Back to what was accepted last.
+    void restore() {
+        zones_ = accepted_zones_;
+        elements_.clear(), responses_.clear(), frictions_.clear();
+        sides_.clear(), side_first_.assign(core::at(mesh_->fibre_count() + 1), 0);
+    }
+
+    const std::vector<Zone>& accepted_zones() const noexcept { return accepted_zones_; }
+    /// Sets what was accepted last, from a checkpoint.
+    void resume(std::vector<typename Memory::Record> records, std::vector<Zone> zones) {
+        accepted_.assign(std::move(records));
+        accepted_zones_ = std::move(zones);
+        restore();
+    }
+
+private:
+    void inherit(Zone& zone, const Vector& state) const {
+        const Zone* before = predecessor(zones_, zone.span);
+        zone.stiffness = before ? before->stiffness : parameters_.stiffness.initial_fraction * zone.reference;
+        if (zone.forced) return;
+        const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
+        const double angle = angle_between_deg(mesh_->derivative(state, i, zone.span.closest_i).normalized(),
+                                               mesh_->derivative(state, j, zone.span.closest_j).normalized());
+        const double shift = !before ? 0.0 : parameters_.spacing.angle_hysteresis_deg * (before->crossing ? -1.0 : 1.0);
+        zone.crossing = angle > parameters_.spacing.crossing_angle_deg + shift;
+    }
+
+    void generate(const Vector& state, const Vector& accepted, const Memory& memory) {
+        constexpr Index block = 64;  // zones a block: a block's elements stay together
+        const Index blocks = (core::count(zones_) + block - 1) / block;
+        std::vector<std::vector<Element>> made(core::at(blocks));
+        const double forced_keep = 0.5;  // radii of clearance beyond which a forced pair needs no element
+        core::parallel_for(blocks, [&](Index b) {
+            std::vector<StationPair> pairs;
+            for (Index z = b * block; z < std::min(core::count(zones_), (b + 1) * block); ++z) {
+                Zone& zone = zones_[core::at(z)];
+                pairs.clear();
+                station_pairs(*mesh_, state, zone.span, zone.crossing, parameters_.spacing, pairs);
+                zone.first = core::count(made[core::at(b)]);
+                for (const StationPair& pair : pairs) {
+                    Element element = make(zone, z, pair);
+                    const auto* record = memory.nearest(zone.span.fibre_i, zone.span.fibre_j, pair.u_i, pair.u_j, 1.5);
+                    Vec3 remembered = record ? record->normal : Vec3(Vec3::Zero());
+                    if (zone.order >= 0 && (zone.forced || !record))
+                        remembered = orders_.direction(zone.order, zone.span.fibre_i);
+                    place_particles(element, state, accepted, remembered);
+                    if (zone.forced && element.gap(state) >
+                                           forced_keep * mesh_->fibre(zone.span.fibre_i).section.radius())
+                        continue;
+                    if constexpr (core::Active<Friction>) recall_friction(element, state);
+                    made[core::at(b)].push_back(element);
+                }
+                zone.last = core::count(made[core::at(b)]);
+            }
+        });
+        elements_.clear();
+        for (Index b = 0; b < blocks; ++b) {
+            const Index offset = core::count(elements_);
+            for (Index z = b * block; z < std::min(core::count(zones_), (b + 1) * block); ++z)
+                zones_[core::at(z)].first += offset, zones_[core::at(z)].last += offset;
+            elements_.insert(elements_.end(), made[core::at(b)].begin(), made[core::at(b)].end());
+        }
+    }
+
+    Element make(const Zone& zone, Index z, const StationPair& pair) const {
+        Element element;
+        element.fibre_i = static_cast<std::int32_t>(zone.span.fibre_i);
+        element.fibre_j = static_cast<std::int32_t>(zone.span.fibre_j);
+        element.zone = static_cast<std::int32_t>(z);
+        element.u_i = pair.u_i, element.u_j = pair.u_j;
+        element.crossing = pair.crossing, element.end_i = pair.end_i, element.end_j = pair.end_j;
+        element.first_i = static_cast<std::int32_t>(mesh_->first_unknown(zone.span.fibre_i, mesh_->locate(zone.span.fibre_i, pair.u_i).first));
+        element.first_j = static_cast<std::int32_t>(mesh_->first_unknown(zone.span.fibre_j, mesh_->locate(zone.span.fibre_j, pair.u_j).first));
+        return element;
+    }
+
+    /// Normal, particles, gap shift and accepted offset of an element whose stations stand.
+    void place_particles(Element& element, const Vector& state, const Vector& accepted, const Vec3& remembered) const {
+        const Index i = element.fibre_i, j = element.fibre_j;
+        const double xi_i = mesh_->locate(i, element.u_i).second, xi_j = mesh_->locate(j, element.u_j).second;
+        const beam::ElementWeights<B> centre_i = B::centreline_weights(xi_i), centre_j = B::centreline_weights(xi_j);
+        const Vec3 centres = beam::Mesh<B>::point(state, element.first_j, centre_j) -
+                             beam::Mesh<B>::point(state, element.first_i, centre_i);
+        if (element.end_i || element.end_j) {
+            const Vec3 side = remembered.isZero() ? centres : remembered;
+            element.normal = unit_or(centres.dot(side) > 0.0 ? centres : side, Vec3::UnitZ());
+        } else {
+            const Vec3 t_i = mesh_->derivative(state, i, element.u_i).normalized();
+            const Vec3 t_j = mesh_->derivative(state, j, element.u_j).normalized();
+            element.normal = normal_direction(parameters_.normal, centres, t_i, t_j, remembered);
+        }
+        const auto weigh = [&](Index fibre, double xi, Index first, const Vec3& direction, bool end, beam::ElementWeights<B>& weights) {
+            const Vec3 g_1 = beam::Mesh<B>::point(state, first, beam::director_weights<B>(xi, 1));
+            const Vec3 g_2 = beam::Mesh<B>::point(state, first, beam::director_weights<B>(xi, 2));
+            const Particle particle = support_particle(mesh_->fibre(fibre).section, g_1, g_2, direction, end);
+            weights = B::particle_weights(xi, particle.xi_1, particle.xi_2);
+            return particle.cap;
+        };
+        element.cap = weigh(i, xi_i, element.first_i, element.normal, element.end_i, element.weights_i) +
+                      weigh(j, xi_j, element.first_j, -element.normal, element.end_j, element.weights_j);
+        if constexpr (law::GapShifting<Normal>) element.shift.shift = normal_.gap_shift(element.gap(accepted));
+        if constexpr (core::Active<Friction>) {
+            element.friction.accepted_offset = element.offset(accepted);
+            if (!remembered.isZero()) turn_history(element, remembered);
+        }
+    }
+
+    void turn_history(Element& element, const Vec3& before) const
+        requires core::Active<Friction>
+    {
+        Vec3& reversible = element.friction.history.reversible;
+        reversible = Eigen::Quaterniond::FromTwoVectors(before, element.normal) * reversible;
+        reversible -= reversible.dot(element.normal) * element.normal;
+    }
+
+    void recall_friction(Element& element, const Vector& state) const
+        requires core::Active<Friction>
+    {
+        const double range = 1.5 / parameters_.spacing.points_per_element;
+        const RecordedFriction<Friction> recorded =
+            accepted_.friction(element.fibre_i, element.fibre_j, element.u_i, element.u_j, range);
+        const TangentPlane plane(mesh_->derivative(state, element.fibre_i, element.u_i).normalized(), element.normal);
+        element.friction.history.reversible = recorded.along * plane.along + recorded.across * plane.across;
+    }
+
+    std::vector<typename Memory::Record> records(const Vector& state) const {
+        std::vector<typename Memory::Record> list(elements_.size());
+        core::parallel_for(core::count(elements_), [&](Index k) {
+            const Element& element = elements_[core::at(k)];
+            typename Memory::Record& record = list[core::at(k)];
+            record.fibre_i = element.fibre_i, record.fibre_j = element.fibre_j;
+            record.u_i = element.u_i, record.u_j = element.u_j;
+            record.normal = element.normal;
+            if constexpr (core::Active<Friction>) {
+                if (k < core::count(frictions_) && responses_[core::at(k)].reaction > 0.0) {
+                    const TangentPlane plane(mesh_->derivative(state, element.fibre_i, element.u_i).normalized(), element.normal);
+                    const Vec3& kept = frictions_[core::at(k)].history.reversible;
+                    record.friction = {kept.dot(plane.along), kept.dot(plane.across)};
+                }
+            }
+        });
+        return list;
+    }
+
+    void index_sides() {
+        side_first_.assign(core::at(mesh_->fibre_count() + 1), 0);
+        for (const Element& element : elements_) {
+            ++side_first_[core::at(element.fibre_i) + 1];
+            ++side_first_[core::at(element.fibre_j) + 1];
+        }
+        for (std::size_t f = 1; f < side_first_.size(); ++f) side_first_[f] += side_first_[f - 1];
+        sides_.resize(2 * elements_.size());
+        std::vector<std::int32_t> next(side_first_.begin(), side_first_.end() - 1);
+        for (std::int32_t k = 0; k < static_cast<std::int32_t>(elements_.size()); ++k) {
+            sides_[core::at(next[core::at(elements_[core::at(k)].fibre_i)]++)] = 2 * k;
+            sides_[core::at(next[core::at(elements_[core::at(k)].fibre_j)]++)] = 2 * k + 1;
+        }
+    }
+
+    const beam::Mesh<B>* mesh_;
+    ContactParameters parameters_;
+    ForcedOrders orders_;
+    Search search_;
+    Normal normal_;
+    [[no_unique_address]] Friction friction_;
+    std::vector<Zone> zones_, accepted_zones_;
+    std::vector<Element> elements_;
+    std::vector<ContactResponse> responses_;
+    std::vector<law::FrictionResponse<typename Friction::History>> frictions_;
+    std::vector<std::int32_t> sides_, side_first_;
+    Memory accepted_;
+};
+
+}  // namespace fibrant::contact

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Contact points of a proximity zone: planes across the mean of its two lines, closest points, fibre ends.
+
+#include <fibrant/beam/mesh.hpp>
+#include <fibrant/contact/normal_direction.hpp>
+#include <fibrant/proximity/proximity_search.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace fibrant::contact {
+
+/// A pair of stations whose sections may touch; abscissae are counted in elements.
+struct StationPair {
+    double u_i = 0.0, u_j = 0.0;
+    bool crossing = false;               ///< the only pair of its zone
+    bool end_i = false, end_j = false;   ///< the station is a fibre's end and the contact is with its cap
+    double length = 0.0;                 ///< of the zone that it stands for [length]; for a crossing the touching length
+};
+
+/// The pair of closest points near a start, both inside their fibres.
+///
+/// Newton on (x_j - x_i) . x_i' = 0 and (x_j - x_i) . x_j' = 0 with the positive part of its matrix, so it also settles
+/// where the lines pass through each other; unique if the angle exceeds arccos(1 - 2 r kappa).
+template <class B>
+StationPair closest_points(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, double u_i, double u_j) {
+    const double end_i = static_cast<double>(mesh.fibre(i).elements), end_j = static_cast<double>(mesh.fibre(j).elements);
+    for (int iteration = 0; iteration < 30; ++iteration) {
+        const Vec3 centres = mesh.position(state, j, u_j) - mesh.position(state, i, u_i);
+        const Vec3 d_i = mesh.derivative(state, i, u_i), d_j = mesh.derivative(state, j, u_j);
+        const double a = d_i.squaredNorm(), b = -d_i.dot(d_j), c = d_j.squaredNorm();
+        const double p = centres.dot(d_i), q = -centres.dot(d_j);  // minus the gradient of |centres|^2 / 2
+        // Gauss-Newton step with a bound on each variable: at a bound the other one alone
+        const double determinant = std::max(a * c - b * b, 1e-12 * a * c);
+        double step_i = (c * p - b * q) / determinant, step_j = (a * q - b * p) / determinant;
+        if ((u_i + step_i < 0.0 || u_i + step_i > end_i)) {
+            step_i = std::clamp(u_i + step_i, 0.0, end_i) - u_i;
+            step_j = (q - b * step_i) / c;
+        }
+        if ((u_j + step_j < 0.0 || u_j + step_j > end_j)) {
+            step_j = std::clamp(u_j + step_j, 0.0, end_j) - u_j;
+            step_i = std::clamp(u_i + (p - b * step_j) / a, 0.0, end_i) - u_i;
+        }
+        const double largest = std::max(std::abs(step_i), std::abs(step_j));
+        const double shorten = largest > 1.0 ? 1.0 / largest : 1.0;
+        u_i = std::clamp(u_i + shorten * step_i, 0.0, end_i);
+        u_j = std::clamp(u_j + shorten * step_j, 0.0, end_j);
+        if (largest < 1e-11) break;
+    }
+    return {u_i, u_j, true, false, false, 0.0};
+}
+
+/// Abscissa where the plane through `origin` across `normal` cuts a fibre, near `u`; clamped to the fibre.
+template <class B>
+double plane_section(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, const Vec3& origin,
+                     const Vec3& normal) {
+    const double end = static_cast<double>(mesh.fibre(fibre).elements);
+    for (int iteration = 0; iteration < 12; ++iteration) {
+        const double speed = mesh.derivative(state, fibre, u).dot(normal);
+        if (speed == 0.0) break;
+        const double step = std::clamp((origin - mesh.position(state, fibre, u)).dot(normal) / speed, -1.0, 1.0);
+        const double next = std::clamp(u + step, 0.0, end);
+        const bool still = std::abs(next - u) < 1e-11;
+        u = next;
+        if (still) break;
+    }
+    return u;
+}
+
+/// How contact points are placed.
+struct ContactSpacing {
+    double points_per_element = 2.0;    ///< along near-parallel fibres [1], > 0
+    double crossing_angle_deg = 30.0;   ///< above: one contact element for the zone [degree]
+    double angle_hysteresis_deg = 5.0;  ///< a zone keeps its kind within this of the bound [degree]
+    void validate() const {
+        core::require_positive("ContactSpacing.points_per_element", points_per_element);
+        core::require_between("ContactSpacing.crossing_angle_deg", crossing_angle_deg, 1.0, 90.0);
+        core::require_between("ContactSpacing.angle_hysteresis_deg", angle_hysteresis_deg, 0.0, 20.0);
+    }
+};
+
+/// Stations of a zone (Durville, eq. 6 to 8). The intermediate geometry is the mean of the zone's two lines, points stand
+/// in the middle of equal parts of it, and the plane across it cuts the two centrelines.
+///
+/// Departures: a crossing is one element at the mutual closest points, because every plane near a crossing yields the
+/// same gap along the cross product of the tangents; and where a plane leaves a fibre, its rounded end is paired with the
+/// closest point of the other fibre.
+/// @param zone        abscissae in elements
+/// @param crossing    the zone is a crossing
+/// @param pairs       appended to, in the order of the zone
+template <class B>
+void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone, bool crossing,
+                   const ContactSpacing& spacing, std::vector<StationPair>& pairs) {
+    const Index i = zone.fibre_i, j = zone.fibre_j;
+    const double h_i = mesh.fibre(i).element_length, h_j = mesh.fibre(j).element_length;
+    const double end_i = static_cast<double>(mesh.fibre(i).elements), end_j = static_cast<double>(mesh.fibre(j).elements);
+    const double r = 0.5 * (mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius());
+    bool first_i = false, last_i = false, first_j = false, last_j = false;  // ends that already have their element
+
+    // A fibre's end against the other fibre's side; the same end is paired once in a zone.
+    const auto add_end = [&](bool of_i, double u) {
+        const bool last = u > 0.5 * (of_i ? end_i : end_j);
+        bool& done = of_i ? (last ? last_i : first_i) : (last ? last_j : first_j);
+        if (done) return;
+        done = true;
+        const Index self = of_i ? i : j, other = of_i ? j : i;
+        const Vec3 centre = mesh.position(state, self, u);
+        const double low = of_i ? std::min(zone.a_j, zone.b_j) : zone.a_i, high = of_i ? std::max(zone.a_j, zone.b_j) : zone.b_i;
+        double v = 0.5 * (low + high);
+        const double other_end = of_i ? end_j : end_i;
+        double best = (mesh.position(state, other, v) - centre).squaredNorm();
+        for (int k = 0; k <= 8; ++k) {  // a start close enough for the tangent planes to converge
+            const double w = low + (high - low) * k / 8.0;
+            const double square = (mesh.position(state, other, w) - centre).squaredNorm();
+            if (square < best) best = square, v = w;
+        }
+        for (int iteration = 0; iteration < 12; ++iteration) {
+            const Vec3 d = mesh.derivative(state, other, v);
+            const double step = std::clamp((centre - mesh.position(state, other, v)).dot(d) / d.squaredNorm(), -1.0, 1.0);
+            v = std::clamp(v + step, 0.0, other_end);
+            if (std::abs(step) < 1e-11) break;
+        }
+        const Vec3 d = mesh.derivative(state, other, v);
+        const double beyond = std::abs((centre - mesh.position(state, other, v)).dot(d.normalized()));
+        StationPair pair{of_i ? u : v, of_i ? v : u, false, of_i, !of_i, 0.5 * r};
+        if (beyond > 0.25 * r) pair.end_i = pair.end_j = true;  // end to end
+        pairs.push_back(pair);
+    };
+
+    if (crossing) {
+        StationPair pair = closest_points(mesh, state, i, j, zone.closest_i, zone.closest_j);
+        pair.length = r;
+        const Vec3 centres = mesh.position(state, j, pair.u_j) - mesh.position(state, i, pair.u_i);
+        const double off_i = std::abs(centres.dot(mesh.derivative(state, i, pair.u_i).normalized()));
+        const double off_j = std::abs(centres.dot(mesh.derivative(state, j, pair.u_j).normalized()));
+        pair.end_i = (pair.u_i <= 0.0 || pair.u_i >= end_i) && off_i > 0.25 * r;
+        pair.end_j = (pair.u_j <= 0.0 || pair.u_j >= end_j) && off_j > 0.25 * r;
+        pairs.push_back(pair);
+        return;
+    }
+    const double length = 0.5 * ((zone.b_i - zone.a_i) * h_i + std::abs(zone.b_j - zone.a_j) * h_j);
+    const double wanted = length * spacing.points_per_element / (0.5 * (h_i + h_j));
+    const Index count = std::max<Index>(1, static_cast<Index>(std::ceil(wanted - 1e-6)));
+    for (Index k = 0; k < count; ++k) {
+        const double s = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+        double u_i = zone.a_i + s * (zone.b_i - zone.a_i), u_j = zone.a_j + s * (zone.b_j - zone.a_j);
+        const Vec3 middle = 0.5 * (mesh.position(state, i, u_i) + mesh.position(state, j, u_j));
+        const Vec3 tangent = mean_tangent(mesh.derivative(state, i, u_i).normalized(), mesh.derivative(state, j, u_j).normalized());
+        u_i = plane_section(mesh, state, i, u_i, middle, tangent);
+        u_j = plane_section(mesh, state, j, u_j, middle, tangent);
+        const double off_i = std::abs((mesh.position(state, i, u_i) - middle).dot(tangent));
+        const double off_j = std::abs((mesh.position(state, j, u_j) - middle).dot(tangent));
+        const bool left_i = off_i > 0.05 * r && (u_i <= 0.0 || u_i >= end_i);
+        const bool left_j = off_j > 0.05 * r && (u_j <= 0.0 || u_j >= end_j);
+        if (left_i || left_j) {
+            if (left_i) add_end(true, u_i);
+            if (left_j && !left_i) add_end(false, u_j);
+            continue;
+        }
+        pairs.push_back({u_i, u_j, false, false, false, length / static_cast<double>(count)});
+    }
+}
+
+}  // namespace fibrant::contact

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Direction of the contact normal between two fibres, by the angle between them, with a remembered orientation.
+
+#include <fibrant/core/parameters.hpp>
+#include <fibrant/core/types.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fibrant::contact {
+
+/// Angles at which the rule for the normal changes.
+struct NormalRule {
+    double parallel_angle_deg = 10.0;  ///< below: direction between the centres [degree]
+    double crossing_angle_deg = 30.0;  ///< above: cross product of the tangents [degree]
+    void validate() const {
+        core::require_between("NormalRule.parallel_angle_deg", parallel_angle_deg, 0.0, 90.0);
+        core::require_between("NormalRule.crossing_angle_deg", crossing_angle_deg, parallel_angle_deg, 90.0);
+    }
+};
+
+/// Sine of the acute angle between two unit vectors.
+inline double sine_between(const Vec3& a, const Vec3& b) noexcept { return std::min(1.0, a.cross(b).norm()); }
+
+/// Acute angle between two unit vectors [degree].
+inline double angle_between_deg(const Vec3& a, const Vec3& b) noexcept {
+    return std::atan2(a.cross(b).norm(), std::abs(a.dot(b))) * 180.0 / std::numbers::pi;
+}
+
+/// Unit vector along `direction`, or `otherwise` where it vanishes.
+inline Vec3 unit_or(const Vec3& direction, const Vec3& otherwise) noexcept {
+    const double size = direction.norm();
+    return size > 0.0 ? Vec3(direction / size) : otherwise;
+}
+
+/// Mean direction of two tangents, the second turned so that the angle is acute.
+inline Vec3 mean_tangent(const Vec3& t_i, const Vec3& t_j) noexcept {
+    const Vec3 sum = t_i.dot(t_j) < 0.0 ? Vec3(t_i - t_j) : Vec3(t_i + t_j);
+    return sum.normalized();
+}
+
+/// Normal from fibre i to fibre j.
+///
+/// The chapter says only that the rule depends on the angle and must be oriented so that fibres do not pass through each
+/// other; the cross product for crossing fibres, the direction between centres for parallel ones and the smooth blend
+/// between them are ours. The sign is that of `remembered`: taken from the last normal of this contact while it lives,
+/// never from present positions, which is how fibres would get through.
+/// @param centres     x_j - x_i [length]
+/// @param t_i, t_j    unit tangents
+/// @param remembered  last normal, or zero for a contact that is new: then the side is taken from `centres`
+inline Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const Vec3& t_i, const Vec3& t_j,
+                             const Vec3& remembered) noexcept {
+    const Vec3 side = remembered.isZero() ? centres : remembered;
+    const double angle = angle_between_deg(t_i, t_j);
+    Vec3 crossing = Vec3::Zero(), parallel = Vec3::Zero();
+    if (angle > rule.parallel_angle_deg) {
+        crossing = t_i.cross(t_j).normalized();
+        if (crossing.dot(side) < 0.0) crossing = -crossing;
+        if (angle >= rule.crossing_angle_deg) return crossing;
+    }
+    const Vec3 tangent = mean_tangent(t_i, t_j);
+    const Vec3 across = centres - centres.dot(tangent) * tangent;
+    parallel = across.norm() > 1e-9 * (1e-300 + side.norm()) ? Vec3(across.normalized())
+                                                             : unit_or(side - side.dot(tangent) * tangent, Vec3::Zero());
+    if (parallel.isZero()) {  // coincident centrelines without a memory: any side will do, but the same one each time
+        Index axis = 0;
+        tangent.cwiseAbs().minCoeff(&axis);
+        parallel = tangent.cross(Vec3(Vec3::Unit(axis))).normalized();
+    }
+    if (parallel.dot(side) < 0.0)  // the centres have passed each other: push them back the way they came
+        parallel = unit_or(side - side.dot(tangent) * tangent, -parallel);
+    if (angle <= rule.parallel_angle_deg) return parallel;
+    const double t = (angle - rule.parallel_angle_deg) / (rule.crossing_angle_deg - rule.parallel_angle_deg);
+    const double weight = t * t * (3.0 - 2.0 * t);
+    return unit_or(weight * crossing + (1.0 - weight) * parallel, parallel);
+}
+
+}  // namespace fibrant::contact

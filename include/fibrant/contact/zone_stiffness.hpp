@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Penalty stiffness of proximity zones: where it starts, and how it adapts to an allowed penetration.
+
+#include <fibrant/core/parameters.hpp>
+#include <fibrant/proximity/proximity_search.hpp>
+#include <fibrant/scene/elastic_material.hpp>
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+namespace fibrant::contact {
+
+/// A proximity zone with what it remembers. Abscissae are counted in elements.
+struct Zone {
+    proximity::ProximityZone span;
+    double stiffness = 0.0;    ///< k_N of its elements [force / length]
+    double reference = 0.0;    ///< elastic stiffness of a section over an element's length, k_el [force / length]
+    bool crossing = false;     ///< carries one contact element
+    bool forced = false;       ///< its normal is prescribed by a forced order
+    Index order = -1;          ///< forced order between the groups of its fibres, or -1
+    Index first = 0, last = 0;  ///< its contact elements
+};
+
+/// Adaptation of the penalty by zone (Durville, section 15.3.2; the formula is ours): the largest penetration of a zone
+/// is brought to a target below the allowed one.
+///
+/// Penetration biases the result by what it takes off the travel of the contact, not by its ratio to the radius: for a
+/// helical wire its radial sink d changes the strain by (d / r_0) cot^2(helix angle).
+struct StiffnessAdaptation {
+    double allowed_penetration = core::unset;  ///< p_max [length], > 0
+    double target_fraction = 0.6;              ///< of p_max that a zone is adapted to [1], in (0, 1)
+    double initial_fraction = 0.05;            ///< of k_el, for zones without a predecessor [1], > 0
+    double largest_change = 3.0;               ///< factor at one adaptation [1], > 1
+    double cap_fraction = 10.0;                ///< of k_el, never exceeded [1], > 0
+    double floor_fraction = 1e-3;              ///< of k_el [1], > 0
+    void validate() const {
+        core::require_positive("StiffnessAdaptation.allowed_penetration", allowed_penetration);
+        core::require_between("StiffnessAdaptation.target_fraction", target_fraction, 0.01, 0.999);
+        core::require_positive("StiffnessAdaptation.initial_fraction", initial_fraction);
+        core::require(largest_change > 1.0, "StiffnessAdaptation.largest_change", largest_change, "> 1");
+        core::require_positive("StiffnessAdaptation.cap_fraction", cap_fraction);
+        core::require_positive("StiffnessAdaptation.floor_fraction", floor_fraction);
+    }
+
+    /// Stiffness after an increment in which the zone's largest penetration was `penetration` [length].
+    double adapted(double stiffness, double reference, double penetration, double regularisation_depth) const noexcept {
+        if (!(penetration > 0.0)) return stiffness;
+        const double lost = std::min(0.5 * regularisation_depth, 0.5 * target_fraction * allowed_penetration);
+        const double ratio = std::max(penetration - lost, 0.0) / (target_fraction * allowed_penetration - lost);
+        return std::clamp(stiffness * std::clamp(ratio, 1.0 / largest_change, largest_change),
+                          floor_fraction * reference, cap_fraction * reference);
+    }
+};
+
+/// Compliance of two opposite line loads on a section, as a stiffness over a length: (pi / 2) E / (1 - nu^2) * length
+/// [force / length]. A penalty far above it gains nothing physically.
+inline double section_stiffness(const scene::ElasticMaterial& material, double length) noexcept {
+    const double nu = material.poisson_ratio;
+    return 0.5 * std::numbers::pi * material.young_modulus / (1.0 - nu * nu) * length;
+}
+
+/// Zone of an earlier list (sorted by fibres) that overlaps `span` most, or null. Intervals are widened by `slack`.
+inline const Zone* predecessor(const std::vector<Zone>& zones, const proximity::ProximityZone& span, double slack = 1.0) {
+    const auto before = [](const Zone& zone, const proximity::ProximityZone& key) {
+        return zone.span.fibre_i != key.fibre_i ? zone.span.fibre_i < key.fibre_i : zone.span.fibre_j < key.fibre_j;
+    };
+    const Zone* best = nullptr;
+    double most = -slack;
+    for (auto it = std::lower_bound(zones.begin(), zones.end(), span, before);
+         it != zones.end() && it->span.fibre_i == span.fibre_i && it->span.fibre_j == span.fibre_j; ++it) {
+        const double common_i = std::min(it->span.b_i, span.b_i) - std::max(it->span.a_i, span.a_i);
+        const double common_j = std::min(std::max(it->span.a_j, it->span.b_j), std::max(span.a_j, span.b_j)) -
+                                std::max(std::min(it->span.a_j, it->span.b_j), std::min(span.a_j, span.b_j));
+        const double common = std::min(common_i, common_j);
+        if (common > most) most = common, best = &*it;
+    }
+    return best;
+}
+
+}  // namespace fibrant::contact

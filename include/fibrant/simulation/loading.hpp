@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file A loading as data: stages with ramps, laws that change, conditions that end them.
+
+#include <fibrant/simulation/model.hpp>
+#include <fibrant/simulation/report.hpp>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fibrant::simulation {
+
+/// Takes the amplitude of a channel to a value over a stage.
+struct Ramp {
+    std::string channel;
+    double to = 1.0;         ///< amplitude at the end of the stage
+    bool geometric = false;  ///< by equal factors instead of equal steps; both ends must be > 0
+};
+
+/// Part of a loading. Laws that are set replace the model's from this stage on.
+template <Model M>
+struct Stage {
+    std::string name = "loading";
+    Index increments = 10;                      ///< that its ramps take when none is cut, >= 1
+    std::vector<Ramp> ramps;                    ///< channels that it moves; none, and no stages: all to 1
+    std::optional<double> gap_limit;            ///< of a law that limits the gap [length]; scaled down when cut
+    bool forced_orders = false;                 ///< keep the scene's forced orders
+    std::optional<typename M::Normal> normal;
+    std::optional<typename M::Friction> friction;
+    /// Once the ramps are over: goes on, all else constant, until this is true. None: ends with the ramps.
+    std::function<bool(const IncrementReport&)> until;
+    Index most_increments = 100;                ///< of the whole stage, beyond which the run stops unconverged
+};
+
+/// What a simulator runs. With no stages, one that takes all channels to 1 in `increments`.
+template <Model M>
+struct Loading {
+    Index increments = 10;
+    std::vector<Stage<M>> stages;
+    double smallest_fraction = 1.0 / 256.0;  ///< of an increment, below which the run stops
+    double growth = 1.5;                     ///< of the fraction after two increments without a cut
+    Index most_rejected = 200;               ///< attempts in a whole run
+    std::string checkpoint;                  ///< file written after each accepted increment; empty: none
+    bool resume = false;                     ///< start from that file, if it exists
+
+    void validate() const {
+        core::require_at_least("Loading.increments", increments, 1);
+        core::require_between("Loading.smallest_fraction", smallest_fraction, 1e-9, 1.0);
+        core::require(growth > 1.0, "Loading.growth", growth, "> 1");
+        for (const Stage<M>& stage : stages) {
+            core::require_at_least("Stage.increments", stage.increments, 1);
+            core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);
+            if (stage.gap_limit) core::require_positive("Stage.gap_limit", *stage.gap_limit);
+            for (const Ramp& ramp : stage.ramps) core::require_finite("Ramp.to", ramp.to);
+        }
+    }
+};
+
+/// Ends a stage once no gap is limited any more and nothing penetrates by more than `penetration` [length].
+inline std::function<bool(const IncrementReport&)> until_separated(double penetration) {
+    return [penetration](const IncrementReport& increment) {
+        return increment.contact.shifted == 0 && increment.contact.greatest_penetration <= penetration;
+    };
+}
+
+/// Ends a stage once the last increment moved nothing by more than `displacement` [length] and nothing penetrates by more
+/// than `penetration` [length].
+inline std::function<bool(const IncrementReport&)> until_settled(double displacement, double penetration) {
+    return [displacement, penetration](const IncrementReport& increment) {
+        return increment.contact.shifted == 0 && increment.displacement <= displacement &&
+               increment.contact.greatest_penetration <= penetration;
+    };
+}
+
+}  // namespace fibrant::simulation

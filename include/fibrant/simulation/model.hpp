@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What a model names: every part, nothing defaulted.
+
+#include <fibrant/assembly/chain_system.hpp>
+#include <fibrant/beam/beam_element.hpp>
+#include <fibrant/contact/contact_set.hpp>
+#include <fibrant/law/friction_law.hpp>
+#include <fibrant/law/normal_law.hpp>
+#include <fibrant/proximity/proximity_search.hpp>
+#include <fibrant/solver/linear_solver.hpp>
+#include <fibrant/solver/newton.hpp>
+
+namespace fibrant::simulation {
+
+// One concept a part, so that a missing or ill-formed one is named by the compiler.
+template <class M>
+concept HasBeam = beam::BeamElement<typename M::Beam>;
+template <class M>
+concept HasProximity = proximity::ProximitySearch<typename M::Proximity>;
+template <class M>
+concept HasNormal = law::NormalLaw<typename M::Normal>;
+template <class M>
+concept HasFriction = law::FrictionLaw<typename M::Friction>;
+template <class M>
+concept HasSolver = solver::LinearSolver<typename M::Solver, assembly::ChainSystem<typename M::Beam>>;
+
+/// A model names its Beam, Proximity, Normal, Friction and Solver, each of which satisfies its own contract.
+template <class M>
+concept Model = HasBeam<M> && HasProximity<M> && HasNormal<M> && HasFriction<M> && HasSolver<M>;
+
+/// Parameters of a model's parts, by the names of the parts.
+template <Model M>
+struct ModelParameters {
+    typename M::Beam::Parameters beam{};
+    typename M::Proximity::Parameters proximity{};
+    typename M::Normal::Parameters normal{};
+    typename M::Friction::Parameters friction{};
+    typename M::Solver::Parameters solver{};
+    contact::ContactParameters contact{};
+    solver::IterationParameters iteration{};
+};
+
+}  // namespace fibrant::simulation

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Figures of a run and of its increments.
+
+#include <fibrant/core/stage_clock.hpp>
+#include <fibrant/solver/nested_loops.hpp>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace fibrant::simulation {
+
+/// Work done since the start of a run, by the trapezoidal rule over increments [force * length].
+struct EnergyBalance {
+    double elastic = 0.0;       ///< stored in the fibres
+    double contact = 0.0;       ///< stored in penetrations
+    double external = 0.0;      ///< done by loads and prescribed motion
+    double dissipated = 0.0;    ///< by sliding, >= 0
+    double rearranged = 0.0;    ///< put in by changes of contact elements, gap shifts and penalty stiffness at rest
+    /// What is missing: external + rearranged - dissipated - stored.
+    double error() const noexcept { return external + rearranged - dissipated - elastic - contact; }
+};
+
+/// One accepted increment.
+struct IncrementReport {
+    Index number = 0;           ///< accepted increments so far
+    std::string stage;
+    double stage_progress = 0;  ///< in [0, 1]
+    double progress = 0;        ///< of the whole loading, in [0, 1]
+    double fraction = 1;        ///< of the stage's increment, smaller after cuts
+    Index cuts = 0;             ///< rejected attempts at it
+    solver::IterationCounts counts;  ///< rejected attempts included
+    double residual = 0;        ///< over loads, reactions and contact forces [1]
+    double displacement = 0;    ///< greatest [length]
+    contact::ContactFigures contact;
+    EnergyBalance energy;
+    double seconds = 0;         ///< wall time of the increment
+};
+
+/// A whole run.
+struct Report {
+    bool converged = false;
+    std::string reason;                  ///< why it stopped early; empty if it did not
+    std::vector<IncrementReport> increments;
+    Index rejected_increments = 0;
+    solver::IterationCounts counts;
+    double residual = 0;                 ///< at the end [1]
+    contact::ContactFigures contact;     ///< at the end
+    EnergyBalance energy;
+    std::array<double, core::part_count> seconds{};  ///< by core::Part
+    double wall_seconds = 0;
+};
+
+}  // namespace fibrant::simulation

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Runs a loading on a scene with a model: steps that are cut, restored and grown again.
+
+#include <fibrant/observe/observer.hpp>
+#include <fibrant/observe/snapshot.hpp>
+#include <fibrant/simulation/checkpoint.hpp>
+#include <fibrant/simulation/loading.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+namespace fibrant::simulation {
+
+/// A scene in mechanical equilibrium, taken through a loading by quasi-static increments.
+template <Model M>
+class Simulator {
+public:
+    using Beam = typename M::Beam;
+    using Mesh = beam::Mesh<Beam>;
+    using Contacts = contact::ContactSet<Beam, typename M::Proximity, typename M::Normal, typename M::Friction>;
+    using Equilibrium = assembly::Equilibrium<Beam, Contacts>;
+
+    /// @throws std::invalid_argument naming the field that is wrong
+    Simulator(const scene::Assembly& assembly, const ModelParameters<M>& parameters)
+        : parameters_{checked(parameters)}, beam_{parameters.beam}, mesh_{assembly, beam_}, channels_{assembly},
+          contacts_{assembly, mesh_, parameters.contact, typename M::Proximity(parameters.proximity),
+                    typename M::Normal(parameters.normal), typename M::Friction(parameters.friction)},
+          equilibrium_{assembly, mesh_, beam_, contacts_, channels_}, linear_{parameters.solver},
+          state_{mesh_.rest_state()}, amplitudes_(channels_.names().size(), 0.0) {
+        if (mesh_.fibre_count() == 0) core::refuse("assembly.fibres", "none", "at least one fibre");
+        radius_ = mesh_.fibre(0).section.radius();
+        for (const beam::MeshFibre& fibre : mesh_.fibres()) radius_ = std::min(radius_, fibre.section.radius());
+    }
+    Simulator(const Simulator&) = delete;  // its parts look at each other
+    Simulator& operator=(const Simulator&) = delete;
+
+    /// Takes the scene through a loading. Each observer is shown a snapshot of every accepted increment; one that has a
+    /// member `reported(const IncrementReport&)` is also given its figures.
+    template <class... Observers>
+    Report run(const Loading<M>& loading, Observers&... observers) {
+        loading.validate();
+        const auto start = std::chrono::steady_clock::now();
+        std::vector<Stage<M>> stages = loading.stages;
+        if (stages.empty()) {
+            stages.emplace_back();
+            stages.back().increments = loading.increments;
+            stages.back().most_increments = std::max(loading.increments, stages.back().most_increments);
+            for (const std::string& name : channels_.names()) stages.back().ramps.push_back({name, 1.0, false});
+        }
+        for (const Stage<M>& stage : stages)
+            for (const Ramp& ramp : stage.ramps) channels_.find(ramp.channel);
+        Report report;
+        position_ = {};
+        position_.from = amplitudes_;
+        if (loading.resume && !loading.checkpoint.empty() && std::filesystem::exists(loading.checkpoint))
+            read_checkpoint(loading.checkpoint, core::count(stages), report);
+        for (; position_.stage < core::count(stages); next_stage()) {
+            const Stage<M>& stage = stages[core::at(position_.stage)];
+            if (stage.normal) contacts_.normal_law() = *stage.normal;
+            if (stage.friction) contacts_.friction_law() = *stage.friction;
+            while (!position_.stage_over) {
+                if (!advance(loading, stages, stage, report)) {
+                    finish(report, start);
+                    return report;
+                }
+                if (!loading.checkpoint.empty()) write_checkpoint(loading.checkpoint, report);
+                clock_.time(core::Part::output, [&] { (show(observers, report.increments.back()), ...); });
+            }
+        }
+        report.converged = true;
+        finish(report, start);
+        return report;
+    }
+
+    const Mesh& mesh() const noexcept { return mesh_; }
+    const Vector& state() const noexcept { return state_; }
+    const Contacts& contacts() const noexcept { return contacts_; }
+    const Equilibrium& equilibrium() const noexcept { return equilibrium_; }
+    const typename M::Solver& linear_solver() const noexcept { return linear_; }
+    double amplitude(const std::string& channel) const { return amplitudes_[core::at(channels_.find(channel))]; }
+    /// Force that the support exerts on a held nodal vector, in its held directions [force].
+    Vec3 reaction(const scene::Station& at, scene::NodeVector vector = scene::NodeVector::position) const {
+        const Index v = mesh_.node_vector(at.fibre, connection::station_node(mesh_, at), static_cast<Index>(vector));
+        return equilibrium_.reaction().size() > 0 ? Vec3(equilibrium_.reaction().template segment<3>(3 * v)) : Vec3(Vec3::Zero());
+    }
+    /// Value of a nodal vector now.
+    Vec3 value(const scene::Station& at, scene::NodeVector vector = scene::NodeVector::position) const {
+        const Index v = mesh_.node_vector(at.fibre, connection::station_node(mesh_, at), static_cast<Index>(vector));
+        return state_.segment<3>(3 * v);
+    }
+
+    /// The present state as plain data.
+    observe::Snapshot snapshot() const {
+        observe::Snapshot shot;
+        for (Index f = 0; f < mesh_.fibre_count(); ++f) {
+            observe::FibreSnapshot fibre;
+            fibre.section = mesh_.fibre(f).section;
+            fibre.group = mesh_.fibre(f).group;
+            for (Index a = 0; a < mesh_.node_count(f); ++a) {
+                const double u = static_cast<double>(a) / static_cast<double>(Beam::nodes - 1);
+                const Vec3 position = mesh_.position(state_, f, u);
+                const Vec3 first = mesh_.derivative(state_, f, u), second = mesh_.second_derivative(state_, f, u);
+                fibre.position.push_back(position);
+                fibre.displacement.push_back(position - mesh_.position(mesh_.rest_state(), f, u));
+                const auto [element, xi] = mesh_.locate(f, u);
+                fibre.director_1.push_back(Mesh::point(state_, mesh_.first_unknown(f, element), beam::director_weights<Beam>(xi, 1)));
+                fibre.director_2.push_back(Mesh::point(state_, mesh_.first_unknown(f, element), beam::director_weights<Beam>(xi, 2)));
+                fibre.curvature.push_back(first.cross(second).norm() / std::pow(first.norm(), 3));
+            }
+            shot.fibres.push_back(std::move(fibre));
+        }
+        for (Index k = 0; k < core::count(contacts_.elements()); ++k) {
+            const auto& element = contacts_.elements()[core::at(k)];
+            observe::ContactSnapshot contact;
+            contact.fibre_i = element.fibre_i, contact.fibre_j = element.fibre_j;
+            contact.abscissa_i = element.u_i * mesh_.fibre(element.fibre_i).element_length;
+            contact.abscissa_j = element.u_j * mesh_.fibre(element.fibre_j).element_length;
+            contact.position = 0.5 * (Mesh::point(state_, element.first_i, element.weights_i) +
+                                      Mesh::point(state_, element.first_j, element.weights_j));
+            contact.normal = element.normal;
+            contact.gap = element.gap(state_);
+            contact.reaction = contacts_.responses()[core::at(k)].reaction;
+            if constexpr (core::Active<typename M::Friction>) contact.friction = contacts_.frictions()[core::at(k)].force;
+            contact.stiffness = contacts_.stiffness(element);
+            contact.crossing = element.crossing;
+            shot.contacts.push_back(contact);
+        }
+        return shot;
+    }
+
+private:
+    /// Where a run stands between two increments.
+    struct Position {
+        Index stage = 0, in_stage = 0, accepted = 0, easy = 0;
+        double progress = 0.0, fraction = 1.0, displacement = 0.0;
+        bool stage_over = false;
+        std::vector<double> from;  ///< amplitudes at the start of the stage
+    };
+
+    static const ModelParameters<M>& checked(const ModelParameters<M>& parameters) {
+        parameters.contact.validate();
+        parameters.iteration.validate();
+        return parameters;
+    }
+
+    void next_stage() {
+        ++position_.stage;
+        position_.in_stage = 0, position_.easy = 0, position_.progress = 0.0, position_.fraction = 1.0;
+        position_.stage_over = false;
+        position_.from = amplitudes_;
+    }
+
+    std::vector<double> amplitudes_at(const Stage<M>& stage, double progress) const {
+        std::vector<double> amplitudes = amplitudes_;
+        for (const Ramp& ramp : stage.ramps) {
+            const std::size_t c = core::at(channels_.find(ramp.channel));
+            const double from = position_.from[c];
+            if (ramp.geometric && !(from > 0.0 && ramp.to > 0.0))
+                core::refuse("Ramp.to", core::text(ramp.to), "> 0, from an amplitude > 0, for a geometric ramp");
+            amplitudes[c] = ramp.geometric ? from * std::pow(ramp.to / from, progress) : from + progress * (ramp.to - from);
+        }
+        return amplitudes;
+    }
+
+    /// One accepted increment, after as many cuts as it takes.
+    bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report) {
+        const auto start = std::chrono::steady_clock::now();
+        IncrementReport increment;
+        const bool touching = mesh_.fibre_count() > 1 || parameters_.contact.detection.self_contact;
+        while (true) {
+            if (position_.in_stage >= stage.most_increments) {
+                report.reason = "stage " + stage.name + " did not reach its end in " + std::to_string(stage.most_increments) + " increments";
+                return false;
+            }
+            double step = position_.fraction / static_cast<double>(stage.increments);
+            double progress = stage.ramps.empty() && !stage.until ? 1.0 : std::min(1.0, position_.progress + step);
+            if (progress > 1.0 - 1e-9) progress = 1.0;
+            if constexpr (requires { contacts_.normal_law().with_limit(1.0); }) {
+                if (stage.gap_limit) contacts_.normal_law() = contacts_.normal_law().with_limit(*stage.gap_limit * position_.fraction);
+                else contacts_.normal_law() = contacts_.normal_law().with_limit(std::numeric_limits<double>::infinity());
+            }
+            const std::vector<double> amplitudes = amplitudes_at(stage, progress);
+            const double contact_before = contacts_work_;
+            Vector trial = state_;
+            equilibrium_.begin(amplitudes, state_);
+            solver::NestedLoops<Equilibrium, Contacts, typename M::Solver> loops(
+                equilibrium_, contacts_, linear_, parameters_.iteration, radius_, touching, clock_);
+            const solver::AttemptReport attempt = loops.solve(trial, state_, position_.displacement, stage.forced_orders);
+            increment.counts += attempt.counts;
+            if (attempt.converged) {
+                account(trial, increment, contact_before);
+                state_ = trial;
+                amplitudes_ = amplitudes;
+                increment.residual = attempt.residual;
+                increment.displacement = attempt.displacement;
+                increment.fraction = position_.fraction;
+                position_.progress = progress;
+                break;
+            }
+            ++report.rejected_increments, ++increment.cuts;
+            contacts_.restore();
+            position_.fraction *= 0.5, position_.easy = 0;
+            if (position_.fraction < loading.smallest_fraction || report.rejected_increments > loading.most_rejected) {
+                report.counts += increment.counts;
+                report.reason = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": " + attempt.reason;
+                return false;
+            }
+        }
+        increment.contact = contacts_.figures(state_);
+        position_.displacement = increment.displacement;
+        ++position_.accepted, ++position_.in_stage;
+        if (increment.cuts == 0 && ++position_.easy >= 2 && position_.fraction < 1.0)
+            position_.fraction = std::min(1.0, loading.growth * position_.fraction), position_.easy = 0;
+        increment.number = position_.accepted;
+        increment.stage = stage.name;
+        increment.stage_progress = position_.progress;
+        increment.progress = (static_cast<double>(position_.stage) + position_.progress) / static_cast<double>(stages.size());
+        position_.stage_over = position_.progress >= 1.0 && (!stage.until || stage.until(increment));
+        contacts_.accept(state_);
+        increment.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        report.counts += increment.counts;
+        report.increments.push_back(increment);
+        return true;
+    }
+
+    /// Energy balance of an increment that has converged.
+    void account(const Vector& trial, IncrementReport& increment, double contact_before) {
+        const Vector external = equilibrium_.external() + equilibrium_.reaction();
+        if (last_external_.size() != external.size()) last_external_ = Vector::Zero(external.size());
+        energy_.external += 0.5 * (trial - state_).dot(external + last_external_);
+        last_external_ = external;
+        const contact::ContactFigures now = contacts_.figures(trial);
+        energy_.dissipated += now.dissipated;
+        contacts_.evaluate(state_);  // the same contact elements, where the increment started
+        energy_.rearranged += contacts_.figures(state_).work - contact_before;
+        contacts_.evaluate(trial);
+        energy_.contact = contacts_work_ = now.work;
+        energy_.elastic = equilibrium_.elastic_energy(trial);
+        increment.energy = energy_;
+    }
+
+    template <class Observer>
+    void show(Observer& observer, const IncrementReport& increment) {
+        if constexpr (requires { observer.reported(increment); }) observer.reported(increment);
+        if constexpr (observe::Observer<Observer>) {
+            observe::Snapshot shot = snapshot();
+            shot.increment = increment.number, shot.stage = increment.stage, shot.progress = increment.progress;
+            observer.accepted(shot);
+        }
+    }
+
+    void finish(Report& report, std::chrono::steady_clock::time_point start) {
+        if (!report.increments.empty()) {
+            report.contact = report.increments.back().contact;
+            report.residual = report.increments.back().residual;
+        }
+        report.energy = energy_;
+        report.seconds = clock_.seconds();
+        report.wall_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+
+    void write_checkpoint(const std::string& path, const Report& report) const {
+        CheckpointWriter file;
+        file.put(std::string("fibrant checkpoint 1"));
+        file.put(state_);
+        file.put(last_external_);
+        file.put(energy_), file.put(contacts_work_);
+        for (const double amplitude : amplitudes_) file.put(amplitude);
+        file.put(position_.stage), file.put(position_.in_stage), file.put(position_.accepted), file.put(position_.easy);
+        file.put(position_.progress), file.put(position_.fraction), file.put(position_.displacement), file.put(position_.stage_over);
+        for (const double amplitude : position_.from) file.put(amplitude);
+        file.put(core::count(contacts_.accepted_memory().records()));
+        for (const auto& record : contacts_.accepted_memory().records()) record.each([&](const auto& value) { file.put(value); });
+        file.put(core::count(contacts_.accepted_zones()));
+        for (const contact::Zone& zone : contacts_.accepted_zones()) file.put(zone);
+        file.put(report.rejected_increments), file.put(report.counts), file.put(clock_.seconds());
+        file.put(core::count(report.increments));
+        for (const IncrementReport& increment : report.increments) {
+            IncrementReport plain = increment;
+            file.put(plain.stage);
+            file.put(plain.number), file.put(plain.stage_progress), file.put(plain.progress), file.put(plain.fraction);
+            file.put(plain.cuts), file.put(plain.counts), file.put(plain.residual), file.put(plain.displacement);
+            file.put(plain.contact), file.put(plain.energy), file.put(plain.seconds);
+        }
+        file.write(path);
+    }
+
+    void read_checkpoint(const std::string& path, Index stages, Report& report) {
+        CheckpointReader file(path);
+        file.expect(file.get_text() == "fibrant checkpoint 1", "the format");
+        Vector state = file.get_vector();
+        file.expect(state.size() == state_.size(), "the number of unknowns");
+        state_ = std::move(state);
+        last_external_ = file.get_vector();
+        energy_ = file.get<EnergyBalance>(), contacts_work_ = file.get<double>();
+        for (double& amplitude : amplitudes_) amplitude = file.get<double>();
+        position_.stage = file.get<Index>(), position_.in_stage = file.get<Index>(), position_.accepted = file.get<Index>();
+        position_.easy = file.get<Index>(), position_.progress = file.get<double>(), position_.fraction = file.get<double>();
+        position_.displacement = file.get<double>(), position_.stage_over = file.get<bool>();
+        file.expect(position_.stage < stages, "the number of stages");
+        for (double& amplitude : position_.from) amplitude = file.get<double>();
+        std::vector<typename Contacts::Memory::Record> records(core::at(file.get<Index>()));
+        for (auto& record : records) record.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
+        std::vector<contact::Zone> zones(core::at(file.get<Index>()));
+        for (contact::Zone& zone : zones) zone = file.get<contact::Zone>();
+        contacts_.resume(std::move(records), std::move(zones));
+        report.rejected_increments = file.get<Index>(), report.counts = file.get<solver::IterationCounts>();
+        clock_.seconds() = file.get<std::array<double, core::part_count>>();
+        report.increments.resize(core::at(file.get<Index>()));
+        for (IncrementReport& increment : report.increments) {
+            increment.stage = file.get_text();
+            increment.number = file.get<Index>(), increment.stage_progress = file.get<double>();
+            increment.progress = file.get<double>(), increment.fraction = file.get<double>();
+            increment.cuts = file.get<Index>(), increment.counts = file.get<solver::IterationCounts>();
+            increment.residual = file.get<double>(), increment.displacement = file.get<double>();
+            increment.contact = file.get<contact::ContactFigures>(), increment.energy = file.get<EnergyBalance>();
+            increment.seconds = file.get<double>();
+            report.wall_seconds += increment.seconds;
+        }
+    }
+
+    ModelParameters<M> parameters_;
+    Beam beam_;
+    Mesh mesh_;
+    connection::Channels channels_;
+    Contacts contacts_;
+    Equilibrium equilibrium_;
+    typename M::Solver linear_;
+    Vector state_;
+    std::vector<double> amplitudes_;
+    double radius_ = 0.0;
+    Position position_;
+    EnergyBalance energy_;
+    double contacts_work_ = 0.0;
+    Vector last_external_;
+    core::StageClock clock_;
+};
+
+}  // namespace fibrant::simulation

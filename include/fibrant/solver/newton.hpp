@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Inner loop: Newton's method for finite strain, contact status and stick or slip, solved inexactly.
+
+#include <fibrant/assembly/equilibrium.hpp>
+#include <fibrant/core/stage_clock.hpp>
+#include <fibrant/solver/linear_solver.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fibrant::solver {
+
+/// Limits and tolerances of the nested loops. Lengths are in multiples of the smallest radius of the scene.
+struct IterationParameters {
+    double step_tolerance = 1e-4;         ///< of the last Newton step [radius], > 0
+    double residual_tolerance = 1e-4;     ///< of the last residual, over loads and reactions [1], > 0
+    double normal_tolerance = 1e-3;       ///< turn of normals in a normal pass [radian], > 0
+    double normal_step_tolerance = 1e-3;  ///< displacement in a normal pass [radius], > 0
+    double contact_tolerance = 1e-2;      ///< displacement in a contact pass [radius], > 0
+    double inexact = 0.3;                 ///< inner tolerance over the last change of the loop outside [1], in [0, 1]
+    double largest_approach = 0.5;        ///< relative motion of a contact in one Newton step [radius], > 0
+    Index newton_limit = 15;              ///< iterations of one inner loop
+    Index normal_limit = 6;               ///< normal passes of one set of contact elements
+    Index contact_limit = 8;              ///< contact passes of an increment
+    double margin = 0.2;                  ///< least reach of the search beyond touching [radius], > 0
+    double largest_margin = 1.0;          ///< greatest reach of the search beyond touching [radius]
+    bool mixed = true;                    ///< independent point stresses (falls back to the plain form)
+    double linear_tolerance = 1e-4;       ///< of the last linear solves [1], in (0, 1e-2]
+    void validate() const {
+        core::require_positive("IterationParameters.step_tolerance", step_tolerance);
+        core::require_positive("IterationParameters.residual_tolerance", residual_tolerance);
+        core::require_positive("IterationParameters.normal_tolerance", normal_tolerance);
+        core::require_positive("IterationParameters.normal_step_tolerance", normal_step_tolerance);
+        core::require_positive("IterationParameters.contact_tolerance", contact_tolerance);
+        core::require_between("IterationParameters.inexact", inexact, 0.0, 1.0);
+        core::require_positive("IterationParameters.largest_approach", largest_approach);
+        core::require_at_least("IterationParameters.newton_limit", newton_limit, 1);
+        core::require_at_least("IterationParameters.normal_limit", normal_limit, 1);
+        core::require_at_least("IterationParameters.contact_limit", contact_limit, 1);
+        core::require_positive("IterationParameters.margin", margin);
+        core::require(largest_margin >= margin, "IterationParameters.largest_margin", largest_margin, ">= margin");
+        core::require(linear_tolerance > 0.0 && linear_tolerance <= 1e-2, "IterationParameters.linear_tolerance",
+                      linear_tolerance, "> 0 and <= 0.01");
+    }
+};
+
+/// Iterations of each loop, and what the linear solver met.
+struct IterationCounts {
+    Index contact_passes = 0, normal_passes = 0, newton = 0, linear_solves = 0, linear_iterations = 0;
+    Index indefinite = 0;  ///< tangents that were not positive definite
+    IterationCounts& operator+=(const IterationCounts& other) noexcept {
+        contact_passes += other.contact_passes, normal_passes += other.normal_passes, newton += other.newton;
+        linear_solves += other.linear_solves, linear_iterations += other.linear_iterations;
+        indefinite += other.indefinite;
+        return *this;
+    }
+};
+
+enum class NewtonStatus : std::uint8_t {
+    converged,
+    moved,       ///< so far that the search has to be repeated
+    too_many,    ///< iterations
+    diverged,    ///< the residual keeps growing, or is not finite
+    unsolvable,  ///< the tangent stayed indefinite
+};
+
+struct NewtonReport {
+    NewtonStatus status = NewtonStatus::too_many;
+    Index iterations = 0;
+    double step = 0.0;      ///< last one [length]
+    assembly::ResidualFigures residual;
+};
+
+/// Newton's method on an equilibrium whose contact elements and normals stand.
+template <class Equilibrium, class Contacts, class Linear>
+class Newton {
+public:
+    Newton(Equilibrium& equilibrium, Contacts& contacts, Linear& linear, const IterationParameters& parameters,
+           double radius, core::StageClock& clock)
+        : equilibrium_{&equilibrium}, contacts_{&contacts}, linear_{&linear}, parameters_{parameters}, radius_{radius},
+          clock_{&clock} {}
+
+    /// @param state      iterated in place
+    /// @param tolerance  of the step [length]
+    /// @param anchor     state at the last search
+    /// @param reach      of that search: beyond half of it `moved` is returned [length]; infinity: no bound
+    NewtonReport solve(Vector& state, double tolerance, const Vector& anchor, double reach, IterationCounts& counts) {
+        NewtonReport report;
+        Equilibrium& equilibrium = *equilibrium_;
+        double eta = 1e-2, worst = 0.0;
+        bool mixed = parameters_.mixed;
+        Index growing = 0;
+        report.residual = evaluate(state);
+        for (Index iteration = 0; iteration < parameters_.newton_limit; ++iteration) {
+            equilibrium.prescribed_step(state, prescribed_);
+            if (!direction(state, eta, counts)) {
+                report.status = NewtonStatus::unsolvable;
+                return report;
+            }
+            step_ += prescribed_;
+            const double scale = bounded(step_);
+            step_ *= scale;
+            if (mixed) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(state, step_); });
+            state += step_;
+            ++report.iterations, ++counts.newton;
+            const assembly::ResidualFigures before = report.residual;
+            report.residual = evaluate(state);
+            report.step = equilibrium.greatest(step_);
+            if (!std::isfinite(report.residual.residual) || !std::isfinite(report.step)) {
+                report.status = NewtonStatus::diverged;
+                return report;
+            }
+            if (!mixed) equilibrium.reset_stresses(state);
+            const double ratio = before.residual > 0.0 ? report.residual.residual / before.residual : 0.0;
+            eta = std::clamp(0.9 * ratio * ratio, parameters_.linear_tolerance, 1e-2);
+            if (scale == 1.0 && report.step <= tolerance && report.residual.relative() <= residual_tolerance(tolerance)) {
+                report.status = NewtonStatus::converged;
+                return report;
+            }
+            if (std::isfinite(reach) && equilibrium.greatest(state - anchor) > 0.5 * reach) {
+                report.status = NewtonStatus::moved;
+                return report;
+            }
+            // The mixed iteration may start with a large residual, so only a lasting growth counts.
+            if (iteration > 2 && report.residual.residual > worst) ++growing;
+            worst = iteration <= 2 ? std::max(worst, report.residual.residual) : worst;
+            if (growing >= 2 && mixed) mixed = false, growing = 0, equilibrium.reset_stresses(state);
+            if (growing >= 3) {
+                report.status = NewtonStatus::diverged;
+                return report;
+            }
+        }
+        return report;
+    }
+
+private:
+    double residual_tolerance(double tolerance) const {
+        return parameters_.residual_tolerance * std::max(1.0, tolerance / (parameters_.step_tolerance * radius_));
+    }
+
+    assembly::ResidualFigures evaluate(const Vector& state) {
+        return clock_->time(core::Part::contact, [&] { contacts_->evaluate(state); }),
+               clock_->time(core::Part::assembly, [&] { return equilibrium_->residual(state, residual_); });
+    }
+
+    /// Free part of the step. An indefinite tangent is met first by leaving compression out of its geometric part, then by
+    /// a shift that doubles.
+    bool direction(const Vector& state, double eta, IterationCounts& counts) {
+        Equilibrium& equilibrium = *equilibrium_;
+        double shift = 0.0;
+        for (int attempt = 0; attempt < 8; ++attempt) {
+            clock_->time(core::Part::assembly, [&] {
+                equilibrium.linearise(state, attempt > 0, shift);
+                right_ = -residual_;
+                if (!prescribed_.isZero(0.0)) {
+                    product_.resize(state.size());
+                    equilibrium.system().apply_unheld(prescribed_, product_);
+                    right_ -= product_;
+                    for (const scene::HeldVector& held : equilibrium.system().layout().held)
+                        right_.template segment<3>(3 * held.vector) = held.free * right_.template segment<3>(3 * held.vector);
+                }
+            });
+            const SolveStatus prepared = clock_->time(core::Part::preparation, [&] { return linear_->prepare(equilibrium.system()); });
+            SolveReport report;
+            report.status = prepared;
+            if (prepared == SolveStatus::converged) {
+                report = clock_->time(core::Part::solution, [&] { return linear_->solve(equilibrium.system(), right_, eta, step_); });
+                ++counts.linear_solves, counts.linear_iterations += report.iterations;
+            }
+            if (report.status == SolveStatus::converged) return true;
+            // A step that is not exact is still a step, as long as it is a good part of one.
+            if (report.status == SolveStatus::iteration_limit && report.residual < 0.3) return true;
+            if (report.status == SolveStatus::not_finite) return false;
+            ++counts.indefinite;
+            if (attempt >= 1) shift = shift > 0.0 ? 4.0 * shift : 1e-4 * stiffness_scale();
+        }
+        return false;
+    }
+
+    /// Mean diagonal stiffness of positions, as the unit of a shift.
+    double stiffness_scale() const {
+        const auto& system = equilibrium_->system();
+        double sum = 0.0;
+        Index nodes = 0;
+        for (Index f = 0; f < equilibrium_->mesh().fibre_count(); ++f)
+            for (Index a = 0; a < equilibrium_->mesh().node_count(f); ++a, ++nodes) {
+                const auto& row = system.row(f, a);
+                const Index column = row.cols() - row.rows();
+                sum += std::abs(row(0, column)) + std::abs(row(1, column + 1)) + std::abs(row(2, column + 2));
+            }
+        return nodes > 0 ? sum / (3.0 * static_cast<double>(nodes)) : 0.0;
+    }
+
+    /// Factor that keeps the relative motion of every contact within its bound: beyond it fibres could change sides.
+    double bounded(const Vector& step) const {
+        const auto& elements = contacts_->elements();
+        double most = 0.0;
+        for (const auto& element : elements) most = std::max(most, std::abs(element.normal.dot(element.offset(step))));
+        const double bound = parameters_.largest_approach * radius_;
+        return most > bound ? bound / most : 1.0;
+    }
+
+    Equilibrium* equilibrium_;
+    Contacts* contacts_;
+    Linear* linear_;
+    IterationParameters parameters_;
+    double radius_;
+    core::StageClock* clock_;
+    Vector residual_, right_, product_, step_, prescribed_;
+};
+
+}  // namespace fibrant::solver
