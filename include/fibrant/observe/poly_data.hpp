@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file VTK's XML PolyData format (.vtp) and collections of such files in time (.pvd), as ParaView reads them.
+
+#include <fibrant/core/parameters.hpp>
+#include <fibrant/core/types.hpp>
+#include <fibrant/observe/observer.hpp>
+#include <fibrant/observe/text_file.hpp>
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace fibrant::observe {
+
+/// Points, polylines and vertices with named values, written as appended raw binary.
+class PolyData {
+public:
+    Index add_point(const Vec3& point) {
+        points_.push_back(point);
+        return core::count(points_) - 1;
+    }
+    /// Points [first, first + count) as a line. Cells are numbered vertices first, then lines, each in order.
+    void add_line(Index first, Index count) {
+        for (Index k = 0; k < count; ++k) line_points_.push_back(first + k);
+        line_ends_.push_back(core::count(line_points_));
+    }
+    void add_vertex(Index point) { vertex_points_.push_back(point); }
+
+    /// Values of the points or cells, one for each in their order, in the precision of the file (single).
+    void point_scalars(std::string name, std::span<const double> values) { add(point_data_, std::move(name), values); }
+    void point_vectors(std::string name, std::span<const Vec3> values) { add(point_data_, std::move(name), values); }
+    void cell_scalars(std::string name, std::span<const double> values) { add(cell_data_, std::move(name), values); }
+
+    /// The file's content. Throws std::invalid_argument if an array's length is not that of the points or cells.
+    std::string text() const {
+        static_assert(std::endian::native == std::endian::little, "the header states little endian");
+        const std::size_t cells = vertex_points_.size() + line_ends_.size();
+        std::string head = "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
+                           "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"" +
+                           std::to_string(points_.size()) + "\" NumberOfVerts=\"" +
+                           std::to_string(vertex_points_.size()) + "\" NumberOfLines=\"" +
+                           std::to_string(line_ends_.size()) + "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
+        std::string data;
+        write_arrays(head, data, "PointData", point_data_, points_.size());
+        write_arrays(head, data, "CellData", cell_data_, cells);
+        std::vector<double> coordinates;
+        for (const Vec3& point : points_) coordinates.insert(coordinates.end(), point.data(), point.data() + 3);
+        head += "<Points>\n";
+        write_array<double>(head, data, "Points", "Float64", 3, coordinates);
+        head += "</Points>\n";
+        std::vector<std::int64_t> ends;
+        for (std::size_t k = 0; k < vertex_points_.size(); ++k) ends.push_back(static_cast<std::int64_t>(k + 1));
+        write_cells(head, data, "Verts", vertex_points_, ends);
+        write_cells(head, data, "Lines", line_points_, line_ends_);
+        return head + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + data + "\n</AppendedData>\n</VTKFile>\n";
+    }
+
+private:
+    struct Array {
+        std::string name;
+        std::size_t components;
+        std::vector<float> values;
+    };
+
+    static void add(std::vector<Array>& arrays, std::string&& name, std::span<const double> values) {
+        Array array{std::move(name), 1, {}};
+        for (const double value : values) array.values.push_back(static_cast<float>(value));
+        arrays.push_back(std::move(array));
+    }
+    static void add(std::vector<Array>& arrays, std::string&& name, std::span<const Vec3> values) {
+        Array array{std::move(name), 3, {}};
+        for (const Vec3& value : values)
+            for (const double component : value) array.values.push_back(static_cast<float>(component));
+        arrays.push_back(std::move(array));
+    }
+
+    template <class Number>
+    static void write_array(std::string& head, std::string& data, const std::string& name, const char* type,
+                            std::size_t components, const std::vector<Number>& values) {
+        head += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) +
+                "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"appended\" offset=\"" +
+                std::to_string(data.size()) + "\"/>\n";
+        const std::uint64_t bytes = values.size() * sizeof(Number);
+        const std::size_t start = data.size();
+        data.resize(start + sizeof bytes + bytes);
+        std::memcpy(data.data() + start, &bytes, sizeof bytes);
+        if (bytes > 0) std::memcpy(data.data() + start + sizeof bytes, values.data(), bytes);
+    }
+
+    static void write_arrays(std::string& head, std::string& data, const std::string& kind,
+                             const std::vector<Array>& arrays, std::size_t count) {
+        head += "<" + kind + ">\n";
+        for (const Array& array : arrays) {
+            if (array.values.size() != count * array.components)
+                core::refuse("PolyData." + array.name, std::to_string(array.values.size() / array.components),
+                             "one value for each of " + std::to_string(count));
+            write_array<float>(head, data, array.name, "Float32", array.components, array.values);
+        }
+        head += "</" + kind + ">\n";
+    }
+
+    static void write_cells(std::string& head, std::string& data, const std::string& kind,
+                            const std::vector<std::int64_t>& points, const std::vector<std::int64_t>& ends) {
+        head += "<" + kind + ">\n";
+        write_array<std::int64_t>(head, data, "connectivity", "Int64", 1, points);
+        write_array<std::int64_t>(head, data, "offsets", "Int64", 1, ends);
+        head += "</" + kind + ">\n";
+    }
+
+    std::vector<Vec3> points_;
+    std::vector<std::int64_t> vertex_points_, line_points_, line_ends_;
+    std::vector<Array> point_data_, cell_data_;
+};
+
+/// A .pvd collection: the files of a series and their times, rewritten whole after each one.
+class FileSeries {
+public:
+    /// @param path  of the collection; resumed, the entries that it holds are kept
+    FileSeries(std::filesystem::path path, Start start) : path_{std::move(path)} {
+        if (start == Start::anew) return;
+        const std::string text = read_file(path_);
+        for (std::size_t at = text.find("<DataSet "); at != std::string::npos; at = text.find("<DataSet ", at + 1)) {
+            const std::string time = attribute(text, at, "timestep"), file = attribute(text, at, "file");
+            double value = 0.0;
+            const auto [end, error] = std::from_chars(time.data(), time.data() + time.size(), value);
+            static_cast<void>(end);
+            if (error == std::errc{} && !file.empty()) entries_.push_back({value, file});
+        }
+    }
+
+    /// Adds a file (its name within the folder of the collection) and drops entries that are not earlier: they are
+    /// from increments that a resumed run repeats.
+    void add(double time, const std::string& file) {
+        std::erase_if(entries_, [&](const Entry& entry) { return entry.time >= time; });
+        entries_.push_back({time, xml_escaped(file)});
+        std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+                           "byte_order=\"LittleEndian\">\n<Collection>\n";
+        for (const Entry& entry : entries_)
+            text += "<DataSet timestep=\"" + shortest(entry.time) + "\" group=\"\" part=\"0\" file=\"" + entry.file +
+                    "\"/>\n";
+        write_file(path_, text + "</Collection>\n</VTKFile>\n");
+    }
+
+private:
+    struct Entry {
+        double time;
+        std::string file;  ///< escaped
+    };
+    static std::string attribute(const std::string& text, std::size_t from, const std::string& name) {
+        const std::size_t end = text.find('>', from), at = text.find(" " + name + "=\"", from);
+        if (end == std::string::npos || at == std::string::npos || at > end) return {};
+        const std::size_t first = at + name.size() + 3;
+        return text.substr(first, text.find('"', first) - first);
+    }
+
+    std::filesystem::path path_;
+    std::vector<Entry> entries_;
+};
+
+}  // namespace fibrant::observe

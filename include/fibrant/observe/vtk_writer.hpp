@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Fibres and contacts of each increment for ParaView.
+
+#include <fibrant/observe/poly_data.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace fibrant::observe {
+
+/// A polyline a fibre; at the nodes radius, director_1, director_2, displacement, curvature; of the lines fibre, group.
+inline PolyData fibre_data(const Snapshot& snapshot) {
+    PolyData data;
+    std::vector<double> radius, curvature, number, group;
+    std::vector<Vec3> director_1, director_2, displacement;
+    for (std::size_t k = 0; k < snapshot.fibres.size(); ++k) {
+        const FibreSnapshot& fibre = snapshot.fibres[k];
+        Index first = 0;
+        for (std::size_t node = 0; node < fibre.position.size(); ++node) {
+            const Index point = data.add_point(fibre.position[node]);
+            if (node == 0) first = point;
+            radius.push_back(fibre.section.radius());
+        }
+        data.add_line(first, core::count(fibre.position));
+        director_1.insert(director_1.end(), fibre.director_1.begin(), fibre.director_1.end());
+        director_2.insert(director_2.end(), fibre.director_2.begin(), fibre.director_2.end());
+        displacement.insert(displacement.end(), fibre.displacement.begin(), fibre.displacement.end());
+        curvature.insert(curvature.end(), fibre.curvature.begin(), fibre.curvature.end());
+        number.push_back(static_cast<double>(k));
+        group.push_back(static_cast<double>(fibre.group));
+    }
+    data.point_scalars("radius", radius);
+    data.point_vectors("director_1", director_1);
+    data.point_vectors("director_2", director_2);
+    data.point_vectors("displacement", displacement);
+    data.point_scalars("curvature", curvature);
+    data.cell_scalars("fibre", number);
+    data.cell_scalars("group", group);
+    return data;
+}
+
+/// A vertex a contact element, with reaction, penetration (0 where open), gap, stiffness, crossing (1 or 0), the two
+/// fibres, and the vectors normal, normal_force (on fibre_j) and friction (on fibre_i).
+inline PolyData contact_data(const Snapshot& snapshot) {
+    PolyData data;
+    std::vector<double> reaction, penetration, gap, stiffness, crossing, fibre_i, fibre_j;
+    std::vector<Vec3> normal, normal_force, friction;
+    for (const ContactSnapshot& contact : snapshot.contacts) {
+        data.add_vertex(data.add_point(contact.position));
+        reaction.push_back(contact.reaction);
+        penetration.push_back(contact.gap < 0.0 ? -contact.gap : 0.0);
+        gap.push_back(contact.gap);
+        stiffness.push_back(contact.stiffness);
+        crossing.push_back(contact.crossing ? 1.0 : 0.0);
+        fibre_i.push_back(static_cast<double>(contact.fibre_i));
+        fibre_j.push_back(static_cast<double>(contact.fibre_j));
+        normal.push_back(contact.normal);
+        normal_force.push_back(contact.reaction * contact.normal);
+        friction.push_back(contact.friction);
+    }
+    data.point_scalars("reaction", reaction);
+    data.point_scalars("penetration", penetration);
+    data.point_scalars("gap", gap);
+    data.point_vectors("normal", normal);
+    data.point_vectors("normal_force", normal_force);
+    data.point_vectors("friction", friction);
+    data.point_scalars("stiffness", stiffness);
+    data.point_scalars("crossing", crossing);
+    data.point_scalars("fibre_i", fibre_i);
+    data.point_scalars("fibre_j", fibre_j);
+    return data;
+}
+
+/// Writes fibres_NNNN.vtp and contacts_NNNN.vtp after each increment, and the series fibres.pvd and contacts.pvd, whose
+/// times are the increments. Every file is complete whenever it is seen.
+class VtkWriter {
+public:
+    /// @param folder  is made if need be
+    /// @param start   resumed, the series keep the entries of earlier increments
+    explicit VtkWriter(std::filesystem::path folder, Start start = Start::anew)
+        : folder_{made(std::move(folder))},
+          fibres_{folder_ / "fibres.pvd", start},
+          contacts_{folder_ / "contacts.pvd", start} {}
+
+    /// Throws std::runtime_error if a file cannot be written.
+    void accepted(const Snapshot& snapshot) {
+        std::string number = std::to_string(snapshot.increment);
+        if (number.size() < 4) number.insert(0, 4 - number.size(), '0');
+        const auto time = static_cast<double>(snapshot.increment);
+        write_file(folder_ / ("fibres_" + number + ".vtp"), fibre_data(snapshot).text());
+        fibres_.add(time, "fibres_" + number + ".vtp");
+        write_file(folder_ / ("contacts_" + number + ".vtp"), contact_data(snapshot).text());
+        contacts_.add(time, "contacts_" + number + ".vtp");
+    }
+
+private:
+    static std::filesystem::path made(std::filesystem::path folder) {
+        std::filesystem::create_directories(folder);
+        return folder;
+    }
+
+    std::filesystem::path folder_;
+    FileSeries fibres_, contacts_;
+};
+static_assert(Observer<VtkWriter>);
+
+}  // namespace fibrant::observe
