@@ -63,6 +63,20 @@ public:
                 row(fibre, element * (B::nodes - 1) + a).template block<block, block>(0, (reach - (a - b)) * block) +=
                     stiffness.template block<block, block>(a * block, b * block);
     }
+    /// Adds (w w^T) (x) stiffness on the vectors of one element.
+    /// @param first_unknown  of the element
+    void add_rank_one(Index fibre, Index first_unknown, const beam::ElementWeights<B>& weights, const Mat3& stiffness) {
+        const Index node = first_unknown / block - first_node_[core::at(fibre)];
+        for (Index a = 0; a < B::nodes; ++a)
+            for (Index v = 0; v < B::vectors_per_node; ++v) {
+                const double left = weights[core::at(a * B::vectors_per_node + v)];
+                if (left == 0.0) continue;
+                for (Index b = 0; b <= a; ++b)
+                    for (Index w = 0; w < B::vectors_per_node; ++w)
+                        row(fibre, node + a).template block<3, 3>(3 * v, (reach - (a - b)) * block + 3 * w) +=
+                            left * weights[core::at(b * B::vectors_per_node + w)] * stiffness;
+            }
+    }
     /// Adds a stiffness of one nodal vector with itself.
     void add_diagonal(Index vector, const Mat3& stiffness) {
         const Index node = vector / B::vectors_per_node, v = vector % B::vectors_per_node;

@@ -102,6 +102,9 @@ public:
                 const typename B::Stresses geometric = tension_only ? B::without_compression(stress(f, e)) : stress(f, e);
                 system_.add(f, e, beam_.tangent_stiffness(mesh_->rest(f, e), mesh_->element(state, f, e), geometric));
             }
+            contacts_->section_stiffness_terms(f, state, [&](Index first, const beam::ElementWeights<B>& weights, const Mat3& stiffness) {
+                system_.add_rank_one(f, first, weights, stiffness);
+            });
             if (shift > 0.0) {
                 const scene::Chain& chain = system_.layout().chains[core::at(f)];
                 for (Index v = chain.first_vector; v < chain.first_vector + chain.nodes * chain.vectors_per_node; ++v) {

@@ -22,13 +22,13 @@ struct GapShift<Normal> {
 };
 
 /// Memory of friction, for laws that have one; nothing otherwise.
-template <law::FrictionLaw Friction>
+template <beam::BeamElement B, law::FrictionLaw Friction>
 struct FrictionState {};
-template <law::FrictionLaw Friction>
+template <beam::BeamElement B, law::FrictionLaw Friction>
     requires core::Active<Friction>
-struct FrictionState<Friction> {
+struct FrictionState<B, Friction> {
     typename Friction::History history;        ///< of the last accepted state, turned with the fibres
-    Vec3 accepted_offset = Vec3::Zero();       ///< particle j - particle i in the last accepted state [length]
+    beam::ElementWeights<B> weights_i{}, weights_j{};  ///< of the pair of particles whose slip is counted
 };
 
 /// Two particles that are predicted to touch (Durville, eq. 8). Fibre i <= fibre j, the normal points from i to j.
@@ -43,7 +43,7 @@ struct ContactElement {
     std::int32_t zone = -1;
     bool crossing = false, end_i = false, end_j = false;
     [[no_unique_address]] GapShift<Normal> shift;
-    [[no_unique_address]] FrictionState<Friction> friction;
+    [[no_unique_address]] FrictionState<B, Friction> friction;
 
     /// Particle j - particle i [length].
     Vec3 offset(const Vector& state) const noexcept {

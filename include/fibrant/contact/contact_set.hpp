@@ -69,6 +69,7 @@ public:
     /// @param reach     beyond touching [length]
     /// @param forced    keep forced orders
     void detect(const Vector& state, const Vector& accepted, double reach, bool forced) {
+        accepted_state_ = &accepted;
         std::vector<Zone> found = find_zones(*mesh_, state, search_, parameters_.detection, orders_, reach, forced);
         for (Zone& zone : found) inherit(zone, state);
         zones_.swap(found);
@@ -98,13 +99,14 @@ public:
         responses_.resize(elements_.size());
         if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
         core::parallel_for(core::count(elements_), [&](Index k) {
-            const Element& element = elements_[core::at(k)];
-            const Vec3 offset = element.offset(state);
-            const double gap = element.normal.dot(offset) - element.cap + element.shift.value();
+            Element& element = elements_[core::at(k)];
+            Vec3 slip = Vec3::Zero();
+            if constexpr (core::Active<Friction>) slip = slip_since_accepted(element, state);
+            follow_support(element, state);
+            const double gap = element.gap(state) + element.shift.value();
             const law::NormalResponse response = normal_.response(gap, stiffness(element));
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             if constexpr (core::Active<Friction>) {
-                Vec3 slip = offset - element.friction.accepted_offset;
                 slip -= slip.dot(element.normal) * element.normal;
                 frictions_[core::at(k)] = friction_.response(slip, response.reaction, element.friction.history);
             }
@@ -129,6 +131,32 @@ public:
             }
         }
         return sum;
+    }
+
+    /// Second derivative of the gap by one side's directors: the support distance of a section is convex in them, so this
+    /// part of the tangent is positive. Without it a section between two contacts would tip over like a pencil on its point.
+    /// Calls add(first unknown, weights on the nodal vectors, stiffness) of a rank-one term R_N / h (m m^T) (x) N N^T.
+    template <class Add>
+    void section_stiffness_terms(Index fibre, const Vector& state, const Add& add) const {
+        for (const std::int32_t side : sides(fibre)) {
+            const Index k = side / 2;
+            const double reaction = responses_[core::at(k)].reaction;
+            const Element& element = elements_[core::at(k)];
+            const bool of_j = side % 2 == 1;
+            if (reaction == 0.0) continue;
+            const double xi = mesh_->locate(fibre, of_j ? element.u_j : element.u_i).second;
+            const Index first = of_j ? element.first_j : element.first_i;
+            const beam::ElementWeights<B> w_1 = beam::director_weights<B>(xi, 1), w_2 = beam::director_weights<B>(xi, 2);
+            const scene::CrossSection& section = mesh_->fibre(fibre).section;
+            const double p = section.semi_axis_1 * beam::Mesh<B>::point(state, first, w_1).dot(element.normal);
+            const double q = section.semi_axis_2 * beam::Mesh<B>::point(state, first, w_2).dot(element.normal);
+            const double h = std::hypot(p, q);
+            if ((of_j ? element.end_j : element.end_i) || h < 0.1 * section.radius()) continue;
+            beam::ElementWeights<B> weights;
+            for (std::size_t a = 0; a < weights.size(); ++a)
+                weights[a] = (-section.semi_axis_1 * q * w_1[a] + section.semi_axis_2 * p * w_2[a]) / h;
+            add(first, weights, Mat3(reaction / h * element.normal * element.normal.transpose()));
+        }
     }
 
     /// Adds contact forces to a residual (internal minus external forces).
@@ -262,10 +290,7 @@ private:
     /// Normal, particles, gap shift and accepted offset of an element whose stations stand.
     void place_particles(Element& element, const Vector& state, const Vector& accepted, const Vec3& remembered) const {
         const Index i = element.fibre_i, j = element.fibre_j;
-        const double xi_i = mesh_->locate(i, element.u_i).second, xi_j = mesh_->locate(j, element.u_j).second;
-        const beam::ElementWeights<B> centre_i = B::centreline_weights(xi_i), centre_j = B::centreline_weights(xi_j);
-        const Vec3 centres = beam::Mesh<B>::point(state, element.first_j, centre_j) -
-                             beam::Mesh<B>::point(state, element.first_i, centre_i);
+        const Vec3 centres = mesh_->position(state, j, element.u_j) - mesh_->position(state, i, element.u_i);
         if (element.end_i || element.end_j) {
             const Vec3 side = remembered.isZero() ? centres : remembered;
             element.normal = unit_or(centres.dot(side) > 0.0 ? centres : side, Vec3::UnitZ());
@@ -274,20 +299,37 @@ private:
             const Vec3 t_j = mesh_->derivative(state, j, element.u_j).normalized();
             element.normal = normal_direction(parameters_.normal, centres, t_i, t_j, remembered);
         }
-        const auto weigh = [&](Index fibre, double xi, Index first, const Vec3& direction, bool end, beam::ElementWeights<B>& weights) {
+        follow_support(element, state);
+        if constexpr (law::GapShifting<Normal>) element.shift.shift = normal_.gap_shift(element.gap(accepted));
+        if constexpr (core::Active<Friction>) {
+            element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
+            if (!remembered.isZero()) turn_history(element, remembered);
+        }
+    }
+
+    /// Weights of the particles that lie furthest along the normal in this state.
+    void follow_support(Element& element, const Vector& state) const {
+        const auto weigh = [&](Index fibre, double u, Index first, const Vec3& direction, bool end, beam::ElementWeights<B>& weights) {
+            const double xi = mesh_->locate(fibre, u).second;
             const Vec3 g_1 = beam::Mesh<B>::point(state, first, beam::director_weights<B>(xi, 1));
             const Vec3 g_2 = beam::Mesh<B>::point(state, first, beam::director_weights<B>(xi, 2));
             const Particle particle = support_particle(mesh_->fibre(fibre).section, g_1, g_2, direction, end);
             weights = B::particle_weights(xi, particle.xi_1, particle.xi_2);
             return particle.cap;
         };
-        element.cap = weigh(i, xi_i, element.first_i, element.normal, element.end_i, element.weights_i) +
-                      weigh(j, xi_j, element.first_j, -element.normal, element.end_j, element.weights_j);
-        if constexpr (law::GapShifting<Normal>) element.shift.shift = normal_.gap_shift(element.gap(accepted));
-        if constexpr (core::Active<Friction>) {
-            element.friction.accepted_offset = element.offset(accepted);
-            if (!remembered.isZero()) turn_history(element, remembered);
-        }
+        element.cap = weigh(element.fibre_i, element.u_i, element.first_i, element.normal, element.end_i, element.weights_i) +
+                      weigh(element.fibre_j, element.u_j, element.first_j, -element.normal, element.end_j, element.weights_j);
+    }
+
+    /// Displacement of particle j against particle i since the last accepted state, of the pair that the last refresh chose.
+    Vec3 slip_since_accepted(const Element& element, const Vector& state) const
+        requires core::Active<Friction>
+    {
+        const auto offset = [&](const Vector& at) {
+            return Vec3(beam::Mesh<B>::point(at, element.first_j, element.friction.weights_j) -
+                        beam::Mesh<B>::point(at, element.first_i, element.friction.weights_i));
+        };
+        return offset(state) - offset(*accepted_state_);
     }
 
     void turn_history(Element& element, const Vec3& before) const
@@ -348,6 +390,7 @@ private:
     Search search_;
     Normal normal_;
     [[no_unique_address]] Friction friction_;
+    const Vector* accepted_state_ = nullptr;  // of the increment under way
     std::vector<Zone> zones_, accepted_zones_;
     std::vector<Element> elements_;
     std::vector<ContactResponse> responses_;

@@ -190,7 +190,9 @@ private:
             equilibrium_.begin(amplitudes, state_);
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver> loops(
                 equilibrium_, contacts_, linear_, parameters_.iteration, radius_, touching, clock_);
-            const solver::AttemptReport attempt = loops.solve(trial, state_, position_.displacement, stage.forced_orders);
+            // A limited gap moves fibres by about the limit: the search looks that far ahead.
+            const double ahead = std::max(position_.displacement, stage.forced_orders ? stage.gap_limit.value_or(0.0) : 0.0);
+            const solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders);
             increment.counts += attempt.counts;
             if (attempt.converged) {
                 account(trial, increment, contact_before);

@@ -9,6 +9,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#ifdef FIBRANT_TRACE
+#include <cstdio>
+#endif
 
 namespace fibrant::solver {
 
@@ -25,7 +28,7 @@ struct IterationParameters {
     Index normal_limit = 6;               ///< normal passes of one set of contact elements
     Index contact_limit = 8;              ///< contact passes of an increment
     double margin = 0.2;                  ///< least reach of the search beyond touching [radius], > 0
-    double largest_margin = 1.0;          ///< greatest reach of the search beyond touching [radius]
+    double largest_margin = 2.0;          ///< greatest reach of the search beyond touching [radius]
     bool mixed = true;                    ///< independent point stresses (falls back to the plain form)
     double linear_tolerance = 1e-4;       ///< of the last linear solves [1], in (0, 1e-2]
     void validate() const {
@@ -108,6 +111,9 @@ public:
             const assembly::ResidualFigures before = report.residual;
             report.residual = evaluate(state);
             report.step = equilibrium.greatest(step_);
+#ifdef FIBRANT_TRACE
+            std::fprintf(stderr, "    nw %ld step %.3e scale %.3f res %.3e rel %.3e tol %.1e eta %.1e mixed %d ind %ld\n", (long)iteration, report.step, scale, report.residual.residual, report.residual.relative(), tolerance, eta, (int)mixed, (long)counts.indefinite);
+#endif
             if (!std::isfinite(report.residual.residual) || !std::isfinite(report.step)) {
                 report.status = NewtonStatus::diverged;
                 return report;
