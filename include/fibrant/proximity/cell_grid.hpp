@@ -2,7 +2,7 @@
 #pragma once
 /// @file Boxes sorted by the cells of a uniform grid: neither a hash table nor a dense array of cells.
 
-#include <fibrant/proximity/boxes.hpp>
+#include <fibrant/proximity/box_columns.hpp>
 
 #include <array>
 #include <cmath>
@@ -61,17 +61,18 @@ public:
     /// Number of the box at place k of the grid's order.
     std::int32_t box(std::int32_t k) const noexcept { return entries_[core::at(k)].box; }
 
-    /// Calls meets(k, l) for the places of overlapping boxes, each two once, of which k is in cells [first, last):
-    /// the rest of the own cell and half of the neighbours, which are five runs of places that only move forward.
-    template <class Meets>
-    void overlaps_inside(std::int32_t first, std::int32_t last, const Meets& meets) const {
+    /// Hands over the places {k, l} of overlapping boxes, each two once, of which k is in cells [first, last): the rest of
+    /// the own cell and half of the neighbours, which are five runs of places that only move forward.
+    /// @param sink  sink.room(n) is where n candidates may be written, sink.take(end) hands over those before `end`
+    template <class Sink>
+    void overlaps_inside(std::int32_t first, std::int32_t last, Sink& sink) const {
         const std::uint64_t row = cells_[2], layer = cells_[1] * cells_[2];
         const std::uint64_t ahead[4] = {row, layer - row, layer, layer + row};
         std::int32_t from[4], to[4];
         for (int r = 0; r < 4; ++r) from[r] = to[r] = cell_at_least(cell_key_[core::at(first)] + ahead[r] - 1);
         for (std::int32_t c = first; c < last; ++c) {
             const std::uint64_t key = cell_key_[core::at(c)];
-            std::int32_t run[5][2];
+            std::int32_t run[5][2], across = 0;
             run[0][1] = cell_first_[core::at(c + 1 < cells() && cell_key_[core::at(c + 1)] == key + 1 ? c + 2 : c + 1)];
             for (int r = 0; r < 4; ++r) {
                 const std::uint64_t middle = key + ahead[r];
@@ -80,19 +81,21 @@ public:
                 while (to[r] < cells() && cell_key_[core::at(to[r])] <= middle + 1) ++to[r];
                 run[r + 1][0] = cell_first_[core::at(from[r])];
                 run[r + 1][1] = cell_first_[core::at(to[r])];
+                across += run[r + 1][1] - run[r + 1][0];
             }
             for (std::int32_t k = cell_first_[core::at(c)]; k < cell_first_[core::at(c + 1)]; ++k) {
                 const Box box = columns_[k];
                 run[0][0] = k + 1;
-                for (const auto& [begin, end] : run)
-                    columns_.overlaps(box, begin, end, [&](std::int32_t l) { meets(k, l); });
+                Candidate* out = sink.room(run[0][1] - run[0][0] + across);
+                for (const auto& places : run) out = columns_.overlaps(box, places[0], places[1], k, out);
+                sink.take(out);
             }
         }
     }
 
-    /// Calls meets(l) for the places of boxes that overlap `box`, of any size.
-    template <class Meets>
-    void overlaps_with(const Box& box, const Meets& meets) const {
+    /// Hands over {of, l} for the places l of boxes that overlap `box`, which may be of any size.
+    template <class Sink>
+    void overlaps_with(const Box& box, std::int32_t of, Sink& sink) const {
         std::uint64_t low[3], high[3];
         std::uint64_t rows = 1;
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -101,14 +104,15 @@ public:
             if (axis < 2) rows *= high[axis] - low[axis] + 1;
         }
         if (rows > core::at(cells())) {
-            columns_.overlaps(box, 0, size(), meets);
+            sink.take(columns_.overlaps(box, 0, size(), of, sink.room(size())));
             return;
         }
         for (std::uint64_t x = low[0]; x <= high[0]; ++x)
             for (std::uint64_t y = low[1]; y <= high[1]; ++y) {
                 const std::uint64_t start = (x * cells_[1] + y) * cells_[2];
-                const std::int32_t from = cell_at_least(start + low[2]), to = cell_at_least(start + high[2] + 1);
-                columns_.overlaps(box, cell_first_[core::at(from)], cell_first_[core::at(to)], meets);
+                const std::int32_t from = cell_first_[core::at(cell_at_least(start + low[2]))];
+                const std::int32_t to = cell_first_[core::at(cell_at_least(start + high[2] + 1))];
+                sink.take(columns_.overlaps(box, from, to, of, sink.room(to - from)));
             }
     }
 

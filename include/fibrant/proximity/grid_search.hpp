@@ -22,12 +22,62 @@ inline std::vector<SegmentPair> sorted_pairs(const std::vector<std::vector<Segme
     std::size_t first = 0;
     for (std::int32_t i = 0; i < segments; ++i) {  // place[i] is now the end of i
         const std::size_t last = place[core::at(i)];
-        std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(first), sorted.begin() + static_cast<std::ptrdiff_t>(last));
+        if (last - first > 32) {
+            std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(first), sorted.begin() + static_cast<std::ptrdiff_t>(last));
+        } else {
+            for (std::size_t k = first + 1; k < last; ++k) {
+                const SegmentPair pair = sorted[k];
+                std::size_t at = k;
+                for (; at > first && pair.j < sorted[at - 1].j; --at) sorted[at] = sorted[at - 1];
+                sorted[at] = pair;
+            }
+        }
         first = last;
     }
     if (repeats) sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
     return sorted;
 }
+
+/// Collects candidates and filters them by the thousand.
+class CandidateSink {
+public:
+    /// @param records       of segments
+    /// @param map_a, map_b  places of the first and second of a candidate to places of records; null where they are these
+    CandidateSink(const SegmentTable& table, const SegmentRecord* records, const std::int32_t* map_a,
+                  const std::int32_t* map_b, std::vector<SegmentPair>& close)
+        : table_(table), records_(records), map_a_(map_a), map_b_(map_b), close_(close), batch_(least) {}
+
+    Candidate* room(std::int32_t n) {
+        if (filled_ + core::at(n) > batch_.size()) {
+            flush();
+            if (core::at(n) > batch_.size()) batch_.resize(core::at(n));
+        }
+        return batch_.data() + filled_;
+    }
+    void take(const Candidate* end) noexcept { filled_ = core::at(end - batch_.data()); }
+    void flush() {
+        if (map_a_ != nullptr) {
+            std::size_t kept = 0;
+            for (std::size_t k = 0; k < filled_; ++k) {
+                const Candidate mapped{map_a_[batch_[k].a], map_b_[batch_[k].b]};
+                batch_[kept] = mapped;
+                kept += mapped.a != mapped.b ? 1 : 0;
+            }
+            filled_ = kept;
+        }
+        keep_close(table_, records_, {batch_.data(), filled_}, close_);
+        filled_ = 0;
+    }
+
+private:
+    static constexpr std::size_t least = 4096;
+    const SegmentTable& table_;
+    const SegmentRecord* records_;
+    const std::int32_t *map_a_, *map_b_;
+    std::vector<SegmentPair>& close_;
+    std::vector<Candidate> batch_;
+    std::size_t filled_ = 0;
+};
 
 }  // namespace detail
 
@@ -44,10 +94,10 @@ public:
     std::vector<SegmentPair> pairs(std::span<const Centreline> fibres, double reach) {
         const detail::SegmentTable table(fibres, reach);
         if (table.size() == 0) return {};
+        for (auto& some : close_) some.clear();
         make_boxes(table);
         sort_into_levels();
-        const std::size_t found = search(table);
-        for (std::size_t b = found; b < close_.size(); ++b) close_[b].clear();
+        search(table);
         return detail::sorted_pairs(close_, table.size(), cut_);
     }
 
@@ -62,17 +112,8 @@ private:
     void make_boxes(const detail::SegmentTable& table) {
         const detail::BoxFrame frame(table);
         const std::int32_t n = table.size();
-        // Mean length and thickness decide how long a piece may be.
-        const Vec3 sums = core::ordered_sum(Index{n}, Vec3(Vec3::Zero()), [&](Index first, Index last) {
-            Vec3 sum = Vec3::Zero();
-            for (Index k = first; k < last; ++k) {
-                const detail::SegmentRecord record = table.record(static_cast<std::int32_t>(k));
-                sum += Vec3(std::sqrt(detail::dot(record.chord, record.chord)), 2.0 * record.half + table.reach(), 0.0);
-            }
-            return sum;
-        });
-        const double mean = sums[0] / n, thickness = sums[1] / n;
-        const double piece = mean > pieces_from * thickness ? piece_length * thickness : 4.0 * std::max(mean, thickness);
+        const double mean = frame.mean_length, thickness = frame.mean_thickness;
+        const double piece = mean > pieces_from * thickness ? piece_length * thickness : 2.0 * std::max(mean, thickness);
         first_.resize(core::at(n) + 1);
         first_[0] = 0;
         cut_ = false;
@@ -84,16 +125,13 @@ private:
         }
         boxes_.resize(core::at(first_.back()));
         owner_.resize(cut_ ? boxes_.size() : 0);
-        core::parallel_for((n + block - 1) / block, [&](Index b) {
-            for (auto k = static_cast<std::int32_t>(b * block); k < std::min<Index>(n, (b + 1) * block); ++k) {
-                const detail::SegmentRecord record = table.record(k);
-                const std::int32_t begin = first_[core::at(k)], end = first_[core::at(k) + 1];
-                const double margin = record.half + 0.5 * table.reach();
-                for (std::int32_t p = begin; p < end; ++p) {
-                    const double per = 1.0 / (end - begin);
-                    boxes_[core::at(p)] = frame.box(record, (p - begin) * per, (p - begin + 1) * per, margin);
-                    if (cut_) owner_[core::at(p)] = k;
-                }
+        in_blocks(n, block, [&](Index, std::int32_t k) {
+            const detail::SegmentRecord record = table.record(k);
+            const std::int32_t begin = first_[core::at(k)], end = first_[core::at(k) + 1];
+            const double margin = record.half + 0.5 * table.reach(), per = 1.0 / (end - begin);
+            for (std::int32_t p = begin; p < end; ++p) {
+                boxes_[core::at(p)] = frame.box(record, (p - begin) * per, (p - begin + 1) * per, margin);
+                if (cut_) owner_[core::at(p)] = k;
             }
         });
     }
@@ -139,70 +177,65 @@ private:
 
     /// Fills the first blocks of `close_`, in an order that the data alone gives; returns how many.
     std::size_t search(const detail::SegmentTable& table) {
+        // One level of whole segments: records in the order of the cells. Else records by segment, and places mapped to them.
+        const bool mapped = cut_ || levels_.size() > 1;
+        records_.resize(core::at(table.size()));
+        if (mapped) place_owner_.resize(levels_.size());
+        for (std::size_t level = 0; level < levels_.size() && mapped; ++level) {
+            place_owner_[level].resize(core::at(levels_[level].size()));
+            for (std::int32_t k = 0; k < levels_[level].size(); ++k) {
+                const std::int32_t box = levels_[level].box(k);
+                place_owner_[level][core::at(k)] = cut_ ? owner_[core::at(box)] : box;
+            }
+        }
+        in_blocks(table.size(), block, [&](Index, std::int32_t k) {
+            records_[core::at(k)] = table.record(mapped ? k : levels_[0].box(k));
+        });
         std::size_t done = 0;
-        for (const detail::CellGrid& grid : levels_) {
-            // Records in the order of the cells, unless several boxes share a segment.
-            records_.resize(core::at(cut_ ? table.size() : grid.size()));
-            for (std::size_t k = 0; k < records_.size(); ++k)
-                records_[k] = table.record(cut_ ? static_cast<std::int32_t>(k) : grid.box(static_cast<std::int32_t>(k)));
+        for (std::size_t level = 0; level < levels_.size(); ++level) {
+            const detail::CellGrid& grid = levels_[level];
+            const std::int32_t* map = mapped ? place_owner_[level].data() : nullptr;
             const Index blocks = (grid.cells() + cells_together - 1) / cells_together;
-            if (close_.size() < done + core::at(blocks)) close_.resize(done + core::at(blocks));
+            reserve_blocks(done + core::at(blocks));
             core::parallel_for(blocks, [&](Index b) {
-                auto& close = close_[done + core::at(b)];
-                close.clear();
-                std::vector<detail::Candidate> candidates;
-                candidates.reserve(batch);
+                detail::CandidateSink sink(table, records_.data(), map, map, close_[done + core::at(b)]);
                 const auto first = static_cast<std::int32_t>(b * cells_together);
-                const std::int32_t last = std::min(grid.cells(), first + static_cast<std::int32_t>(cells_together));
-                grid.overlaps_inside(first, last, [&](std::int32_t k, std::int32_t l) {
-                    if (cut_) {
-                        k = owner_[core::at(grid.box(k))];
-                        l = owner_[core::at(grid.box(l))];
-                        if (k == l) return;
-                    }
-                    if (candidates.size() == batch) {
-                        detail::keep_close(table, records_.data(), candidates, close);
-                        candidates.clear();
-                    }
-                    candidates.push_back({k, l});
-                });
-                detail::keep_close(table, records_.data(), candidates, close);
+                grid.overlaps_inside(first, std::min(grid.cells(), first + cells_together), sink);
+                sink.flush();
             });
             done += core::at(blocks);
+            for (std::size_t lower = 0; lower < level; ++lower) done = search_between(table, level, lower, done);
         }
-        for (std::size_t upper = 1; upper < levels_.size(); ++upper) done = search_below(table, upper, done);
         return done;
     }
 
-    /// Boxes of a level against those of all finer ones.
-    std::size_t search_below(const detail::SegmentTable& table, std::size_t upper, std::size_t done) {
+    /// Boxes of a level against those of a finer one.
+    std::size_t search_between(const detail::SegmentTable& table, std::size_t upper, std::size_t lower, std::size_t done) {
         constexpr Index together = 256;
         const detail::CellGrid& grid = levels_[upper];
         const Index blocks = (grid.size() + together - 1) / together;
-        if (close_.size() < done + core::at(blocks)) close_.resize(done + core::at(blocks));
-        records_ = table.records();
+        reserve_blocks(done + core::at(blocks));
         core::parallel_for(blocks, [&](Index b) {
-            auto& close = close_[done + core::at(b)];
-            close.clear();
-            std::vector<detail::Candidate> candidates;
-            for (auto k = static_cast<std::int32_t>(b * together); k < std::min<Index>(grid.size(), (b + 1) * together); ++k) {
-                const std::int32_t large = grid.box(k);
-                const std::int32_t i = cut_ ? owner_[core::at(large)] : large;
-                for (std::size_t lower = 0; lower < upper; ++lower)
-                    levels_[lower].overlaps_with(boxes_[core::at(large)], [&](std::int32_t l) {
-                        const std::int32_t small = levels_[lower].box(l);
-                        const std::int32_t j = cut_ ? owner_[core::at(small)] : small;
-                        if (i != j) candidates.push_back({i, j});
-                    });
-                detail::keep_close(table, records_.data(), candidates, close);
-                candidates.clear();
-            }
+            detail::CandidateSink sink(table, records_.data(), place_owner_[upper].data(), place_owner_[lower].data(),
+                                       close_[done + core::at(b)]);
+            for (auto k = static_cast<std::int32_t>(b * together); k < std::min<Index>(grid.size(), (b + 1) * together); ++k)
+                levels_[lower].overlaps_with(boxes_[core::at(grid.box(k))], k, sink);
+            sink.flush();
         });
         return done + core::at(blocks);
     }
 
-    static constexpr Index cells_together = 256;
-    static constexpr std::size_t batch = 4096;
+    void reserve_blocks(std::size_t n) {
+        if (close_.size() < n) close_.resize(n);
+    }
+    template <class Body>
+    static void in_blocks(std::int32_t n, Index length, const Body& body) {
+        core::parallel_for((n + length - 1) / length, [&](Index b) {
+            for (auto k = static_cast<std::int32_t>(b * length); k < std::min<Index>(n, (b + 1) * length); ++k) body(b, k);
+        });
+    }
+
+    static constexpr std::int32_t cells_together = 256;
     static constexpr double pieces_from = 32.0, piece_length = 16.0;
 
     bool cut_ = false;                  // some segment has several boxes
@@ -210,6 +243,7 @@ private:
     std::vector<std::int32_t> owner_;   // segment of each box, where cut
     std::vector<detail::Box> boxes_;
     std::vector<detail::CellGrid> levels_;
+    std::vector<std::vector<std::int32_t>> place_owner_;  // of each level: segment at each place
     std::vector<detail::SegmentRecord> records_;
     std::vector<std::vector<SegmentPair>> close_;
 };

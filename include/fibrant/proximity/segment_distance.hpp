@@ -29,29 +29,56 @@ constexpr double unit_clamped(double x) noexcept {
     return x < 1.0 ? x : 1.0;
 }
 
-constexpr void keep_least(const Plain3& w, const Plain3& u, const Plain3& v, double s, double t,
-                          SegmentDistance& least) noexcept {
+constexpr double squared_between(const Plain3& w, const Plain3& u, const Plain3& v, double s, double t) noexcept {
     const Plain3 difference{w.x + s * u.x - t * v.x, w.y + s * u.y - t * v.y, w.z + s * u.z - t * v.z};
-    const double squared = dot(difference, difference);
-    if (squared < least.squared) least = {squared, s, t};
+    return dot(difference, difference);
 }
 
-/// Least of five candidates: the clamped solution of the two lines, and each of the four ends against the other segment.
+/// Parameters of the five candidates of which one is closest: the clamped solution of the two lines, and each of the four
+/// ends against the other segment.
 ///
 /// The usual routine (solve, clamp, clamp again) trusts the solution of the two lines, which is noise for angles of
 /// 1e-7 and below, and is then wrong by 4e-6; here the noise only adds a candidate that is not needed.
-/// @param w  start - start'   @param u  chord   @param v  chord'
+struct ClosestCandidates {
+    double s[5], t[5];
+
+    /// @param w  start - start'   @param u  chord   @param v  chord'
+    constexpr ClosestCandidates(const Plain3& w, const Plain3& u, const Plain3& v) noexcept : s{}, t{} {
+        constexpr double tiny = 1.0e-300;  // in place of the square of a segment without length
+        const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
+        const double per_uu = 1.0 / (uu > tiny ? uu : tiny), per_vv = 1.0 / (vv > tiny ? vv : tiny);
+        const double area = uu * vv - uv * uv;
+        s[0] = unit_clamped((uv * vw - vv * uw) / (area > tiny ? area : tiny));
+        t[0] = unit_clamped((uv * s[0] + vw) * per_vv);
+        s[1] = 0.0;
+        t[1] = unit_clamped(vw * per_vv);
+        s[2] = 1.0;
+        t[2] = unit_clamped((vw + uv) * per_vv);
+        s[3] = unit_clamped(-uw * per_uu);
+        t[3] = 0.0;
+        s[4] = unit_clamped((uv - uw) * per_uu);
+        t[4] = 1.0;
+    }
+};
+
+/// Squared distance alone, without a branch: for loops over lanes.
+constexpr double least_squared(const Plain3& w, const Plain3& u, const Plain3& v) noexcept {
+    const ClosestCandidates c(w, u, v);
+    double least = squared_between(w, u, v, c.s[0], c.t[0]);
+    for (int k = 1; k < 5; ++k) {
+        const double squared = squared_between(w, u, v, c.s[k], c.t[k]);
+        least = squared < least ? squared : least;
+    }
+    return least;
+}
+
 constexpr SegmentDistance segment_distance(const Plain3& w, const Plain3& u, const Plain3& v) noexcept {
-    const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
-    const double per_uu = uu > 0.0 ? 1.0 / uu : 0.0;
-    const double per_vv = vv > 0.0 ? 1.0 / vv : 0.0;
-    const double s = unit_clamped((uv * vw - vv * uw) / (uu * vv - uv * uv));
-    SegmentDistance least{dot(w, w) * 2.0 + 1.0e300, 0.0, 0.0};
-    keep_least(w, u, v, s, unit_clamped((uv * s + vw) * per_vv), least);
-    keep_least(w, u, v, 0.0, unit_clamped(vw * per_vv), least);
-    keep_least(w, u, v, 1.0, unit_clamped((vw + uv) * per_vv), least);
-    keep_least(w, u, v, unit_clamped(-uw * per_uu), 0.0, least);
-    keep_least(w, u, v, unit_clamped((uv - uw) * per_uu), 1.0, least);
+    const ClosestCandidates c(w, u, v);
+    SegmentDistance least{squared_between(w, u, v, c.s[0], c.t[0]), c.s[0], c.t[0]};
+    for (int k = 1; k < 5; ++k) {
+        const double squared = squared_between(w, u, v, c.s[k], c.t[k]);
+        if (squared < least.squared) least = {squared, c.s[k], c.t[k]};
+    }
     return least;
 }
 

@@ -84,9 +84,9 @@ private:
         if (line.family >= 2147483647) core::refuse(name(": family"), std::to_string(line.family), "below 2^31 - 1");
         for (std::size_t k = 0; k < line.points.size(); ++k)
             if (!line.points[k].allFinite()) {
-                const Vec3& x = line.points[k];
-                core::refuse(name(", vertex ").append(std::to_string(k)),
-                             "(" + core::text(x[0]) + ", " + core::text(x[1]) + ", " + core::text(x[2]) + ")", "finite");
+                std::string where;
+                for (const double x : line.points[k]) where.append(where.empty() ? "" : " ").append(core::text(x));
+                core::refuse(name(", vertex ").append(std::to_string(k)), where, "finite");
             }
         if (line.inflation.empty()) return;
         if (line.inflation.size() + 1 != line.points.size())
@@ -124,23 +124,66 @@ struct Candidate {
     std::int32_t a, b;
 };
 
+/// Candidates laid out for the vector units: one lane a pair.
+struct FilterLanes {
+    static constexpr int size = 64;
+    alignas(64) double w[3][size], u[3][size], v[3][size], threshold[size], squared[size];
+    SegmentPair pair[size];
+
+    void set(int lane, const SegmentRecord& i, const SegmentRecord& j, double reach) noexcept {
+        const Plain3 difference = i.start - j.start;
+        w[0][lane] = difference.x, w[1][lane] = difference.y, w[2][lane] = difference.z;
+        u[0][lane] = i.chord.x, u[1][lane] = i.chord.y, u[2][lane] = i.chord.z;
+        v[0][lane] = j.chord.x, v[1][lane] = j.chord.y, v[2][lane] = j.chord.z;
+        threshold[lane] = i.half + j.half + reach;
+        pair[lane] = {i.segment, j.segment};
+    }
+    void measure(int first) noexcept {
+        for (int l = first; l < first + 8; ++l)
+            squared[l] = least_squared({w[0][l], w[1][l], w[2][l]}, {u[0][l], u[1][l], u[2][l]}, {v[0][l], v[1][l], v[2][l]});
+    }
+};
+
 /// Appends the pairs of the candidates that are close. The one filter of all searches: it takes each pair in the order
-/// of its segments and is compiled once (never inlined), so that a pair on the very threshold is decided alike by all.
+/// of its segments, in whole vectors only, and is compiled once (never inlined), so that a pair on the very threshold is
+/// decided alike by all.
 #if defined(__GNUC__)
 __attribute__((noinline))
 #endif
 inline void keep_close(const SegmentTable& table, const SegmentRecord* records, std::span<const Candidate> candidates,
                        std::vector<SegmentPair>& close) {
-    const double reach = table.reach();
+    FilterLanes lanes;
+    int filled = 0;
+    const auto flush = [&] {
+        // The rest of the last vector repeats its first lane: no lane is ever read unset.
+        for (int l = filled; l % 8 != 0; ++l)
+            for (int axis = 0; axis < 3; ++axis) {
+                lanes.w[axis][l] = lanes.w[axis][filled - 1];
+                lanes.u[axis][l] = lanes.u[axis][filled - 1];
+                lanes.v[axis][l] = lanes.v[axis][filled - 1];
+            }
+        for (int first = 0; first < filled; first += 8) lanes.measure(first);
+        const std::size_t before = close.size();
+        close.resize(before + core::at(filled));
+        SegmentPair* end = close.data() + before;
+        for (int l = 0; l < filled; ++l) {
+            *end = lanes.pair[l];
+            end += lanes.squared[l] < lanes.threshold[l] * lanes.threshold[l] ? 1 : 0;
+        }
+        close.resize(core::at(end - close.data()));
+        filled = 0;
+    };
     for (const Candidate& candidate : candidates) {
-        const bool ordered = records[candidate.a].segment < records[candidate.b].segment;
-        const SegmentRecord& i = records[ordered ? candidate.a : candidate.b];
-        const SegmentRecord& j = records[ordered ? candidate.b : candidate.a];
+        const SegmentRecord& a = records[candidate.a];
+        const SegmentRecord& b = records[candidate.b];
+        const bool ordered = a.segment < b.segment;
+        const SegmentRecord& i = ordered ? a : b;
+        const SegmentRecord& j = ordered ? b : a;
         if (i.group == j.group && !table.may_pair_in_group(i.segment, j.segment)) continue;
-        const double threshold = i.half + j.half + reach;
-        if (segment_distance(i.start - j.start, i.chord, j.chord).squared < threshold * threshold)
-            close.push_back({i.segment, j.segment});
+        lanes.set(filled++, i, j, table.reach());
+        if (filled == FilterLanes::size) flush();
     }
+    if (filled > 0) flush();
 }
 
 }  // namespace fibrant::proximity::detail
