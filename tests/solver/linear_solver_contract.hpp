@@ -109,8 +109,8 @@ void check_held(Solver solver) {
         solve(solver, system, b, 1e-3, x);
         for (const scene::HeldVector& held : system.layout().held) {
             const Vec3 difference = x.segment<3>(3 * held.vector) - b.segment<3>(3 * held.vector);
-            // To the rounding of a projection of x.
-            CHECK((difference - held.free * difference).norm() <= 1e-15 * x.segment<3>(3 * held.vector).norm());
+            // To the rounding of a projection of x, or of a factor that mixes its components.
+            CHECK((difference - held.free * difference).norm() <= 1e-13 * x.segment<3>(3 * held.vector).norm());
         }
     }
 }

@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Coarse space of clusters of chains: rigid motions of their cross-sections, linear between knots along them.
+
+#include <fibrant/solver/chain_clusters.hpp>
+#include <fibrant/solver/coarse_matrix.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <utility>
+#include <vector>
+
+namespace fibrant::solver {
+
+/// Coarse space spanned by P: three translations and three rotations at each knot of a cluster.
+///
+/// A node between two knots moves with their motions, weighted linearly; a rotation moves positions about the middle of
+/// the cluster and turns directions. This is the bending of many fibres at once, which factors of single chains do not
+/// see. P^T A P is summed from the bands of the chains, which are at hand when chains are factored, and from
+/// what the terms couple beyond them; A itself is never formed.
+class RigidCoarseSpace {
+public:
+    /// Clusters of about `cluster_size` chains, and a knot every `elements_per_knot` elements; both > 0.
+    template <assembly::LinearSystem System>
+    void analyse(const System& system, Index cluster_size, Index elements_per_knot) {
+        const scene::DofLayout& layout = system.layout();
+        clusters_ = cluster_chains(system, cluster_size);
+        chains_.assign(layout.chains.size(), {});
+        knots_ = 0;
+        for (const ChainCluster& cluster : clusters_) {
+            Index intervals = 0;
+            for (const Index c : cluster.chains) {
+                const scene::Chain& chain = layout.chains[core::at(c)];
+                const Index step = std::max<Index>(chain.reach, 1) * elements_per_knot;
+                intervals = std::max(intervals, (chain.nodes - 1 + step - 1) / step);
+            }
+            for (std::size_t l = 0; l < cluster.chains.size(); ++l) {
+                const Index nodes = layout.chains[core::at(cluster.chains[l])].nodes;
+                Chain& chain = chains_[core::at(cluster.chains[l])];
+                chain.first_knot = knots_;
+                chain.intervals = nodes > 1 ? intervals : 0;
+                chain.nodes = nodes;
+                chain.reversed = cluster.reversed[l];
+            }
+            knots_ += static_cast<int>(intervals) + 1;
+        }
+        places_.resize(layout.kind.size());
+        for (Index c = 0; c < core::count(layout.chains); ++c) {
+            const scene::Chain& chain = layout.chains[core::at(c)];
+            for (Index k = 0; k < chain.nodes * chain.vectors_per_node; ++k) {
+                const Index node = k / chain.vectors_per_node;
+                places_[core::at(chain.first_vector + k)] = {static_cast<int>(c), static_cast<int>(node), hat(chains_[core::at(c)], node)};
+            }
+        }
+        find_pattern(system);
+    }
+
+    Index clusters() const noexcept { return core::count(clusters_); }
+    const CoarseMatrix& matrix() const noexcept { return matrix_; }
+
+    /// To be called before the chains are added: takes over the values of the layout.
+    void begin(const scene::DofLayout& layout) {
+        arm_ = layout.value;
+        core::parallel_for(clusters(), [&](Index k) {
+            Vec3 sum = Vec3::Zero();
+            Index positions = 0;
+            for_positions(layout, k, [&](Index v) { sum += layout.value[core::at(v)], ++positions; });
+            const Vec3 middle = sum / static_cast<double>(std::max<Index>(positions, 1));
+            for_positions(layout, k, [&](Index v) { arm_[core::at(v)] -= middle; });
+        });
+    }
+
+    /// Adds the band of chain c, as LinearSystem::chain_band gives it. For different chains from several threads at once.
+    void add_chain(const scene::DofLayout& layout, const assembly::HeldProjector& held, Index c, const Matrix& band) {
+        const scene::Chain& chain = layout.chains[core::at(c)];
+        Chain& own = chains_[core::at(c)];
+        const Index m = 3 * chain.vectors_per_node;
+        own.blocks.assign(core::at((own.intervals + 1) * (own.reach(chain.reach) + 1)), Block::Zero());
+        std::vector<Modes> modes(core::at(chain.nodes), Modes(m, 6));
+        for (Index a = 0; a < chain.nodes; ++a) {
+            for (Index v = 0; v < chain.vectors_per_node; ++v) {
+                modes[core::at(a)].middleRows<3>(3 * v) = mode(layout, held, chain.first_vector + a * chain.vectors_per_node + v);
+            }
+        }
+        Modes product(m, 6);
+        for (Index a = 0; a < chain.nodes; ++a) {
+            for (Index d = 0; d <= std::min(a, chain.reach); ++d) {
+                // I - F, which the band has on held vectors, gives nothing with F times the modes.
+                product.noalias() = band.block(a * m, d * m, m, m) * modes[core::at(a - d)];
+                const Block block = modes[core::at(a)].transpose() * product;
+                add_to_chain(own, chain.reach, hat(own, a), hat(own, a - d), block, d == 0);
+            }
+        }
+    }
+
+    /// Adds what the terms couple beyond the bands of chains, and factors.
+    /// @return indefinite if the matrix is not positive semidefinite; it is then shifted until it is
+    template <assembly::LinearSystem System>
+    SolveStatus finish(const System& system) {
+        if (!sum(system)) {  // terms between knots that had none in the analysis
+            find_pattern(system);
+            [[maybe_unused]] const bool complete = sum(system);
+            assert(complete);
+        }
+        return matrix_.factor();
+    }
+
+    /// z += P (P^T A P)^-1 P^T r
+    ///
+    /// @param r, z  zero and not used outside the free directions of held vectors
+    void add_correction(const scene::DofLayout& layout, const Vector& r, Vector& z) {
+        restrict_to_knots(layout, r);
+        matrix_.solve(force_, motion_);
+        prolong(layout, z);
+    }
+
+private:
+    using Block = CoarseMatrix::Block;
+    using Mode = Eigen::Matrix<double, 3, 6>;
+    using Modes = Eigen::Matrix<double, Eigen::Dynamic, 6>;
+    using Motion = Eigen::Matrix<double, 6, 1>;
+
+    /// Two knots of the cluster and the share of each in a node's motion; the second may lie beyond the last if its share is 0.
+    struct Hat {
+        int knot = 0;
+        double second = 0.0;
+        double weight(int k) const noexcept { return k == 0 ? 1.0 - second : second; }
+    };
+    struct Chain {
+        int first_knot = 0;
+        Index intervals = 0, nodes = 1;
+        bool reversed = false;
+        std::vector<Block> blocks;  // between the knots k and k - d, at k (reach + 1) + d
+        /// Knots that coupled nodes may lie apart.
+        Index reach(Index nodes_apart) const noexcept {
+            return intervals == 0 ? 0 : std::min(intervals, nodes_apart * intervals / (nodes - 1) + 2);
+        }
+    };
+    struct Place {
+        int chain = 0, node = 0;
+        Hat hat;  // knot counted over all clusters
+    };
+
+    static Hat hat(const Chain& chain, Index node) noexcept {
+        if (chain.intervals == 0) return {chain.first_knot, 0.0};
+        const Index share = (chain.reversed ? chain.nodes - 1 - node : node) * chain.intervals;  // over nodes - 1
+        const Index knot = std::min(share / (chain.nodes - 1), chain.intervals - 1);
+        return {chain.first_knot + static_cast<int>(knot),
+                static_cast<double>(share - knot * (chain.nodes - 1)) / static_cast<double>(chain.nodes - 1)};
+    }
+
+    template <class Body>
+    void for_positions(const scene::DofLayout& layout, Index cluster, const Body& body) const {
+        for (const Index c : clusters_[core::at(cluster)].chains) {
+            const scene::Chain& chain = layout.chains[core::at(c)];
+            for (Index v = chain.first_vector; v < chain.first_vector + chain.nodes * chain.vectors_per_node; ++v) {
+                if (layout.kind[core::at(v)] == scene::VectorKind::position) body(v);
+            }
+        }
+    }
+
+    /// Rows of F P of one vector for a knot of weight 1.
+    Mode mode(const scene::DofLayout& layout, const assembly::HeldProjector& held, Index v) const {
+        const Vec3& arm = arm_[core::at(v)];
+        Mode rows = Mode::Zero();
+        rows(0, 4) = arm.z(), rows(0, 5) = -arm.y();
+        rows(1, 3) = -arm.z(), rows(1, 5) = arm.x();
+        rows(2, 3) = arm.y(), rows(2, 4) = -arm.x();
+        if (layout.kind[core::at(v)] == scene::VectorKind::position) rows.leftCols<3>().setIdentity();
+        if (const Mat3* free = held.free(v)) rows = (*free * rows).eval();
+        return rows;
+    }
+
+    static void add_to_chain(Chain& own, Index nodes_apart, const Hat& row, const Hat& column, const Block& block, bool diagonal) {
+        const Index width = own.reach(nodes_apart) + 1;
+        for (int i = 0; i < 2; ++i)
+            for (int j = 0; j < 2; ++j) {
+                const double weight = row.weight(i) * column.weight(j);
+                if (weight == 0.0) continue;
+                const Index k = row.knot + i - own.first_knot, l = column.knot + j - own.first_knot;
+                if (k > l || (k == l && diagonal)) {
+                    own.blocks[core::at(k * width + (k - l))] += weight * block;
+                } else if (k == l) {
+                    own.blocks[core::at(k * width)] += weight * (block + block.transpose());
+                } else if (!diagonal) {
+                    own.blocks[core::at(l * width + (l - k))] += weight * block.transpose();
+                }
+            }
+    }
+
+    // What the terms couple beyond the bands. A term is taken apart into parts that lie within the reach of one chain;
+    // what couples a part with itself is in the band.
+    struct Part {
+        int chain = 0, low = 0, high = 0;
+        std::vector<std::pair<int, Mode>> knots;
+        void add(int knot, const Mode& rows) {
+            for (auto& entry : knots) {
+                if (entry.first == knot) {
+                    entry.second += rows;
+                    return;
+                }
+            }
+            knots.emplace_back(knot, rows);
+        }
+    };
+
+    /// Calls body(knot i, knot j, block) for each coupling beyond the bands; both orders are meant.
+    template <class System, class Body>
+    void couple(const System& system, const Body& body) const {
+        struct Visitor {
+            const RigidCoarseSpace& space;
+            const scene::DofLayout& layout;
+            const assembly::HeldProjector& held;
+            const Body& body;
+            std::vector<Part> parts;
+            std::size_t used;
+
+            void take(Index v, double weight, Index window) {
+                const Place& place = space.places_[core::at(v)];
+                std::size_t p = 0;
+                for (; p < used; ++p) {
+                    Part& part = parts[p];
+                    if (part.chain == place.chain && std::max(part.high, place.node) - std::min(part.low, place.node) <= window) break;
+                }
+                if (p == used) {
+                    if (++used > parts.size()) parts.emplace_back();
+                    parts[p].chain = place.chain, parts[p].low = parts[p].high = place.node;
+                    parts[p].knots.clear();
+                }
+                Part& part = parts[p];
+                part.low = std::min(part.low, place.node), part.high = std::max(part.high, place.node);
+                const Mode rows = space.mode(layout, held, v);
+                for (int i = 0; i < 2; ++i) {
+                    const double share = weight * place.hat.weight(i);
+                    if (share != 0.0) part.add(place.hat.knot + i, share * rows);
+                }
+            }
+            /// Whether some pair of nodes of two parts is in a band.
+            bool overlap() const {
+                for (std::size_t p = 0; p < used; ++p)
+                    for (std::size_t q = p + 1; q < used; ++q) {
+                        if (in_band(parts[p], parts[q])) return true;
+                    }
+                return false;
+            }
+            bool in_band(const Part& a, const Part& b) const {
+                return a.chain == b.chain && std::max(a.low, b.low) - std::min(a.high, b.high) <= layout.chains[core::at(a.chain)].reach;
+            }
+            void point(const assembly::PointTerm& term) {
+                used = 0;
+                for (std::size_t k = 0; k < term.vectors.size(); ++k) {
+                    const Place& place = space.places_[core::at(term.vectors[k])];
+                    take(term.vectors[k], term.weights[k], layout.chains[core::at(place.chain)].reach);
+                }
+                if (overlap()) {  // node by node
+                    used = 0;
+                    for (std::size_t k = 0; k < term.vectors.size(); ++k) take(term.vectors[k], term.weights[k], 0);
+                }
+                for (std::size_t q = 1; q < used; ++q)
+                    for (const auto& [l, column] : parts[q].knots) {
+                        const Mode product = term.stiffness * column;
+                        for (std::size_t p = 0; p < q; ++p) {
+                            if (in_band(parts[p], parts[q])) continue;
+                            for (const auto& entry : parts[p].knots) body(entry.first, l, Block(entry.second.transpose() * product));
+                        }
+                    }
+            }
+            void dense(const assembly::DenseTerm& term) {
+                const Place& first = space.places_[core::at(term.vectors.front())];
+                int low = first.node, high = first.node;
+                bool one = true;
+                for (const Index v : term.vectors) {
+                    const Place& place = space.places_[core::at(v)];
+                    one = one && place.chain == first.chain;
+                    low = std::min(low, place.node), high = std::max(high, place.node);
+                }
+                if (one && high - low <= layout.chains[core::at(first.chain)].reach) return;
+                for (std::size_t i = 0; i < term.vectors.size(); ++i)
+                    for (std::size_t j = 0; j < i; ++j) {
+                        used = 0;
+                        take(term.vectors[i], 1.0, -1), take(term.vectors[j], 1.0, -1);
+                        if (in_band(parts[0], parts[1])) continue;
+                        const Mat3 stiffness = term.stiffness.block<3, 3>(3 * static_cast<Index>(i), 3 * static_cast<Index>(j));
+                        for (const auto& row : parts[0].knots)
+                            for (const auto& column : parts[1].knots) {
+                                body(row.first, column.first, Block(row.second.transpose() * stiffness * column.second));
+                            }
+                    }
+            }
+        };
+        const assembly::HeldProjector held(system.layout());
+        Visitor visitor{*this, system.layout(), held, body, {}, 0};
+        system.visit(visitor);
+    }
+
+    template <class System>
+    void find_pattern(const System& system) {
+        const scene::DofLayout& layout = system.layout();
+        if (arm_.size() != layout.kind.size()) arm_ = layout.value;
+        std::vector<CoarseMatrix::BlockPair> pairs;
+        for (Index c = 0; c < core::count(chains_); ++c) {
+            const Chain& own = chains_[core::at(c)];
+            for (Index k = 0; k <= own.intervals; ++k) {
+                for (Index d = 1; d <= std::min(k, own.reach(layout.chains[core::at(c)].reach)); ++d) {
+                    pairs.emplace_back(own.first_knot + k, own.first_knot + k - d);
+                }
+            }
+        }
+        couple(system, [&](int i, int j, const Block&) {
+            if (i != j && (pairs.empty() || pairs.back() != CoarseMatrix::BlockPair(i, j))) pairs.emplace_back(i, j);
+        });
+        matrix_.analyse(knots_, std::move(pairs));
+    }
+
+    /// Sums the matrix; false if the pattern lacks a block.
+    template <class System>
+    bool sum(const System& system) {
+        bool complete = true;
+        matrix_.clear();
+        for (Index c = 0; c < core::count(chains_); ++c) {
+            const Chain& own = chains_[core::at(c)];
+            const Index width = own.reach(system.layout().chains[core::at(c)].reach) + 1;
+            for (Index k = 0; k <= own.intervals; ++k)
+                for (Index d = 0; d <= std::min(k, width - 1); ++d) {
+                    const int row = own.first_knot + static_cast<int>(k);
+                    complete = matrix_.add(row, row - static_cast<int>(d), own.blocks[core::at(k * width + d)]) && complete;
+                }
+        }
+        couple(system, [&](int i, int j, const Block& block) {
+            complete = matrix_.add(i, j, i == j ? Block(block + block.transpose()) : block) && complete;
+        });
+        return complete;
+    }
+
+    /// force = P^T r
+    void restrict_to_knots(const scene::DofLayout& layout, const Vector& r) {
+        force_.setZero(6 * knots_);
+        core::parallel_for(clusters(), [&](Index cluster) {
+            for (const Index c : clusters_[core::at(cluster)].chains) {
+                const scene::Chain& chain = layout.chains[core::at(c)];
+                for (Index a = 0; a < chain.nodes; ++a) {
+                    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+                    const Index first = chain.first_vector + a * chain.vectors_per_node;
+                    for (Index v = first; v < first + chain.vectors_per_node; ++v) {
+                        const Vec3 f = r.segment<3>(3 * v);
+                        if (layout.kind[core::at(v)] == scene::VectorKind::position) force += f;
+                        moment += arm_[core::at(v)].cross(f);
+                    }
+                    const Hat& hat = places_[core::at(first)].hat;
+                    Motion both;
+                    both << force, moment;
+                    force_.segment<6>(6 * hat.knot) += hat.weight(0) * both;
+                    if (hat.second > 0.0) force_.segment<6>(6 * hat.knot + 6) += hat.second * both;
+                }
+            }
+        });
+    }
+
+    /// z += P motion
+    void prolong(const scene::DofLayout& layout, Vector& z) const {
+        core::parallel_for(core::count(layout.chains), [&](Index c) {
+            const scene::Chain& chain = layout.chains[core::at(c)];
+            for (Index a = 0; a < chain.nodes; ++a) {
+                const Index first = chain.first_vector + a * chain.vectors_per_node;
+                const Hat& hat = places_[core::at(first)].hat;
+                Motion motion = hat.weight(0) * motion_.segment<6>(6 * hat.knot);
+                if (hat.second > 0.0) motion += hat.second * motion_.segment<6>(6 * hat.knot + 6);
+                const Vec3 translation = motion.head<3>(), rotation = motion.tail<3>();
+                for (Index v = first; v < first + chain.vectors_per_node; ++v) {
+                    Vec3 move = rotation.cross(arm_[core::at(v)]);
+                    if (layout.kind[core::at(v)] == scene::VectorKind::position) move += translation;
+                    z.segment<3>(3 * v) += move;
+                }
+            }
+        });
+    }
+
+    std::vector<ChainCluster> clusters_;
+    std::vector<Chain> chains_;
+    std::vector<Place> places_;  // of each vector
+    std::vector<Vec3> arm_;      // of each vector: a direction, or a position from the middle of its cluster
+    int knots_ = 0;
+    CoarseMatrix matrix_;
+    Vector force_, motion_;  // at the knots
+};
+
+}  // namespace fibrant::solver
