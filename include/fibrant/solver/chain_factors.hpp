@@ -52,7 +52,7 @@ public:
         core::parallel_for(core::count(packs_), [&](Index p) {
             Pack& pack = packs_[core::at(p)];
             status[core::at(p)] = std::visit([&](auto& band) { return prepare(system, pack.chains, band, see); }, pack.factor);
-        });
+        }, grain(system.layout(), core::count(packs_)));
         SolveStatus worst = SolveStatus::converged;
         for (const SolveStatus s : status) {
             if (s == SolveStatus::not_finite) return s;
@@ -70,7 +70,7 @@ public:
         core::parallel_for(core::count(packs_), [&](Index p) {
             const Pack& pack = packs_[core::at(p)];
             std::visit([&](const auto& band) { solve(layout, pack.chains, band, r, z); }, pack.factor);
-        });
+        }, grain(layout, core::count(packs_)));
     }
 
     /// Bytes of the factors.

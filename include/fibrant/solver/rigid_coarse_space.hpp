@@ -70,7 +70,7 @@ public:
             for_positions(layout, k, [&](Index v) { sum += layout.value[core::at(v)], ++positions; });
             const Vec3 middle = sum / static_cast<double>(std::max<Index>(positions, 1));
             for_positions(layout, k, [&](Index v) { arm_[core::at(v)] -= middle; });
-        });
+        }, grain(layout, clusters()));
     }
 
     /// Adds the band of chain c, as LinearSystem::chain_band gives it. For different chains from several threads at once.
@@ -356,7 +356,7 @@ private:
                     if (hat.second > 0.0) force_.segment<6>(6 * hat.knot + 6) += hat.second * both;
                 }
             }
-        });
+        }, grain(layout, clusters()));
     }
 
     /// z += P motion
@@ -375,7 +375,7 @@ private:
                     z.segment<3>(3 * v) += move;
                 }
             }
-        });
+        }, grain(layout, core::count(layout.chains)));
     }
 
     std::vector<ChainCluster> clusters_;
