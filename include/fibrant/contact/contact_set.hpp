@@ -73,6 +73,11 @@ public:
         std::vector<Zone> found = find_zones(*mesh_, state, search_, parameters_.detection, orders_, reach, forced);
         for (Zone& zone : found) inherit(zone, state);
         zones_.swap(found);
+        regenerate(state, accepted);
+    }
+
+    /// Contact elements anew in the zones that stand.
+    void regenerate(const Vector& state, const Vector& accepted) {
         Memory last;
         last.assign(records(state));
         const Memory& memory = last.records().empty() ? accepted_ : last;

@@ -27,6 +27,7 @@ struct Stage {
     std::vector<Ramp> ramps;                    ///< channels that it moves; none, and no stages: all to 1
     std::optional<double> gap_limit;            ///< of a law that limits the gap [length]; scaled down when cut
     bool forced_orders = false;                 ///< keep the scene's forced orders
+    double looseness = 1.0;                     ///< on the tolerances of contact and normal passes, >= 1
     std::optional<typename M::Normal> normal;
     std::optional<typename M::Friction> friction;
     /// Once the ramps are over: goes on, all else constant, until this is true. None: ends with the ramps.
@@ -52,6 +53,7 @@ struct Loading {
         for (const Stage<M>& stage : stages) {
             core::require_at_least("Stage.increments", stage.increments, 1);
             core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);
+            core::require(stage.looseness >= 1.0 && stage.looseness <= 100.0, "Stage.looseness", stage.looseness, "in [1, 100]");
             if (stage.gap_limit) core::require_positive("Stage.gap_limit", *stage.gap_limit);
             for (const Ramp& ramp : stage.ramps) core::require_finite("Ramp.to", ramp.to);
         }

@@ -192,7 +192,7 @@ private:
                 equilibrium_, contacts_, linear_, parameters_.iteration, radius_, touching, clock_);
             // A limited gap moves fibres by about the limit: the search looks that far ahead.
             const double ahead = std::max(position_.displacement, stage.forced_orders ? stage.gap_limit.value_or(0.0) : 0.0);
-            const solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders);
+            const solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, stage.looseness);
             increment.counts += attempt.counts;
             if (attempt.converged) {
                 account(trial, increment, contact_before);

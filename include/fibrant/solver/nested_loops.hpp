@@ -34,58 +34,42 @@ public:
     /// @param accepted  last accepted state
     /// @param expected  displacement that the search should reach over [length]
     /// @param forced    keep forced orders
-    AttemptReport solve(Vector& state, const Vector& accepted, double expected, bool forced) {
+    /// @param looseness multiplies the tolerances of normal and contact passes, >= 1: for paths that are only a means
+    AttemptReport solve(Vector& state, const Vector& accepted, double expected, bool forced, double looseness = 1.0) {
         AttemptReport report;
         Newton<Equilibrium, Contacts, Linear> newton(*equilibrium_, *contacts_, *linear_, parameters_, radius_, *clock_);
-        const double finest = parameters_.step_tolerance * radius_;
         const double reach = std::clamp(2.0 * expected, parameters_.margin * radius_, parameters_.largest_margin * radius_);
         const double bound = contact_possible_ ? std::max(reach, 0.5 * radius_) : std::numeric_limits<double>::infinity();
-        double outer_change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
+        const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
+        double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
+        Vector searched;                                          // state of the last search
         Index passes = 0, searches = 0;
         while (true) {
-            if (passes >= parameters_.contact_limit || searches >= 60) {
-                report.reason = "contact passes do not settle: last displacement " + core::text(outer_change / radius_) + " radii";
+            if (passes >= parameters_.contact_limit || report.counts.contact_passes >= 60) {
+                report.reason = "contact passes do not settle: last displacement " + core::text(change / radius_) + " radii";
                 return report;
             }
-            ++searches, ++report.counts.contact_passes;
-            clock_->time(core::Part::search, [&] { contacts_->detect(state, accepted, bound_reach(bound), forced); });
+            ++report.counts.contact_passes;
+            // Zones are kept while nothing could have come into or out of reach unseen. Beside the time, this keeps
+            // contact elements from jumping in and out at the ends of zones, which may go on for ever.
+            const bool search = searches < 2 || !contact_possible_ || equilibrium_->greatest(state - searched) > 0.25 * bound;
+            if (search) searched = state, ++searches;
+            clock_->time(search ? core::Part::search : core::Part::contact, [&] {
+                if (search) contacts_->detect(state, accepted, std::isfinite(bound) ? bound : parameters_.margin * radius_, forced);
+                else contacts_->regenerate(state, accepted);
+            });
             clock_->time(core::Part::preparation, [&] {
                 contacts_->evaluate(state);
                 equilibrium_->linearise(state, false, 0.0);
                 linear_->analyse(equilibrium_->system());
             });
             const Vector before_pass = state;
-            double inner_change = outer_change;  // displacement in the last normal pass
-            bool moved = false;
-            for (Index normal_pass = 0; normal_pass < parameters_.normal_limit; ++normal_pass) {
-                double turn = 0.0;
-                if (normal_pass > 0) {
-                    turn = clock_->time(core::Part::contact, [&] { return contacts_->refresh(state, accepted); });
-                    if (turn < parameters_.normal_tolerance && inner_change < parameters_.normal_step_tolerance * radius_) break;
-                }
-                ++report.counts.normal_passes;
-                const Vector before = state;
-                const double loose = std::isfinite(inner_change) ? parameters_.inexact * inner_change : 0.02 * radius_;
-                const double tolerance = std::clamp(loose, finest, 0.02 * radius_);
-                const NewtonReport inner = newton.solve(state, tolerance, before_pass, bound, report.counts);
-                report.residual = inner.residual.relative(), report.force_scale = inner.residual.scale, report.step = inner.step;
-                inner_change = equilibrium_->greatest(state - before);
-                if (inner.status == NewtonStatus::moved) {
-                    moved = true;
-                    break;
-                }
-                if (inner.status != NewtonStatus::converged) {
-                    report.reason = reason(inner);
-                    return report;
-                }
-                if (!contact_possible_ && tolerance <= finest * 1.0001) break;
-                if (!contact_possible_) inner_change = 0.0;
-            }
-            outer_change = equilibrium_->greatest(state - before_pass);
-            if (!moved) {
-                ++passes;
-                if (!contact_possible_ || outer_change < parameters_.contact_tolerance * radius_) break;
-            }
+            const bool moved = !normal_passes(newton, state, accepted, searched, bound, looseness, report);
+            if (!report.reason.empty()) return report;
+            change = equilibrium_->greatest(state - before_pass);
+            if (moved) continue;
+            ++passes;
+            if (!contact_possible_ || change < contact_tolerance) break;
         }
         report.displacement = equilibrium_->greatest(state - accepted);
         report.converged = true;
@@ -93,7 +77,39 @@ public:
     }
 
 private:
-    double bound_reach(double bound) const noexcept { return std::isfinite(bound) ? bound : parameters_.margin * radius_; }
+    /// Normal passes on one set of contact elements. @returns false if the search has to be repeated first.
+    bool normal_passes(Newton<Equilibrium, Contacts, Linear>& newton, Vector& state, const Vector& accepted,
+                       const Vector& searched, double bound, double looseness, AttemptReport& report) {
+        const double finest = parameters_.step_tolerance * radius_;
+        const double enough = looseness * parameters_.normal_step_tolerance * radius_;
+        double first = 0.0, change = std::numeric_limits<double>::infinity();
+        for (Index pass = 0; pass < parameters_.normal_limit; ++pass) {
+            if (pass > 0) {
+                const double turn = clock_->time(core::Part::contact, [&] { return contacts_->refresh(state, accepted); });
+                // The contact elements will move on all the same: no need to be finer than a part of what this pass moved.
+                const bool settled = turn < looseness * parameters_.normal_tolerance && change < enough;
+                if (settled || change < std::max(0.1 * parameters_.inexact * first, 0.1 * enough)) break;
+            }
+            ++report.counts.normal_passes;
+            const Vector before = state;
+            const double loose = std::isfinite(change) ? parameters_.inexact * change : 0.02 * radius_;
+            const double tolerance = contact_possible_ ? std::clamp(loose, finest, 0.02 * radius_) : finest;
+            const NewtonReport inner = newton.solve(state, tolerance, searched, bound, report.counts);
+            report.residual = inner.residual.relative(), report.force_scale = inner.residual.scale, report.step = inner.step;
+            change = equilibrium_->greatest(state - before);
+            if (pass == 0) first = change;
+#ifdef FIBRANT_TRACE
+            std::fprintf(stderr, "  np %ld change/r %.3e nw %ld status %d el %ld\n", (long)pass, change/radius_, (long)inner.iterations, (int)inner.status, (long)contacts_->elements().size());
+#endif
+            if (inner.status == NewtonStatus::moved) return false;
+            if (inner.status != NewtonStatus::converged) {
+                report.reason = reason(inner);
+                return true;
+            }
+            if (!contact_possible_) break;
+        }
+        return true;
+    }
 
     static std::string reason(const NewtonReport& inner) {
         const std::string figures = " after " + std::to_string(inner.iterations) + " iterations, residual " +
