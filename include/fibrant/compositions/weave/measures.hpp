@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
 #include <vector>
 
 namespace fibrant::compositions::weave {
@@ -34,30 +36,22 @@ struct Outline {
     double x_from = 0, x_to = 0, y_from = 0, y_to = 0;
 };
 
-namespace detail {
-
-struct Span {
-    double from = 0, to = 0;
-};
-
-/// Where a tow's centre line crosses the first and the last tow of the other family, along its own axis.
-inline Span outermost_crossings(const observe::Snapshot& snapshot, const FabricParameters& fabric, Family family,
-                                Index tow) {
+/// Parameters on a tow's centre line of its crossings in plan with the tows of the other family, in their order; NaN
+/// where they do not cross.
+inline std::vector<double> crossing_parameters(const observe::Snapshot& snapshot, const FabricParameters& fabric,
+                                               Family family, Index tow) {
     const std::vector<Vec3> own = tow_centreline(snapshot, fabric, family, tow);
-    const auto across = [&](Index k) {
+    std::vector<double> answer;
+    for (Index k = 0; k < fabric.tows(other(family)); ++k) {
         const std::vector<Vec3> nodes = tow_centreline(snapshot, fabric, other(family), k);
         const bool is_warp = family == Family::warp;
         double place = std::numeric_limits<double>::quiet_NaN();
-        const NodalCurve warp{is_warp ? own : nodes}, weft{is_warp ? nodes : own};
-        for_each_plan_crossing(warp, weft, [&](const PlanCrossing& crossing) {
-            place = is_warp ? warp.position(crossing.warp).x() : weft.position(crossing.weft).y();
-        });
-        return place;
-    };
-    return {across(0), across(fabric.tows(other(family)) - 1)};
+        for_each_plan_crossing(NodalCurve{is_warp ? own : nodes}, NodalCurve{is_warp ? nodes : own},
+                               [&](const PlanCrossing& crossing) { place = is_warp ? crossing.warp : crossing.weft; });
+        answer.push_back(place);
+    }
+    return answer;
 }
-
-}  // namespace detail
 
 /// Crimp of every fibre and tow; a fibre that does not reach its outermost crossings has NaN and makes the mean NaN.
 inline CrimpMeasures crimp_measures(const observe::Snapshot& snapshot, const FabricParameters& fabric) {
@@ -68,14 +62,14 @@ inline CrimpMeasures crimp_measures(const observe::Snapshot& snapshot, const Fab
         const Index axis = axis_of(family), fibres = fabric.tow(family).fibres;
         double sum = 0.0;
         for (Index tow = 0; tow < fabric.tows(family); ++tow) {
-            const detail::Span span = detail::outermost_crossings(snapshot, fabric, family, tow);
+            const std::vector<double> crossings = crossing_parameters(snapshot, fabric, family, tow);
             const std::vector<Vec3> centre = tow_centreline(snapshot, fabric, family, tow);
-            (family == Family::warp ? answer.warp_tows : answer.weft_tows)
-                .push_back(crimp(NodalCurve{centre}, axis, span.from, span.to));
+            const NodalCurve line{centre};
+            const double from = line.position(crossings.front())[axis], to = line.position(crossings.back())[axis];
+            (family == Family::warp ? answer.warp_tows : answer.weft_tows).push_back(crimp(line, axis, from, to));
             for (Index k = 0; k < fibres; ++k) {
                 const std::size_t fibre = core::at(fabric.fibre(family, tow, k));
-                answer.fibres[fibre] =
-                    crimp(NodalCurve{snapshot.fibres[fibre].position}, axis, span.from, span.to);
+                answer.fibres[fibre] = crimp(NodalCurve{snapshot.fibres[fibre].position}, axis, from, to);
                 sum += answer.fibres[fibre];
             }
         }
@@ -127,17 +121,17 @@ inline double thickness(const observe::Snapshot& snapshot, const FabricParameter
     return high - low;
 }
 
-/// Curvature of one tow's fibres, weighted by arc length [1 / length].
+/// Curvature along fibres, weighted by arc length [1 / length].
 struct CurvatureStatistics {
     double mean = 0, root_mean_square = 0, greatest = 0;
 };
 
-inline CurvatureStatistics curvature_statistics(const observe::Snapshot& snapshot, const FabricParameters& fabric,
-                                                Family family, Index tow) {
+/// @param fibres  numbers in the snapshot
+inline CurvatureStatistics curvature_statistics(const observe::Snapshot& snapshot, std::span<const Index> fibres) {
     CurvatureStatistics answer;
     double length = 0.0;
-    for (Index k = 0; k < fabric.tow(family).fibres; ++k) {
-        const NodalCurve curve{snapshot.fibres[core::at(fabric.fibre(family, tow, k))].position};
+    for (const Index fibre : fibres) {
+        const NodalCurve curve{snapshot.fibres[core::at(fibre)].position};
         curve.integrate(0.0, curve.end(), [&](double t, double weight) {
             const double kappa = curve.curvature(t);
             length += weight;
@@ -149,6 +143,14 @@ inline CurvatureStatistics curvature_statistics(const observe::Snapshot& snapsho
     answer.mean /= length;
     answer.root_mean_square = std::sqrt(answer.root_mean_square / length);
     return answer;
+}
+
+/// Of all fibres of a tow.
+inline CurvatureStatistics curvature_statistics(const observe::Snapshot& snapshot, const FabricParameters& fabric,
+                                                Family family, Index tow) {
+    std::vector<Index> fibres(core::at(fabric.tow(family).fibres));
+    std::iota(fibres.begin(), fibres.end(), fabric.fibre(family, tow, 0));
+    return curvature_statistics(snapshot, fibres);
 }
 
 }  // namespace fibrant::compositions::weave

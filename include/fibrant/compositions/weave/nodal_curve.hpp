@@ -110,7 +110,8 @@ private:
     };
     Local local(double t) const noexcept {
         const double last = static_cast<double>(nodes_.size() - 3);
-        const double first = std::clamp(2.0 * std::floor(0.5 * t), 0.0, last);
+        // A parameter that is not a number gives points that are not.
+        const double first = t >= 0.0 ? std::min(2.0 * std::floor(0.5 * t), last) : 0.0;
         return {static_cast<std::size_t>(first), t - first - 1.0};
     }
 

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What a run of the weave prints and writes: progress, the table of increments, measures, pictures, the summary.
+
+#include <fibrant/compositions/weave/audit.hpp>
+#include <fibrant/compositions/weave/slices.hpp>
+#include <fibrant/compositions/weave/tow_section.hpp>
+#include <fibrant/observe/csv_writer.hpp>
+#include <fibrant/observe/json.hpp>
+#include <fibrant/observe/svg_view.hpp>
+#include <fibrant/simulation/report.hpp>
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+namespace weave {
+
+namespace cloth = fibrant::compositions::weave;
+namespace observe = fibrant::observe;
+using fibrant::Index;
+
+/// Processor time of this process, all threads [second].
+inline double cpu_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& time) {
+        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// Greatest resident memory so far [byte]; Linux counts it in kilobytes.
+inline std::int64_t peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+}
+
+/// Seconds as "1:02:03" or "2:03".
+inline std::string clock_text(double seconds) {
+    const auto whole = static_cast<long>(std::lround(std::max(0.0, seconds)));
+    char text[48];
+    if (whole >= 3600) {
+        std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
+    } else {
+        std::snprintf(text, sizeof text, "%ld:%02ld", whole / 60, whole % 60);
+    }
+    return text;
+}
+
+/// Prints a line after each increment, under a heading.
+class ProgressPrinter {
+public:
+    /// @param radius    of the thinnest fibre, in which penetrations are told [length]
+    /// @param quiet     prints nothing
+    ProgressPrinter(double radius, bool quiet) : radius_{radius}, quiet_{quiet} {}
+
+    void reported(const fibrant::simulation::IncrementReport& increment) {
+        if (quiet_) return;
+        if (!headed_)
+            std::printf("%4s %-10s %6s %7s %7s %9s %8s %8s %6s %8s %8s\n", "inc", "stage", "contact", "normal", "newton",
+                        "residual", "elements", "active", "cuts", "depth/r", "left");
+        if (!headed_) first_ = increment.progress, start_ = std::chrono::steady_clock::now() - whole(increment.seconds);
+        headed_ = true;
+        // From the progress since this process began: a resumed run starts in the middle.
+        const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const double done = increment.progress - first_;
+        const double left = done > 0.0 ? passed * (1.0 - increment.progress) / done : -1.0;
+        std::printf("%4td %-10s %7td %7td %7td %9.1e %8td %8td %6td %8.4f %8s\n", increment.number,
+                    increment.stage.c_str(), increment.counts.contact_passes, increment.counts.normal_passes,
+                    increment.counts.newton, increment.residual, increment.contact.elements, increment.contact.active,
+                    increment.cuts, increment.contact.greatest_penetration / radius_,
+                    left < 0.0 ? "?" : clock_text(left).c_str());
+        std::fflush(stdout);
+    }
+
+private:
+    static std::chrono::steady_clock::duration whole(double seconds) {
+        return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
+    }
+    double radius_;
+    bool quiet_, headed_ = false;
+    double first_ = 0.0;
+    std::chrono::steady_clock::time_point start_{};
+};
+
+/// A row of increments.csv after each increment.
+class IncrementTable {
+public:
+    IncrementTable(const std::filesystem::path& folder, double radius, observe::Start start)
+        : table_{folder / "increments.csv", start}, radius_{radius} {}
+
+    void reported(const fibrant::simulation::IncrementReport& increment) {
+        const auto& counts = increment.counts;
+        table_.row({{"increment", increment.number},
+                    {"stage", increment.stage},
+                    {"stage_progress", increment.stage_progress},
+                    {"progress", increment.progress},
+                    {"fraction", increment.fraction},
+                    {"cuts", increment.cuts},
+                    {"contact_passes", counts.contact_passes},
+                    {"normal_passes", counts.normal_passes},
+                    {"newton_iterations", counts.newton},
+                    {"linear_solves", counts.linear_solves},
+                    {"linear_iterations", counts.linear_iterations},
+                    {"indefinite_tangents", counts.indefinite},
+                    {"residual", increment.residual},
+                    {"displacement_over_radius", increment.displacement / radius_},
+                    {"contact_elements", increment.contact.elements},
+                    {"active_contacts", increment.contact.active},
+                    {"limited_gaps", increment.contact.shifted},
+                    {"greatest_penetration_over_radius", increment.contact.greatest_penetration / radius_},
+                    {"reaction_sum", increment.contact.reaction_sum},
+                    {"elastic_energy", increment.energy.elastic},
+                    {"contact_energy", increment.energy.contact},
+                    {"external_work", increment.energy.external},
+                    {"dissipated", increment.energy.dissipated},
+                    {"rearranged", increment.energy.rearranged},
+                    {"energy_error", increment.energy.error()},
+                    {"seconds", increment.seconds}});
+    }
+
+private:
+    observe::CsvWriter table_;
+    double radius_;
+};
+
+/// fibres.csv (crimp and curvature of each fibre), tows.csv (crimp and curvature of each tow) and sections.csv (shape of
+/// each tow at each of its crossings and half way between them).
+inline void write_measures(const std::filesystem::path& folder, const observe::Snapshot& snapshot,
+                           const cloth::FabricParameters& fabric, const cloth::CrimpMeasures& crimp) {
+    using cloth::Family;
+    observe::CsvWriter fibres(folder / "fibres.csv"), tows(folder / "tows.csv"), sections(folder / "sections.csv");
+    for (Index number = 0; number < fabric.fibres(); ++number) {
+        const cloth::FibrePlace place = fabric.place(number);
+        const auto curvature = cloth::curvature_statistics(snapshot, {&number, 1});
+        fibres.row({{"fibre", number},
+                    {"family", place.family == Family::warp ? "warp" : "weft"},
+                    {"tow", place.tow},
+                    {"crimp", crimp.fibres[fibrant::core::at(number)]},
+                    {"mean_curvature", curvature.mean},
+                    {"greatest_curvature", curvature.greatest}});
+    }
+    for (const Family family : {Family::warp, Family::weft}) {
+        const std::string name = family == Family::warp ? "warp" : "weft";
+        for (Index tow = 0; tow < fabric.tows(family); ++tow) {
+            const auto curvature = cloth::curvature_statistics(snapshot, fabric, family, tow);
+            tows.row({{"family", name},
+                      {"tow", tow},
+                      {"crimp", (family == Family::warp ? crimp.warp_tows : crimp.weft_tows)[fibrant::core::at(tow)]},
+                      {"mean_curvature", curvature.mean},
+                      {"root_mean_square_curvature", curvature.root_mean_square},
+                      {"greatest_curvature", curvature.greatest}});
+            const std::vector<fibrant::Vec3> centre = cloth::tow_centreline(snapshot, fabric, family, tow);
+            const std::vector<double> places = cloth::crossing_parameters(snapshot, fabric, family, tow);
+            for (std::size_t k = 0; k + 1 < 2 * places.size(); ++k) {
+                const double t = 0.5 * (places[k / 2] + places[(k + 1) / 2]);
+                const cloth::TowSection section = cloth::tow_section(snapshot, fabric, family, tow, t);
+                sections.row({{"family", name},
+                              {"tow", tow},
+                              {"crossing", 0.5 * static_cast<double>(k)},
+                              {"along", cloth::NodalCurve{centre}.position(t)[cloth::axis_of(family)]},
+                              {"area", section.area},
+                              {"fibre_volume_fraction", section.fibre_volume_fraction},
+                              {"width", section.width},
+                              {"thickness", section.thickness},
+                              {"aspect", section.aspect},
+                              {"second_moment_across", section.second_moments(0, 0)},
+                              {"second_moment_up", section.second_moments(1, 1)},
+                              {"second_moment_mixed", section.second_moments(0, 1)}});
+            }
+        }
+    }
+}
+
+/// view.svg, top.svg, and slice_warp_0.svg, ... along every tow.
+inline void write_pictures(const std::filesystem::path& folder, const observe::Snapshot& snapshot,
+                           const cloth::FabricParameters& fabric, const std::string& unit) {
+    observe::ViewParameters view;
+    view.palette = cloth::fabric_palette(fabric);
+    view.unit = unit;
+    observe::write_file(folder / "view.svg", observe::svg_view(snapshot, view));
+    view.azimuth = -90.0;
+    view.elevation = 90.0;
+    observe::write_file(folder / "top.svg", observe::svg_view(snapshot, view));
+    for (const cloth::TowSlice& slice : cloth::tow_slices(snapshot, fabric, unit))
+        observe::write_file(folder / ("slice_" + slice.name + ".svg"), slice.svg);
+}
+
+/// What summary.json holds; scripts rely on the names.
+struct Summary {
+    bool converged = false;
+    std::string reason;  ///< why not; empty if it did
+    Index fibres = 0, nodes = 0, dofs = 0, contact_elements = 0;
+    Index increments = 0, rejected_increments = 0, newton_iterations = 0, linear_solves = 0, linear_iterations = 0;
+    Index crossings = 0, wrong_crossings = 0, missing_crossings = 0;
+    double greatest_penetration_over_radius = fibrant::core::unset;  ///< of all contact elements [1]
+    double least_gap_over_radius = fibrant::core::unset;             ///< true, between any two fibres [1]
+    double crimp_warp = fibrant::core::unset, crimp_weft = fibrant::core::unset;
+    double thickness = fibrant::core::unset;
+    double wall_seconds = 0, cpu_seconds = 0;
+    std::int64_t peak_memory_bytes = 0;
+    std::array<double, fibrant::core::part_count> seconds_by_stage{};  ///< by core::Part
+    std::string solver;
+    Index threads = 1;
+};
+
+/// Takes over what the report, the audit and the measures say; the rest is for the caller.
+inline void fill(Summary& summary, const fibrant::simulation::Report& report, const cloth::Audit& audit,
+                 const cloth::CrimpMeasures& crimp, double radius) {
+    summary.converged = report.converged;
+    summary.reason = report.reason;
+    summary.contact_elements = report.contact.elements;
+    summary.increments = report.increments.empty() ? 0 : report.increments.back().number;
+    summary.rejected_increments = report.rejected_increments;
+    summary.newton_iterations = report.counts.newton;
+    summary.linear_solves = report.counts.linear_solves;
+    summary.linear_iterations = report.counts.linear_iterations;
+    summary.greatest_penetration_over_radius = report.contact.greatest_penetration / radius;
+    summary.wall_seconds = report.wall_seconds;
+    summary.seconds_by_stage = report.seconds;
+    summary.crossings = audit.crossings;
+    summary.wrong_crossings = audit.wrong_crossings;
+    summary.missing_crossings = audit.missing_crossings;
+    summary.least_gap_over_radius = audit.least_gap.gap / radius;
+    summary.crimp_warp = crimp.warp;
+    summary.crimp_weft = crimp.weft;
+}
+
+inline void write_summary(const std::filesystem::path& folder, const Summary& summary) {
+    observe::JsonObject seconds;
+    for (std::size_t part = 0; part < fibrant::core::part_count; ++part)
+        seconds.add(fibrant::core::part_names[part], summary.seconds_by_stage[part]);
+    observe::JsonObject json;
+    json.add("converged", summary.converged)
+        .add("reason", summary.reason)
+        .add("fibres", summary.fibres)
+        .add("nodes", summary.nodes)
+        .add("dofs", summary.dofs)
+        .add("contact_elements", summary.contact_elements)
+        .add("increments", summary.increments)
+        .add("rejected_increments", summary.rejected_increments)
+        .add("newton_iterations", summary.newton_iterations)
+        .add("linear_solves", summary.linear_solves)
+        .add("linear_iterations", summary.linear_iterations)
+        .add("crossings", summary.crossings)
+        .add("wrong_crossings", summary.wrong_crossings)
+        .add("missing_crossings", summary.missing_crossings)
+        .add("greatest_penetration_over_radius", summary.greatest_penetration_over_radius)
+        .add("least_gap_over_radius", summary.least_gap_over_radius)
+        .add("crimp_warp", summary.crimp_warp)
+        .add("crimp_weft", summary.crimp_weft)
+        .add("thickness", summary.thickness)
+        .add("wall_seconds", summary.wall_seconds)
+        .add("cpu_seconds", summary.cpu_seconds)
+        .add("peak_memory_bytes", summary.peak_memory_bytes)
+        .add("seconds_by_stage", seconds)
+        .add("solver", summary.solver)
+        .add("threads", summary.threads)
+        .add("version", FIBRANT_VERSION);
+    observe::write_file(folder / "summary.json", json.text() + "\n");
+}
+
+}  // namespace weave
