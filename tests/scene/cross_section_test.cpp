@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "refusal.hpp"
+
+#include <fibrant/scene/cross_section.hpp>
+#include <fibrant/scene/elastic_material.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace fibrant;
+using std::numbers::pi;
+using test::refusal;
+
+TEST_CASE("area and second moments are those of the ellipse") {
+    const scene::CrossSection section = scene::elliptical(0.03, 0.01);
+    // Integrated over a fine grid of the ellipse itself: midpoint cells, off by a part of the contour's cells.
+    const int n = 1000;
+    double area = 0.0, first = 0.0, second = 0.0;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const double x = 0.03 * ((2.0 * i + 1.0) / n - 1.0), y = 0.01 * ((2.0 * j + 1.0) / n - 1.0);
+            if (x * x / 9e-4 + y * y / 1e-4 > 1.0) continue;
+            const double cell = 0.06 / n * 0.02 / n;
+            area += cell, first += x * x * cell, second += y * y * cell;
+        }
+    CHECK(section.area() == doctest::Approx(area).epsilon(1e-4));
+    CHECK(section.second_moment_1() == doctest::Approx(first).epsilon(1e-4));
+    CHECK(section.second_moment_2() == doctest::Approx(second).epsilon(1e-4));
+    CHECK(section.radius() == 0.03);
+    // St Venant: pi a^3 b^3 / (a^2 + b^2) over the polar moment pi a b (a^2 + b^2) / 4.
+    CHECK(section.torsion_factor() ==
+          doctest::Approx(pi * std::pow(3e-4, 3) / 1e-3 / (pi * 3e-4 * 1e-3 / 4.0)).epsilon(1e-12));
+    CHECK(scene::circular(0.02).torsion_factor() == doctest::Approx(1.0));
+}
+
+TEST_CASE("macro-fibres have the area of the fibres they stand for, and the second moment of as many thin ones") {
+    // The chapter's tow: 76 fibres of 40.2 um by 19 macro-fibres (eq. 3 and 4).
+    const double d = 0.0402;
+    const scene::CrossSection macro = scene::macro_fibre(76, d, 19);
+    CHECK(macro.radius() == doctest::Approx(d));  // sqrt(76 / 19) = 2 diameters
+    CHECK(19 * macro.area() == doctest::Approx(76 * pi * d * d / 4).epsilon(1e-14));
+    CHECK(19 * macro.second_moment_1() == doctest::Approx(76 * pi * std::pow(d, 4) / 64).epsilon(1e-14));
+    CHECK(macro.second_moment_1() == macro.second_moment_2());
+    const scene::CrossSection one = scene::macro_fibre(19, d, 19);
+    CHECK(one.radius() == doctest::Approx(0.5 * d));
+    CHECK(one.inertia_factor == 1.0);
+}
+
+TEST_CASE("sections and materials that cannot be are refused by name") {
+    CHECK(refusal([] { scene::circular(-0.02); }) == "circular.radius = -0.02, but it must be finite and > 0");
+    CHECK(refusal([] { scene::elliptical(0.02, core::unset); }) ==
+          "CrossSection.semi_axis_2 = nan, but it must be finite and > 0");
+    CHECK(refusal([] { scene::CrossSection{}.validate(); }).starts_with("CrossSection.semi_axis_1 = nan,"));
+    CHECK(refusal([] { scene::macro_fibre(19, 0.04, 20); }) ==
+          "macro_fibre.fibres = 19, but it must be >= macro_fibres = 20");
+    CHECK(refusal([] { scene::macro_fibre(19, 0.04, 0.5); }).starts_with("macro_fibre.macro_fibres = 0.5,"));
+    CHECK(refusal([] { scene::ElasticMaterial{7300.0, 0.5}.validate(); }) ==
+          "ElasticMaterial.poisson_ratio = 0.5, but it must be > -1 and < 0.5");
+    CHECK(refusal([] { scene::ElasticMaterial{-1.0, 0.3}.validate(); }).starts_with("ElasticMaterial.young_modulus = -1,"));
+    CHECK(refusal([] { scene::ElasticMaterial{1.0, core::unset}.validate(); }).starts_with("ElasticMaterial.poisson_ratio"));
+}
+
+TEST_CASE("Lame constants give back Young's modulus and Poisson's ratio") {
+    const scene::ElasticMaterial material{7300.0, 0.3};
+    const double lambda = material.lame(), mu = material.shear_modulus();
+    CHECK(mu * (3 * lambda + 2 * mu) / (lambda + mu) == doctest::Approx(7300.0).epsilon(1e-14));
+    CHECK(lambda / (2 * (lambda + mu)) == doctest::Approx(0.3).epsilon(1e-14));
+}
