@@ -57,10 +57,9 @@ public:
                 if (directions.eigenvalues()[k] < 0.5) continue;
                 const Vec3 direction = directions.eigenvectors().col(k);
                 Vec3 fresh = free * direction;  // what earlier holds leave of it
-                const double size = fresh.norm();
-                if (size < 1e-8) continue;
-                fresh /= size;
-                target.back() += fresh * ((direction.dot(goal) - direction.dot(target.back())) / size);
+                if (fresh.norm() < 1e-8) continue;
+                fresh = (free * fresh.normalized()).normalized();  // again: cancellation may have left digits only
+                target.back() += fresh * (direction.dot(goal - target.back()) / direction.dot(fresh));
                 free -= fresh * fresh.transpose();
             }
         }
