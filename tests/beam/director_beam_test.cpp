@@ -84,9 +84,8 @@ TEST_CASE_TEMPLATE("bending and twist meet the stiffness of the rod", B, FIBRANT
     const typename B::Rest ellipse = B{}.rest(scene::elliptical(a, b), material, at_rest);
     const double G = young / (2.0 * (1.0 + poisson));
     // The motions are exact in the element, so only round-off is left. The full law bends 1.346 times too stiffly.
-    const double factor = B::options.law == ElasticLaw::split
-                              ? 1.0
-                              : (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+    const double factor =
+        B::options.law == ElasticLaw::split ? 1.0 : (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
     CHECK(resistance<B>(round, at_rest, bending) ==
           doctest::Approx(factor * young * pi * std::pow(a, 4) / 4.0 * length).epsilon(1e-12));
     CHECK(resistance<B>(ellipse, at_rest, bending) ==
@@ -196,8 +195,8 @@ TEST_CASE("degenerate elements and wrong parameters are refused by name") {
     y = good;
     for (int I = 0; I < 3; ++I) y.segment<3>(9 * I + 6) = y.segment<3>(9 * I + 3);
     refused(y, "det(g_1, g_2, x_0')");
-    CHECK_THROWS_WITH_AS(B{{.shear_factor = 0.0}},
-                         "DirectorBeam.shear_factor = 0, but it must be finite and > 0", std::invalid_argument);
+    CHECK_THROWS_WITH_AS(B{{.shear_factor = 0.0}}, "DirectorBeam.shear_factor = 0, but it must be finite and > 0",
+                         std::invalid_argument);
     CHECK_THROWS_AS(beam.rest(section, scene::ElasticMaterial{}, good), std::invalid_argument);
     CHECK_THROWS_AS(beam.rest(scene::CrossSection{}, material, good), std::invalid_argument);
 }

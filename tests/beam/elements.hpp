@@ -17,20 +17,20 @@ using beam::SectionSampling;
 template <int Nodes, ElasticLaw Law, SectionSampling Sampling, QuadraticStrain Quadratic>
 using Variant = DirectorBeam<Nodes, DirectorBeamOptions{Law, Sampling, Quadratic}>;
 
-#define FIBRANT_VARIANTS_OF(nodes, law)                                                    \
-    Variant<nodes, law, SectionSampling::nodal, QuadraticStrain::none>,                    \
-        Variant<nodes, law, SectionSampling::nodal, QuadraticStrain::mean>,                \
-        Variant<nodes, law, SectionSampling::nodal, QuadraticStrain::complete>,            \
-        Variant<nodes, law, SectionSampling::gauss, QuadraticStrain::none>,                \
-        Variant<nodes, law, SectionSampling::gauss, QuadraticStrain::mean>,                \
+#define FIBRANT_VARIANTS_OF(nodes, law)                                         \
+    Variant<nodes, law, SectionSampling::nodal, QuadraticStrain::none>,         \
+        Variant<nodes, law, SectionSampling::nodal, QuadraticStrain::mean>,     \
+        Variant<nodes, law, SectionSampling::nodal, QuadraticStrain::complete>, \
+        Variant<nodes, law, SectionSampling::gauss, QuadraticStrain::none>,     \
+        Variant<nodes, law, SectionSampling::gauss, QuadraticStrain::mean>,     \
         Variant<nodes, law, SectionSampling::gauss, QuadraticStrain::complete>
 /// All 24.
-#define FIBRANT_ALL_VARIANTS                                                                             \
-    FIBRANT_VARIANTS_OF(2, ElasticLaw::split), FIBRANT_VARIANTS_OF(2, ElasticLaw::full),                 \
+#define FIBRANT_ALL_VARIANTS                                                             \
+    FIBRANT_VARIANTS_OF(2, ElasticLaw::split), FIBRANT_VARIANTS_OF(2, ElasticLaw::full), \
         FIBRANT_VARIANTS_OF(3, ElasticLaw::split), FIBRANT_VARIANTS_OF(3, ElasticLaw::full)
 
 template <class B>
-inline constexpr int unknowns = B::nodes * B::dofs_per_node;
+inline constexpr int unknowns = B::nodes* B::dofs_per_node;
 
 /// Straight along z with directors x, y.
 template <class B>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cantilever rolled up by a moment at its end. Reference: the closed form of the director rod, uniform along its length.
+// Cantilever rolled up by a moment at its end. Reference: the closed form of the director rod, uniform along its
+// length.
 #include <beam/round_rod.hpp>
 
 using namespace fibrant;
@@ -33,9 +34,33 @@ struct Case {
     Rolled expected;  ///< results.director of end_moment.json
 };
 const Case cases[] = {
-    {0.25, {1.2796766482683, 1.2793293778327, 0.37482968350853, 0.90474526540749, 1.5710677372018, 0.99995680835633, 1.0000370199241, {}}},
-    {0.5, {1.2784983165705, -0.00138961314202, 0.63994472045916, 0.63924953588138, 3.1437664735734, 0.99982708767464, 1.0001481867712, {}}},
-    {1.0, {4.865978569204e-05, 0.0055697776239427, 0.63757367934751, -0.0027849950877388, 6.3006576556481, 0.999306003096, 1.0005944713774, {}}},
+    {0.25,
+     {1.2796766482683,
+      1.2793293778327,
+      0.37482968350853,
+      0.90474526540749,
+      1.5710677372018,
+      0.99995680835633,
+      1.0000370199241,
+      {}}},
+    {0.5,
+     {1.2784983165705,
+      -0.00138961314202,
+      0.63994472045916,
+      0.63924953588138,
+      3.1437664735734,
+      0.99982708767464,
+      1.0001481867712,
+      {}}},
+    {1.0,
+     {4.865978569204e-05,
+      0.0055697776239427,
+      0.63757367934751,
+      -0.0027849950877388,
+      6.3006576556481,
+      0.999306003096,
+      1.0005944713774,
+      {}}},
 };
 
 }  // namespace
@@ -50,8 +75,7 @@ TEST_CASE("an end moment rolls a fibre up into the uniform curve of the director
         for (const int n : {16, 32, 64, 128}) {
             finest = roll(rod, c.turns, n);
             REQUIRE(finest.solution.converged);
-            error.push_back(
-                std::hypot(finest.tip_x - c.expected.tip_x, finest.tip_z - c.expected.tip_z) / rod.length);
+            error.push_back(std::hypot(finest.tip_x - c.expected.tip_x, finest.tip_z - c.expected.tip_z) / rod.length);
         }
         char name[64];
         std::snprintf(name, sizeof name, "%g turns", c.turns);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rods clamped at both ends, stretched, then pushed sideways in the middle. Reference: the boundary-value problem of the
-// same director rod.
+// Rods clamped at both ends, stretched, then pushed sideways in the middle. Reference: the boundary-value problem of
+// the same director rod.
 #include <beam/round_rod.hpp>
 
 using namespace fibrant;

@@ -22,9 +22,7 @@ double deflection(const RoundRod& rod, int elements) {
     REQUIRE(mesh.solve(1e-12).converged);
     return mesh.position(n)[0] / force;
 }
-double timoshenko(const RoundRod& rod) {
-    return std::pow(rod.length, 3) / (3.0 * rod.EI()) + rod.length / rod.GA();
-}
+double timoshenko(const RoundRod& rod) { return std::pow(rod.length, 3) / (3.0 * rod.EI()) + rod.length / rod.GA(); }
 
 }  // namespace
 

@@ -260,8 +260,8 @@ private:
             if (!(size < 1e3)) return {false, iteration, 0};
             if (independent_stresses) {
                 for (int e = 0; e < elements(); ++e) {
-                    geometric[core::at(e)] = beam_.predicted_stresses(rest_[core::at(e)], of_element(value_, e),
-                                                                      of_element(step, e));
+                    geometric[core::at(e)] =
+                        beam_.predicted_stresses(rest_[core::at(e)], of_element(value_, e), of_element(step, e));
                 }
             }
             value_ += step;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file What a beam element owes: energy, force and tangent from nodal 3-vectors, with stresses that may be independent.
+/// @file What a beam element owes: energy, force and tangent, with stresses that Newton may treat as independent.
 
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/types.hpp>
@@ -29,10 +29,10 @@ using ElementWeights = std::array<double, static_cast<std::size_t>(B::nodes * B:
 /// An element of a fibre: consecutive nodes, one shared by neighbours.
 ///
 /// `Rest` is what an element keeps of its rest shape, section and material; `Stresses` are the conjugates of all its
-/// strains at all its points, so that Newton may treat them as independent (METHOD of mixed integration points).
-/// Owed beyond the syntax, and checked by tests/beam/beam_element_contract.hpp: force and tangent are derivatives of the
-/// energy, a rigid motion changes nothing, the rest shape is free of stress, the predicted stresses are the
-/// stresses to first order, and what `without_compression` leaves makes the geometric stiffness positive semidefinite.
+/// strains at all its points, which Newton may treat as independent unknowns (mixed integration points). Owed beyond the
+/// syntax, and checked by tests/beam/beam_element_contract.hpp: force and tangent are derivatives of the energy, a rigid
+/// motion changes nothing, the rest shape is free of stress, the predicted stresses are the stresses to first order, and
+/// what `without_compression` leaves makes the geometric stiffness positive semidefinite.
 template <class B>
 concept BeamElement = core::Policy<B> && requires {
     { B::nodes } -> std::convertible_to<int>;

@@ -36,7 +36,9 @@ inline constexpr int e33 = 3, e13 = 4, e23 = 5;                   ///< E_33, 2 E
 inline constexpr int b1 = 6, b2 = 7;                              ///< a . g_a': bending [1 / length]
 inline constexpr int c11 = 8, c12 = 9, c21 = 10, c22 = 11;        ///< g_a . g_b': torsion and gradients [1 / length]
 inline constexpr int q11 = 12, q12 = 13, q22 = 14;                ///< g_a' . g_b' (halved if a = b) [1 / length^2]
-inline constexpr int count(QuadraticStrain quadratic) noexcept { return quadratic == QuadraticStrain::complete ? 15 : 12; }
+inline constexpr int count(QuadraticStrain quadratic) noexcept {
+    return quadratic == QuadraticStrain::complete ? 15 : 12;
+}
 }  // namespace strain
 
 /// Integrals over a section. Any shape with axes of symmetry along g_1 and g_2; the fourth moments are an ellipse's.
@@ -66,8 +68,8 @@ inline SectionConstants section_constants(const scene::CrossSection& section) {
 ///        + E/2 (I1 b1^2 + I2 b2^2) + mu/2 [I1 (c11^2 + c21^2) + I2 (c12^2 + c22^2)].
 /// full:  lam + 2 mu stands for E.
 /// In (c12, c21) the twist rate t = (c21 - c12)/2 counts as sqrt(torsion_factor) t, which keeps the law positive
-/// definite and gives torsion_factor mu (I1 + I2) in pure twist. In `complete` the deviation of the quadratic strain from
-/// its mean obeys the modulus of bending, with fourth moments m^2/A (11, 22), -m1 m2/(3A) (11-22) and 2 m1 m2/(3A) (12).
+/// definite and gives torsion_factor mu (I1 + I2) in pure twist. In `complete` the deviation of the quadratic strain
+/// from its mean obeys the modulus of bending; its moments are I^2/A (11, 22), -I1 I2/(3A) (11-22), 2 I1 I2/(3A) (12).
 template <ElasticLaw Law, QuadraticStrain Quadratic>
 class SectionLaw {
 public:
