@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "scenes.hpp"
+
+#include <fibrant/proximity/brute_search.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace fibrant;
+using namespace fibrant::proximity;
+using fibrant::test::FibreSet;
+
+namespace {
+
+std::vector<Vec3> straight(const Vec3& from, const Vec3& to, int segments) {
+    std::vector<Vec3> line;
+    for (int k = 0; k <= segments; ++k) line.push_back(from + (to - from) * (static_cast<double>(k) / segments));
+    return line;
+}
+
+std::vector<ProximityZone> zones_of(const FibreSet& set) { return BruteSearch{}.find(set.centrelines(), set.reach); }
+
+}  // namespace
+
+TEST_CASE("two fibres that cross make one zone, which ends where their axes part by the threshold") {
+    for (const int segments : {1, 2, 7, 40, 101}) {
+        CAPTURE(segments);
+        FibreSet set{.name = "crossing", .reach = 0.1};
+        set.add(straight({-1, 0, 0}, {1, 0, 0}, segments), 0.1);
+        set.add(straight({0.3, -1, 0.2}, {0.3, 1, 0.2}, 5), 0.1);
+        const auto zones = zones_of(set);
+        REQUIRE(zones.size() == 1);
+        const ProximityZone& zone = zones[0];
+        CHECK(zone.distance == doctest::Approx(0.2));
+        CHECK(2.0 * zone.closest_i / segments - 1.0 == doctest::Approx(0.3));
+        CHECK(2.0 * zone.closest_j / 5 - 1.0 == doctest::Approx(0.0));
+        // Points of the first axis within 0.3 of the second, which is 0.2 above: known from outside, to 1/1024 segment.
+        const double half = std::sqrt(0.3 * 0.3 - 0.2 * 0.2), known = 2.0 / segments / 1024.0;
+        const double a = 2.0 * zone.a_i / segments - 1.0, b = 2.0 * zone.b_i / segments - 1.0;
+        CHECK(a <= 0.3 - half + 1e-12);
+        CHECK(a >= 0.3 - half - known);
+        CHECK(b >= 0.3 + half - 1e-12);
+        CHECK(b <= 0.3 + half + known);
+    }
+}
+
+TEST_CASE("fibres side by side make one zone whose ends face each other, whichever way they run") {
+    FibreSet set{.name = "parallel", .reach = 0.01};
+    set.add(straight({0, 0, 0}, {2, 0, 0}, 20), 0.1);
+    set.add(straight({1, 0.2, 0}, {4, 0.2, 0}, 30), 0.1);
+    const auto along = zones_of(set);
+    REQUIRE(along.size() == 1);
+    // The second begins over the middle of the first: faced from 1 - sqrt(0.21^2 - 0.2^2) on.
+    CHECK(along[0].a_i == doctest::Approx(10.0 - 0.640312 / 1.0).epsilon(0.001));
+    CHECK(along[0].b_i == 20.0);
+    CHECK(along[0].a_j == 0.0);
+    CHECK(along[0].b_j == doctest::Approx(10.0 + 0.640312).epsilon(0.001));
+    std::ranges::reverse(set.points[1]);
+    const auto against = zones_of(set);
+    REQUIRE(against.size() == 1);
+    CHECK(against[0].a_i == along[0].a_i);
+    CHECK(against[0].b_i == along[0].b_i);
+    CHECK(against[0].a_j == 30.0);
+    CHECK(against[0].b_j == doctest::Approx(30.0 - along[0].b_j).epsilon(1e-3));
+    CHECK(against[0].b_j < against[0].a_j);
+}
+
+TEST_CASE("a fibre that turns back along another makes one zone for each way") {
+    FibreSet set{.name = "hairpin over a straight fibre", .reach = 0.05};
+    set.add(straight({0, 0, 0}, {3, 0, 0}, 30), 0.1);
+    std::vector<Vec3> hairpin = straight({0, 0.05, 0.2}, {2, 0.05, 0.2}, 20);
+    const auto back = straight({2, -0.05, 0.2}, {0, -0.05, 0.2}, 20);
+    hairpin.insert(hairpin.end(), back.begin(), back.end());
+    set.add(hairpin, 0.1);
+    const auto zones = zones_of(set);
+    REQUIRE(zones.size() == 2);
+    // One of each sense, each over the whole limb, and the zones share no pair: the turn stands between them.
+    CHECK((zones[0].a_j < zones[0].b_j) != (zones[1].a_j < zones[1].b_j));
+    for (const auto& zone : zones) {
+        CHECK(zone.a_i == 0.0);
+        CHECK(zone.b_i == doctest::Approx(20.0).epsilon(0.1));
+        CHECK(std::min(zone.a_j, zone.b_j) == doctest::Approx(zone.a_j < zone.b_j ? 0.0 : 20.5).epsilon(0.05));
+    }
+}
+
+TEST_CASE("a right crossing stays one zone although the sense of its fibres is noise") {
+    std::mt19937 random(3);
+    for (int trial = 0; trial < 50; ++trial) {
+        FibreSet set{.name = "wavy crossing", .reach = 0.2};
+        std::vector<Vec3> a = straight({-1, 0, 0}, {1, 0, 0}, 60), b = straight({0, -1, 0.2}, {0, 1, 0.2}, 60);
+        for (Vec3& x : a) x += 0.004 * test::random_vector(random);
+        for (Vec3& x : b) x += 0.004 * test::random_vector(random);
+        set.add(a, 0.1);
+        set.add(b, 0.1);
+        CHECK(zones_of(set).size() == 1);
+    }
+}
+
+TEST_CASE("fibres that meet twice make two zones") {
+    FibreSet set{.name = "a wave over a straight fibre", .reach = 0.02};
+    std::vector<Vec3> wave;
+    for (int k = 0; k <= 80; ++k) wave.push_back({0.05 * k, 0.0, 0.6 - 0.4 * std::cos(2.0 * std::numbers::pi * (k - 20) / 40.0)});
+    set.add(straight({0, 0, 0}, {4, 0, 0}, 80), 0.1);
+    set.add(wave, 0.1);
+    const auto zones = zones_of(set);
+    REQUIRE(zones.size() == 2);
+    CHECK(zones[0].closest_j == doctest::Approx(20.0));
+    CHECK(zones[1].closest_j == doctest::Approx(60.0));
+    CHECK(zones[0].distance == doctest::Approx(0.2));
+    CHECK(zones[0].b_i < zones[1].a_i);
+}
+
+TEST_CASE("every close pair has its closest points in a zone of its two fibres, and every zone has a pair") {
+    for (const FibreSet& set : test::search_cases()) {
+        CAPTURE(set.name);
+        const auto lines = set.centrelines();
+        GridSearch search;
+        const auto pairs = search.pairs(lines, set.reach);
+        const auto zones = search.find(lines, set.reach);
+        const detail::SegmentTable table(lines, set.reach);
+        std::vector<int> pairs_of(zones.size(), 0);
+        int outside = 0;
+        for (const SegmentPair& pair : pairs) {
+            const auto i = table.record(pair.i), j = table.record(pair.j);
+            const SegmentDistance closest = detail::segment_distance(i.start - j.start, i.chord, j.chord);
+            const double p = pair.i - table.first(table.fibre(pair.i)) + closest.s;
+            const double q = pair.j - table.first(table.fibre(pair.j)) + closest.t;
+            bool inside = false;
+            for (std::size_t z = 0; z < zones.size(); ++z) {
+                const ProximityZone& zone = zones[z];
+                if (zone.fibre_i != table.fibre(pair.i) || zone.fibre_j != table.fibre(pair.j)) continue;
+                if (p < zone.a_i || p > zone.b_i || q < std::min(zone.a_j, zone.b_j) || q > std::max(zone.a_j, zone.b_j)) continue;
+                inside = true;
+                ++pairs_of[z];
+            }
+            outside += inside ? 0 : 1;
+        }
+        CHECK(outside == 0);
+        CHECK(std::ranges::count(pairs_of, 0) == 0);
+    }
+}
