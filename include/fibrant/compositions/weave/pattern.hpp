@@ -5,6 +5,7 @@
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/types.hpp>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -78,16 +79,17 @@ public:
     std::string loose_tows(Index warp_tows, Index weft_tows) const {
         for (const bool down : {true, false}) {
             const std::vector<bool> reached = reachable(warp_tows, weft_tows, down);
+            const auto inside = std::count(reached.begin(), reached.end(), true);
+            if (inside == warp_tows + weft_tows) continue;
+            // Tows that are reached downwards lie below all others, and the reverse; the fewer of the two sets is named.
+            const bool named = 2 * inside <= warp_tows + weft_tows;
             std::string names;
-            bool all = true;
             for (Index k = 0; k < warp_tows + weft_tows; ++k) {
-                all = all && reached[core::at(k)];
-                // Everything that can be reached downwards lies below all the rest, and the reverse.
-                if (!reached[core::at(k)]) continue;
+                if (reached[core::at(k)] != named) continue;
                 names += (names.empty() ? "" : ", ") +
                          (k < warp_tows ? "warp " + std::to_string(k) : "weft " + std::to_string(k - warp_tows));
             }
-            if (!all) return names + (down ? " (below)" : " (above)");
+            return names + (named == down ? " (below)" : " (above)");
         }
         return {};
     }

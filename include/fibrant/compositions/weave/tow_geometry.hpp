@@ -6,7 +6,8 @@
 #include <fibrant/compositions/weave/nodal_curve.hpp>
 #include <fibrant/observe/snapshot.hpp>
 
-#include <optional>
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -49,66 +50,75 @@ struct PlanCrossing {
 
 namespace detail {
 
-/// Newton's method from a first guess; nothing if it leaves the curves or does not converge.
-inline std::optional<PlanCrossing> refined_crossing(const NodalCurve& warp, const NodalCurve& weft,
-                                                    PlanCrossing guess) {
-    const double size = warp.tangent(guess.warp).norm() + weft.tangent(guess.weft).norm();
-    for (int iteration = 0; iteration < 30; ++iteration) {
-        const Vec3 d = warp.position(guess.warp) - weft.position(guess.weft);
-        const Vec3 a = warp.tangent(guess.warp), b = weft.tangent(guess.weft);
-        const double determinant = -a.x() * b.y() + b.x() * a.y();
-        if (std::hypot(d.x(), d.y()) <= 1e-12 * size) return guess;
-        if (determinant == 0.0) return std::nullopt;
-        const double step_a = (d.x() * b.y() - b.x() * d.y()) / determinant;
-        const double step_b = (-a.x() * d.y() + a.y() * d.x()) / determinant;
-        // A step over more than an element is cut: the curve there is another parabola.
-        const double cut = std::min(1.0, 2.0 / std::max({std::abs(step_a), std::abs(step_b), 1e-300}));
-        const double t = std::clamp(guess.warp + cut * step_a, 0.0, warp.end());
-        const double u = std::clamp(guess.weft + cut * step_b, 0.0, weft.end());
-        if (t == guess.warp && u == guess.weft) break;
-        guess = {t, u};
+/// A curve whose y grows along it, as a function of y.
+class CurveOverY {
+public:
+    explicit CurveOverY(const NodalCurve& curve) : curve_{&curve} {}
+
+    /// Parameter at which y is reached, at the nearest end if it is not. Quick where y is near that of the last call.
+    double parameter(double y) noexcept {
+        const auto nodes = curve_->nodes();
+        while (first_ + 3 < nodes.size() && y > nodes[first_ + 2].y()) first_ += 2;
+        while (first_ > 0 && y < nodes[first_].y()) first_ -= 2;
+        const double from = nodes[first_].y(), middle = nodes[first_ + 1].y(), to = nodes[first_ + 2].y();
+        // y = middle + p s + q s^2 in the element, s in [-1, 1]; the root that is right for p > 0 also where q is tiny.
+        const double p = 0.5 * (to - from), q = 0.5 * (from + to) - middle, c = middle - y;
+        const double s = -2.0 * c / (p + std::sqrt(std::max(0.0, p * p - 4.0 * q * c)));
+        return static_cast<double>(first_) + 1.0 + (s >= -1.0 ? std::min(s, 1.0) : -1.0);
     }
-    const Vec3 d = warp.position(guess.warp) - weft.position(guess.weft);
-    if (std::hypot(d.x(), d.y()) <= 1e-9 * size) return guess;
-    return std::nullopt;
-}
+
+private:
+    const NodalCurve* curve_;
+    std::size_t first_ = 0;
+};
 
 }  // namespace detail
 
-/// Calls visit(const PlanCrossing&) at every crossing in plan of a warp curve with a weft curve that nowhere turns back
-/// in y. Time linear in the nodes.
+/// Calls visit(const PlanCrossing&) at every crossing in plan of a warp curve with a weft curve along which y grows.
+///
+/// At the y of a point of the warp, the weft lies before or behind it in x: where that changes between two nodes, regula
+/// falsi (Illinois) finds the crossing. Time linear in the nodes.
 /// @return number of crossings found; 0 for two fibres of a fabric tells that one slipped out of it
 template <class Visit>
 Index for_each_plan_crossing(const NodalCurve& warp, const NodalCurve& weft, const Visit& visit) {
-    const auto a = warp.nodes(), b = weft.nodes();
-    const auto last = core::count(b) - 2;
-    Index piece = 0;
-    // Distance in x from the chords of the weft, at the y of a warp node.
-    const auto beside = [&](std::size_t node, double& u) {
-        const double y = a[node].y();
-        while (piece < last && y > b[core::at(piece + 1)].y()) ++piece;
-        while (piece > 0 && y < b[core::at(piece)].y()) --piece;
-        const Vec3 &from = b[core::at(piece)], &to = b[core::at(piece + 1)];
-        const double share = std::clamp((y - from.y()) / (to.y() - from.y()), 0.0, 1.0);
-        u = static_cast<double>(piece) + share;
-        return a[node].x() - (1.0 - share) * from.x() - share * to.x();
+    detail::CurveOverY over_y(weft);
+    double u = 0.0;
+    const auto beside = [&](double t) {
+        const Vec3 x = warp.position(t);
+        u = over_y.parameter(x.y());
+        return x.x() - weft.position(u).x();
     };
     Index found = 0;
-    double u_before = 0.0, u = 0.0;
-    double before = beside(0, u_before);
-    for (std::size_t node = 1; node < a.size(); ++node) {
-        const double now = beside(node, u);
+    double before = beside(0.0);
+    for (Index node = 1; node < core::count(warp.nodes()); ++node) {
+        const double now = beside(static_cast<double>(node));
         if ((before < 0.0) != (now < 0.0)) {
-            const double share = before / (before - now);
-            const auto crossing = detail::refined_crossing(
-                warp, weft, {static_cast<double>(node - 1) + share, u_before + share * (u - u_before)});
-            if (crossing) {
-                visit(*crossing);
+            double low = static_cast<double>(node - 1), high = static_cast<double>(node), at_low = before, at_high = now;
+            double t = high, value = now;
+            int kept = 0;  // the end that the last step kept
+            for (int iteration = 0; iteration < 100 && high - low > 1e-13 && value != 0.0; ++iteration) {
+                t = (low * at_high - high * at_low) / (at_high - at_low);
+                value = beside(t);
+                if ((value < 0.0) == (at_low < 0.0)) {
+                    low = t, at_low = value;
+                    if (kept == 1) at_high *= 0.5;
+                    kept = 1;
+                } else {
+                    high = t, at_high = value;
+                    if (kept == -1) at_low *= 0.5;
+                    kept = -1;
+                }
+                if (std::abs(value) <= 1e-14 * warp.tangent(t).norm()) break;
+            }
+            beside(t);
+            // An end of the weft that was passed changes side too, but is not met.
+            const Vec3 apart = warp.position(t) - weft.position(u);
+            if (std::hypot(apart.x(), apart.y()) <= 1e-9 * warp.tangent(t).norm()) {
+                visit(PlanCrossing{t, u});
                 ++found;
             }
         }
         before = now;
-        u_before = u;
     }
     return found;
 }

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "compositions/weave/woven_snapshot.hpp"
+#include "refusal.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <string>
+
+using namespace fibrant;
+using namespace fibrant::compositions::weave;
+
+namespace {
+
+/// What a fabric that was changed in one field says.
+template <class Change>
+std::string refused(const Change& change) {
+    FabricParameters fabric = small_fabric(4, 19);
+    change(fabric);
+    return test::refusal([&] { fabric.validate(); });
+}
+
+}  // namespace
+
+TEST_CASE("the fabric of the chapter's tables is accepted, with its sizes") {
+    FabricParameters fabric = small_fabric(4, 76);
+    fabric.warp = {76, 0.0201, 0.20, {7300.0, 0.3}};
+    fabric.weft = fabric.warp;
+    CHECK_NOTHROW(fabric.validate());
+    CHECK(fabric.fibres() == 608);
+    CHECK(fabric.fibres() * fabric.nodes_per_fibre() == 39520);  // table 15.1
+    CHECK(fabric.fibre_length(Family::warp) == doctest::Approx(4.4));
+    // Table 15.2 gives the tow's area with three digits, and r with three.
+    CHECK(static_cast<double>(fabric.warp.fibres) * fabric.warp.section().area() == doctest::Approx(0.0967).epsilon(5e-3));
+}
+
+TEST_CASE("macro-fibres of the two scenes stand for the same real fibres") {
+    const scene::CrossSection coarse = scene::macro_fibre(380, 0.018, 19), fine = scene::macro_fibre(380, 0.018, 76);
+    CHECK(19.0 * coarse.area() == doctest::Approx(76.0 * fine.area()));
+    CHECK(19.0 * coarse.second_moment_1() == doctest::Approx(76.0 * fine.second_moment_1()));
+    CHECK(fine.radius() == doctest::Approx(0.0201).epsilon(2e-3));  // table 15.2, three digits
+    CHECK(fine.inertia_factor == doctest::Approx(0.20));            // table 15.3
+}
+
+TEST_CASE("a fibre's number and its place in the fabric say the same") {
+    FabricParameters fabric = small_fabric(3, 5);
+    fabric.weft_tows = 2;
+    fabric.weft.fibres = 7;
+    CHECK(fabric.fibres() == 29);
+    for (Index number = 0; number < fabric.fibres(); ++number) {
+        const FibrePlace place = fabric.place(number);
+        CHECK(fabric.fibre(place.family, place.tow, place.fibre) == number);
+    }
+    CHECK(fabric.place(15).family == Family::weft);
+    CHECK(fabric.tow_position(Family::warp, 0) == doctest::Approx(-0.88));
+    CHECK(fabric.tow_position(Family::weft, 1) == doctest::Approx(0.44));
+}
+
+TEST_CASE("every field that cannot be is refused by field, value and bound") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    using F = FabricParameters;
+    CHECK(refused([](F& f) { f.warp_tows = 0; }) == "FabricParameters.warp_tows = 0, but it must be >= 1");
+    CHECK(refused([](F& f) { f.weft_tows = -1; }) == "FabricParameters.weft_tows = -1, but it must be >= 1");
+    CHECK(refused([](F& f) { f.warp.fibres = 0; }) == "FabricParameters.warp.fibres = 0, but it must be >= 1");
+    CHECK(refused([](F& f) { f.weft.fibre_radius = -0.04; }) ==
+          "FabricParameters.weft.fibre_radius = -0.04, but it must be finite and > 0");
+    CHECK(refused([&](F& f) { f.warp.fibre_radius = nan; }) ==
+          "FabricParameters.warp.fibre_radius = nan, but it must be finite and > 0");
+    CHECK(refused([](F& f) { f.warp.inertia_factor = 0.0; }) ==
+          "FabricParameters.warp.inertia_factor = 0, but it must be finite and > 0");
+    CHECK(refused([&](F& f) { f.weft.material.young_modulus = nan; }) ==
+          "FabricParameters.weft.material.young_modulus = nan, but it must be finite and > 0");
+    CHECK(refused([](F& f) { f.warp.material.poisson_ratio = 0.5; }) ==
+          "FabricParameters.warp.material.poisson_ratio = 0.5, but it must be > -1 and < 0.5");
+    CHECK(refused([](F& f) { f.warp.aspect = 0.5; }) == "FabricParameters.warp.aspect = 0.5, but it must be in [1, 20]");
+    CHECK(refused([](F& f) { f.warp.packing_gap = -1e-3; }) ==
+          "FabricParameters.warp.packing_gap = -0.001, but it must be in [0, 1]");
+    CHECK(refused([&](F& f) { f.warp_spacing = nan; }) ==
+          "FabricParameters.warp_spacing = nan, but it must be finite and > 0");
+    CHECK(refused([](F& f) { f.weft_spacing = 0.0; }) ==
+          "FabricParameters.weft_spacing = 0, but it must be finite and > 0");
+    CHECK(refused([&](F& f) { f.overhang = nan; }) == "FabricParameters.overhang = nan, but it must be finite and > 0");
+    CHECK(refused([](F& f) { f.elements = 0; }) == "FabricParameters.elements = 0, but it must be >= 1");
+}
+
+TEST_CASE("tows that overlap their neighbours, ends that miss a tow and elements shorter than a diameter are refused") {
+    using F = FabricParameters;
+    // 19 fibres at aspect 2.5 lie in rows of 6, 7, 6: 7 diameters and 6 gaps wide.
+    const double width = 0.08 * (7.0 + 6.0 * 1e-3);
+    CHECK(refused([&](F& f) { f.warp_spacing = width + 1e-6; }).empty());
+    CHECK(refused([](F& f) { f.warp_spacing = 0.56; }).find("FabricParameters.warp_spacing = 0.56, but it must be >= width") == 0);
+    CHECK(refused([](F& f) { f.overhang = 0.28; }).find("FabricParameters.overhang = 0.28, but it must be > half the width") == 0);
+    CHECK(refused([](F& f) { f.elements = 55; }).empty());  // 4.4 / 55 = 0.08, a diameter
+    CHECK(refused([](F& f) { f.elements = 56; }).find("FabricParameters.elements = 56, but it must be <= 55") == 0);
+    CHECK(refused([](F& f) { f.warp_tows = 1; }).find("Pattern = plain on 1 warp and 4 weft tows") == 0);
+}
+
+TEST_CASE("a programme of settling that cannot be is refused") {
+    using S = SettleParameters;
+    const auto refused_settling = [](auto&& change) {
+        S settle;
+        change(settle);
+        return test::refusal([&] { settle.validate(); });
+    };
+    CHECK(refused_settling([](S&) {}).empty());
+    CHECK(refused_settling([](S& s) { s.tension_strain = 0.0; }) ==
+          "SettleParameters.tension_strain = 0, but it must be finite and > 0");
+    CHECK(refused_settling([](S& s) { s.final_tension_factor = 1.5; }) ==
+          "SettleParameters.final_tension_factor = 1.5, but it must be > 0 and <= 1");
+    CHECK(refused_settling([](S& s) { s.gap_limit_over_radius = core::unset; }) ==
+          "SettleParameters.gap_limit_over_radius = nan, but it must be finite and > 0");
+    CHECK(refused_settling([](S& s) { s.allowed_penetration_over_radius = 0.6; }) ==
+          "SettleParameters.allowed_penetration_over_radius = 0.6, but it must be > 0 and <= 0.5");
+    CHECK(refused_settling([](S& s) { s.release_increments = 0; }) ==
+          "SettleParameters.release_increments = 0, but it must be >= 1");
+    CHECK(refused_settling([](S& s) { s.friction_coefficient = -0.1; }) ==
+          "SettleParameters.friction_coefficient = -0.1, but it must be finite and >= 0");
+}
