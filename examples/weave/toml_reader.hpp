@@ -154,8 +154,8 @@ private:
         const std::size_t equals = text.find('='), dot = text.find('.');
         if (equals == std::string::npos || dot == std::string::npos || dot > equals || dot == 0 || dot + 1 == equals)
             fibrant::core::refuse("--set", text, "section.key=value");
-        const std::string section = text.substr(0, dot), key = text.substr(dot + 1, equals - dot - 1);
-        const std::string value = text.substr(equals + 1);
+        const std::string section = trimmed(text.substr(0, dot)), key = trimmed(text.substr(dot + 1, equals - dot - 1));
+        const std::string value = trimmed(text.substr(equals + 1));
         if (table_[section].as_table() == nullptr) table_.insert_or_assign(section, toml::table{});
         toml::table& table = *table_[section].as_table();
         try {
@@ -164,6 +164,11 @@ private:
         } catch (const toml::parse_error&) {
             table.insert_or_assign(key, value);  // a text without quotes
         }
+    }
+
+    static std::string trimmed(const std::string& text) {
+        const std::size_t first = text.find_first_not_of(' ');
+        return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
     }
 
     std::vector<std::string> sections() const {
