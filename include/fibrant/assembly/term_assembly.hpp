@@ -64,6 +64,9 @@ public:
         }
     }
 
+    /// Is it the same pattern?
+    friend bool operator==(const TermAssembly&, const TermAssembly&) = default;
+
     /// Values of A, both triangles, in the pattern of the last analyse.
     template <VisitedSystem System>
     void fill(const System& system, SparseMatrix& a) const {

@@ -8,6 +8,7 @@
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
+#include <utility>
 
 namespace fibrant::solver {
 
@@ -27,9 +28,8 @@ public:
 
     template <assembly::LinearSystem System>
     void analyse(const System& system) {
-        if constexpr (!assembly::AssembledSystem<System>) work_->terms.analyse(system);
         assemble(system);
-        work_->factor.analyzePattern(work_->a);
+        if constexpr (assembly::AssembledSystem<System>) work_->factor.analyzePattern(work_->a);
     }
 
     template <assembly::LinearSystem System>
@@ -103,7 +103,14 @@ private:
         if constexpr (assembly::AssembledSystem<System>) {
             system.assemble(work_->a);
         } else {
+            // Contact elements that come to carry force add terms; the pattern is that of the system alone, so that the
+            // bits do not depend on what was solved before.
+            assembly::TermAssembly now;
+            now.analyse(system);
+            const bool same = now == work_->terms;
+            if (!same) work_->terms = std::move(now);
             work_->terms.fill(system, work_->a);
+            if (!same) work_->factor.analyzePattern(work_->a);
         }
     }
 
