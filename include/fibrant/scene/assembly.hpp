@@ -18,9 +18,9 @@ namespace fibrant::scene {
 struct FibreSpecification {
     Vec3 from = Vec3::Constant(core::unset);  ///< centre of the first section [length]
     Vec3 to = Vec3::Constant(core::unset);    ///< centre of the last section [length]
-    Curve curve;                              ///< rest shape of a curved fibre; takes the place of from and to
-    CrossSection section;
-    ElasticMaterial material;
+    Curve curve{};                            ///< rest shape of a curved fibre; takes the place of from and to
+    CrossSection section{};
+    ElasticMaterial material{};
     Index elements = 0;                       ///< along the fibre, >= 1
     Vec3 director = Vec3::Zero();             ///< g_1 at the first end, less its axial part; zero: any
     Index group = -1;                         ///< from Assembly::add_group, or -1

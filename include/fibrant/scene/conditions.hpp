@@ -31,21 +31,21 @@ enum class Axes { space, section };
 /// amplitude of the channel. A rotation of a director turns the direction; of a position, turns it about the origin of
 /// `pivot`.
 struct Hold {
-    Station at;
+    Station at{};
     NodeVector vector = NodeVector::position;
     Mat3 directions = Mat3::Identity();  ///< symmetric projector on what is held
     Axes axes = Axes::space;             ///< of `directions`
     std::string channel = "motion";
     Vec3 displacement = Vec3::Zero();    ///< at amplitude 1 [length], or [1] for a director
-    std::function<Vec3(double)> path;    ///< displacement at amplitude a, where it is not proportional
-    std::function<Mat3(double)> rotation;  ///< at amplitude a; none: identity
+    std::function<Vec3(double)> path{};  ///< displacement at amplitude a, where it is not proportional
+    std::function<Mat3(double)> rotation{};  ///< at amplitude a; none: identity
     Vec3 pivot = Vec3::Zero();           ///< of the rotation of a position [length]
 };
 
 /// A force that keeps its direction and size. On a director it is a force at the material point one length unit off the
 /// axis, so a force Q at xi_1 = r acts as Q on the position and r Q on g_1.
 struct DeadForce {
-    Station at;
+    Station at{};
     NodeVector vector = NodeVector::position;
     Vec3 force = Vec3::Zero();  ///< at amplitude 1 [force], [force * length] on a director
     std::string channel = "load";
@@ -54,7 +54,7 @@ struct DeadForce {
 /// A moment about a fixed axis, applied to a section through one director: force M x g / |g|^2 (METHOD 1.3). The moment
 /// must stay perpendicular to that director; the tangent is symmetrised, exact while the director turns in a plane.
 struct Moment {
-    Station at;
+    Station at{};
     NodeVector director = NodeVector::director_1;
     Vec3 moment = Vec3::Zero();  ///< at amplitude 1 [force * length]
     std::string channel = "load";

@@ -14,7 +14,7 @@ namespace fibrant::simulation {
 
 /// Takes the amplitude of a channel to a value over a stage.
 struct Ramp {
-    std::string channel;
+    std::string channel{};
     double to = 1.0;         ///< amplitude at the end of the stage
     bool geometric = false;  ///< by equal factors instead of equal steps; both ends must be > 0
 };
@@ -24,14 +24,14 @@ template <Model M>
 struct Stage {
     std::string name = "loading";
     Index increments = 10;                      ///< that its ramps take when none is cut, >= 1
-    std::vector<Ramp> ramps;                    ///< channels that it moves; none, and no stages: all to 1
-    std::optional<double> gap_limit;            ///< of a law that limits the gap [length]; scaled down when cut
+    std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
+    std::optional<double> gap_limit{};          ///< of a law that limits the gap [length]; scaled down when cut
     bool forced_orders = false;                 ///< keep the scene's forced orders
     double looseness = 1.0;                     ///< on the tolerances of contact and normal passes, >= 1
-    std::optional<typename M::Normal> normal;
-    std::optional<typename M::Friction> friction;
+    std::optional<typename M::Normal> normal{};
+    std::optional<typename M::Friction> friction{};
     /// Once the ramps are over: goes on, all else constant, until this is true. None: ends with the ramps.
-    std::function<bool(const IncrementReport&)> until;
+    std::function<bool(const IncrementReport&)> until{};
     Index most_increments = 100;                ///< of the whole stage, beyond which the run stops unconverged
 };
 
@@ -39,11 +39,11 @@ struct Stage {
 template <Model M>
 struct Loading {
     Index increments = 10;
-    std::vector<Stage<M>> stages;
+    std::vector<Stage<M>> stages{};
     double smallest_fraction = 1.0 / 256.0;  ///< of an increment, below which the run stops
     double growth = 1.5;                     ///< of the fraction after two increments without a cut
     Index most_rejected = 200;               ///< attempts in a whole run
-    std::string checkpoint;                  ///< file written after each accepted increment; empty: none
+    std::string checkpoint{};                ///< file written after each accepted increment; empty: none
     bool resume = false;                     ///< start from that file, if it exists
 
     void validate() const {
