@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Everything: the folders in the order of the computation, then the compositions.
+
+#include <fibrant/core/parallel.hpp>
+#include <fibrant/core/parameters.hpp>
+#include <fibrant/core/stage_clock.hpp>
+#include <fibrant/core/types.hpp>
+
+#include <fibrant/scene/assembly.hpp>
+#include <fibrant/scene/conditions.hpp>
+#include <fibrant/scene/cross_section.hpp>
+#include <fibrant/scene/dof_layout.hpp>
+#include <fibrant/scene/elastic_material.hpp>
+#include <fibrant/scene/reference_shape.hpp>
+
+#include <fibrant/beam/beam_element.hpp>
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/mesh.hpp>
+#include <fibrant/beam/section_law.hpp>
+
+#include <fibrant/proximity/brute_search.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/proximity/kd_tree_search.hpp>
+#include <fibrant/proximity/proximity_search.hpp>
+#include <fibrant/proximity/segment_distance.hpp>
+#include <fibrant/proximity/test_point_search.hpp>
+#include <fibrant/proximity/verlet_search.hpp>
+#include <fibrant/proximity/zones.hpp>
+
+#include <fibrant/law/friction_law.hpp>
+#include <fibrant/law/frictionless.hpp>
+#include <fibrant/law/limited_gap.hpp>
+#include <fibrant/law/linear_penalty.hpp>
+#include <fibrant/law/normal_law.hpp>
+#include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
+
+#include <fibrant/contact/contact_detection.hpp>
+#include <fibrant/contact/contact_element.hpp>
+#include <fibrant/contact/contact_record.hpp>
+#include <fibrant/contact/contact_set.hpp>
+#include <fibrant/contact/intermediate_geometry.hpp>
+#include <fibrant/contact/normal_direction.hpp>
+#include <fibrant/contact/zone_stiffness.hpp>
+
+#include <fibrant/connection/applied_load.hpp>
+#include <fibrant/connection/channels.hpp>
+#include <fibrant/connection/prescribed_motion.hpp>
+
+#include <fibrant/assembly/chain_system.hpp>
+#include <fibrant/assembly/equilibrium.hpp>
+#include <fibrant/assembly/linear_system.hpp>
+#include <fibrant/assembly/term_assembly.hpp>
+#include <fibrant/assembly/terms.hpp>
+#include <fibrant/assembly/visited_system.hpp>
+
+#include <fibrant/solver/fibre_block_pcg.hpp>
+#include <fibrant/solver/linear_solver.hpp>
+#include <fibrant/solver/nested_loops.hpp>
+#include <fibrant/solver/newton.hpp>
+#include <fibrant/solver/sparse_cholesky.hpp>
+#include <fibrant/solver/two_level_pcg.hpp>
+
+#include <fibrant/observe/contact_statistics.hpp>
+#include <fibrant/observe/csv_writer.hpp>
+#include <fibrant/observe/json.hpp>
+#include <fibrant/observe/loading_curve.hpp>
+#include <fibrant/observe/observer.hpp>
+#include <fibrant/observe/snapshot.hpp>
+#include <fibrant/observe/svg_slice.hpp>
+#include <fibrant/observe/svg_view.hpp>
+#include <fibrant/observe/vtk_writer.hpp>
+
+#include <fibrant/simulation/checkpoint.hpp>
+#include <fibrant/simulation/loading.hpp>
+#include <fibrant/simulation/model.hpp>
+#include <fibrant/simulation/report.hpp>
+#include <fibrant/simulation/simulator.hpp>
+
+#include <fibrant/compositions/weave/audit.hpp>
+#include <fibrant/compositions/weave/fabric.hpp>
+#include <fibrant/compositions/weave/fabric_parameters.hpp>
+#include <fibrant/compositions/weave/least_gap.hpp>
+#include <fibrant/compositions/weave/measures.hpp>
+#include <fibrant/compositions/weave/packing.hpp>
+#include <fibrant/compositions/weave/pattern.hpp>
+#include <fibrant/compositions/weave/settle.hpp>
+#include <fibrant/compositions/weave/slices.hpp>
+#include <fibrant/compositions/weave/tow_section.hpp>
