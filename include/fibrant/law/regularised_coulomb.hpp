@@ -30,6 +30,7 @@ public:
         const double range = parameters_.reversible_displacement;
         const double bound = parameters_.friction_coefficient * reaction;
         FrictionResponse<History> answer;
+        if (parameters_.friction_coefficient == 0.0) return answer;  // nothing is ever held, so nothing is remembered
         const Vec3 trial = history.reversible + slip;
         const double length = trial.norm();
         if (length <= range) {

@@ -39,13 +39,13 @@ public:
         AttemptReport report;
         Newton<Equilibrium, Contacts, Linear> newton(*equilibrium_, *contacts_, *linear_, parameters_, radius_, *clock_);
         const double reach = std::clamp(2.0 * expected, parameters_.margin * radius_, parameters_.largest_margin * radius_);
-        const double bound = contact_possible_ ? std::max(reach, 0.5 * radius_) : std::numeric_limits<double>::infinity();
+        const double bound = contact_possible_ ? std::max(reach, radius_) : std::numeric_limits<double>::infinity();
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
         Vector searched;                                          // state of the last search
         Index passes = 0, searches = 0;
         while (true) {
-            if (passes >= parameters_.contact_limit || report.counts.contact_passes >= 60) {
+            if (passes >= parameters_.contact_limit || report.counts.contact_passes >= parameters_.contact_limit + 16) {
                 report.reason = "contact passes do not settle: last displacement " + core::text(change / radius_) + " radii";
                 return report;
             }
@@ -83,12 +83,20 @@ private:
         const double finest = parameters_.step_tolerance * radius_;
         const double enough = looseness * parameters_.normal_step_tolerance * radius_;
         double first = 0.0, change = std::numeric_limits<double>::infinity();
+        Vector travel, last_travel;  // displacement of this pass and of the one before
         for (Index pass = 0; pass < parameters_.normal_limit; ++pass) {
             if (pass > 0) {
                 const double turn = clock_->time(core::Part::contact, [&] { return contacts_->refresh(state, accepted); });
                 // The contact elements will move on all the same: no need to be finer than a part of what this pass moved.
                 const bool settled = turn < looseness * parameters_.normal_tolerance && change < enough;
                 if (settled || change < std::max(0.1 * parameters_.inexact * first, 0.1 * enough)) break;
+                // Fibres that roll over each other creep in equal steps: go several of them at once.
+                const double factor = extrapolation(travel, last_travel, change);
+                if (factor > 0.0) {
+                    state += factor * travel;
+                    last_travel.resize(0), travel.resize(0);
+                    contacts_->refresh(state, accepted);
+                }
             }
             ++report.counts.normal_passes;
             const Vector before = state;
@@ -96,8 +104,11 @@ private:
             const double tolerance = contact_possible_ ? std::clamp(loose, finest, 0.02 * radius_) : finest;
             const NewtonReport inner = newton.solve(state, tolerance, searched, bound, report.counts);
             report.residual = inner.residual.relative(), report.force_scale = inner.residual.scale, report.step = inner.step;
-            change = equilibrium_->greatest(state - before);
+            last_travel.swap(travel);
+            travel = state - before;
+            change = equilibrium_->greatest(travel);
             if (pass == 0) first = change;
+            if (pass == 0) travel.resize(0);  // it holds the increment itself
 #ifdef FIBRANT_TRACE
             std::fprintf(stderr, "  np %ld change/r %.3e nw %ld status %d el %ld\n", (long)pass, change/radius_, (long)inner.iterations, (int)inner.status, (long)contacts_->elements().size());
 #endif
@@ -109,6 +120,15 @@ private:
             if (!contact_possible_) break;
         }
         return true;
+    }
+
+    /// Multiple of the last travel that a geometric series of passes still has before it, bounded; 0 if there is none.
+    double extrapolation(const Vector& travel, const Vector& last_travel, double change) const {
+        if (travel.size() == 0 || last_travel.size() == 0) return 0.0;
+        const double ratio = core::dot(travel, last_travel) / core::dot(last_travel, last_travel);
+        if (!(ratio > 0.4)) return 0.0;
+        const double series = ratio < 0.8 ? ratio / (1.0 - ratio) : 4.0;
+        return std::min(series, 0.25 * radius_ / change);
     }
 
     static std::string reason(const NewtonReport& inner) {
