@@ -8,27 +8,21 @@
 
 #include <doctest/doctest.h>
 
+#include <tuple>
+
 namespace fibrant::test {
 
-/// Global number of a fibre's first segment.
-inline Index first_segment(const FibreSet& set, Index fibre) {
-    Index first = 0;
-    for (Index f = 0; f < fibre; ++f) first += core::count(set.points[core::at(f)]) - 1;
-    return first;
-}
-
-/// Pairs and zones equal those of brute force; every close pair has its closest points in a zone of its fibres.
+/// Checks what a search owes: the pairs and zones of brute force, in order.
+/// @param expected  pairs by brute force
 template <proximity::ProximitySearch Search>
-void check_search(Search& search, const FibreSet& set) {
+void check_search(Search& search, const FibreSet& set, const std::vector<proximity::SegmentPair>& expected) {
     CAPTURE(set.name);
     const std::vector<proximity::Centreline> lines = set.centrelines();
-    proximity::BruteSearch brute;
-    const auto expected = brute.pairs(lines, set.reach);
     const auto found = search.pairs(lines, set.reach);
     CHECK(found.size() == expected.size());
     CHECK(found == expected);
     const auto zones = search.find(lines, set.reach);
-    CHECK(zones == brute.find(lines, set.reach));
+    CHECK(zones == proximity::zones_from_pairs(lines, set.reach, expected));
     CHECK(std::ranges::is_sorted(zones, [](const auto& a, const auto& b) {
         return std::tie(a.fibre_i, a.fibre_j, a.a_i, a.a_j) < std::tie(b.fibre_i, b.fibre_j, b.a_i, b.a_j);
     }));
