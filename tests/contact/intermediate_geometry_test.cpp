@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+#include "fibres.hpp"
+
+#include <fibrant/contact/intermediate_geometry.hpp>
+
+#include <refusal.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+using namespace fibrant;
+using contact::ContactSpacing;
+using contact::StationPair;
+using test::curved_fibre;
+using test::Mesh;
+using test::straight_fibre;
+
+namespace {
+
+const double r = 0.02;
+const ContactSpacing spacing;
+
+Mesh mesh_of(const std::vector<scene::FibreSpecification>& fibres) {
+    scene::Assembly assembly;
+    for (const scene::FibreSpecification& fibre : fibres) assembly.add(fibre);
+    return Mesh(assembly, test::Beam{});
+}
+
+proximity::ProximityZone zone(double a_i, double b_i, double a_j, double b_j) {
+    proximity::ProximityZone z;
+    z.fibre_i = 0, z.fibre_j = 1;
+    z.a_i = a_i, z.b_i = b_i, z.a_j = a_j, z.b_j = b_j;
+    z.closest_i = 0.5 * (a_i + b_i), z.closest_j = 0.5 * (a_j + b_j);
+    return z;
+}
+
+std::vector<StationPair> pairs_of(const Mesh& mesh, const proximity::ProximityZone& z, bool crossing) {
+    std::vector<StationPair> pairs;
+    contact::station_pairs(mesh, mesh.rest_state(), z, crossing, spacing, pairs);
+    return pairs;
+}
+
+double distance(const Mesh& mesh, double u, double v) {
+    return (mesh.position(mesh.rest_state(), 1, v) - mesh.position(mesh.rest_state(), 0, u)).norm();
+}
+
+/// Least distance between the curves by samples on ever finer grids.
+double sampled_distance(const Mesh& mesh) {
+    double u = 0.0, v = 0.0, least = 1e300, width_u = static_cast<double>(mesh.fibre(0).elements), width_v = static_cast<double>(mesh.fibre(1).elements);
+    const double end_u = width_u, end_v = width_v;
+    double centre_u = 0.5 * end_u, centre_v = 0.5 * end_v;
+    for (int level = 0; level < 12; ++level) {
+        const int n = level == 0 ? 600 : 20;
+        for (int a = -n; a <= n; ++a)
+            for (int b = -n; b <= n; ++b) {
+                const double p = std::clamp(centre_u + 0.5 * width_u * a / n, 0.0, end_u), q = std::clamp(centre_v + 0.5 * width_v * b / n, 0.0, end_v);
+                const double d = distance(mesh, p, q);
+                if (d < least) least = d, u = p, v = q;
+            }
+        centre_u = u, centre_v = v;
+        width_u *= level == 0 ? 0.02 : 0.25, width_v *= level == 0 ? 0.02 : 0.25;
+    }
+    return least;
+}
+
+/// A fibre that waves about a line through `centre` along `along`.
+scene::FibreSpecification wave(const Vec3& centre, const Vec3& along, const Vec3& across, double phase, Index elements) {
+    return curved_fibre([=](double t) { return Vec3(centre + (t - 0.5) * along + 0.05 * std::sin(5.0 * t + phase) * across); }, r, elements);
+}
+
+}  // namespace
+
+TEST_CASE("the closest points of crossing curves are those that dense sampling finds") {
+    std::mt19937 generator(4);
+    std::uniform_real_distribution<double> value(-0.1, 0.1), turn(0.6, 2.5);
+    for (int n = 0; n < 12; ++n) {
+        const double angle = turn(generator), x = value(generator), y = value(generator);
+        const Vec3 other(std::cos(angle), std::sin(angle), 0.0);
+        const Mesh mesh = mesh_of({wave({0, 0, 0}, Vec3::UnitX(), Vec3::UnitZ(), n, 8), wave({x, y, 0.15}, other, Vec3(-0.3, 0.2, 1.0), 2.0 * n, 10)});
+        const StationPair pair = contact::closest_points(mesh, mesh.rest_state(), 0, 1, 4.0, 5.0);
+        CHECK(distance(mesh, pair.u_i, pair.u_j) <= sampled_distance(mesh) * (1.0 + 1e-12));
+        const Vec3 centres = mesh.position(mesh.rest_state(), 1, pair.u_j) - mesh.position(mesh.rest_state(), 0, pair.u_i);
+        CHECK(std::abs(centres.dot(mesh.derivative(mesh.rest_state(), 0, pair.u_i))) < 1e-11);
+        CHECK(std::abs(centres.dot(mesh.derivative(mesh.rest_state(), 1, pair.u_j))) < 1e-11);
+    }
+}
+
+TEST_CASE("the closest points of lines that pass through each other are where they meet") {
+    const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 8), straight_fibre({-0.1, -1, 0}, {0.4, 1, 0}, r, 8)});
+    const StationPair pair = contact::closest_points(mesh, mesh.rest_state(), 0, 1, 2.0, 6.0);
+    CHECK(pair.u_i == doctest::Approx(4.6).epsilon(1e-12));  // x = 0.15
+    CHECK(pair.u_j == doctest::Approx(4.0).epsilon(1e-12));
+}
+
+TEST_CASE("closest points stay on the fibres") {
+    // The second fibre ends before it reaches the plane of the first: its end is the closest point.
+    const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 8), straight_fibre({0.3, 1, 0.03}, {0.3, 0.01, 0.03}, r, 6)});
+    const StationPair pair = contact::closest_points(mesh, mesh.rest_state(), 0, 1, 4.0, 3.0);
+    CHECK(pair.u_i == doctest::Approx(5.2).epsilon(1e-12));
+    CHECK(pair.u_j == 6.0);
+}
+
+TEST_CASE("a plane cuts a curved fibre where dense sampling changes sides") {
+    const Mesh mesh = mesh_of({wave({0, 0, 0}, Vec3::UnitX(), Vec3::UnitZ(), 0.4, 8)});
+    const Vec3 normal = Vec3(1.0, 0.2, 0.3).normalized();
+    for (const double x : {-0.4, -0.13, 0.0, 0.31}) {
+        const Vec3 origin(x, 0.02, 0.01);
+        const double u = contact::plane_section(mesh, mesh.rest_state(), 0, 8.0 * (x + 0.5) + 0.4, origin, normal);
+        CHECK(std::abs((mesh.position(mesh.rest_state(), 0, u) - origin).dot(normal)) < 1e-13);
+        int changes = 0;
+        for (int k = 0; k < 4000; ++k) {
+            const double low = 8.0 * k / 4000, high = 8.0 * (k + 1) / 4000;
+            if ((mesh.position(mesh.rest_state(), 0, low) - origin).dot(normal) > 0.0) continue;
+            if ((mesh.position(mesh.rest_state(), 0, high) - origin).dot(normal) <= 0.0) continue;
+            ++changes;
+            CHECK(u >= low);
+            CHECK(u <= high);
+        }
+        CHECK(changes == 1);
+    }
+    // beyond the fibre: its end
+    CHECK(contact::plane_section(mesh, mesh.rest_state(), 0, 7.0, {3, 0, 0}, Vec3::UnitX()) == 8.0);
+}
+
+TEST_CASE("near-parallel fibres are paired across their mean line, at equal parts of the zone") {
+    // 4 degrees apart, with as many elements that do not face each other
+    const double angle = 4.0 * std::numbers::pi / 180.0;
+    const Vec3 other(std::cos(angle), std::sin(angle), 0.0);
+    const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre(Vec3(0.03, 0, 0.04) - other, Vec3(0.03, 0, 0.04) + other, r, 10)});
+    const std::vector<StationPair> pairs = pairs_of(mesh, zone(2, 8, 2, 8), false);
+    REQUIRE(pairs.size() == 12);  // two an element
+    const Vec3 mean = (Vec3::UnitX() + other).normalized();
+    double last = 0.0, length = 0.0;
+    for (const StationPair& pair : pairs) {
+        CHECK_FALSE(pair.crossing);
+        CHECK_FALSE(pair.end_i);
+        CHECK_FALSE(pair.end_j);
+        const Vec3 x_i = mesh.position(mesh.rest_state(), 0, pair.u_i), x_j = mesh.position(mesh.rest_state(), 1, pair.u_j);
+        CHECK(std::abs((x_j - x_i).dot(mean)) < 1e-12);
+        if (last != 0.0) CHECK(pair.u_i - last == doctest::Approx(0.5).epsilon(1e-9));
+        last = pair.u_i, length += pair.length;
+    }
+    CHECK(length == doctest::Approx(6 * 0.2).epsilon(1e-12));
+}
+
+TEST_CASE("a fibre that runs the other way is paired at the same places") {
+    const auto one = curved_fibre([](double t) { return Vec3(t, 0.0, 0.1 * t * t); }, r, 8);
+    const auto along = curved_fibre([](double t) { return Vec3(t, 0.041, 0.1 * t * t); }, r, 8);
+    const auto against = curved_fibre([](double t) { return Vec3(1.0 - t, 0.041, 0.1 * (1.0 - t) * (1.0 - t)); }, r, 8);
+    const Mesh same = mesh_of({one, along}), opposite = mesh_of({one, against});
+    const auto p = pairs_of(same, zone(1, 6, 1, 6), false), q = pairs_of(opposite, zone(1, 6, 7, 2), false);
+    REQUIRE(p.size() == q.size());
+    for (std::size_t k = 0; k < p.size(); ++k) {
+        // nodes at equal arc length of both, by quadrature to 1e-9
+        CHECK(std::abs(p[k].u_i - q[k].u_i) < 1e-7);
+        CHECK(std::abs(p[k].u_j - (8.0 - q[k].u_j)) < 1e-7);
+    }
+}
+
+TEST_CASE("a short zone has one pair, and a crossing exactly one at the closest points") {
+    const Mesh parallel = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({-1, 0, 0.04}, {1, 0, 0.04}, r, 10)});
+    CHECK(pairs_of(parallel, zone(4.0, 4.1, 4.0, 4.1), false).size() == 1);
+    const Mesh crossing = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({0.1, -1, 0.04}, {0.1, 1, 0.04}, r, 10)});
+    const std::vector<StationPair> pairs = pairs_of(crossing, zone(4, 7, 3, 6), true);
+    REQUIRE(pairs.size() == 1);
+    CHECK(pairs[0].crossing);
+    CHECK(pairs[0].u_i == doctest::Approx(5.5).epsilon(1e-12));
+    CHECK(pairs[0].u_j == doctest::Approx(5.0).epsilon(1e-12));
+    CHECK_FALSE(pairs[0].end_i);
+    CHECK_FALSE(pairs[0].end_j);
+}
+
+TEST_CASE("where a fibre ends beside another its rounded end is paired once with the other's side") {
+    // The second fibre begins half way along the first; the zone reaches beyond its end.
+    const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({0.05, 0, 0.04}, {1.05, 0, 0.04}, r, 5)});
+    const std::vector<StationPair> pairs = pairs_of(mesh, zone(3, 9, 0, 4), false);
+    int ends = 0;
+    for (const StationPair& pair : pairs) {
+        if (!pair.end_i && !pair.end_j) continue;
+        ++ends;
+        CHECK(pair.end_j);
+        CHECK_FALSE(pair.end_i);
+        CHECK(pair.u_j == 0.0);
+        CHECK(pair.u_i == doctest::Approx(5.25).epsilon(1e-12));
+    }
+    CHECK(ends == 1);
+}
+
+TEST_CASE("fibres that meet end to end are paired by their two caps") {
+    const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {0, 0, 0}, r, 5), straight_fibre({0.03, 0, 0.01}, {1.03, 0, 0.01}, r, 5)});
+    const std::vector<StationPair> pairs = pairs_of(mesh, zone(4.8, 5, 0, 0.1), false);
+    REQUIRE(pairs.size() == 1);
+    CHECK(pairs[0].end_i);
+    CHECK(pairs[0].end_j);
+    CHECK(pairs[0].u_i == 5.0);
+    CHECK(pairs[0].u_j == 0.0);
+}
+
+TEST_CASE("a crossing at a fibre's end is with its cap, unless the closest point happens to be the end") {
+    const auto first = straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10);
+    const Mesh short_of = mesh_of({first, straight_fibre({0, 1, 0.02}, {0, 0.03, 0.02}, r, 5)});
+    const std::vector<StationPair> cap = pairs_of(short_of, zone(4, 6, 3, 5), true);
+    CHECK(cap.at(0).end_j);
+    CHECK_FALSE(cap.at(0).end_i);
+    const Mesh level = mesh_of({first, straight_fibre({0, 1, 0.04}, {0, 0, 0.04}, r, 5)});
+    CHECK_FALSE(pairs_of(level, zone(4, 6, 3, 5), true).at(0).end_j);
+}
+
+TEST_CASE("a spacing without points is refused by name") {
+    CHECK(test::refusal([] { core::validated(ContactSpacing{0.0, 30.0, 5.0}); }).find("ContactSpacing.points_per_element") != std::string::npos);
+    CHECK(test::refusal([] { core::validated(ContactSpacing{2.0, 91.0, 5.0}); }).find("ContactSpacing.crossing_angle_deg") != std::string::npos);
+}
