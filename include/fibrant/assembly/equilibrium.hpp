@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace fibrant::assembly {
@@ -18,7 +19,9 @@ namespace fibrant::assembly {
 struct ResidualFigures {
     double residual = 0.0;  ///< norm of the free part [force]
     double scale = 0.0;     ///< norm of loads, reactions and contact forces [force]
-    double relative() const noexcept { return scale > 0.0 ? residual / scale : residual; }
+    double rounding = 0.0;  ///< norm below which a residual is nothing but rounding [force]
+    /// 0 where only rounding is left: a fibre that moves freely has no force to compare with.
+    double relative() const noexcept { return residual <= rounding ? 0.0 : residual / scale; }
 };
 
 /// The mechanical problem of one increment.
@@ -31,7 +34,18 @@ public:
     Equilibrium(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const B& beam, Contacts& contacts,
                 const connection::Channels& channels)
         : mesh_{&mesh}, beam_{beam}, contacts_{&contacts}, motion_{assembly, mesh, channels},
-          load_{assembly, mesh, channels}, system_{mesh}, stresses_(core::at(mesh.element_count())) {}
+          load_{assembly, mesh, channels}, system_{mesh}, stresses_(core::at(mesh.element_count())) {
+        // Strains keep the digits of coordinates over an element's length, and E A of them is a force at each node.
+        const double extent = mesh.rest_state().size() > 0 ? mesh.rest_state().cwiseAbs().maxCoeff() : 0.0;
+        double sum = 0.0;
+        for (Index f = 0; f < mesh.fibre_count(); ++f) {
+            const beam::MeshFibre& fibre = mesh.fibre(f);
+            const double digits = extent / fibre.element_length + fibre.element_length / fibre.section.radius();
+            const double force = fibre.material.young_modulus * fibre.section.area() * digits;
+            sum += static_cast<double>(mesh.node_count(f)) * force * force;
+        }
+        rounding_ = 8.0 * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
+    }
 
     const System& system() const noexcept { return system_; }
     const std::vector<Vec3>& targets() const noexcept { return targets_; }
@@ -86,6 +100,7 @@ public:
         reaction_ -= residual;
         ResidualFigures figures;
         figures.residual = norm(residual);
+        figures.rounding = rounding_;
         const double reaction = std::sqrt(std::max(0.0, all * all - figures.residual * figures.residual));
         figures.scale = std::sqrt(contact * contact + load * load + reaction * reaction);
         return figures;
@@ -177,6 +192,7 @@ private:
     std::vector<double> amplitudes_;
     std::vector<Vec3> targets_;
     Vector external_, reaction_;
+    double rounding_ = 0.0;
 };
 
 }  // namespace fibrant::assembly
