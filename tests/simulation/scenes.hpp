@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Models and scenes of the tests of whole runs, and observers that keep what a run did.
+
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/law/frictionless.hpp>
+#include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/simulation/simulator.hpp>
+#include <fibrant/solver/sparse_cholesky.hpp>
+
+#include <cstring>
+#include <numbers>
+#include <vector>
+
+namespace fibrant::test {
+
+template <law::FrictionLaw FrictionLaw>
+struct DirectModel {
+    using Beam = beam::DirectorBeam<3>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::RegularisedPenalty;
+    using Friction = FrictionLaw;
+    using Solver = solver::SparseCholesky;
+};
+using Smooth = DirectModel<law::Frictionless>;
+using Rough = DirectModel<law::RegularisedCoulomb>;
+static_assert(simulation::Model<Smooth> && simulation::Model<Rough>);
+
+/// The fibre of the reference solutions: along z, g_1 = x, clamped at s = 0. Lengths times `unit`, forces times `force`.
+struct Rod {
+    double radius = 0.0201, length = 2.01, young = 7300.0, poisson = 0.3;
+    Index elements = 16;
+
+    double bending_stiffness() const { return young * std::numbers::pi * std::pow(radius, 4) / 4.0; }
+    scene::FibreSpecification specification() const {
+        return {.from = Vec3::Zero(),
+                .to = Vec3(0, 0, length),
+                .section = scene::circular(radius),
+                .material = {young, poisson},
+                .elements = elements,
+                .director = Vec3::UnitX()};
+    }
+    scene::Assembly clamped() const {
+        scene::Assembly assembly;
+        assembly.clamp(scene::first_end(assembly.add(specification())));
+        return assembly;
+    }
+    /// With a dead force P along x at the other end, P L^2 / EI = `load`.
+    scene::Assembly pushed(double load) const {
+        scene::Assembly assembly = clamped();
+        const double force = load * bending_stiffness() / (length * length);
+        assembly.apply(scene::DeadForce{scene::last_end(0), scene::NodeVector::position, Vec3(force, 0, 0), "load"});
+        return assembly;
+    }
+};
+
+/// Parameters that the models above need; lengths in multiples of `radius`.
+template <simulation::Model M>
+simulation::ModelParameters<M> model_parameters(double radius) {
+    simulation::ModelParameters<M> parameters;
+    parameters.normal.regularisation_depth = 1e-3 * radius;
+    parameters.contact.stiffness.allowed_penetration = 1e-2 * radius;
+    if constexpr (core::Active<typename M::Friction>)
+        parameters.friction = {.friction_coefficient = 0.15, .reversible_displacement = 0.02 * radius};
+    return parameters;
+}
+
+/// Tolerances so small that what is left is the discretisation.
+template <simulation::Model M>
+simulation::ModelParameters<M> tight_parameters(double radius) {
+    simulation::ModelParameters<M> parameters = model_parameters<M>(radius);
+    parameters.iteration.step_tolerance = 1e-8;
+    parameters.iteration.residual_tolerance = 1e-9;
+    parameters.iteration.linear_tolerance = 1e-10;
+    return parameters;
+}
+
+/// Same bits?
+inline bool same_bits(const Vector& a, const Vector& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), core::at(a.size()) * sizeof(double)) == 0;
+}
+
+/// Keeps the state, the reports and chosen amplitudes of every accepted increment.
+template <simulation::Model M>
+struct Record {
+    explicit Record(const simulation::Simulator<M>& simulator) : simulator_{&simulator} {}
+    std::vector<Vector> states;
+    std::vector<simulation::IncrementReport> increments;
+    void reported(const simulation::IncrementReport& increment) {
+        increments.push_back(increment);
+        states.push_back(simulator_->state());
+    }
+
+private:
+    const simulation::Simulator<M>* simulator_;
+};
+
+}  // namespace fibrant::test
