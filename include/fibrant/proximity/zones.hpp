@@ -6,8 +6,8 @@
 #include <fibrant/proximity/segment_table.hpp>
 
 #include <algorithm>
-#include <array>
 #include <numeric>
+#include <tuple>
 
 namespace fibrant::proximity {
 namespace detail {
@@ -23,31 +23,36 @@ std::vector<SegmentPair> counted_by(const std::vector<SegmentPair>& pairs, std::
     return sorted;
 }
 
-/// Smallest s in [0, 1] at which start + s chord comes closer than `threshold` to the other segment, given that it is so at
-/// `inside`. The distance to a segment is convex, so bisection finds the only change; returned from outside, to 1/1024.
-inline double entry(const SegmentRecord& of, const SegmentRecord& other, double threshold, double inside, double outside) {
+/// Moves `s` on towards `outside` while start + s chord stays closer than `threshold` to the other segment. The distance to a
+/// segment is convex, so bisection finds the only change beyond a point that is close; returned from outside, to 1/1024.
+inline double extended(double s, double outside, const SegmentRecord& of, const SegmentRecord& other, double threshold) {
     const double per = 1.0 / std::max(dot(other.chord, other.chord), 1.0e-300);
-    const auto near = [&](double s) {
-        const Plain3 x{of.start.x + s * of.chord.x - other.start.x, of.start.y + s * of.chord.y - other.start.y,
-                       of.start.z + s * of.chord.z - other.start.z};
+    const auto near = [&](double at) {
+        const Plain3 x{of.start.x + at * of.chord.x - other.start.x, of.start.y + at * of.chord.y - other.start.y,
+                       of.start.z + at * of.chord.z - other.start.z};
         const double t = unit_clamped(dot(x, other.chord) * per);
         const Plain3 w{x.x - t * other.chord.x, x.y - t * other.chord.y, x.z - t * other.chord.z};
         return dot(w, w) < threshold * threshold;
     };
+    if (s == outside || !near(s)) return s;  // another pair of the zone reaches as far
     if (near(outside)) return outside;
-    for (int step = 0; step < 10; ++step) {
+    double inside = s;
+    while (std::abs(outside - inside) > 1.0 / 1024.0) {
         const double middle = 0.5 * (inside + outside);
         (near(middle) ? inside : outside) = middle;
     }
     return outside;
 }
 
-/// Zones of the pairs of two fibres, which stand sorted by segment.
-class ZonesOfTwoFibres {
+/// Makes the zones of two fibres at a time; keeps its buffers from one to the next.
+class ZoneMaker {
 public:
-    ZonesOfTwoFibres(const SegmentTable& table, std::span<const SegmentPair> pairs) : table_(table), pairs_(pairs) {}
+    explicit ZoneMaker(const SegmentTable& table) : table_(table) {}
 
-    void append_to(std::vector<ProximityZone>& zones) {
+    /// Appends the zones of two fibres.
+    /// @param pairs  all of these two, sorted by segment
+    void append(std::span<const SegmentPair> pairs, std::vector<ProximityZone>& zones) {
+        pairs_ = pairs;
         const std::size_t n = pairs_.size();
         sense_.resize(n);
         root_.resize(n);
@@ -57,23 +62,23 @@ public:
         if (separate_turns()) join([this](std::size_t a, std::size_t b) { return same_way(a, b); });
         const std::size_t before = zones.size();
         zone_.assign(n, none);
-        std::vector<Extent> extent;
+        extent_.clear();
         for (std::size_t k = 0; k < n; ++k) {
             const std::size_t top = root(k);
             if (zone_[top] == none) {
-                zone_[top] = extent.size();
-                extent.push_back({});
+                zone_[top] = extent_.size();
+                extent_.push_back({});
             }
             zone_[k] = zone_[top];
-            extent[zone_[k]].add(pairs_[k], sense_[k]);
+            extent_[zone_[k]].add(pairs_[k], sense_[k]);
         }
-        zones.resize(before + extent.size());
-        for (std::size_t k = 0; k < n; ++k) measure(pairs_[k], extent[zone_[k]], zones[before + zone_[k]]);
-        for (std::size_t z = 0; z < extent.size(); ++z)
-            if (extent[z].sense < 0.0) std::swap(zones[before + z].a_j, zones[before + z].b_j);
+        zones.resize(before + extent_.size());
+        for (std::size_t k = 0; k < n; ++k) measure(pairs_[k], extent_[zone_[k]], zones[before + zone_[k]]);
+        for (std::size_t z = 0; z < extent_.size(); ++z)
+            if (extent_[z].sense < 0.0) std::swap(zones[before + z].a_j, zones[before + z].b_j);
         std::sort(zones.begin() + static_cast<std::ptrdiff_t>(before), zones.end(),
                   [](const ProximityZone& a, const ProximityZone& b) {
-                      return std::array{a.a_i, a.a_j, a.b_i, a.b_j} < std::array{b.a_i, b.a_j, b.b_i, b.b_j};
+                      return std::tie(a.a_i, a.a_j, a.b_i, a.b_j) < std::tie(b.a_i, b.a_j, b.b_i, b.b_j);
                   });
     }
 
@@ -151,20 +156,22 @@ private:
         const SegmentDistance closest = segment_distance(i.start - j.start, i.chord, j.chord);
         const std::int32_t fibre_i = table_.fibre(pair.i), fibre_j = table_.fibre(pair.j);
         const double p = pair.i - table_.first(fibre_i), q = pair.j - table_.first(fibre_j);
-        const double distance = std::sqrt(closest.squared);
-        if (zone.fibre_i < 0) {
-            zone = {fibre_i, fibre_j, p + closest.s, p + closest.s, q + closest.t, q + closest.t,
-                    p + closest.s, q + closest.t, distance};
-        } else if (distance < zone.distance) {
-            zone.closest_i = p + closest.s;
-            zone.closest_j = q + closest.t;
-            zone.distance = distance;
+        const double s = p + closest.s, t = q + closest.t;
+        if (zone.fibre_i < 0) zone = {fibre_i, fibre_j, s, s, t, t, s, t, std::sqrt(closest.squared)};
+        if (closest.squared < zone.distance * zone.distance) {
+            zone.closest_i = s;
+            zone.closest_j = t;
+            zone.distance = std::sqrt(closest.squared);
         }
         const double threshold = i.half + j.half + table_.reach();
-        if (pair.i == extent.least.i) zone.a_i = std::min(zone.a_i, p + entry(i, j, threshold, closest.s, 0.0));
-        if (pair.i == extent.most.i) zone.b_i = std::max(zone.b_i, p + entry(i, j, threshold, closest.s, 1.0));
-        if (pair.j == extent.least.j) zone.a_j = std::min(zone.a_j, q + entry(j, i, threshold, closest.t, 0.0));
-        if (pair.j == extent.most.j) zone.b_j = std::max(zone.b_j, q + entry(j, i, threshold, closest.t, 1.0));
+        zone.a_i = std::min(zone.a_i, s);
+        zone.b_i = std::max(zone.b_i, s);
+        zone.a_j = std::min(zone.a_j, t);
+        zone.b_j = std::max(zone.b_j, t);
+        if (pair.i == extent.least.i) zone.a_i = p + extended(zone.a_i - p, 0.0, i, j, threshold);
+        if (pair.i == extent.most.i) zone.b_i = p + extended(zone.b_i - p, 1.0, i, j, threshold);
+        if (pair.j == extent.least.j) zone.a_j = q + extended(zone.a_j - q, 0.0, j, i, threshold);
+        if (pair.j == extent.most.j) zone.b_j = q + extended(zone.b_j - q, 1.0, j, i, threshold);
     }
 
     const SegmentTable& table_;
@@ -172,6 +179,7 @@ private:
     std::vector<double> sense_;
     std::vector<std::size_t> root_, zone_;
     std::vector<char> mixed_;
+    std::vector<Extent> extent_;
 };
 
 }  // namespace detail
@@ -199,8 +207,9 @@ inline std::vector<ProximityZone> zones_from_pairs(std::span<const Centreline> f
     const std::size_t twos = first.size() - 1, blocks = (twos + together - 1) / together;
     std::vector<std::vector<ProximityZone>> part(blocks);
     core::parallel_for(static_cast<Index>(blocks), [&](Index b) {
+        detail::ZoneMaker maker(table);
         for (std::size_t k = core::at(b) * together; k < std::min(twos, (core::at(b) + 1) * together); ++k)
-            detail::ZonesOfTwoFibres(table, {sorted.data() + first[k], first[k + 1] - first[k]}).append_to(part[core::at(b)]);
+            maker.append({sorted.data() + first[k], first[k + 1] - first[k]}, part[core::at(b)]);
     });
     std::vector<ProximityZone> zones;
     for (const auto& some : part) zones.insert(zones.end(), some.begin(), some.end());
