@@ -8,6 +8,7 @@
 #include <fibrant/observe/csv_writer.hpp>
 #include <fibrant/observe/json.hpp>
 #include <fibrant/observe/svg_view.hpp>
+#include <fibrant/observe/vtk_writer.hpp>
 #include <fibrant/simulation/report.hpp>
 
 #include <sys/resource.h>
@@ -16,6 +17,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace weave {
@@ -192,6 +194,22 @@ inline void write_pictures(const std::filesystem::path& folder, const observe::S
         observe::write_file(folder / ("slice_" + slice.name + ".svg"), slice.svg);
 }
 
+/// The ParaView series, of every so many increments.
+class Series {
+public:
+    /// @param every  increments between two files; 0: none at all
+    Series(const std::filesystem::path& folder, observe::Start start, Index every) : every_{every} {
+        if (every > 0) writer_.emplace(folder, start);
+    }
+    void accepted(const observe::Snapshot& snapshot) {
+        if (writer_ && snapshot.increment % every_ == 0) writer_->accepted(snapshot);
+    }
+
+private:
+    Index every_;
+    std::optional<observe::VtkWriter> writer_;
+};
+
 /// What summary.json holds; scripts rely on the names.
 struct Summary {
     bool converged = false;
@@ -264,6 +282,21 @@ inline void write_summary(const std::filesystem::path& folder, const Summary& su
         .add("threads", summary.threads)
         .add("version", FIBRANT_VERSION);
     observe::write_file(folder / "summary.json", json.text() + "\n");
+}
+
+/// The result in a few lines.
+inline void print(const Summary& summary, const std::string& folder) {
+    std::printf("\n%s after %td increments (%td rejected), %td Newton iterations, %s\n",
+                summary.converged ? "settled" : "NOT settled", summary.increments, summary.rejected_increments,
+                summary.newton_iterations, clock_text(summary.wall_seconds).c_str());
+    if (!summary.converged) std::printf("  %s\n", summary.reason.c_str());
+    std::printf("  crossings  %td, against the pattern %td, missing %td\n", summary.crossings, summary.wrong_crossings,
+                summary.missing_crossings);
+    std::printf("  crimp      warp %.4f  weft %.4f;  thickness %.4f\n", summary.crimp_warp, summary.crimp_weft,
+                summary.thickness);
+    std::printf("  depth / r  %.4f;  least gap / r %.4f\n", summary.greatest_penetration_over_radius,
+                summary.least_gap_over_radius);
+    std::printf("  results    %s (view.svg, top.svg, slice_*.svg, summary.json, paraview/fibres.pvd)\n", folder.c_str());
 }
 
 }  // namespace weave
