@@ -74,7 +74,7 @@ public:
     /// Entries of the factor below its diagonal.
     Index fill() const { return factor_.matrixL().nestedExpression().nonZeros(); }
 
-    void clear() { Eigen::Map<Vector>(matrix_.valuePtr(), matrix_.nonZeros()).setZero(); }
+    void clear() { value_.assign(row_.size(), Block::Zero()); }
 
     /// Adds `block` at (i, j) and its transpose at (j, i); on the diagonal once, as it stands.
     /// @return whether the pattern has the block
@@ -85,6 +85,7 @@ public:
 
     /// `indefinite` if the matrix is not positive semidefinite; it is then shifted until it is, as if singular.
     SolveStatus factor() {
+        scatter();
         const Vector diagonal = matrix_.diagonal();
         if (!diagonal.allFinite()) return SolveStatus::not_finite;
         Vector scale(diagonal.size());  // of a shift: columns that are nearly nothing take the scale of their likes
@@ -123,10 +124,19 @@ private:
         const auto first = row_.begin() + column_[core::at(column)], last = row_.begin() + column_[core::at(column) + 1];
         const auto found = std::lower_bound(first, last, row);
         if (found == last || *found != row) return false;
-        double* value = matrix_.valuePtr() + 36 * column_[core::at(column)] + 6 * (found - first);
-        for (Index c = 0; c < 6; ++c)
-            for (Index d = 0; d < 6; ++d) value[6 * (last - first) * c + d] += block(d, c);
+        value_[core::at(found - row_.begin())] += block;
         return true;
+    }
+    /// Blocks to the scalar columns of the matrix.
+    void scatter() {
+        for (Index k = 0; k < blocks(); ++k) {
+            const int first = column_[core::at(k)], size = column_[core::at(k + 1)] - first;
+            for (int b = 0; b < size; ++b)
+                for (int c = 0; c < 6; ++c) {
+                    Eigen::Map<Eigen::Matrix<double, 6, 1>>(matrix_.valuePtr() + 36 * first + 6 * c * size + 6 * b) =
+                        value_[core::at(first + b)].col(c);
+                }
+        }
     }
     bool accepted() const {
         const Vector pivots = factor_.vectorD();
@@ -138,6 +148,7 @@ private:
 
     std::vector<int> order_;         // place of each block
     std::vector<int> column_, row_;  // blocks of the lower triangle, columns of rising rows
+    std::vector<Block> value_;       // of the blocks
     SparseMatrix matrix_;
     Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::NaturalOrdering<int>> factor_;
     Vector buffer_;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -162,13 +163,16 @@ private:
         }
     }
 
+    /// The columns of a rotation: what it does to `arm`.
+    static void add_rotation(const Vec3& arm, Mode& rows) {
+        rows(0, 4) += arm.z(), rows(0, 5) -= arm.y();
+        rows(1, 3) -= arm.z(), rows(1, 5) += arm.x();
+        rows(2, 3) += arm.y(), rows(2, 4) -= arm.x();
+    }
     /// Rows of F P of one vector for a knot of weight 1.
     Mode mode(const scene::DofLayout& layout, const assembly::HeldProjector& held, Index v) const {
-        const Vec3& arm = arm_[core::at(v)];
         Mode rows = Mode::Zero();
-        rows(0, 4) = arm.z(), rows(0, 5) = -arm.y();
-        rows(1, 3) = -arm.z(), rows(1, 5) = arm.x();
-        rows(2, 3) = arm.y(), rows(2, 4) = -arm.x();
+        add_rotation(arm_[core::at(v)], rows);
         if (layout.kind[core::at(v)] == scene::VectorKind::position) rows.leftCols<3>().setIdentity();
         if (const Mat3* free = held.free(v)) rows = (*free * rows).eval();
         return rows;
@@ -193,22 +197,38 @@ private:
 
     // What the terms couple beyond the bands. A term is taken apart into parts that lie within the reach of one chain;
     // what couples a part with itself is in the band.
+    struct KnotShare {
+        int knot = 0;
+        double translation = 0.0;       // sum of w and of w arm over vectors that are free,
+        Vec3 arm = Vec3::Zero();
+        Mode rows = Mode::Zero();       // and of w times the rows of those that are held
+    };
     struct Part {
         int chain = 0, low = 0, high = 0;
-        std::vector<std::pair<int, Mode>> knots;
-        void add(int knot, const Mode& rows) {
-            for (auto& entry : knots) {
-                if (entry.first == knot) {
-                    entry.second += rows;
-                    return;
-                }
+        std::size_t used = 0;
+        std::vector<KnotShare> knots;
+        std::span<const KnotShare> shares() const { return {knots.data(), used}; }
+        KnotShare& at(int knot) {
+            for (std::size_t k = 0; k < used; ++k) {
+                if (knots[k].knot == knot) return knots[k];
             }
-            knots.emplace_back(knot, rows);
+            if (++used > knots.size()) knots.emplace_back();
+            knots[used - 1] = {};
+            knots[used - 1].knot = knot;
+            return knots[used - 1];
+        }
+        /// Completes the rows.
+        void gather() {
+            for (std::size_t k = 0; k < used; ++k) {
+                knots[k].rows.leftCols<3>().diagonal().array() += knots[k].translation;
+                add_rotation(knots[k].arm, knots[k].rows);
+            }
         }
     };
 
-    /// Calls body(knot i, knot j, block) for each coupling beyond the bands; both orders are meant.
-    template <class System, class Body>
+    /// Calls body(knot i, knot j, block) for each coupling beyond the bands; both orders are meant. With `Values` false the
+    /// blocks are not computed.
+    template <bool Values, class System, class Body>
     void couple(const System& system, const Body& body) const {
         struct Visitor {
             const RigidCoarseSpace& space;
@@ -222,23 +242,32 @@ private:
                 const Place& place = space.places_[core::at(v)];
                 std::size_t p = 0;
                 for (; p < used; ++p) {
-                    Part& part = parts[p];
+                    const Part& part = parts[p];
                     if (part.chain == place.chain && std::max(part.high, place.node) - std::min(part.low, place.node) <= window) break;
                 }
                 if (p == used) {
                     if (++used > parts.size()) parts.emplace_back();
                     parts[p].chain = place.chain, parts[p].low = parts[p].high = place.node;
-                    parts[p].knots.clear();
+                    parts[p].used = 0;
                 }
                 Part& part = parts[p];
                 part.low = std::min(part.low, place.node), part.high = std::max(part.high, place.node);
-                const Mode rows = space.mode(layout, held, v);
+                const bool free = held.free(v) == nullptr, position = layout.kind[core::at(v)] == scene::VectorKind::position;
                 for (int i = 0; i < 2; ++i) {
                     const double share = weight * place.hat.weight(i);
-                    if (share != 0.0) part.add(place.hat.knot + i, share * rows);
+                    if (place.hat.weight(i) == 0.0) continue;
+                    KnotShare& knot = part.at(place.hat.knot + i);
+                    if (!free) {
+                        knot.rows += share * space.mode(layout, held, v);
+                        continue;
+                    }
+                    if (position) knot.translation += share;
+                    knot.arm += share * space.arm_[core::at(v)];
                 }
             }
-            /// Whether some pair of nodes of two parts is in a band.
+            bool in_band(const Part& a, const Part& b) const {
+                return a.chain == b.chain && std::max(a.low, b.low) - std::min(a.high, b.high) <= layout.chains[core::at(a.chain)].reach;
+            }
             bool overlap() const {
                 for (std::size_t p = 0; p < used; ++p)
                     for (std::size_t q = p + 1; q < used; ++q) {
@@ -246,8 +275,16 @@ private:
                     }
                 return false;
             }
-            bool in_band(const Part& a, const Part& b) const {
-                return a.chain == b.chain && std::max(a.low, b.low) - std::min(a.high, b.high) <= layout.chains[core::at(a.chain)].reach;
+            void emit(const Part& a, const Part& b, const Mat3& stiffness) const {
+                for (const KnotShare& column : b.shares()) {
+                    Mode product;
+                    if constexpr (Values) product = stiffness * column.rows;
+                    for (const KnotShare& row : a.shares()) {
+                        Block block;
+                        if constexpr (Values) block = row.rows.transpose() * product;
+                        body(row.knot, column.knot, block);
+                    }
+                }
             }
             void point(const assembly::PointTerm& term) {
                 used = 0;
@@ -255,18 +292,16 @@ private:
                     const Place& place = space.places_[core::at(term.vectors[k])];
                     take(term.vectors[k], term.weights[k], layout.chains[core::at(place.chain)].reach);
                 }
-                if (overlap()) {  // node by node
+                if (overlap()) {  // some pairs of nodes of two parts are in a band, others not
                     used = 0;
                     for (std::size_t k = 0; k < term.vectors.size(); ++k) take(term.vectors[k], term.weights[k], 0);
                 }
-                for (std::size_t q = 1; q < used; ++q)
-                    for (const auto& [l, column] : parts[q].knots) {
-                        const Mode product = term.stiffness * column;
-                        for (std::size_t p = 0; p < q; ++p) {
-                            if (in_band(parts[p], parts[q])) continue;
-                            for (const auto& entry : parts[p].knots) body(entry.first, l, Block(entry.second.transpose() * product));
-                        }
+                for (std::size_t q = 0; q < used; ++q) {
+                    if constexpr (Values) parts[q].gather();
+                    for (std::size_t p = 0; p < q; ++p) {
+                        if (!in_band(parts[p], parts[q])) emit(parts[p], parts[q], term.stiffness);
                     }
+                }
             }
             void dense(const assembly::DenseTerm& term) {
                 const Place& first = space.places_[core::at(term.vectors.front())];
@@ -283,11 +318,8 @@ private:
                         used = 0;
                         take(term.vectors[i], 1.0, -1), take(term.vectors[j], 1.0, -1);
                         if (in_band(parts[0], parts[1])) continue;
-                        const Mat3 stiffness = term.stiffness.block<3, 3>(3 * static_cast<Index>(i), 3 * static_cast<Index>(j));
-                        for (const auto& row : parts[0].knots)
-                            for (const auto& column : parts[1].knots) {
-                                body(row.first, column.first, Block(row.second.transpose() * stiffness * column.second));
-                            }
+                        parts[0].gather(), parts[1].gather();
+                        emit(parts[0], parts[1], term.stiffness.block<3, 3>(3 * static_cast<Index>(i), 3 * static_cast<Index>(j)));
                     }
             }
         };
@@ -300,18 +332,24 @@ private:
     void find_pattern(const System& system) {
         const scene::DofLayout& layout = system.layout();
         if (arm_.size() != layout.kind.size()) arm_ = layout.value;
-        std::vector<CoarseMatrix::BlockPair> pairs;
+        std::vector<std::vector<int>> columns(core::at(knots_));  // of each row, left of the diagonal, rising
+        const auto insert = [&](int i, int j, const Block&) {
+            if (i == j) return;
+            std::vector<int>& row = columns[core::at(std::max(i, j))];
+            const auto place = std::lower_bound(row.begin(), row.end(), std::min(i, j));
+            if (place == row.end() || *place != std::min(i, j)) row.insert(place, std::min(i, j));
+        };
         for (Index c = 0; c < core::count(chains_); ++c) {
             const Chain& own = chains_[core::at(c)];
-            for (Index k = 0; k <= own.intervals; ++k) {
-                for (Index d = 1; d <= std::min(k, own.reach(layout.chains[core::at(c)].reach)); ++d) {
-                    pairs.emplace_back(own.first_knot + k, own.first_knot + k - d);
-                }
+            for (int k = 0; k <= static_cast<int>(own.intervals); ++k) {
+                const int reach = static_cast<int>(own.reach(layout.chains[core::at(c)].reach));
+                for (int d = 1; d <= std::min(k, reach); ++d) insert(own.first_knot + k, own.first_knot + k - d, Block());
             }
         }
-        couple(system, [&](int i, int j, const Block&) {
-            if (i != j && (pairs.empty() || pairs.back() != CoarseMatrix::BlockPair(i, j))) pairs.emplace_back(i, j);
-        });
+        couple<false>(system, insert);
+        std::vector<CoarseMatrix::BlockPair> pairs;
+        for (int k = 0; k < knots_; ++k)
+            for (const int column : columns[core::at(k)]) pairs.emplace_back(k, column);
         matrix_.analyse(knots_, std::move(pairs));
     }
 
@@ -329,7 +367,7 @@ private:
                     complete = matrix_.add(row, row - static_cast<int>(d), own.blocks[core::at(k * width + d)]) && complete;
                 }
         }
-        couple(system, [&](int i, int j, const Block& block) {
+        couple<true>(system, [&](int i, int j, const Block& block) {
             complete = matrix_.add(i, j, i == j ? Block(block + block.transpose()) : block) && complete;
         });
         return complete;
