@@ -4,16 +4,19 @@
 // search_bench [--brute] [--self] [--repeats N] SCENE.fpl...      prints CSV, one line a scene and search.
 // `--brute` also runs the quadratic oracle, and takes `misses` from it; without it they are against the grid's pairs.
 // The peer is nanoflann's static kd-tree over segment middles, radius for the longest segment, which must give the same pairs; its
-// pairs are neither sorted nor joined. A scene file is little endian: 8 bytes FIBPOL01; u64 fibres F; u64 vertices V; f64 margin;
+// pairs are neither sorted nor joined. "VerletSearch listed" is a call that the list serves (skin r). A scene file is little endian: 8 bytes FIBPOL01; u64 fibres F; u64 vertices V; f64 margin;
 // u64 selfskip; F f64 radii; F + 1 u64 first vertices; 3 V f64 coordinates.
 
 #include <fibrant/proximity/brute_search.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/proximity/kd_tree_search.hpp>
+#include <fibrant/proximity/test_point_search.hpp>
+#include <fibrant/proximity/verlet_search.hpp>
 
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <string>
 
@@ -85,13 +88,19 @@ std::uint64_t checksum(const std::vector<SegmentPair>& pairs) {
     return sum;
 }
 
+/// Processor time for one thread, which others on the machine disturb least; else time on the wall.
+double now() {
+    if (core::threads() == 1) return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 template <class Body>
 double median_seconds(int repeats, const Body& body) {
     std::vector<double> seconds;
     for (int k = 0; k < repeats; ++k) {
-        const auto start = std::chrono::steady_clock::now();
+        const double start = now();
         body();
-        seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        seconds.push_back(now() - start);
     }
     std::sort(seconds.begin(), seconds.end());
     return seconds[seconds.size() / 2];
@@ -161,6 +170,11 @@ int main(int argc, char** argv) {
             report(scene, "nanoflann by hand", 1, seconds, reference, [&] { return peer(lines, reach); });
             report(scene, "GridSearch", repeats, seconds, reference, [&] { return grid.pairs(lines, reach); });
             report(scene, "KdTreeSearch", repeats, seconds, reference, [&] { return KdTreeSearch{}.pairs(lines, reach); });
+            TestPointSearch points({.spacing = 4.0 * scene.radius[0]});
+            report(scene, "TestPointSearch h=4r", repeats, seconds, reference, [&] { return points.pairs(lines, reach); });
+            VerletSearch<GridSearch> verlet({.base = {}, .skin = scene.radius[0]});
+            verlet.pairs(lines, reach);
+            report(scene, "VerletSearch listed", repeats, seconds, reference, [&] { return verlet.pairs(lines, reach); });
             std::vector<ProximityZone> zones;
             const double joining = median_seconds(repeats, [&] { zones = zones_from_pairs(lines, reach, reference); });
             std::printf("%s,joining %zu zones,%zu,,,%.3f,%.4f\n", scene.name.c_str(), zones.size(), reference.size(),

@@ -86,7 +86,7 @@ public:
             for (std::int32_t k = cell_first_[core::at(c)]; k < cell_first_[core::at(c + 1)]; ++k) {
                 const Box box = columns_[k];
                 run[0][0] = k + 1;
-                Candidate* out = sink.room(run[0][1] - run[0][0] + across);
+                Candidate* out = sink.room(run[0][1] - run[0][0] + across + BoxColumns::width);
                 for (const auto& places : run) out = columns_.overlaps(box, places[0], places[1], k, out);
                 sink.take(out);
             }
@@ -104,7 +104,7 @@ public:
             if (axis < 2) rows *= high[axis] - low[axis] + 1;
         }
         if (rows > core::at(cells())) {
-            sink.take(columns_.overlaps(box, 0, size(), of, sink.room(size())));
+            sink.take(columns_.overlaps(box, 0, size(), of, sink.room(size() + BoxColumns::width)));
             return;
         }
         for (std::uint64_t x = low[0]; x <= high[0]; ++x)
@@ -112,7 +112,7 @@ public:
                 const std::uint64_t start = (x * cells_[1] + y) * cells_[2];
                 const std::int32_t from = cell_first_[core::at(cell_at_least(start + low[2]))];
                 const std::int32_t to = cell_first_[core::at(cell_at_least(start + high[2] + 1))];
-                sink.take(columns_.overlaps(box, from, to, of, sink.room(to - from)));
+                sink.take(columns_.overlaps(box, from, to, of, sink.room(to - from + BoxColumns::width)));
             }
     }
 

@@ -77,7 +77,8 @@ constexpr SegmentDistance segment_distance(const Plain3& w, const Plain3& u, con
     SegmentDistance least{squared_between(w, u, v, c.s[0], c.t[0]), c.s[0], c.t[0]};
     for (int k = 1; k < 5; ++k) {
         const double squared = squared_between(w, u, v, c.s[k], c.t[k]);
-        if (squared < least.squared) least = {squared, c.s[k], c.t[k]};
+        const bool closer = squared < least.squared;
+        least = {closer ? squared : least.squared, closer ? c.s[k] : least.s, closer ? c.t[k] : least.t};
     }
     return least;
 }

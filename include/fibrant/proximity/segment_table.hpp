@@ -174,13 +174,15 @@ inline void keep_close(const SegmentTable& table, const SegmentRecord* records, 
         filled = 0;
     };
     for (const Candidate& candidate : candidates) {
-        const SegmentRecord& a = records[candidate.a];
-        const SegmentRecord& b = records[candidate.b];
-        const bool ordered = a.segment < b.segment;
-        const SegmentRecord& i = ordered ? a : b;
-        const SegmentRecord& j = ordered ? b : a;
-        if (i.group == j.group && !table.may_pair_in_group(i.segment, j.segment)) continue;
-        lanes.set(filled++, i, j, table.reach());
+        // No branch on what is as good as random: which of the two is first, and whether both are of one fibre.
+        const SegmentRecord* two[2] = {records + candidate.a, records + candidate.b};
+        const std::size_t second = two[0]->segment < two[1]->segment ? 1 : 0;
+        const SegmentRecord& i = *two[1 - second];
+        const SegmentRecord& j = *two[second];
+        int keep = i.group != j.group ? 1 : 0;
+        if (table.selfish() && keep == 0) keep = table.may_pair_in_group(i.segment, j.segment) ? 1 : 0;
+        lanes.set(filled, i, j, table.reach());
+        filled += keep;
         if (filled == FilterLanes::size) flush();
     }
     if (filled > 0) flush();

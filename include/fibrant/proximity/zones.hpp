@@ -23,25 +23,29 @@ std::vector<SegmentPair> counted_by(const std::vector<SegmentPair>& pairs, std::
     return sorted;
 }
 
-/// Moves `s` on towards `outside` while start + s chord stays closer than `threshold` to the other segment. The distance to a
-/// segment is convex, so bisection finds the only change beyond a point that is close; returned from outside, to 1/1024.
+/// Moves `s` on towards `outside` while start + s chord stays closer than `threshold` to the other segment. The squared
+/// distance to a segment is convex and smooth, so Newton's method from outside comes down to the end without passing it.
 inline double extended(double s, double outside, const SegmentRecord& of, const SegmentRecord& other, double threshold) {
     const double per = 1.0 / std::max(dot(other.chord, other.chord), 1.0e-300);
-    const auto near = [&](double at) {
+    double slope = 0.0;
+    const auto excess = [&](double at) {
         const Plain3 x{of.start.x + at * of.chord.x - other.start.x, of.start.y + at * of.chord.y - other.start.y,
                        of.start.z + at * of.chord.z - other.start.z};
         const double t = unit_clamped(dot(x, other.chord) * per);
         const Plain3 w{x.x - t * other.chord.x, x.y - t * other.chord.y, x.z - t * other.chord.z};
-        return dot(w, w) < threshold * threshold;
+        slope = 2.0 * dot(w, of.chord);
+        return dot(w, w) - threshold * threshold;
     };
-    if (s == outside || !near(s)) return s;  // another pair of the zone reaches as far
-    if (near(outside)) return outside;
-    double inside = s;
-    while (std::abs(outside - inside) > 1.0 / 1024.0) {
-        const double middle = 0.5 * (inside + outside);
-        (near(middle) ? inside : outside) = middle;
+    if (s == outside || excess(s) >= 0.0) return s;  // another pair of the zone reaches as far
+    double end = outside;
+    for (int step = 0; step < 30; ++step) {
+        const double above = excess(end);
+        if (above <= 0.0) break;
+        const double before = end;
+        end = outside > s ? std::max(s, end - above / slope) : std::min(s, end - above / slope);
+        if (std::abs(end - before) < 1.0 / 4096.0) break;
     }
-    return outside;
+    return end;
 }
 
 /// Makes the zones of two fibres at a time; keeps its buffers from one to the next.
@@ -54,9 +58,17 @@ public:
     void append(std::span<const SegmentPair> pairs, std::vector<ProximityZone>& zones) {
         pairs_ = pairs;
         const std::size_t n = pairs_.size();
+        closest_.resize(n);
         sense_.resize(n);
         root_.resize(n);
-        for (std::size_t k = 0; k < n; ++k) sense_[k] = cosine(pairs_[k]);
+        SegmentRecord i{};
+        for (std::size_t k = 0; k < n; ++k) {
+            if (k == 0 || pairs_[k].i != pairs_[k - 1].i) i = table_.record(pairs_[k].i);
+            const SegmentRecord j = table_.record(pairs_[k].j);
+            closest_[k] = segment_distance(i.start - j.start, i.chord, j.chord);
+            const double lengths = std::sqrt(dot(i.chord, i.chord) * dot(j.chord, j.chord));
+            sense_[k] = lengths > 0.0 ? dot(i.chord, j.chord) / lengths : 0.0;
+        }
         std::iota(root_.begin(), root_.end(), std::size_t{0});
         join([](std::size_t, std::size_t) { return true; });
         if (separate_turns()) join([this](std::size_t a, std::size_t b) { return same_way(a, b); });
@@ -73,7 +85,7 @@ public:
             extent_[zone_[k]].add(pairs_[k], sense_[k]);
         }
         zones.resize(before + extent_.size());
-        for (std::size_t k = 0; k < n; ++k) measure(pairs_[k], extent_[zone_[k]], zones[before + zone_[k]]);
+        for (std::size_t k = 0; k < n; ++k) measure(k, extent_[zone_[k]], zones[before + zone_[k]]);
         for (std::size_t z = 0; z < extent_.size(); ++z)
             if (extent_[z].sense < 0.0) std::swap(zones[before + z].a_j, zones[before + z].b_j);
         std::sort(zones.begin() + static_cast<std::ptrdiff_t>(before), zones.end(),
@@ -95,12 +107,6 @@ private:
             sense += cosine;
         }
     };
-
-    double cosine(const SegmentPair& pair) const {
-        const SegmentRecord i = table_.record(pair.i), j = table_.record(pair.j);
-        const double lengths = std::sqrt(dot(i.chord, i.chord) * dot(j.chord, j.chord));
-        return lengths > 0.0 ? dot(i.chord, j.chord) / lengths : 0.0;
-    }
 
     std::size_t root(std::size_t k) {
         while (root_[k] != k) k = root_[k] = root_[root_[k]];
@@ -151,9 +157,9 @@ private:
     }
 
     /// Takes a pair into its zone: the closest points, and the ends where the pair is at one.
-    void measure(const SegmentPair& pair, const Extent& extent, ProximityZone& zone) const {
-        const SegmentRecord i = table_.record(pair.i), j = table_.record(pair.j);
-        const SegmentDistance closest = segment_distance(i.start - j.start, i.chord, j.chord);
+    void measure(std::size_t k, const Extent& extent, ProximityZone& zone) const {
+        const SegmentPair pair = pairs_[k];
+        const SegmentDistance& closest = closest_[k];
         const std::int32_t fibre_i = table_.fibre(pair.i), fibre_j = table_.fibre(pair.j);
         const double p = pair.i - table_.first(fibre_i), q = pair.j - table_.first(fibre_j);
         const double s = p + closest.s, t = q + closest.t;
@@ -163,11 +169,13 @@ private:
             zone.closest_j = t;
             zone.distance = std::sqrt(closest.squared);
         }
-        const double threshold = i.half + j.half + table_.reach();
         zone.a_i = std::min(zone.a_i, s);
         zone.b_i = std::max(zone.b_i, s);
         zone.a_j = std::min(zone.a_j, t);
         zone.b_j = std::max(zone.b_j, t);
+        if (pair.i != extent.least.i && pair.i != extent.most.i && pair.j != extent.least.j && pair.j != extent.most.j) return;
+        const SegmentRecord i = table_.record(pair.i), j = table_.record(pair.j);
+        const double threshold = i.half + j.half + table_.reach();
         if (pair.i == extent.least.i) zone.a_i = p + extended(zone.a_i - p, 0.0, i, j, threshold);
         if (pair.i == extent.most.i) zone.b_i = p + extended(zone.b_i - p, 1.0, i, j, threshold);
         if (pair.j == extent.least.j) zone.a_j = q + extended(zone.a_j - q, 0.0, j, i, threshold);
@@ -176,7 +184,8 @@ private:
 
     const SegmentTable& table_;
     std::span<const SegmentPair> pairs_;
-    std::vector<double> sense_;
+    std::vector<SegmentDistance> closest_;
+    std::vector<double> sense_;  // cosine of the two chords
     std::vector<std::size_t> root_, zone_;
     std::vector<char> mixed_;
     std::vector<Extent> extent_;
@@ -186,7 +195,7 @@ private:
 
 /// Proximity zones of close pairs of segments: for two fibres, the pairs that touch each other (8 neighbours in the plane
 /// of the two segment numbers) make one zone, split where the fibres turn from clearly along to clearly against each other
-/// (60 degrees). Its intervals end where the axes part by the pair's threshold, known from outside to 1/1024 segment.
+/// (60 degrees). Its intervals end where the axes part by the pair's threshold, found from outside to some 1/1024 segment.
 /// Linear in the number of pairs.
 /// @param pairs  sorted, without repeats, as `pairs` of a search returns them
 /// @return sorted by fibre_i, fibre_j, a_i, a_j
