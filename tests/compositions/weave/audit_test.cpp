@@ -138,6 +138,26 @@ TEST_CASE("the least gap is that of the curves, not of the chords between their 
     CHECK(least.position.x() == doctest::Approx(0.0).epsilon(1e-6));
 }
 
+TEST_CASE("a pair whose chords are apart but whose curves touch deepest is not passed over") {
+    // First pair: straight, 0.001 deep. Second pair: the nearest chord is 0.001 clear, but the parabola hangs below it.
+    observe::Snapshot snapshot;
+    snapshot.fibres = {curve({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, 0.1),
+                       curve({{0.5, -1, 0.199}, {0.5, 0, 0.199}, {0.5, 1, 0.199}}, 0.1),
+                       curve({{-1, 9, 0}, {0, 9, 0}, {1, 9, 0}}, 0.1),
+                       curve({{0.1, 8.5, 0.201}, {0.1, 9.5, 0.201}, {0.1, 10.5, 1.0}}, 0.1)};
+    const NodalCurve bulge{snapshot.fibres[3].position};
+    const LeastGap least = least_gap(snapshot, proximity::BruteSearch{});
+    CHECK(least.fibre_i == 2);
+    CHECK(least.fibre_j == 3);
+    CHECK(least.gap == least_gap(snapshot, proximity::GridSearch{}).gap);
+    double lowest = 1.0;
+    for (int k = 0; k <= 200000; ++k) {
+        const Vec3 x = bulge.position(1e-5 * k);
+        lowest = std::min(lowest, std::hypot(x.z(), x.y() - 9.0));
+    }
+    CHECK(least.gap == doctest::Approx(lowest - 0.2).epsilon(1e-6));
+}
+
 TEST_CASE("flattened sections touch later than round ones") {
     observe::Snapshot snapshot;
     snapshot.fibres = {curve({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, 0.1), curve({{0, -1, 0.19}, {0, 0, 0.19}, {0, 1, 0.19}}, 0.1)};
