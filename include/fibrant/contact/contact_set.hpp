@@ -61,6 +61,8 @@ public:
     const std::vector<Zone>& zones() const noexcept { return zones_; }
     const Memory& accepted_memory() const noexcept { return accepted_; }
     const ForcedOrders& orders() const noexcept { return orders_; }
+    /// The element's normal is prescribed by a forced order.
+    bool forced(const Element& element) const noexcept { return zones_[core::at(element.zone)].forced; }
     double stiffness(const Element& element) const noexcept { return zones_[core::at(element.zone)].stiffness; }
 
     /// Outer loop: zones, stations and particles anew. What contacts remember comes from the elements that they replace.
@@ -300,8 +302,8 @@ private:
             const Vec3 side = remembered.isZero() ? centres : remembered;
             element.normal = unit_or(centres.dot(side) > 0.0 ? centres : side, Vec3::UnitZ());
         } else {
-            const Vec3 t_i = mesh_->derivative(state, i, element.u_i).normalized();
-            const Vec3 t_j = mesh_->derivative(state, j, element.u_j).normalized();
+            const Vec3 t_i = contact_tangent(*mesh_, state, i, element.u_i).normalized();
+            const Vec3 t_j = contact_tangent(*mesh_, state, j, element.u_j).normalized();
             element.normal = normal_direction(parameters_.normal, centres, t_i, t_j, remembered);
         }
         follow_support(element, state);
@@ -351,7 +353,7 @@ private:
         const double range = 1.5 / parameters_.spacing.points_per_element;
         const RecordedFriction<Friction> recorded =
             accepted_.friction(element.fibre_i, element.fibre_j, element.u_i, element.u_j, range);
-        const TangentPlane plane(mesh_->derivative(state, element.fibre_i, element.u_i).normalized(), element.normal);
+        const TangentPlane plane(contact_tangent(*mesh_, state, element.fibre_i, element.u_i).normalized(), element.normal);
         element.friction.history.reversible = recorded.along * plane.along + recorded.across * plane.across;
     }
 
@@ -365,7 +367,7 @@ private:
             record.normal = element.normal;
             if constexpr (core::Active<Friction>) {
                 if (k < core::count(frictions_) && responses_[core::at(k)].reaction > 0.0) {
-                    const TangentPlane plane(mesh_->derivative(state, element.fibre_i, element.u_i).normalized(), element.normal);
+                    const TangentPlane plane(contact_tangent(*mesh_, state, element.fibre_i, element.u_i).normalized(), element.normal);
                     const Vec3& kept = frictions_[core::at(k)].history.reversible;
                     record.friction = {kept.dot(plane.along), kept.dot(plane.across)};
                 }

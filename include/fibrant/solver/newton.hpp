@@ -203,7 +203,10 @@ private:
     double bounded(const Vector& step) const {
         const auto& elements = contacts_->elements();
         double most = 0.0;
-        for (const auto& element : elements) most = std::max(most, std::abs(element.normal.dot(element.offset(step))));
+        for (const auto& element : elements) {
+            if (contacts_->forced(element)) continue;  // its side is prescribed
+            most = std::max(most, std::abs(element.normal.dot(element.offset(step))));
+        }
         const double bound = parameters_.largest_approach * radius_;
         return most > bound ? bound / most : 1.0;
     }
