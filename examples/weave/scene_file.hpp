@@ -55,7 +55,8 @@ inline void read_tow(TomlReader& file, const std::string& section, bool required
         return;
     }
     if (radius || factor)
-        file.refuse(section, radius ? "radius" : "inertia_factor", "left out where real_fibres and real_diameter are given");
+        file.refuse(section, radius ? "radius" : "inertia_factor",
+                    "left out where real_fibres and real_diameter are given");
     if (!count) file.require(section, "real_fibres", real_fibres);
     if (!diameter) file.require(section, "real_diameter", real_diameter);
     try {
@@ -129,7 +130,8 @@ inline Scene read_scene(const std::string& path, const std::vector<std::string>&
         file.read("contact", "allowed_penetration_over_radius", settle.allowed_penetration_over_radius);
 
         auto& iteration = scene.iteration;
-        file.read("solver", "linear_solver", scene.linear_solver, {"two_level_pcg", "fibre_block_pcg", "sparse_cholesky"});
+        file.read("solver", "linear_solver", scene.linear_solver,
+                  {"two_level_pcg", "fibre_block_pcg", "sparse_cholesky"});
         file.read("solver", "threads", scene.threads);
         file.read("solver", "step_tolerance", iteration.step_tolerance);
         file.read("solver", "residual_tolerance", iteration.residual_tolerance);

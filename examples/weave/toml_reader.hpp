@@ -24,7 +24,8 @@ using fibrant::Index;
 /// std::invalid_argument, "file: section.key = value, but it must be bound".
 class TomlReader {
 public:
-    /// @param overrides  "section.key=value", the value as in the file (quotes of a text may be left out); later ones win
+    /// @param overrides  "section.key=value", the value as in the file (quotes of a text may be left out); later ones
+    /// win
     TomlReader(std::string file, const std::vector<std::string>& overrides) : file_{std::move(file)} {
         try {
             table_ = toml::parse_file(file_);
@@ -39,9 +40,7 @@ public:
         for (const std::string& text : overrides) replace(text);
     }
 
-    bool has(const std::string& section, const std::string& key) {
-        return node(section, key) != nullptr;
-    }
+    bool has(const std::string& section, const std::string& key) { return node(section, key) != nullptr; }
 
     /// Leaves `value` alone where the key is not given. @return whether it is
     bool read(const std::string& section, const std::string& key, double& value) {
@@ -145,7 +144,8 @@ private:
     }
 
     const toml::node* node(const std::string& section, const std::string& key) {
-        if (std::find(asked_.begin(), asked_.end(), Key{section, key}) == asked_.end()) asked_.emplace_back(section, key);
+        if (std::find(asked_.begin(), asked_.end(), Key{section, key}) == asked_.end())
+            asked_.emplace_back(section, key);
         const toml::table* table = table_[section].as_table();
         return table == nullptr ? nullptr : table->get(key);
     }

@@ -50,8 +50,9 @@ TEST_CASE("rows of other columns are refused") {
     const auto path = empty_folder("csv_columns") / "table.csv";
     CsvWriter table(path);
     table.row({{"a", 1}, {"b", 2}});
-    CHECK(test::refusal([&] { table.row({{"a", 1}, {"c", 2}}); }) ==
-          "CsvWriter.columns = a,c, but it must be those of the first row, a,b");
+    CHECK(test::refusal([&] {
+              table.row({{"a", 1}, {"c", 2}});
+          }) == "CsvWriter.columns = a,c, but it must be those of the first row, a,b");
     CsvWriter resumed(path, Start::resumed);
     CHECK(test::refusal([&] { resumed.row({{"a", 1}}); }).find("CsvWriter.columns = a, but it must be those of") == 0);
 }

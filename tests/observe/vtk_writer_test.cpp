@@ -49,8 +49,7 @@ TEST_CASE("a fibre becomes one polyline with its values at the nodes") {
     REQUIRE(points.size() == 24);
     CHECK(points[0] == -1.0);
     CHECK(points[9 + 2] == 0.3);  // first node of the second fibre
-    CHECK(array_of<float>(file, "radius") ==
-          std::vector<float>{0.1f, 0.1f, 0.1f, 0.2f, 0.2f, 0.2f, 0.2f, 0.2f});
+    CHECK(array_of<float>(file, "radius") == std::vector<float>{0.1f, 0.1f, 0.1f, 0.2f, 0.2f, 0.2f, 0.2f, 0.2f});
     CHECK(array_of<float>(file, "curvature") == std::vector<float>{0, 1, 2, 0, 1, 2, 3, 4});
     CHECK(array_of<float>(file, "displacement")[5] == -1.0f);
     CHECK(array_of<float>(file, "director_1").size() == 24);
@@ -95,7 +94,8 @@ TEST_CASE("a resumed series keeps earlier increments and drops those that are re
     VtkWriter resumed(run, Start::resumed);
     resumed.accepted(crossing_pair(3));
     resumed.accepted(crossing_pair(4));
-    const std::vector<std::string> all{"contacts_0001.vtp", "contacts_0002.vtp", "contacts_0003.vtp", "contacts_0004.vtp"};
+    const std::vector<std::string> all{"contacts_0001.vtp", "contacts_0002.vtp", "contacts_0003.vtp",
+                                       "contacts_0004.vtp"};
     CHECK(entries(run / "contacts.pvd") == all);
     CHECK(entries(run / "fibres.pvd").size() == 4);
     for (const std::string& file : all) CHECK(std::filesystem::exists(run / file));
@@ -109,8 +109,8 @@ TEST_CASE("a resumed series keeps earlier increments and drops those that are re
 TEST_CASE("a folder that cannot be written is reported by the file's name") {
     const auto folder = empty_folder("vtk_refused");
     write_file(folder / "taken", "a file, not a folder");
-    CHECK_THROWS_WITH_AS(write_file(folder / "taken" / "inside", "x"),
-                         doctest::Contains("cannot write the file"), std::runtime_error);
+    CHECK_THROWS_WITH_AS(write_file(folder / "taken" / "inside", "x"), doctest::Contains("cannot write the file"),
+                         std::runtime_error);
 }
 
 TEST_CASE("VTK itself reads what was written, also an increment without contacts") {

@@ -28,15 +28,15 @@ struct Histogram {
 /// Figures of the contact elements of a snapshot; active ones have a reaction.
 struct ContactStatistics {
     Index elements = 0, active = 0;
-    Index crossings = 0;     ///< active elements that stand for a whole zone
-    Index fibre_pairs = 0;   ///< with an active element
+    Index crossings = 0;                                         ///< active elements that stand for a whole zone
+    Index fibre_pairs = 0;                                       ///< with an active element
     double least_gap = std::numeric_limits<double>::infinity();  ///< of all elements [length]
-    double greatest_penetration = 0;              ///< [length], >= 0
+    double greatest_penetration = 0;                             ///< [length], >= 0
     double greatest_penetration_over_radius = 0;  ///< over the smaller circumscribed radius of the pair [1]
-    double sum_of_reactions = 0;  ///< [force]
-    double sum_of_friction = 0;   ///< of the lengths of R_T [force]
-    Histogram reaction;           ///< of active elements [force]
-    Histogram penetration;        ///< of active elements [length]
+    double sum_of_reactions = 0;                  ///< [force]
+    double sum_of_friction = 0;                   ///< of the lengths of R_T [force]
+    Histogram reaction;                           ///< of active elements [force]
+    Histogram penetration;                        ///< of active elements [length]
     Mat3 orientation = Mat3::Zero();  ///< mean of N N^T over active elements, trace 1; zero if there are none
 };
 

@@ -34,8 +34,10 @@ inline std::string json_quoted(std::string_view text) {
             answer += text[k];
         } else {
             // Length by the first byte; the least value of the second excludes overlong forms and surrogates.
-            const std::size_t more = byte >= 0xc2 && byte <= 0xdf ? 1 : byte >= 0xe0 && byte <= 0xef ? 2
-                                     : byte >= 0xf0 && byte <= 0xf4 ? 3 : 0;
+            const std::size_t more = byte >= 0xc2 && byte <= 0xdf   ? 1
+                                     : byte >= 0xe0 && byte <= 0xef ? 2
+                                     : byte >= 0xf0 && byte <= 0xf4 ? 3
+                                                                    : 0;
             bool valid = more > 0 && k + more < text.size();
             for (std::size_t n = 1; valid && n <= more; ++n) {
                 const auto next = static_cast<unsigned char>(text[k + n]);

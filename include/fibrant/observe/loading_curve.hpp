@@ -30,9 +30,7 @@ public:
         double value = 0;
     };
 
-    LoadingCurve()
-        requires std::default_initializable<Quantity>
-        : quantity_{} {}
+    LoadingCurve() requires std::default_initializable<Quantity> : quantity_{} {}
     explicit LoadingCurve(Quantity quantity) : quantity_{std::move(quantity)} {}
 
     void accepted(const Snapshot& snapshot) { points_.push_back({snapshot.progress, quantity_(snapshot)}); }

@@ -9,7 +9,9 @@ namespace fibrant::observe {
 /// Is shown the state after each accepted increment, in order. A run that is resumed shows the increments that follow
 /// the last accepted one; an observer that writes files keeps what they hold of the earlier ones.
 template <class O>
-concept Observer = requires(O observer, const Snapshot& snapshot) { observer.accepted(snapshot); };
+concept Observer = requires(O observer, const Snapshot& snapshot) {
+    observer.accepted(snapshot);
+};
 
 /// Does a file begin anew, or go on from an interrupted run?
 enum class Start { anew, resumed };

@@ -40,11 +40,12 @@ public:
     std::string text() const {
         static_assert(std::endian::native == std::endian::little, "the header states little endian");
         const std::size_t cells = vertex_points_.size() + line_ends_.size();
-        std::string head = "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
-                           "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"" +
-                           std::to_string(points_.size()) + "\" NumberOfVerts=\"" +
-                           std::to_string(vertex_points_.size()) + "\" NumberOfLines=\"" +
-                           std::to_string(line_ends_.size()) + "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
+        std::string head =
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
+            "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"" +
+            std::to_string(points_.size()) + "\" NumberOfVerts=\"" + std::to_string(vertex_points_.size()) +
+            "\" NumberOfLines=\"" + std::to_string(line_ends_.size()) +
+            "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
         std::string data;
         write_arrays(head, data, "PointData", point_data_, points_.size());
         write_arrays(head, data, "CellData", cell_data_, cells);
@@ -57,7 +58,8 @@ public:
         for (std::size_t k = 0; k < vertex_points_.size(); ++k) ends.push_back(static_cast<std::int64_t>(k + 1));
         write_cells(head, data, "Verts", vertex_points_, ends);
         write_cells(head, data, "Lines", line_points_, line_ends_);
-        return head + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + data + "\n</AppendedData>\n</VTKFile>\n";
+        return head + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + data +
+               "\n</AppendedData>\n</VTKFile>\n";
     }
 
 private:
@@ -138,8 +140,9 @@ public:
     void add(double time, const std::string& file) {
         std::erase_if(entries_, [&](const Entry& entry) { return entry.time >= time; });
         entries_.push_back({time, xml_escaped(file)});
-        std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
-                           "byte_order=\"LittleEndian\">\n<Collection>\n";
+        std::string text =
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+            "byte_order=\"LittleEndian\">\n<Collection>\n";
         for (const Entry& entry : entries_)
             text += "<DataSet timestep=\"" + shortest(entry.time) + "\" group=\"\" part=\"0\" file=\"" + entry.file +
                     "\"/>\n";

@@ -19,11 +19,11 @@
 namespace fibrant::observe {
 
 struct SliceParameters {
-    Index axis = 0;                   ///< across which the plane lies: 0 for x, 1 for y, 2 for z
-    double position = core::unset;    ///< of the plane on that axis [length]
-    double width = 1200.0;            ///< of the picture, >= 100 [pixels]; the height follows
+    Index axis = 0;                 ///< across which the plane lies: 0 for x, 1 for y, 2 for z
+    double position = core::unset;  ///< of the plane on that axis [length]
+    double width = 1200.0;          ///< of the picture, >= 100 [pixels]; the height follows
     std::string title;
-    std::string unit;                 ///< of lengths, for the scale bar
+    std::string unit;  ///< of lengths, for the scale bar
     Palette palette;
 
     void validate() const {
@@ -68,8 +68,8 @@ private:
 
 /// Outlines of all fibres in the plane { x_axis = position }, by fibre.
 ///
-/// A fibre that passes through at more than 30 degrees gives the ellipse of its deformed section (semi-axes along g_1 and
-/// g_2) carried to the plane along the fibre, which is the true cut; one that runs along the plane gives a strip.
+/// A fibre that passes through at more than 30 degrees gives the ellipse of its deformed section (semi-axes along g_1
+/// and g_2) carried to the plane along the fibre, which is the true cut; one that runs along the plane gives a strip.
 inline std::vector<SliceShape> slice_shapes(const Snapshot& snapshot, Index axis, double position) {
     const std::array<Index, 2> plane{axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
     const auto flat = [&](const Vec3& v) { return Eigen::Vector2d{v[plane[0]], v[plane[1]]}; };
@@ -108,7 +108,8 @@ inline std::vector<SliceShape> slice_shapes(const Snapshot& snapshot, Index axis
                 return flat(v - v[axis] / lean * tangent);
             };
             const Eigen::Vector2d p = carried(fibre.director_1, fibre.section.semi_axis_1),
-                                  q = carried(fibre.director_2, fibre.section.semi_axis_2), centre = flat(a + s * chord);
+                                  q = carried(fibre.director_2, fibre.section.semi_axis_2),
+                                  centre = flat(a + s * chord);
             SliceShape shape{{}, static_cast<Index>(k), false};
             constexpr int corners = 32;
             for (int corner = 0; corner < corners; ++corner) {
@@ -144,12 +145,14 @@ inline std::string svg_slice(const Snapshot& snapshot, const SliceParameters& pa
     const double left = 0.5 * (parameters.width - scale * (high.x() - low.x()));
     std::string body;
     for (const SliceShape& shape : shapes) {
-        const Colour colour =
-            parameters.palette.of(shape.fibre, snapshot.fibres[core::at(shape.fibre)].group).toned(shape.along ? 1.5 : 1.0);
-        body += "<path fill=\"" + colour.text() + "\" stroke=\"" + colour.toned(shape.along ? 0.75 : 0.4).text() + "\" d=\"M";
+        const Colour colour = parameters.palette.of(shape.fibre, snapshot.fibres[core::at(shape.fibre)].group)
+                                  .toned(shape.along ? 1.5 : 1.0);
+        body += "<path fill=\"" + colour.text() + "\" stroke=\"" + colour.toned(shape.along ? 0.75 : 0.4).text() +
+                "\" d=\"M";
         for (const Eigen::Vector2d& corner : shape.outline)
             body += (&corner == shape.outline.data() ? "" : "L") +
-                    detail::point_text({left + scale * (corner.x() - low.x()), margin + scale * (high.y() - corner.y())}, 2);
+                    detail::point_text(
+                        {left + scale * (corner.x() - low.x()), margin + scale * (high.y() - corner.y())}, 2);
         body += "z\"/>\n";
     }
     const char* names[] = {"x", "y", "z"};

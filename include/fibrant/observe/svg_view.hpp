@@ -20,12 +20,12 @@ namespace fibrant::observe {
 
 /// Parallel projection.
 struct ViewParameters {
-    double azimuth = -60.0;    ///< of the eye about z, from the x axis [degrees]
-    double elevation = 35.0;   ///< of the eye above the plane z = 0, in [-90, 90] [degrees]
-    double width = 1200.0;     ///< of the picture, >= 100 [pixels]; the height follows
-    Index pieces = 30000;      ///< at most about so many pieces of fibres are drawn, >= 1
+    double azimuth = -60.0;   ///< of the eye about z, from the x axis [degrees]
+    double elevation = 35.0;  ///< of the eye above the plane z = 0, in [-90, 90] [degrees]
+    double width = 1200.0;    ///< of the picture, >= 100 [pixels]; the height follows
+    Index pieces = 30000;     ///< at most about so many pieces of fibres are drawn, >= 1
     std::string title;
-    std::string unit;          ///< of lengths, for the scale bar
+    std::string unit;  ///< of lengths, for the scale bar
     Palette palette;
 
     void validate() const {
@@ -42,9 +42,9 @@ enum class PieceKind { line, section, cut_face };
 
 /// A piece of a fibre as a thick line, or a section of it as an ellipse, in pixels.
 struct ViewPiece {
-    Eigen::Vector2d from, to;              ///< ends of the line, or the middle of the ellipse twice
-    double half_width, depth;              ///< depth grows towards the eye
-    Vec3 tangent;                          ///< along the fibre; outwards at a cut face
+    Eigen::Vector2d from, to;  ///< ends of the line, or the middle of the ellipse twice
+    double half_width, depth;  ///< depth grows towards the eye
+    Vec3 tangent;              ///< along the fibre; outwards at a cut face
     Index fibre;
     PieceKind kind;
     Eigen::Vector2d axis_1{0, 0}, axis_2{0, 0};  ///< of the ellipse
@@ -151,7 +151,8 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
         const std::size_t nodes = fibre.position.size();
         if (nodes < 2) continue;
         double length = 0.0;
-        for (std::size_t node = 1; node < nodes; ++node) length += (fibre.position[node] - fibre.position[node - 1]).norm();
+        for (std::size_t node = 1; node < nodes; ++node)
+            length += (fibre.position[node] - fibre.position[node - 1]).norm();
         const double step = std::max(1.5 * fibre.section.radius(), total / static_cast<double>(parameters.pieces));
         const auto count = std::max<Index>(1, static_cast<Index>(std::ceil(length / step)));
         const auto at = [&](Index piece, const std::vector<Vec3>& values) -> Vec3 {
@@ -171,8 +172,8 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
             const double q = fibre.section.semi_axis_2 * at(piece, fibre.director_2).dot(across);
             const double half_width = scale * std::sqrt(p * p + q * q);
             thinnest = std::min(thinnest, half_width);
-            pieces.push_back({on_page(a), on_page(b), half_width, 0.5 * eye.dot(a + b), tangent,
-                              static_cast<Index>(k), detail::PieceKind::line});
+            pieces.push_back({on_page(a), on_page(b), half_width, 0.5 * eye.dot(a + b), tangent, static_cast<Index>(k),
+                              detail::PieceKind::line});
         }
         // Sections between pieces, behind both: where a fibre turns away from the eye they round its outline, and
         // elsewhere they are hidden and left out. At an end that faces the eye, the cut face before the last piece.
@@ -186,10 +187,13 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
             const Vec3 outwards = joint == 0 ? Vec3(-after.tangent) : before.tangent;
             const bool face = (joint == 0 || joint == count) && outwards.dot(eye) > 0.0;
             const double radius = fibre.section.radius();
-            detail::ViewPiece section{on_page(centre), on_page(centre), scale * radius,
+            detail::ViewPiece section{on_page(centre),
+                                      on_page(centre),
+                                      scale * radius,
                                       face ? std::max(before.depth, after.depth) + radius
                                            : std::min(before.depth, after.depth) - 0.01 * radius,
-                                      face ? outwards : Vec3(before.tangent), static_cast<Index>(k),
+                                      face ? outwards : Vec3(before.tangent),
+                                      static_cast<Index>(k),
                                       face ? detail::PieceKind::cut_face : detail::PieceKind::section,
                                       scale * Eigen::Vector2d{right.dot(axis_1), -up.dot(axis_1)},
                                       scale * Eigen::Vector2d{right.dot(axis_2), -up.dot(axis_2)}};
@@ -204,9 +208,7 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return pieces[a].depth > pieces[b].depth; });
     detail::Coverage coverage(parameters.width, height, std::max(0.25, 0.25 * thinnest));
-    std::erase_if(order, [&](std::size_t k) {
-        return !coverage.shows(pieces[k]);
-    });
+    std::erase_if(order, [&](std::size_t k) { return !coverage.shows(pieces[k]); });
 
     // One class a colour and tone keeps the file small.
     constexpr int tones = 16;
@@ -242,8 +244,8 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
             body += "<path class=\"" + std::string(face ? "f" : "s") + name + "\" d=\"M";
             for (int corner = 0; corner < 12; ++corner) {
                 const double angle = std::numbers::pi * corner / 6.0;
-                body += (corner == 0 ? "" : "L") +
-                        detail::point_text(piece.from + std::cos(angle) * piece.axis_1 + std::sin(angle) * piece.axis_2);
+                body += (corner == 0 ? "" : "L") + detail::point_text(piece.from + std::cos(angle) * piece.axis_1 +
+                                                                      std::sin(angle) * piece.axis_2);
             }
             body += "z\"/>\n";
             continue;
@@ -254,8 +256,8 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
                     detail::point_text(piece.from + shift - more * ahead) + "L" +
                     detail::point_text(piece.to + shift + more * ahead) + "\"/>\n";
         };
-        // The outline ends square, so it never crosses the body of a neighbour; the body is a little longer, which closes
-        // bends, and so is the streak, which would be broken by the next body otherwise.
+        // The outline ends square, so it never crosses the body of a neighbour; the body is a little longer, which
+        // closes bends, and so is the streak, which would be broken by the next body otherwise.
         const double more = piece.beyond();
         const double rim = std::clamp(0.14 * piece.half_width, 0.3, 1.5);
         line("o" + std::to_string(colour), 2.0 * piece.half_width, Eigen::Vector2d::Zero(), 0.3);
@@ -267,8 +269,7 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
         if (side.norm() < 1e-6) continue;
         const Vec3 unit_side = side.normalized();
         const Eigen::Vector2d page_side{right.dot(unit_side), -up.dot(unit_side)};
-        line("h" + name, 0.5 * piece.half_width,
-             0.75 * piece.half_width * bright.dot(unit_side) * page_side, more);
+        line("h" + name, 0.5 * piece.half_width, 0.75 * piece.half_width * bright.dot(unit_side) * page_side, more);
     }
 
     std::string style = "path{fill:none}\n";
@@ -279,10 +280,11 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
             const std::string name = std::to_string(colour) + "_" + std::to_string(level);
             const double tone = (static_cast<double>(level) + 0.5) / tones;
             style += ".b" + name + "{stroke:" + colours[colour].toned(0.3 + 0.75 * tone).text() + "}.h" + name +
-                     "{stroke:" + colours[colour].toned(0.55 + 0.85 * tone).text() + "}.s" + name + "{fill:" +
-                     colours[colour].toned(0.3 + 0.75 * tone).text() + ";stroke:" + colours[colour].toned(0.32).text() +
-                     "}.f" + name + "{fill:" + colours[colour].toned(0.7 + 0.85 * tone).text() + ";stroke:" +
-                     colours[colour].toned(0.32).text() + ";stroke-width:.6}\n";
+                     "{stroke:" + colours[colour].toned(0.55 + 0.85 * tone).text() + "}.s" + name +
+                     "{fill:" + colours[colour].toned(0.3 + 0.75 * tone).text() +
+                     ";stroke:" + colours[colour].toned(0.32).text() + "}.f" + name +
+                     "{fill:" + colours[colour].toned(0.7 + 0.85 * tone).text() +
+                     ";stroke:" + colours[colour].toned(0.32).text() + ";stroke-width:.6}\n";
         }
     }
     body += detail::svg_scale_bar(24, height - 20, 0.2 * parameters.width, scale, parameters.unit);

@@ -40,11 +40,20 @@ inline std::string xml_escaped(std::string_view text) {
     std::string answer;
     for (const char c : text) {
         switch (c) {
-            case '&': answer += "&amp;"; break;
-            case '<': answer += "&lt;"; break;
-            case '>': answer += "&gt;"; break;
-            case '"': answer += "&quot;"; break;
-            default: answer += c;
+            case '&':
+                answer += "&amp;";
+                break;
+            case '<':
+                answer += "&lt;";
+                break;
+            case '>':
+                answer += "&gt;";
+                break;
+            case '"':
+                answer += "&quot;";
+                break;
+            default:
+                answer += c;
         }
     }
     return answer;

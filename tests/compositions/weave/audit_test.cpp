@@ -116,7 +116,8 @@ TEST_CASE("crossings are found on wavy fibres where a dense sampling finds them"
 
 TEST_CASE("two crossed fibres are apart by the distance of their axes less both radii") {
     observe::Snapshot snapshot;
-    snapshot.fibres = {curve({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, 0.1), curve({{0.3, -1, 0.25}, {0.3, 0.2, 0.25}, {0.3, 1, 0.25}}, 0.2)};
+    snapshot.fibres = {curve({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, 0.1),
+                       curve({{0.3, -1, 0.25}, {0.3, 0.2, 0.25}, {0.3, 1, 0.25}}, 0.2)};
     const LeastGap least = least_gap(snapshot, proximity::BruteSearch{});
     CHECK(least.gap == doctest::Approx(-0.05));
     CHECK(least.gap_over_radius == doctest::Approx(-0.5));
@@ -160,7 +161,8 @@ TEST_CASE("a pair whose chords are apart but whose curves touch deepest is not p
 
 TEST_CASE("flattened sections touch later than round ones") {
     observe::Snapshot snapshot;
-    snapshot.fibres = {curve({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, 0.1), curve({{0, -1, 0.19}, {0, 0, 0.19}, {0, 1, 0.19}}, 0.1)};
+    snapshot.fibres = {curve({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, 0.1),
+                       curve({{0, -1, 0.19}, {0, 0, 0.19}, {0, 1, 0.19}}, 0.1)};
     CHECK(least_gap(snapshot, proximity::BruteSearch{}).gap == doctest::Approx(-0.01));
     for (auto& fibre : snapshot.fibres)
         for (Vec3& director : fibre.director_2) director *= 0.9;

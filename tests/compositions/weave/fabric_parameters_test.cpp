@@ -31,7 +31,8 @@ TEST_CASE("the fabric of the chapter's tables is accepted, with its sizes") {
     CHECK(fabric.fibres() * fabric.nodes_per_fibre() == 39520);  // table 15.1
     CHECK(fabric.fibre_length(Family::warp) == doctest::Approx(4.4));
     // Table 15.2 gives the tow's area with three digits, and r with three.
-    CHECK(static_cast<double>(fabric.warp.fibres) * fabric.warp.section().area() == doctest::Approx(0.0967).epsilon(5e-3));
+    CHECK(static_cast<double>(fabric.warp.fibres) * fabric.warp.section().area() ==
+          doctest::Approx(0.0967).epsilon(5e-3));
 }
 
 TEST_CASE("macro-fibres of the two scenes stand for the same real fibres") {
@@ -72,7 +73,8 @@ TEST_CASE("every field that cannot be is refused by field, value and bound") {
           "FabricParameters.weft.material.young_modulus = nan, but it must be finite and > 0");
     CHECK(refused([](F& f) { f.warp.material.poisson_ratio = 0.5; }) ==
           "FabricParameters.warp.material.poisson_ratio = 0.5, but it must be > -1 and < 0.5");
-    CHECK(refused([](F& f) { f.warp.aspect = 0.5; }) == "FabricParameters.warp.aspect = 0.5, but it must be in [1, 20]");
+    CHECK(refused([](F& f) { f.warp.aspect = 0.5; }) ==
+          "FabricParameters.warp.aspect = 0.5, but it must be in [1, 20]");
     CHECK(refused([](F& f) { f.warp.packing_gap = -1e-3; }) ==
           "FabricParameters.warp.packing_gap = -0.001, but it must be in [0, 1]");
     CHECK(refused([&](F& f) { f.warp_spacing = nan; }) ==
@@ -88,8 +90,12 @@ TEST_CASE("tows that overlap their neighbours, ends that miss a tow and elements
     // 19 fibres at aspect 2.5 lie in rows of 6, 7, 6: 7 diameters and 6 gaps wide.
     const double width = 0.08 * (7.0 + 6.0 * 1e-3);
     CHECK(refused([&](F& f) { f.warp_spacing = width + 1e-6; }).empty());
-    CHECK(refused([](F& f) { f.warp_spacing = 0.56; }).find("FabricParameters.warp_spacing = 0.56, but it must be >= width") == 0);
-    CHECK(refused([](F& f) { f.overhang = 0.28; }).find("FabricParameters.overhang = 0.28, but it must be > half the width") == 0);
+    CHECK(refused([](F& f) {
+              f.warp_spacing = 0.56;
+          }).find("FabricParameters.warp_spacing = 0.56, but it must be >= width") == 0);
+    CHECK(refused([](F& f) {
+              f.overhang = 0.28;
+          }).find("FabricParameters.overhang = 0.28, but it must be > half the width") == 0);
     CHECK(refused([](F& f) { f.elements = 55; }).empty());  // 4.4 / 55 = 0.08, a diameter
     CHECK(refused([](F& f) { f.elements = 56; }).find("FabricParameters.elements = 56, but it must be <= 55") == 0);
     CHECK(refused([](F& f) { f.warp_tows = 1; }).find("Pattern = plain on 1 warp and 4 weft tows") == 0);

@@ -80,9 +80,11 @@ TEST_CASE("a curve is met by a plane where its parabolas cross it, at nodes and 
 
 TEST_CASE("curvature of a circle is one over its radius, and its length two pi times that") {
     std::vector<Vec3> nodes;
-    for (int k = 0; k <= 128; ++k) nodes.emplace_back(2.0 * std::cos(pi * k / 64.0), 1.0, 2.0 * std::sin(pi * k / 64.0));
+    for (int k = 0; k <= 128; ++k)
+        nodes.emplace_back(2.0 * std::cos(pi * k / 64.0), 1.0, 2.0 * std::sin(pi * k / 64.0));
     const NodalCurve curve{nodes};
-    // Middle of an element: the parabola's curvature is 8 sag / chord^2 = 1 / (R cos^2(angle / 2)), angle = pi / 64 here.
+    // Middle of an element: the parabola's curvature is 8 sag / chord^2 = 1 / (R cos^2(angle / 2)), angle = pi / 64
+    // here.
     CHECK(curve.curvature(5.0) == doctest::Approx(0.5).epsilon(1e-3));
     CHECK(curve.length(0.0, curve.end()) == doctest::Approx(4.0 * pi).epsilon(1e-6));
     observe::Snapshot snapshot;
@@ -105,7 +107,8 @@ TEST_CASE("crimp of a drawn plain weave is that of its cosine, equal for warp an
     CHECK(crimp.weft == doctest::Approx(crimp.warp).epsilon(1e-9));
     REQUIRE(crimp.warp_tows.size() == 4);
     for (const double tow : crimp.warp_tows) CHECK(tow == doctest::Approx(exact).epsilon(5e-3));
-    // Fibres beside the centre line run on parallel curves: longer outside a bend by as much as shorter inside the next.
+    // Fibres beside the centre line run on parallel curves: longer outside a bend by as much as shorter inside the
+    // next.
     CHECK(crimp.warp == doctest::Approx(exact).epsilon(5e-3));
     CHECK(crimp.fibres.size() == 56);
 }
@@ -152,7 +155,8 @@ TEST_CASE("a tilted ellipse is found with its axes, area and second moments") {
     CHECK(section.thickness == doctest::Approx(2.0 * b).epsilon(1e-3));
     CHECK(section.aspect == doctest::Approx(3.0).epsilon(1e-3));
     CHECK(long_axis.dot(section.second_moments * long_axis) == doctest::Approx(pi * a * a * a * b / 4.0).epsilon(1e-3));
-    CHECK(short_axis.dot(section.second_moments * short_axis) == doctest::Approx(pi * a * b * b * b / 4.0).epsilon(1e-3));
+    CHECK(short_axis.dot(section.second_moments * short_axis) ==
+          doctest::Approx(pi * a * b * b * b / 4.0).epsilon(1e-3));
     CHECK(std::abs(long_axis.dot(section.second_moments * short_axis)) < 1e-12);
 }
 
@@ -167,7 +171,8 @@ TEST_CASE("the section of a tow across its own path is its packing, also where i
         for (const double t : {20.0, 32.0, 38.4}) {  // level, half way up, at a crossing
             const TowSection section = tow_section(snapshot, fabric, family, 1, t);
             CHECK(section.fibres.size() == 19);
-            CHECK(section.area == doctest::Approx(area).epsilon(1e-2));  // planes across fibres turn a little within the tow
+            CHECK(section.area ==
+                  doctest::Approx(area).epsilon(1e-2));  // planes across fibres turn a little within the tow
             CHECK(section.fibre_area == doctest::Approx(19.0 * pi * r * r).epsilon(1e-2));
         }
     }

@@ -76,11 +76,14 @@ TEST_CASE("a matrix may be drawn with digits or with words") {
 TEST_CASE("a matrix that is not one is refused with the row that is wrong") {
     using test::refusal;
     CHECK(refusal([] { Pattern::from_rows({}); }) == "Pattern.rows = [], but it must be at least one row");
-    CHECK(refusal([] { Pattern::from_rows({"10", "1"}); }) ==
-          "Pattern.rows[1] = \"1\", but it must be as long as the first row, 2");
-    CHECK(refusal([] { Pattern::from_rows({"10", "12"}); }) ==
-          "Pattern.rows = \"12\", but it must be made of '0' and '1', or of \"over\" and \"under\"");
-    CHECK(refusal([] { Pattern::from_rows({" "}); }) == "Pattern.rows[0] = \" \", but it must be at least one crossing");
+    CHECK(refusal([] {
+              Pattern::from_rows({"10", "1"});
+          }) == "Pattern.rows[1] = \"1\", but it must be as long as the first row, 2");
+    CHECK(refusal([] {
+              Pattern::from_rows({"10", "12"});
+          }) == "Pattern.rows = \"12\", but it must be made of '0' and '1', or of \"over\" and \"under\"");
+    CHECK(refusal([] { Pattern::from_rows({" "}); }) ==
+          "Pattern.rows[0] = \" \", but it must be at least one crossing");
     CHECK(refusal([] { Pattern::named("tweed"); }) ==
           "Pattern.name = \"tweed\", but it must be plain, twill22, twill31, satin5 or satin8");
 }
@@ -100,7 +103,8 @@ TEST_CASE("every built-in weave holds on one repeat of tows, and a drawn one on 
 TEST_CASE("a tow that never changes side lifts off, so the interlacing is refused by the tow's name") {
     const std::string message = test::refusal([] { Pattern::from_rows({"010", "111", "101"}).require_holding(3, 3); });
     CHECK(message.find("warp 1 (above)") != std::string::npos);
-    CHECK(test::refusal([] { Pattern{}.require_holding(1, 4); }).find("an interlacing that holds") != std::string::npos);
+    CHECK(test::refusal([] { Pattern{}.require_holding(1, 4); }).find("an interlacing that holds") !=
+          std::string::npos);
 }
 
 TEST_CASE("two cloths that lie on each other are refused though every tow changes side") {

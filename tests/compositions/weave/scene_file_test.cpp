@@ -61,9 +61,9 @@ TEST_CASE("the four scenes hold the chapter's tables") {
 
 TEST_CASE("values from the command line replace those of the file") {
     const std::string path = (scenes / "plain.toml").string();
-    const Scene scene = read_scene(path, {"fabric.pattern=twill31", "warp.aspect=2", "weft.fibres=7", "fabric.elements=16",
-                                          "fabric.elements=24", "output.paraview=false", "material.young_modulus=73e3",
-                                          "weft.young_modulus = 200000.0"});
+    const Scene scene = read_scene(
+        path, {"fabric.pattern=twill31", "warp.aspect=2", "weft.fibres=7", "fabric.elements=16", "fabric.elements=24",
+               "output.paraview=false", "material.young_modulus=73e3", "weft.young_modulus = 200000.0"});
     CHECK(scene.fabric.pattern.name() == "twill31");
     CHECK(scene.fabric.warp.aspect == 2.0);
     CHECK(scene.fabric.weft.aspect == 2.0);  // as the warp
@@ -79,8 +79,10 @@ TEST_CASE("values from the command line replace those of the file") {
 
 TEST_CASE("a wrong scene is refused by section, key, value and bound") {
     CHECK(refused({}).empty());
-    CHECK(refused({"fabric.wrap_tows=4"}).find("fabric.wrap_tows = 4, but it must be one of the keys pattern, warp_tows") == 0);
-    CHECK(refused({"fabrics.warp_tows=4"}).find("fabrics = [section], but it must be one of the sections fabric,") == 0);
+    CHECK(refused({"fabric.wrap_tows=4"})
+              .find("fabric.wrap_tows = 4, but it must be one of the keys pattern, warp_tows") == 0);
+    CHECK(refused({"fabrics.warp_tows=4"}).find("fabrics = [section], but it must be one of the sections fabric,") ==
+          0);
     CHECK(refused({"fabric.warp_tows=four"}) == "fabric.warp_tows = 'four', but it must be a whole number");
     CHECK(refused({"fabric.warp_tows=4.5"}) == "fabric.warp_tows = 4.5, but it must be a whole number");
     CHECK(refused({"fabric.warp_spacing=true"}) == "fabric.warp_spacing = true, but it must be a number");
@@ -119,18 +121,37 @@ TEST_CASE("what is missing, and a file that is none, are told by name and place"
 
 TEST_CASE("a key beside the sections is refused") {
     const std::string plain = observe::read_file(scenes / "plain.toml");
-    CHECK(refused_text("threads = 4\n" + plain).find("threads, but it must be one of the sections") != std::string::npos);
+    CHECK(refused_text("threads = 4\n" + plain).find("threads, but it must be one of the sections") !=
+          std::string::npos);
 }
 
 TEST_CASE("the summary has every key that scripts rely on, and NaN is null") {
     const auto folder = observe::empty_folder("summary");
     weave::write_summary(folder, weave::Summary{});
     const std::string json = observe::read_file(folder / "summary.json");
-    for (const char* key :
-         {"converged", "fibres", "nodes", "dofs", "contact_elements", "increments", "rejected_increments",
-          "newton_iterations", "linear_solves", "linear_iterations", "wrong_crossings", "greatest_penetration_over_radius",
-          "least_gap_over_radius", "crimp_warp", "crimp_weft", "thickness", "wall_seconds", "cpu_seconds",
-          "peak_memory_bytes", "seconds_by_stage", "solver", "threads", "version"})
+    for (const char* key : {"converged",
+                            "fibres",
+                            "nodes",
+                            "dofs",
+                            "contact_elements",
+                            "increments",
+                            "rejected_increments",
+                            "newton_iterations",
+                            "linear_solves",
+                            "linear_iterations",
+                            "wrong_crossings",
+                            "greatest_penetration_over_radius",
+                            "least_gap_over_radius",
+                            "crimp_warp",
+                            "crimp_weft",
+                            "thickness",
+                            "wall_seconds",
+                            "cpu_seconds",
+                            "peak_memory_bytes",
+                            "seconds_by_stage",
+                            "solver",
+                            "threads",
+                            "version"})
         CHECK(json.find("\n  \"" + std::string(key) + "\": ") != std::string::npos);
     CHECK(json.find("\"crimp_warp\": null") != std::string::npos);
 }

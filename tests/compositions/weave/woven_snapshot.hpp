@@ -64,7 +64,8 @@ inline observe::Snapshot woven_snapshot(const FabricParameters& fabric, double a
             const double z = amplitude * path_height(fabric, place.family, place.tow, along);
             const double slope = amplitude *
                                  (path_height(fabric, place.family, place.tow, along + step) -
-                                  path_height(fabric, place.family, place.tow, along - step)) / (2.0 * step);
+                                  path_height(fabric, place.family, place.tow, along - step)) /
+                                 (2.0 * step);
             const Vec3 ahead = warp ? Vec3{1.0, 0.0, slope}.normalized() : Vec3{0.0, 1.0, slope}.normalized();
             const Vec3 beside = warp ? Vec3{0.0, 1.0, 0.0} : Vec3{-1.0, 0.0, 0.0};
             const Vec3 up = ahead.cross(beside);

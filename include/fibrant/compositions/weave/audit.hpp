@@ -17,7 +17,7 @@ struct AuditedCrossing {
     Index warp_fibre = -1, weft_fibre = -1;  ///< numbers in the fabric
     Index warp_tow = -1, weft_tow = -1;
     Vec3 position = Vec3::Zero();  ///< half way between the two axes [length]
-    double height = 0;             ///< of the axis that should be above over the other, < 0 where the order is wrong [length]
+    double height = 0;  ///< of the axis that should be above over the other, < 0 where the order is wrong [length]
 };
 
 struct Audit {
@@ -25,7 +25,7 @@ struct Audit {
     Index wrong_crossings = 0;    ///< against the pattern
     Index missing_crossings = 0;  ///< pairs of a warp and a weft fibre that do not cross in plan: one slipped out
     double least_height = std::numeric_limits<double>::infinity();  ///< over all crossings [length]
-    std::vector<AuditedCrossing> worst;  ///< the lowest, lowest first
+    std::vector<AuditedCrossing> worst;                             ///< the lowest, lowest first
     LeastGap least_gap;
 
     /// All crossings as the pattern says, and no fibres deeper in each other than allowed [length].

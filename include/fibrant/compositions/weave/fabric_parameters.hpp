@@ -19,12 +19,12 @@ enum class Family { warp, weft };
 
 /// One tow: equal fibres in a compact packing.
 struct TowParameters {
-    Index fibres = 0;                    ///< fibres (or macro-fibres) of the tow, >= 1
-    double fibre_radius = core::unset;   ///< [length], > 0
-    double inertia_factor = 1.0;         ///< on the second moments, fibres per real fibre for a macro-fibre [1], > 0
+    Index fibres = 0;                   ///< fibres (or macro-fibres) of the tow, >= 1
+    double fibre_radius = core::unset;  ///< [length], > 0
+    double inertia_factor = 1.0;        ///< on the second moments, fibres per real fibre for a macro-fibre [1], > 0
     scene::ElasticMaterial material;
-    double aspect = 2.5;                 ///< width over thickness of the flat tow [1], in [1, 20]
-    double packing_gap = 1e-3;           ///< free distance between neighbours over their diameter [1], in [0, 1]
+    double aspect = 2.5;        ///< width over thickness of the flat tow [1], in [1, 20]
+    double packing_gap = 1e-3;  ///< free distance between neighbours over their diameter [1], in [0, 1]
 
     void validate(const std::string& name = "TowParameters") const {
         core::require_at_least(name + ".fibres", fibres, 1);
@@ -56,10 +56,10 @@ struct FabricParameters {
     Pattern pattern;                     ///< rows are warp tows
     Index warp_tows = 0, weft_tows = 0;  ///< >= 1
     TowParameters warp, weft;
-    double warp_spacing = core::unset;   ///< between the middles of neighbouring warp tows [length], > 0
-    double weft_spacing = core::unset;   ///< between the middles of neighbouring weft tows [length], > 0
-    double overhang = core::unset;       ///< free length of a fibre beyond its outermost crossings [length], > 0
-    Index elements = 32;                 ///< 3-node elements of a fibre, >= 1
+    double warp_spacing = core::unset;  ///< between the middles of neighbouring warp tows [length], > 0
+    double weft_spacing = core::unset;  ///< between the middles of neighbouring weft tows [length], > 0
+    double overhang = core::unset;      ///< free length of a fibre beyond its outermost crossings [length], > 0
+    Index elements = 32;                ///< 3-node elements of a fibre, >= 1
 
     const TowParameters& tow(Family family) const noexcept { return family == Family::warp ? warp : weft; }
     Index tows(Family family) const noexcept { return family == Family::warp ? warp_tows : weft_tows; }
@@ -68,8 +68,7 @@ struct FabricParameters {
 
     /// Number of a fibre in the fabric.
     Index fibre(Family family, Index tow, Index fibre) const noexcept {
-        return family == Family::warp ? tow * warp.fibres + fibre
-                                      : warp_tows * warp.fibres + tow * weft.fibres + fibre;
+        return family == Family::warp ? tow * warp.fibres + fibre : warp_tows * warp.fibres + tow * weft.fibres + fibre;
     }
     /// @param fibre  in [0, fibres())
     FibrePlace place(Index fibre) const noexcept {
@@ -104,9 +103,9 @@ struct FabricParameters {
             const Packing packing = tow(family).packing();
             const double spacing = family == Family::warp ? warp_spacing : weft_spacing;
             if (tows(family) > 1)
-                core::require(packing.width <= spacing, "FabricParameters." + name + "_spacing", spacing,
-                              ">= width of a " + name + " tow = " + core::text(packing.width) +
-                                  ", or neighbouring tows overlap");
+                core::require(
+                    packing.width <= spacing, "FabricParameters." + name + "_spacing", spacing,
+                    ">= width of a " + name + " tow = " + core::text(packing.width) + ", or neighbouring tows overlap");
             // The fibres of the other family must reach beyond the outermost tow of this one.
             core::require(overhang > 0.5 * packing.width, "FabricParameters.overhang", overhang,
                           "> half the width of a " + name + " tow = " + core::text(0.5 * packing.width));
@@ -122,16 +121,16 @@ struct FabricParameters {
 
 /// How flat interpenetrating tows become a fabric (Durville, section 15.3.5).
 struct SettleParameters {
-    double tension_strain = 2e-3;       ///< tension of a tow over its E A while tows part [1], > 0
-    double final_tension_factor = 1e-2; ///< tension at the end over that at the start [1], in (0, 1]
-    Index tension_increments = 1;       ///< in which the tension is raised from its first part, >= 1
-    double gap_limit_over_radius = 1.0; ///< deepest penetration that a law is shown in an increment [1], > 0
+    double tension_strain = 2e-3;        ///< tension of a tow over its E A while tows part [1], > 0
+    double final_tension_factor = 1e-2;  ///< tension at the end over that at the start [1], in (0, 1]
+    Index tension_increments = 1;        ///< in which the tension is raised from its first part, >= 1
+    double gap_limit_over_radius = 1.0;  ///< deepest penetration that a law is shown in an increment [1], > 0
     double allowed_penetration_over_radius = 1e-2;  ///< [1], in (0, 0.5]
-    Index separation_increments = 60;   ///< at most, until no tows overlap, >= 1
-    Index release_increments = 4;       ///< in which the tension is lowered, >= 1
-    Index rest_increments = 8;          ///< at most, at the final tension until nothing moves, >= 0
-    double rest_motion_over_radius = 1e-2;  ///< greatest nodal motion of an increment at rest [1], > 0
-    double friction_coefficient = 0.15; ///< from the handover on [1], >= 0; tows part without friction
+    Index separation_increments = 60;               ///< at most, until no tows overlap, >= 1
+    Index release_increments = 4;                   ///< in which the tension is lowered, >= 1
+    Index rest_increments = 8;                      ///< at most, at the final tension until nothing moves, >= 0
+    double rest_motion_over_radius = 1e-2;          ///< greatest nodal motion of an increment at rest [1], > 0
+    double friction_coefficient = 0.15;             ///< from the handover on [1], >= 0; tows part without friction
 
     void validate() const {
         const std::string name = "SettleParameters.";

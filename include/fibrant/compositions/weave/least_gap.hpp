@@ -66,8 +66,9 @@ inline void closest_points(const NodalCurve& a, const NodalCurve& b, double a_fr
 /// The least distance between the surfaces of any two fibres, also within a tow.
 ///
 /// A search over the half elements, inflated by their deviation from the chord, gives the candidates; the closest
-/// points are then found on the curves, and the sections' extents taken along the line that joins them. Candidates whose
-/// lower bound exceeds the best gap so far are passed over. Never quadratic: the reach grows from zero until a pair is met.
+/// points are then found on the curves, and the sections' extents taken along the line that joins them. Candidates
+/// whose lower bound exceeds the best gap so far are passed over. Never quadratic: the reach grows from zero until a
+/// pair is met.
 template <proximity::ProximitySearch Search>
 LeastGap least_gap(const observe::Snapshot& snapshot, Search search) {
     const auto fibres = core::count(snapshot.fibres);
@@ -90,7 +91,8 @@ LeastGap least_gap(const observe::Snapshot& snapshot, Search search) {
         lines[k] = {fibre.position, radius, inflation[k], -1};
         first[k + 1] = core::count(owner);
         greatest_radius = std::max(greatest_radius, radius);
-        for (const Vec3& node : fibre.position) extent = std::max(extent, (node - snapshot.fibres[0].position[0]).norm());
+        for (const Vec3& node : fibre.position)
+            extent = std::max(extent, (node - snapshot.fibres[0].position[0]).norm());
     }
 
     LeastGap least;
@@ -114,7 +116,12 @@ LeastGap least_gap(const observe::Snapshot& snapshot, Search search) {
             candidates[core::at(n)] = {std::sqrt(near.squared) - inflation[core::at(i)][core::at(p)] -
                                            inflation[core::at(j)][core::at(q)] - lines[core::at(i)].radius -
                                            lines[core::at(j)].radius,
-                                       static_cast<double>(p) + near.s, static_cast<double>(q) + near.t, i, j, p, q};
+                                       static_cast<double>(p) + near.s,
+                                       static_cast<double>(q) + near.t,
+                                       i,
+                                       j,
+                                       p,
+                                       q};
         });
         std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
             if (a.bound != b.bound) return a.bound < b.bound;
@@ -130,7 +137,8 @@ LeastGap least_gap(const observe::Snapshot& snapshot, Search search) {
             const Vec3 p = a.position(t), q = b.position(u), apart = q - p;
             const double distance = apart.norm();
             const Vec3 direction = distance > 0.0 ? Vec3(apart / distance) : Vec3(Vec3::UnitZ());
-            const double gap = distance - section_extent(fibre_i, a, t, direction) - section_extent(fibre_j, b, u, direction);
+            const double gap =
+                distance - section_extent(fibre_i, a, t, direction) - section_extent(fibre_j, b, u, direction);
             if (gap >= least.gap) continue;
             const double radius = std::min({fibre_i.section.semi_axis_1, fibre_i.section.semi_axis_2,
                                             fibre_j.section.semi_axis_1, fibre_j.section.semi_axis_2});

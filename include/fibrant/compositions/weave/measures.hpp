@@ -26,9 +26,9 @@ inline double crimp(const NodalCurve& curve, Index axis, double from, double to)
 
 /// Crimp between the outermost crossings.
 struct CrimpMeasures {
-    std::vector<double> fibres;              ///< of each fibre of the fabric [1]
+    std::vector<double> fibres;                ///< of each fibre of the fabric [1]
     std::vector<double> warp_tows, weft_tows;  ///< of each tow's centre line [1]
-    double warp = 0, weft = 0;               ///< mean over the fibres of the family [1]
+    double warp = 0, weft = 0;                 ///< mean over the fibres of the family [1]
 };
 
 /// Part of a fabric between the middles of its outermost tows [length].
@@ -73,8 +73,7 @@ inline CrimpMeasures crimp_measures(const observe::Snapshot& snapshot, const Fab
                 sum += answer.fibres[fibre];
             }
         }
-        (family == Family::warp ? answer.warp : answer.weft) =
-            sum / static_cast<double>(fabric.tows(family) * fibres);
+        (family == Family::warp ? answer.warp : answer.weft) = sum / static_cast<double>(fabric.tows(family) * fibres);
     }
     return answer;
 }
@@ -95,10 +94,10 @@ inline Outline outline(const observe::Snapshot& snapshot, const FabricParameters
 /// Half extent of a fibre's deformed section along a unit direction [length].
 inline double section_extent(const observe::FibreSnapshot& fibre, const NodalCurve& curve, double t,
                              const Vec3& direction) {
-    const double p = fibre.section.semi_axis_1 *
-                     curve.interpolate(std::span<const Vec3>{fibre.director_1}, t).dot(direction);
-    const double q = fibre.section.semi_axis_2 *
-                     curve.interpolate(std::span<const Vec3>{fibre.director_2}, t).dot(direction);
+    const double p =
+        fibre.section.semi_axis_1 * curve.interpolate(std::span<const Vec3>{fibre.director_1}, t).dot(direction);
+    const double q =
+        fibre.section.semi_axis_2 * curve.interpolate(std::span<const Vec3>{fibre.director_2}, t).dot(direction);
     return std::sqrt(p * p + q * q);
 }
 

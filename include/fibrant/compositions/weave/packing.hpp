@@ -39,8 +39,8 @@ inline Packing compact_packing(Index fibres, double radius, double aspect, doubl
         long long key;  ///< metric on a fine grid, so that equal distances compare equal whatever the rounding
         Index across, row;
     };
-    // Half the plane, each site standing for itself and its opposite. x = across * pitch / 2, y = row * sqrt(3) pitch / 2;
-    // across and row have equal parity about a site, opposite parity about the middle of two neighbours in a row.
+    // Half the plane, each site standing for itself and its opposite. x = across * pitch / 2, y = row * sqrt(3) pitch /
+    // 2; across and row have equal parity about a site, opposite parity about the middle of two neighbours in a row.
     const Index odd = fibres % 2;
     const double pairs = 0.5 * static_cast<double>(fibres);
     const auto rows = static_cast<Index>(std::ceil(std::sqrt(pairs / aspect))) + 2;
@@ -67,9 +67,8 @@ inline Packing compact_packing(Index fibres, double radius, double aspect, doubl
         chosen.push_back(site);
         chosen.push_back({site.key, -site.across, -site.row});
     }
-    std::sort(chosen.begin(), chosen.end(), [](const Site& a, const Site& b) {
-        return a.row != b.row ? a.row < b.row : a.across < b.across;
-    });
+    std::sort(chosen.begin(), chosen.end(),
+              [](const Site& a, const Site& b) { return a.row != b.row ? a.row < b.row : a.across < b.across; });
     const double half_pitch = radius * (1.0 + gap);
     Packing packing;
     double half_width = 0.0, half_thickness = 0.0;

@@ -48,9 +48,7 @@ public:
     }
 
     /// Is warp tow i above weft tow j? Any i, j >= 0.
-    bool over(Index i, Index j) const noexcept {
-        return above_[core::at((i % rows_) * columns_ + j % columns_)];
-    }
+    bool over(Index i, Index j) const noexcept { return above_[core::at((i % rows_) * columns_ + j % columns_)]; }
     Index rows() const noexcept { return rows_; }        ///< warp tows of a repeat
     Index columns() const noexcept { return columns_; }  ///< weft tows of a repeat
     bool built_in() const noexcept { return name_ != "drawn"; }
@@ -70,9 +68,10 @@ public:
                              std::to_string(weft_tows) + " weft");
         const std::string loose = loose_tows(warp_tows, weft_tows);
         if (!loose.empty())
-            core::refuse("Pattern", name_ + " on " + std::to_string(warp_tows) + " warp and " +
-                                        std::to_string(weft_tows) + " weft tows",
-                         "an interlacing that holds, where no tows lie on one side of all others as " + loose + " do");
+            core::refuse(
+                "Pattern",
+                name_ + " on " + std::to_string(warp_tows) + " warp and " + std::to_string(weft_tows) + " weft tows",
+                "an interlacing that holds, where no tows lie on one side of all others as " + loose + " do");
     }
 
     /// A set of tows that lie above or below all others, as text; empty if the fabric holds together.
@@ -81,7 +80,8 @@ public:
             const std::vector<bool> reached = reachable(warp_tows, weft_tows, down);
             const auto inside = std::count(reached.begin(), reached.end(), true);
             if (inside == warp_tows + weft_tows) continue;
-            // Tows that are reached downwards lie below all others, and the reverse; the fewer of the two sets is named.
+            // Tows that are reached downwards lie below all others, and the reverse; the fewer of the two sets is
+            // named.
             const bool named = 2 * inside <= warp_tows + weft_tows;
             std::string names;
             for (Index k = 0; k < warp_tows + weft_tows; ++k) {

@@ -76,8 +76,8 @@ private:
 
 /// Calls visit(const PlanCrossing&) at every crossing in plan of a warp curve with a weft curve along which y grows.
 ///
-/// At the y of a point of the warp, the weft lies before or behind it in x: where that changes between two nodes, regula
-/// falsi (Illinois) finds the crossing. Time linear in the nodes.
+/// At the y of a point of the warp, the weft lies before or behind it in x: where that changes between two nodes,
+/// regula falsi (Illinois) finds the crossing. Time linear in the nodes.
 /// @return number of crossings found; 0 for two fibres of a fabric tells that one slipped out of it
 template <class Visit>
 Index for_each_plan_crossing(const NodalCurve& warp, const NodalCurve& weft, const Visit& visit) {
@@ -93,7 +93,8 @@ Index for_each_plan_crossing(const NodalCurve& warp, const NodalCurve& weft, con
     for (Index node = 1; node < core::count(warp.nodes()); ++node) {
         const double now = beside(static_cast<double>(node));
         if ((before < 0.0) != (now < 0.0)) {
-            double low = static_cast<double>(node - 1), high = static_cast<double>(node), at_low = before, at_high = now;
+            double low = static_cast<double>(node - 1), high = static_cast<double>(node), at_low = before,
+                   at_high = now;
             double t = high, value = now;
             int kept = 0;  // the end that the last step kept
             for (int iteration = 0; iteration < 100 && high - low > 1e-13 && value != 0.0; ++iteration) {

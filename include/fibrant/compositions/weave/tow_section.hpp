@@ -25,9 +25,8 @@ struct SectionEllipse {
 
 /// Convex hull of points in the plane, counter-clockwise (Andrew's monotone chain), O(n log n).
 inline std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
-    std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
-        return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-    });
+    std::sort(points.begin(), points.end(),
+              [](const Vec2& a, const Vec2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
     const auto right_turn = [](const Vec2& a, const Vec2& b, const Vec2& c) {
         return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x()) <= 0.0;
     };
@@ -46,15 +45,15 @@ inline std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
 
 /// Shape of a tow where a plane cuts it.
 struct TowSection {
-    std::vector<SectionEllipse> fibres;   ///< in the plane; first axis across the tow, second upwards
-    std::vector<Vec2> hull;               ///< convex, counter-clockwise [length]
-    double area = 0;                      ///< of the hull [length^2]
-    double fibre_area = 0;                ///< sum over the fibres [length^2]
-    double fibre_volume_fraction = 0;     ///< fibre_area / area [1]
-    Vec2 centroid = Vec2::Zero();         ///< of the hull [length]
+    std::vector<SectionEllipse> fibres;  ///< in the plane; first axis across the tow, second upwards
+    std::vector<Vec2> hull;              ///< convex, counter-clockwise [length]
+    double area = 0;                     ///< of the hull [length^2]
+    double fibre_area = 0;               ///< sum over the fibres [length^2]
+    double fibre_volume_fraction = 0;    ///< fibre_area / area [1]
+    Vec2 centroid = Vec2::Zero();        ///< of the hull [length]
     Eigen::Matrix2d second_moments = Eigen::Matrix2d::Zero();  ///< of the hull about its centroid [length^4]
-    double width = 0, thickness = 0;      ///< extents along the principal axes, the wider one first [length]
-    double aspect = 0;                    ///< width / thickness [1]
+    double width = 0, thickness = 0;  ///< extents along the principal axes, the wider one first [length]
+    double aspect = 0;                ///< width / thickness [1]
 };
 
 /// Hull and moments of ellipses in a plane. The outline of each ellipse is a polygon of equal area with `sides` sides,
@@ -85,8 +84,8 @@ inline TowSection section_of(std::vector<SectionEllipse> ellipses, Index sides =
         const double doubled = a.x() * b.y() - a.y() * b.x();
         section.area += 0.5 * doubled;
         first += doubled / 6.0 * (a + b);
-        second += doubled / 24.0 * (2.0 * a * a.transpose() + 2.0 * b * b.transpose() + a * b.transpose() +
-                                    b * a.transpose());
+        second += doubled / 24.0 *
+                  (2.0 * a * a.transpose() + 2.0 * b * b.transpose() + a * b.transpose() + b * a.transpose());
     }
     const Vec2 middle = first / section.area;
     section.centroid = corner + middle;
