@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // How long does each proximity search take on a scene, and does it find exactly the pairs that brute force finds?
 //
-// search_bench [--brute] [--self] [--repeats N] SCENE.fpl...      prints CSV, one line a scene and search.
+// search_bench [--brute] [--self] [--refine N] [--repeats N] SCENE.fpl...      prints CSV, one line a scene and search.
 // `--brute` also runs the quadratic oracle, and takes `misses` from it; without it they are against the grid's pairs.
+// `--refine` cuts each segment into N. Times are of the processor with one thread, else on the wall.
 // The peer is nanoflann's static kd-tree over segment middles, radius for the longest segment, which must give the same pairs; its
 // pairs are neither sorted nor joined. "VerletSearch listed" is a call that the list serves (skin r). A scene file is little endian: 8 bytes FIBPOL01; u64 fibres F; u64 vertices V; f64 margin;
 // u64 selfskip; F f64 radii; F + 1 u64 first vertices; 3 V f64 coordinates.
@@ -31,6 +32,16 @@ struct SceneFile {
     std::uint64_t self_skip = 0;  // segments
     std::vector<std::vector<Vec3>> points;
     std::vector<double> radius;
+
+    void refine(int n) {
+        self_skip *= static_cast<std::uint64_t>(n);
+        for (auto& line : points) {
+            std::vector<Vec3> fine{line.front()};
+            for (std::size_t k = 1; k < line.size(); ++k)
+                for (int part = 1; part <= n; ++part) fine.push_back(line[k - 1] + (line[k] - line[k - 1]) * (static_cast<double>(part) / n));
+            line = fine;
+        }
+    }
 
     std::vector<Centreline> centrelines(bool self) const {
         std::vector<Centreline> lines(points.size());
@@ -150,7 +161,7 @@ void report(const SceneFile& scene, const char* name, int repeats, double peer_s
 
 int main(int argc, char** argv) {
     bool brute = false, self = false;
-    int repeats = 7;
+    int repeats = 7, refine = 1;
     std::printf("scene,search,pairs,checksum,misses,milliseconds,ratio_to_nanoflann\n");
     for (int a = 1; a < argc; ++a) {
         const std::string argument = argv[a];
@@ -160,8 +171,11 @@ int main(int argc, char** argv) {
             self = true;
         } else if (argument == "--repeats" && a + 1 < argc) {
             repeats = std::max(1, std::atoi(argv[++a]));
+        } else if (argument == "--refine" && a + 1 < argc) {
+            refine = std::max(1, std::atoi(argv[++a]));
         } else {
-            const SceneFile scene = read_scene(argument);
+            SceneFile scene = read_scene(argument);
+            scene.refine(refine);
             const std::vector<Centreline> lines = scene.centrelines(self);
             const double reach = scene.margin;
             GridSearch grid;

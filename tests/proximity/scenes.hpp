@@ -126,6 +126,9 @@ inline std::vector<FibreSet> search_cases() {
         for (int f = 0; f < 4; ++f) set.add(random_fibre(random, 200, 0.1, 0.9, Vec3::Zero()), 0.05);
         set.self_skip = 0.4;
         cases.push_back(set);
+        set.name = "the coil, with all but neighbouring segments";
+        set.self_skip = 0.05;
+        cases.push_back(set);
     }
     {
         FibreSet set{.name = "radii from 0.01 to 1, lengths from 0.02 to 10", .reach = 0.01};

@@ -7,13 +7,13 @@
 #include <bit>
 #include <cstring>
 
-#if defined(__AVX__)
+#if defined(__AVX2__)
 #include <immintrin.h>
 #endif
 
 namespace fibrant::proximity::detail {
 
-/// Boxes as six columns, which end with some more values so that whole vectors may be read from any place.
+/// Boxes as seven columns, which end with some more values so that whole vectors may be read from any place.
 class BoxColumns {
 public:
     static constexpr std::int32_t width = 16;
@@ -23,12 +23,14 @@ public:
             column.resize(core::at(n + width));
             std::fill(column.end() - width, column.end(), 0.0F);
         }
+        group_.resize(core::at(n + width));
     }
     void set(std::int32_t k, const Box& box) noexcept {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             column_[2 * axis][core::at(k)] = box.low[axis];
             column_[2 * axis + 1][core::at(k)] = box.high[axis];
         }
+        group_[core::at(k)] = box.group;
     }
     Box operator[](std::int32_t k) const noexcept {
         Box box;
@@ -36,10 +38,11 @@ public:
             box.low[axis] = column_[2 * axis][core::at(k)];
             box.high[axis] = column_[2 * axis + 1][core::at(k)];
         }
+        box.group = group_[core::at(k)];
         return box;
     }
 
-    /// Writes {of, k} for each box k in [first, last) that overlaps `box`, in order.
+    /// Writes {of, k} for each box k in [first, last) of another group that overlaps `box`, in order.
     /// @param out  room for last - first + width
     /// @return the end of what was written
     Candidate* overlaps(const Box& box, std::int32_t first, std::int32_t last, std::int32_t of, Candidate* out) const noexcept {
@@ -69,10 +72,11 @@ private:
 #endif
     }
 
-    /// Bit l says that box k + l overlaps. Comparisons are exact, so every form gives the same bits.
+    /// Bit l says that box k + l overlaps and is of another group. Comparisons are exact, so every form gives the same bits.
     std::uint32_t mask(const Box& box, std::int32_t k) const noexcept {
         const float *x0 = column_[0].data() + k, *x1 = column_[1].data() + k, *y0 = column_[2].data() + k,
                     *y1 = column_[3].data() + k, *z0 = column_[4].data() + k, *z1 = column_[5].data() + k;
+        const std::int32_t* group = group_.data() + k;
 #if defined(__AVX512F__)
         __mmask16 m = _mm512_cmp_ps_mask(_mm512_loadu_ps(x0), _mm512_set1_ps(box.high[0]), _CMP_LE_OQ);
         m = _mm512_mask_cmp_ps_mask(m, _mm512_loadu_ps(x1), _mm512_set1_ps(box.low[0]), _CMP_GE_OQ);
@@ -80,8 +84,8 @@ private:
         m = _mm512_mask_cmp_ps_mask(m, _mm512_loadu_ps(y1), _mm512_set1_ps(box.low[1]), _CMP_GE_OQ);
         m = _mm512_mask_cmp_ps_mask(m, _mm512_loadu_ps(z0), _mm512_set1_ps(box.high[2]), _CMP_LE_OQ);
         m = _mm512_mask_cmp_ps_mask(m, _mm512_loadu_ps(z1), _mm512_set1_ps(box.low[2]), _CMP_GE_OQ);
-        return m;
-#elif defined(__AVX__)
+        return _mm512_mask_cmpneq_epi32_mask(m, _mm512_loadu_si512(group), _mm512_set1_epi32(box.group));
+#elif defined(__AVX2__)
         const auto eight = [&](std::int32_t l) {
             const auto below = [l](const float* low, float high) {
                 return _mm256_cmp_ps(_mm256_loadu_ps(low + l), _mm256_set1_ps(high), _CMP_LE_OQ);
@@ -92,7 +96,9 @@ private:
             const __m256 x = _mm256_and_ps(below(x0, box.high[0]), above(x1, box.low[0]));
             const __m256 y = _mm256_and_ps(below(y0, box.high[1]), above(y1, box.low[1]));
             const __m256 z = _mm256_and_ps(below(z0, box.high[2]), above(z1, box.low[2]));
-            return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_and_ps(_mm256_and_ps(x, y), z)));
+            const __m256 same = _mm256_castsi256_ps(_mm256_cmpeq_epi32(
+                _mm256_loadu_si256(reinterpret_cast<const __m256i*>(group + l)), _mm256_set1_epi32(box.group)));
+            return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_andnot_ps(same, _mm256_and_ps(_mm256_and_ps(x, y), z))));
         };
         return eight(0) | eight(8) << 8;
 #else
@@ -102,7 +108,8 @@ private:
             hit[l] = static_cast<unsigned char>(
                 static_cast<int>(x0[l] <= box.high[0]) & static_cast<int>(x1[l] >= box.low[0]) &
                 static_cast<int>(y0[l] <= box.high[1]) & static_cast<int>(y1[l] >= box.low[1]) &
-                static_cast<int>(z0[l] <= box.high[2]) & static_cast<int>(z1[l] >= box.low[2]));
+                static_cast<int>(z0[l] <= box.high[2]) & static_cast<int>(z1[l] >= box.low[2]) &
+                static_cast<int>(group[l] != box.group));
         std::uint64_t half[2];
         std::memcpy(half, hit, sizeof half);
         if constexpr (std::endian::native == std::endian::little) {
@@ -117,6 +124,7 @@ private:
     }
 
     std::vector<float> column_[6];
+    std::vector<std::int32_t> group_;
 };
 
 }  // namespace fibrant::proximity::detail

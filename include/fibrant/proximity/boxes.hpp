@@ -12,6 +12,7 @@ namespace fibrant::proximity::detail {
 /// Axis-aligned box, relative to the middle of the scene and widened so that single precision loses nothing.
 struct Box {
     float low[3], high[3];
+    std::int32_t group;  ///< boxes of one group do not pair
 };
 
 /// Orthonormal axes (rows) and middle of the scene, and means over its segments.
@@ -21,6 +22,7 @@ struct BoxFrame {
     double slack = 0.0;           ///< for rounding to single precision [length]
     double mean_length = 0.0;     ///< of a segment [length]
     double mean_thickness = 0.0;  ///< 2 (radius + inflation) + reach [length]
+    bool selfish = false;         ///< groups pair too, and the filter decides; a segment never pairs with itself
 
     /// Axes of space, or the principal axes of the directions where one of them holds over 70 % of sum L t t^T: boxes of
     /// oblique bundles would else overlap many times more than their segments do.
@@ -60,6 +62,7 @@ struct BoxFrame {
         if (principal.eigenvalues()[2] > 0.7 * principal.eigenvalues().sum()) axes = principal.eigenvectors().transpose();
         mean_length = all.length / static_cast<double>(n);
         mean_thickness = 2.0 * all.half / static_cast<double>(n) + table.reach();
+        selfish = table.selfish();
         middle = 0.5 * all.low + 0.5 * all.high;
         slack = 3.0e-7 * 0.5 * (all.high - all.low).norm();
     }
@@ -71,6 +74,7 @@ struct BoxFrame {
         const Vec3 a = axes * (start + from * chord), b = axes * (start + to * chord);
         const double wide = margin * (1.0 + 1.0e-6) + slack;
         Box made;
+        made.group = selfish ? record.segment : record.group;
         for (int axis = 0; axis < 3; ++axis) {
             made.low[axis] = static_cast<float>(std::min(a[axis], b[axis]) - wide);
             made.high[axis] = static_cast<float>(std::max(a[axis], b[axis]) + wide);

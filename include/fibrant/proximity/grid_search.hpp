@@ -207,7 +207,7 @@ private:
     }
 
     static constexpr std::int32_t cells_together = 256;
-    static constexpr double pieces_from = 32.0, piece_length = 16.0;
+    static constexpr double pieces_from = 32.0, piece_length = 24.0;
 
     bool cut_ = false;                  // some segment has several boxes
     std::vector<std::int32_t> first_;   // first box of each segment

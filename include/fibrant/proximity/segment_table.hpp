@@ -152,6 +152,7 @@ __attribute__((noinline))
 #endif
 inline void keep_close(const SegmentTable& table, const SegmentRecord* records, std::span<const Candidate> candidates,
                        std::vector<SegmentPair>& close) {
+    constexpr std::size_t ahead = 12;  // candidates to ask memory for in advance
     FilterLanes lanes;
     int filled = 0;
     const auto flush = [&] {
@@ -173,7 +174,11 @@ inline void keep_close(const SegmentTable& table, const SegmentRecord* records, 
         close.resize(core::at(end - close.data()));
         filled = 0;
     };
-    for (const Candidate& candidate : candidates) {
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+        const Candidate candidate = candidates[k];
+#if defined(__GNUC__)
+        if (k + ahead < candidates.size()) __builtin_prefetch(records + candidates[k + ahead].b);
+#endif
         // No branch on what is as good as random: which of the two is first, and whether both are of one fibre.
         const SegmentRecord* two[2] = {records + candidate.a, records + candidate.b};
         const std::size_t second = two[0]->segment < two[1]->segment ? 1 : 0;

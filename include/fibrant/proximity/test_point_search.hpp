@@ -13,8 +13,7 @@ namespace detail {
 struct TestPoint {
     Plain3 position;
     double range;                 // largest radius + inflation of the fibre
-    std::int32_t fibre;
-    std::int32_t first, last;     // both included
+    std::int32_t first, last;     // segments, both included
 };
 
 /// Takes pairs of boxes around test points to pairs of test points, and these to pairs of segments.
@@ -32,7 +31,6 @@ public:
         for (const Candidate* hit = hits_.data(); hit != end; ++hit) {
             const TestPoint& a = points_[core::at(grid_.box(hit->a))];
             const TestPoint& b = points_[core::at(grid_.box(hit->b))];
-            if (a.fibre == b.fibre && !table_.selfish()) continue;
             const Plain3 difference = a.position - b.position;
             const double closer = (a.range + b.range + table_.reach() + spacing_) * (1.0 + 1.0e-9);
             if (dot(difference, difference) >= closer * closer) continue;
@@ -80,7 +78,8 @@ public:
         std::vector<detail::Box> boxes(points.size());
         std::vector<std::int32_t> all(points.size());
         for (std::size_t k = 0; k < points.size(); ++k) {
-            const detail::SegmentRecord place{points[k].position, {0.0, 0.0, 0.0}, 0.0, 0, 0};
+            const detail::SegmentRecord place{points[k].position, {0.0, 0.0, 0.0}, 0.0, static_cast<std::int32_t>(k),
+                                              table.record(points[k].first).group};
             boxes[k] = frame.box(place, 0.0, 1.0, points[k].range + 0.5 * (reach + parameters_.spacing));
             all[k] = static_cast<std::int32_t>(k);
         }
@@ -95,6 +94,13 @@ public:
             grid.overlaps_inside(first, std::min(grid.cells(), first + together), sink);
             sink.flush();
         });
+        if (table.selfish()) {  // segments that share their nearest test point
+            std::vector<detail::Candidate> candidates;
+            for (const detail::TestPoint& point : points)
+                for (std::int32_t i = point.first; i < point.last; ++i)
+                    for (std::int32_t j = i + 1; j <= point.last; ++j) candidates.push_back({i, j});
+            detail::keep_close(table, records.data(), candidates, close.emplace_back());
+        }
         return detail::sorted_pairs(close, table.size(), true);
     }
 
@@ -130,7 +136,7 @@ private:
                 const double length = arc[core::at(here + 1)] - arc[core::at(here)];
                 const double t = length > 0.0 ? std::min(1.0, (s - arc[core::at(here)]) / length) : 0.0;
                 const Vec3 x = (1.0 - t) * line.points[core::at(here)] + t * line.points[core::at(here + 1)];
-                points.push_back({detail::plain(x), range, f, table.first(f) + first, table.first(f) + last});
+                points.push_back({detail::plain(x), range, table.first(f) + first, table.first(f) + last});
             }
         }
         return points;
