@@ -2,7 +2,7 @@
 #pragma once
 /// @file Contact points of a proximity zone: planes across the mean of its two lines, closest points, fibre ends.
 
-#include <fibrant/beam/mesh.hpp>
+#include <fibrant/contact/contact_tangent.hpp>
 #include <fibrant/contact/normal_direction.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
 
@@ -22,14 +22,15 @@ struct StationPair {
 
 /// The pair of closest points near a start, both inside their fibres.
 ///
-/// Newton on (x_j - x_i) . x_i' = 0 and (x_j - x_i) . x_j' = 0 with the positive part of its matrix, so it also settles
-/// where the lines pass through each other; unique if the angle exceeds arccos(1 - 2 r kappa).
+/// Newton on (x_j - x_i) . t_i = 0 and (x_j - x_i) . t_j = 0 with the positive part of its matrix, so it also settles
+/// where the lines pass through each other; unique if the angle exceeds arccos(1 - 2 r kappa). With the tangents of
+/// contact_tangent: closest but for the kinks between elements, in which there would be two closest points.
 template <class B>
 StationPair closest_points(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, double u_i, double u_j) {
     const double end_i = static_cast<double>(mesh.fibre(i).elements), end_j = static_cast<double>(mesh.fibre(j).elements);
     for (int iteration = 0; iteration < 30; ++iteration) {
         const Vec3 centres = mesh.position(state, j, u_j) - mesh.position(state, i, u_i);
-        const Vec3 d_i = mesh.derivative(state, i, u_i), d_j = mesh.derivative(state, j, u_j);
+        const Vec3 d_i = contact_tangent(mesh, state, i, u_i), d_j = contact_tangent(mesh, state, j, u_j);
         const double a = d_i.squaredNorm(), b = -d_i.dot(d_j), c = d_j.squaredNorm();
         const double p = centres.dot(d_i), q = -centres.dot(d_j);  // minus the gradient of |centres|^2 / 2
         // Gauss-Newton step with a bound on each variable: at a bound the other one alone
@@ -147,7 +148,7 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         const double s = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
         double u_i = zone.a_i + s * (zone.b_i - zone.a_i), u_j = zone.a_j + s * (zone.b_j - zone.a_j);
         const Vec3 middle = 0.5 * (mesh.position(state, i, u_i) + mesh.position(state, j, u_j));
-        const Vec3 tangent = mean_tangent(mesh.derivative(state, i, u_i).normalized(), mesh.derivative(state, j, u_j).normalized());
+        const Vec3 tangent = mean_tangent(contact_tangent(mesh, state, i, u_i).normalized(), contact_tangent(mesh, state, j, u_j).normalized());
         u_i = plane_section(mesh, state, i, u_i, middle, tangent);
         u_j = plane_section(mesh, state, j, u_j, middle, tangent);
         const double off_i = std::abs((mesh.position(state, i, u_i) - middle).dot(tangent));

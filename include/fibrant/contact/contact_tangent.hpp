@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Direction of a centreline as contact sees it: continuous from element to element.
+
+#include <fibrant/beam/mesh.hpp>
+
+namespace fibrant::contact {
+
+/// Derivative of the centreline by u [length], with its jump at a node shared by two elements evened out linearly over both.
+///
+/// A centreline of quadratic elements has kinks, above all under a point force. In a kink the closest point and the normal
+/// are not unique, and contact passes jump between its two sides for ever.
+/// @param u  in elements, in [0, elements]
+template <class B>
+Vec3 contact_tangent(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u) noexcept {
+    const auto [element, xi] = mesh.locate(fibre, u);
+    const auto at = [&](Index e, double end) {
+        return Vec3(2.0 * beam::Mesh<B>::point(state, mesh.first_unknown(fibre, e), B::centreline_derivative_weights(end)));
+    };
+    Vec3 tangent = at(element, xi);
+    if (element > 0) tangent += 0.25 * (1.0 - xi) * (at(element - 1, 1.0) - at(element, -1.0));
+    if (element + 1 < mesh.fibre(fibre).elements) tangent += 0.25 * (1.0 + xi) * (at(element + 1, -1.0) - at(element, 1.0));
+    return tangent;
+}
+
+}  // namespace fibrant::contact
