@@ -68,8 +68,11 @@ public:
                     finish(report, start);
                     return report;
                 }
-                if (!loading.checkpoint.empty()) write_checkpoint(loading.checkpoint, report);
-                clock_.time(core::Part::output, [&] { (show(observers, report.increments.back()), ...); });
+                // Observers first: an increment that a checkpoint holds has been shown, and one shown twice is told by its number.
+                clock_.time(core::Part::output, [&] {
+                    (show(observers, report.increments.back()), ...);
+                    if (!loading.checkpoint.empty()) write_checkpoint(loading.checkpoint, report);
+                });
             }
         }
         report.converged = true;

@@ -109,9 +109,6 @@ private:
             change = equilibrium_->greatest(travel);
             if (pass == 0) first = change;
             if (pass == 0) travel.resize(0);  // it holds the increment itself
-#ifdef FIBRANT_TRACE
-            std::fprintf(stderr, "  np %ld change/r %.3e nw %ld status %d el %ld\n", (long)pass, change/radius_, (long)inner.iterations, (int)inner.status, (long)contacts_->elements().size());
-#endif
             if (inner.status == NewtonStatus::moved) return false;
             if (inner.status != NewtonStatus::converged) {
                 report.reason = reason(inner);

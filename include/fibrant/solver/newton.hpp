@@ -9,9 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#ifdef FIBRANT_TRACE
-#include <cstdio>
-#endif
 
 namespace fibrant::solver {
 
@@ -111,9 +108,6 @@ public:
             const assembly::ResidualFigures before = report.residual;
             report.residual = evaluate(state);
             report.step = equilibrium.greatest(step_);
-#ifdef FIBRANT_TRACE
-            std::fprintf(stderr, "    nw %ld step %.3e scale %.3f res %.3e rel %.3e tol %.1e eta %.1e mixed %d ind %ld\n", (long)iteration, report.step, scale, report.residual.residual, report.residual.relative(), tolerance, eta, (int)mixed, (long)counts.indefinite);
-#endif
             if (!std::isfinite(report.residual.residual) || !std::isfinite(report.step)) {
                 report.status = NewtonStatus::diverged;
                 return report;
