@@ -4,13 +4,14 @@
 #include "refusal.hpp"
 
 #include <fibrant/solver/fibre_block_pcg.hpp>
+#include <fibrant/solver/float_block_cholesky.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
 
 using namespace fibrant;
 
 TEST_CASE_TEMPLATE("a solver reaches the solution or says why not, with the same bits always", Solver, solver::SparseCholesky, solver::TwoLevelPcg,
-                   solver::FibreBlockPcg) {
+                   solver::FibreBlockPcg, solver::FloatBlockCholesky, solver::DoubleBlockCholesky) {
     test::check_linear_solver(Solver{});
 }
 

@@ -99,7 +99,7 @@ inline SyntheticSystem random_system(const RandomSystem& options) {
                 term.vectors.push_back(first + a * chain.vectors_per_node + k);
             }
             const Index size = 3 * core::count(term.vectors);
-            Matrix root(size, size);
+            Matrix root(2 * size, size);  // twice as many strains as unknowns: well-conditioned
             for (Index k = 0; k < root.size(); ++k) root.data()[k] = uniform(generator);
             for (Index k = 0; k < core::count(term.vectors); ++k) {
                 root.middleCols<3>(3 * k) *= system.description.length[core::at(term.vectors[core::at(k)])];

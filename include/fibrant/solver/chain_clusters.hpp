@@ -4,7 +4,10 @@
 
 #include <fibrant/assembly/visited_system.hpp>
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -49,15 +52,13 @@ void bisect(const std::vector<ChainLine>& lines, const Vec3& direction, std::vec
         const Vec3 arm = across(*it) - mean;
         spread += arm * arm.transpose();
     }
-    Vec3 axis;  // of largest spread, by power iteration from the largest column: any axis will do if several are equal
-    Index column = 0;
-    spread.diagonal().maxCoeff(&column);
-    axis = spread.col(column);
-    for (int k = 0; k < 30 && axis.squaredNorm() > 0.0; ++k) axis = (spread * axis.normalized()).eval();
+    Eigen::SelfAdjointEigenSolver<Mat3> eigen(spread);
+    Vec3 axis = eigen.eigenvectors().col(2);
+    if (axis.dot(across(*std::min_element(first, last)) - mean) < 0.0) axis = -axis;  // so that frames do not matter
     const Index half = parts / 2;
     const auto middle = first + (last - first) * half / parts;
     // Rounded, so that sites that ought to be level are told apart by number and not by the last bit of a position.
-    const double unit = 1e-9 * std::sqrt(spread.trace() + 1e-300) * axis.norm();
+    const double unit = 1e-9 * std::sqrt(spread.trace());
     const auto place = [&](Index c) { return unit > 0.0 ? std::round(axis.dot(across(c) - mean) / unit) : 0.0; };
     std::sort(first, last, [&](Index a, Index b) {
         return std::pair<double, Index>(place(a), a) < std::pair<double, Index>(place(b), b);

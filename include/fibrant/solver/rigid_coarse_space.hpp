@@ -2,8 +2,9 @@
 #pragma once
 /// @file Coarse space of clusters of chains: rigid motions of their cross-sections, linear between knots along them.
 
+#include <fibrant/solver/block_cholesky.hpp>
 #include <fibrant/solver/chain_clusters.hpp>
-#include <fibrant/solver/coarse_matrix.hpp>
+#include <fibrant/solver/linear_solver.hpp>
 
 #include <Eigen/Geometry>
 
@@ -60,7 +61,8 @@ public:
     }
 
     Index clusters() const noexcept { return core::count(clusters_); }
-    const CoarseMatrix& matrix() const noexcept { return matrix_; }
+    Index knots() const noexcept { return knots_; }
+    const BlockCholesky<double>& matrix() const noexcept { return matrix_; }
 
     /// To be called before the chains are added: takes over the values of the layout.
     void begin(const scene::DofLayout& layout) {
@@ -98,7 +100,7 @@ public:
     }
 
     /// Adds what the terms couple beyond the bands of chains, and factors.
-    /// @return indefinite if the matrix is not positive semidefinite; it is then shifted until it is
+    /// @return indefinite if P^T A P is not positive semidefinite; the correction is positive semidefinite all the same
     template <assembly::LinearSystem System>
     SolveStatus finish(const System& system) {
         if (!sum(system)) {  // terms between knots that had none in the analysis
@@ -106,7 +108,9 @@ public:
             [[maybe_unused]] const bool complete = sum(system);
             assert(complete);
         }
-        return matrix_.factor();
+        const BlockCholesky<double>::Pivots pivots = matrix_.factor();
+        if (!pivots.finite) return SolveStatus::not_finite;
+        return pivots.negative > 0 ? SolveStatus::indefinite : SolveStatus::converged;
     }
 
     /// z += P (P^T A P)^-1 P^T r
@@ -114,12 +118,12 @@ public:
     /// @param r, z  zero and not used outside the free directions of held vectors
     void add_correction(const scene::DofLayout& layout, const Vector& r, Vector& z) {
         restrict_to_knots(layout, r);
-        matrix_.solve(force_, motion_);
+        matrix_.solve(knot_values_);
         prolong(layout, z);
     }
 
 private:
-    using Block = CoarseMatrix::Block;
+    using Block = Eigen::Matrix<double, 6, 6>;
     using Mode = Eigen::Matrix<double, 3, 6>;
     using Modes = Eigen::Matrix<double, Eigen::Dynamic, 6>;
     using Motion = Eigen::Matrix<double, 6, 1>;
@@ -277,10 +281,10 @@ private:
             }
             void emit(const Part& a, const Part& b, const Mat3& stiffness) const {
                 for (const KnotShare& column : b.shares()) {
-                    Mode product;
+                    Mode product = Mode::Zero();
                     if constexpr (Values) product = stiffness * column.rows;
                     for (const KnotShare& row : a.shares()) {
-                        Block block;
+                        Block block = Block::Zero();
                         if constexpr (Values) block = row.rows.transpose() * product;
                         body(row.knot, column.knot, block);
                     }
@@ -343,14 +347,14 @@ private:
             const Chain& own = chains_[core::at(c)];
             for (int k = 0; k <= static_cast<int>(own.intervals); ++k) {
                 const int reach = static_cast<int>(own.reach(layout.chains[core::at(c)].reach));
-                for (int d = 1; d <= std::min(k, reach); ++d) insert(own.first_knot + k, own.first_knot + k - d, Block());
+                for (int d = 1; d <= std::min(k, reach); ++d) insert(own.first_knot + k, own.first_knot + k - d, Block::Zero());
             }
         }
         couple<false>(system, insert);
-        std::vector<CoarseMatrix::BlockPair> pairs;
+        std::vector<Supernodes::Pair> pairs;
         for (int k = 0; k < knots_; ++k)
             for (const int column : columns[core::at(k)]) pairs.emplace_back(k, column);
-        matrix_.analyse(knots_, std::move(pairs));
+        matrix_.analyse(std::vector<int>(core::at(knots_), 6), pairs);
     }
 
     /// Sums the matrix; false if the pattern lacks a block.
@@ -373,9 +377,9 @@ private:
         return complete;
     }
 
-    /// force = P^T r
+    /// knot values = P^T r
     void restrict_to_knots(const scene::DofLayout& layout, const Vector& r) {
-        force_.setZero(6 * knots_);
+        knot_values_.setZero(6 * knots_);
         core::parallel_for(clusters(), [&](Index cluster) {
             for (const Index c : clusters_[core::at(cluster)].chains) {
                 const scene::Chain& chain = layout.chains[core::at(c)];
@@ -390,22 +394,22 @@ private:
                     const Hat& hat = places_[core::at(first)].hat;
                     Motion both;
                     both << force, moment;
-                    force_.segment<6>(6 * hat.knot) += hat.weight(0) * both;
-                    if (hat.second > 0.0) force_.segment<6>(6 * hat.knot + 6) += hat.second * both;
+                    knot_values_.segment<6>(6 * hat.knot) += hat.weight(0) * both;
+                    if (hat.second > 0.0) knot_values_.segment<6>(6 * hat.knot + 6) += hat.second * both;
                 }
             }
         }, grain(layout, clusters()));
     }
 
-    /// z += P motion
+    /// z += P times the knot values
     void prolong(const scene::DofLayout& layout, Vector& z) const {
         core::parallel_for(core::count(layout.chains), [&](Index c) {
             const scene::Chain& chain = layout.chains[core::at(c)];
             for (Index a = 0; a < chain.nodes; ++a) {
                 const Index first = chain.first_vector + a * chain.vectors_per_node;
                 const Hat& hat = places_[core::at(first)].hat;
-                Motion motion = hat.weight(0) * motion_.segment<6>(6 * hat.knot);
-                if (hat.second > 0.0) motion += hat.second * motion_.segment<6>(6 * hat.knot + 6);
+                Motion motion = hat.weight(0) * knot_values_.segment<6>(6 * hat.knot);
+                if (hat.second > 0.0) motion += hat.second * knot_values_.segment<6>(6 * hat.knot + 6);
                 const Vec3 translation = motion.head<3>(), rotation = motion.tail<3>();
                 for (Index v = first; v < first + chain.vectors_per_node; ++v) {
                     Vec3 move = rotation.cross(arm_[core::at(v)]);
@@ -421,8 +425,8 @@ private:
     std::vector<Place> places_;  // of each vector
     std::vector<Vec3> arm_;      // of each vector: a direction, or a position from the middle of its cluster
     int knots_ = 0;
-    CoarseMatrix matrix_;
-    Vector force_, motion_;  // at the knots
+    BlockCholesky<double> matrix_;
+    Vector knot_values_;  // forces and moments, then motions
 };
 
 }  // namespace fibrant::solver

@@ -61,7 +61,7 @@ public:
     /// Clusters of the last analysis.
     Index clusters() const { return work_->coarse.clusters(); }
     /// Unknowns of the coarse space.
-    Index coarse_unknowns() const { return 6 * work_->coarse.matrix().blocks(); }
+    Index coarse_unknowns() const { return 6 * work_->coarse.knots(); }
 
 private:
     struct Work {

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Symbolic sparse Cholesky on a graph of blocks: an order with little fill, and the supernodes of the factor.
+
+#include <fibrant/core/types.hpp>
+
+#include <Eigen/OrderingMethods>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace fibrant::solver {
+
+/// Order of elimination of the vertices of a graph, and the columns of the factor that share their rows.
+class Supernodes {
+public:
+    using Pair = std::pair<int, int>;
+    struct Supernode {
+        int first = 0, last = 0;  ///< columns [first, last)
+        int parent = -1;          ///< supernode that its first row belongs to
+        std::vector<int> rows;    ///< of the factor below the columns, rising
+    };
+
+    /// @param vertices  of the graph
+    /// @param pairs     neighbours, in either order, each once or several times; loops may be there
+    void analyse(int vertices, const std::vector<Pair>& pairs) {
+        order(vertices, pairs);
+        const std::vector<int> parent = elimination_tree();
+        relabel(postorder(parent));
+        find_supernodes();
+        merge_supernodes();
+    }
+
+    int vertices() const noexcept { return static_cast<int>(place_.size()); }
+    /// Place of a vertex in the order of elimination.
+    int place(int vertex) const noexcept { return place_[core::at(vertex)]; }
+    const std::vector<Supernode>& list() const noexcept { return list_; }
+    /// Neighbours of a place that come after it, rising.
+    std::span<const int> later(int place) const {
+        return {later_.data() + start_[core::at(place)], core::at(start_[core::at(place + 1)] - start_[core::at(place)])};
+    }
+
+private:
+    /// Minimum degree.
+    void order(int n, const std::vector<Pair>& pairs) {
+        std::vector<Eigen::Triplet<double, int>> entries;
+        entries.reserve(2 * pairs.size());
+        for (const Pair& pair : pairs) {
+            if (pair.first == pair.second) continue;
+            entries.emplace_back(pair.first, pair.second, 1.0);
+            entries.emplace_back(pair.second, pair.first, 1.0);
+        }
+        for (int v = 0; v < n; ++v) entries.emplace_back(v, v, 1.0);  // without it the ordering takes a vertex for dense
+        SparseMatrix graph(n, n);
+        graph.setFromTriplets(entries.begin(), entries.end());
+        Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+        Eigen::AMDOrdering<int>()(graph, order);
+        place_.assign(core::at(n), 0);
+        for (int k = 0; k < n; ++k) place_[core::at(order.indices()[k])] = k;
+        neighbours_ = std::move(graph);
+        list_later();
+    }
+
+    void list_later() {
+        const int n = vertices();
+        start_.assign(core::at(n) + 1, 0);
+        for (int v = 0; v < n; ++v)
+            for (SparseMatrix::InnerIterator it(neighbours_, v); it; ++it) start_[core::at(place(v)) + 1] += place(static_cast<int>(it.row())) > place(v);
+        for (int k = 0; k < n; ++k) start_[core::at(k) + 1] += start_[core::at(k)];
+        later_.resize(core::at(start_.back()));
+        std::vector<int> next(start_.begin(), start_.end() - 1);
+        for (int v = 0; v < n; ++v)
+            for (SparseMatrix::InnerIterator it(neighbours_, v); it; ++it) {
+                const int other = place(static_cast<int>(it.row()));
+                if (other > place(v)) later_[core::at(next[core::at(place(v))]++)] = other;
+            }
+        for (int k = 0; k < n; ++k) std::sort(later_.begin() + start_[core::at(k)], later_.begin() + start_[core::at(k) + 1]);
+    }
+
+    /// Parent of each column: the first row of the factor below it (Liu, with path compression); -1 for a root.
+    std::vector<int> elimination_tree() const {
+        const int n = vertices();
+        std::vector<std::vector<int>> before(core::at(n));
+        for (int k = 0; k < n; ++k)
+            for (const int other : later(k)) before[core::at(other)].push_back(k);
+        std::vector<int> parent(core::at(n), -1), ancestor(core::at(n), -1);
+        for (int k = 0; k < n; ++k)
+            for (int i : before[core::at(k)]) {
+                while (i != -1 && i != k) {
+                    const int next = ancestor[core::at(i)];
+                    ancestor[core::at(i)] = k;
+                    if (next == -1) parent[core::at(i)] = k;
+                    i = next;
+                }
+            }
+        return parent;
+    }
+
+    /// New place of each place: children right before their parent.
+    static std::vector<int> postorder(const std::vector<int>& parent) {
+        const int n = static_cast<int>(parent.size());
+        std::vector<int> child(core::at(n), -1), sibling(core::at(n), -1), renamed(core::at(n), 0), stack;
+        for (int k = n - 1; k >= 0; --k) {
+            if (parent[core::at(k)] < 0) continue;
+            sibling[core::at(k)] = child[core::at(parent[core::at(k)])];
+            child[core::at(parent[core::at(k)])] = k;
+        }
+        int next = 0;
+        for (int root = 0; root < n; ++root) {
+            if (parent[core::at(root)] >= 0) continue;
+            stack.push_back(root);
+            while (!stack.empty()) {
+                const int k = stack.back();
+                if (child[core::at(k)] >= 0) {
+                    stack.push_back(child[core::at(k)]);
+                    child[core::at(k)] = sibling[core::at(stack.back())];
+                } else {
+                    renamed[core::at(k)] = next++;
+                    stack.pop_back();
+                }
+            }
+        }
+        return renamed;
+    }
+    void relabel(const std::vector<int>& renamed) {
+        for (int& place : place_) place = renamed[core::at(place)];
+        list_later();
+        neighbours_ = {};
+    }
+
+    /// Columns whose rows are the next column and its rows are joined.
+    void find_supernodes() {
+        const int n = vertices();
+        list_.clear();
+        std::vector<std::vector<int>> rows(core::at(n));
+        std::vector<std::vector<int>> children(core::at(n));
+        std::vector<int> seen(core::at(n), -1);
+        for (int k = 0; k < n; ++k) {
+            std::vector<int>& own = rows[core::at(k)];
+            const auto take = [&](int row) {
+                if (row <= k || seen[core::at(row)] == k) return;
+                seen[core::at(row)] = k;
+                own.push_back(row);
+            };
+            for (const int row : later(k)) take(row);
+            for (const int c : children[core::at(k)])
+                for (const int row : rows[core::at(c)]) take(row);
+            std::sort(own.begin(), own.end());
+            if (!own.empty()) children[core::at(own.front())].push_back(k);
+            const bool joins = k > 0 && !rows[core::at(k - 1)].empty() && rows[core::at(k - 1)].front() == k &&
+                               rows[core::at(k - 1)].size() == own.size() + 1;
+            if (joins) {
+                list_.back().last = k + 1;
+                list_.back().rows = own;
+            } else {
+                list_.push_back({k, k + 1, -1, own});
+            }
+            for (const int c : children[core::at(k)]) {
+                if (c < k - 1) rows[core::at(c)] = {};  // merged, and no longer asked for
+            }
+        }
+    }
+
+    /// Joins a supernode with the parent right after it if that adds few zeros: larger dense blocks are faster.
+    void merge_supernodes() {
+        std::vector<Supernode> merged;
+        std::vector<double> zeros;  // of each, accumulated
+        const auto size = [](double columns, double rows) { return columns * (0.5 * (columns + 1.0) + rows); };
+        for (Supernode& next : list_) {
+            double own = 0.0;
+            while (!merged.empty()) {
+                const Supernode& before = merged.back();
+                if (before.rows.empty() || before.rows.front() >= next.last || before.last != next.first) break;
+                const double c = before.last - before.first, p = next.last - next.first;
+                const double all = size(c + p, static_cast<double>(next.rows.size()));
+                const double added = own + zeros.back() + all - size(c, static_cast<double>(before.rows.size())) - size(p, static_cast<double>(next.rows.size()));
+                if (added > (c + p <= 4.0 ? 0.5 : c + p <= 16.0 ? 0.2 : 0.05) * all) break;
+                next.first = before.first;
+                own = added;
+                merged.pop_back();
+                zeros.pop_back();
+            }
+            merged.push_back(std::move(next));
+            zeros.push_back(own);
+        }
+        list_ = std::move(merged);
+        std::vector<int> supernode(place_.size());
+        for (int s = 0; s < static_cast<int>(list_.size()); ++s)
+            for (int k = list_[core::at(s)].first; k < list_[core::at(s)].last; ++k) supernode[core::at(k)] = s;
+        for (Supernode& s : list_) s.parent = s.rows.empty() ? -1 : supernode[core::at(s.rows.front())];
+    }
+
+    SparseMatrix neighbours_;
+    std::vector<int> place_;
+    std::vector<int> start_, later_;
+    std::vector<Supernode> list_;
+};
+
+}  // namespace fibrant::solver
