@@ -58,14 +58,16 @@ private:
     /// Writes {of, k + l} for each bit l.
     static Candidate* append(std::int32_t of, std::int32_t k, std::uint32_t bits, Candidate* out) noexcept {
 #if defined(__AVX512F__)
-        // Whole vectors without a branch: the number of bits is as good as random.
-        const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-        const __m512i b = _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), _mm512_add_epi32(lane, _mm512_set1_epi32(k)));
-        const __m512i a = _mm512_set1_epi64(static_cast<std::uint32_t>(of));
-        const auto both = [&](__m256i half) { return _mm512_or_si512(_mm512_slli_epi64(_mm512_cvtepu32_epi64(half), 32), a); };
-        _mm512_storeu_si512(out, both(_mm512_castsi512_si256(b)));
-        _mm512_storeu_si512(out + 8, both(_mm512_extracti64x4_epi64(b, 1)));
-        return out + std::popcount(bits);
+        // Whole vectors without a branch, as the number of bits is as good as random. A candidate is 64 bits, `of` the lower.
+        const __m512i lanes = _mm512_setr_epi64(0, 1LL << 32, 2LL << 32, 3LL << 32, 4LL << 32, 5LL << 32, 6LL << 32, 7LL << 32);
+        const auto put = [&](std::uint32_t mask, std::int32_t first) {
+            const __m512i all = _mm512_add_epi64(lanes, _mm512_set1_epi64(std::bit_cast<std::int64_t>(Candidate{of, first})));
+            _mm512_storeu_si512(out, _mm512_maskz_compress_epi64(static_cast<__mmask8>(mask), all));
+            out += std::popcount(mask);
+        };
+        put(bits & 0xffU, k);
+        put(bits >> 8, k + 8);
+        return out;
 #else
         for (; bits != 0; bits &= bits - 1U) *out++ = {of, k + std::countr_zero(bits)};
         return out;
