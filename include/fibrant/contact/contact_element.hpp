@@ -29,6 +29,7 @@ template <beam::BeamElement B, law::FrictionLaw Friction>
 struct FrictionState<B, Friction> {
     typename Friction::History history;        ///< of the last accepted state, turned with the fibres
     beam::ElementWeights<B> weights_i{}, weights_j{};  ///< of the pair of particles whose slip is counted
+    Vec3 accepted_offset = Vec3::Zero();  ///< particle j - particle i in the last accepted state, turned since with the pair
 };
 
 /// Two particles that are predicted to touch (Durville, eq. 8). Fibre i <= fibre j, the normal points from i to j.

@@ -71,7 +71,6 @@ public:
     /// @param reach     beyond touching [length]
     /// @param forced    keep forced orders
     void detect(const Vector& state, const Vector& accepted, double reach, bool forced) {
-        accepted_state_ = &accepted;
         std::vector<Zone> found = find_zones(*mesh_, state, search_, parameters_.detection, orders_, reach, forced);
         for (Zone& zone : found) inherit(zone, state);
         zones_.swap(found);
@@ -108,7 +107,7 @@ public:
         core::parallel_for(core::count(elements_), [&](Index k) {
             Element& element = elements_[core::at(k)];
             Vec3 slip = Vec3::Zero();
-            if constexpr (core::Active<Friction>) slip = slip_since_accepted(element, state);
+            if constexpr (core::Active<Friction>) slip = particle_offset(element, state) - element.friction.accepted_offset;
             follow_support(element, state);
             const double gap = element.gap(state) + element.shift.value();
             const law::NormalResponse response = normal_.response(gap, stiffness(element));
@@ -296,22 +295,29 @@ private:
 
     /// Normal, particles, gap shift and accepted offset of an element whose stations stand.
     void place_particles(Element& element, const Vector& state, const Vector& accepted, const Vec3& remembered) const {
-        const Index i = element.fibre_i, j = element.fibre_j;
-        const Vec3 centres = mesh_->position(state, j, element.u_j) - mesh_->position(state, i, element.u_i);
-        if (element.end_i || element.end_j) {
-            const Vec3 side = remembered.isZero() ? centres : remembered;
-            element.normal = unit_or(centres.dot(side) > 0.0 ? centres : side, Vec3::UnitZ());
-        } else {
-            const Vec3 t_i = contact_tangent(*mesh_, state, i, element.u_i).normalized();
-            const Vec3 t_j = contact_tangent(*mesh_, state, j, element.u_j).normalized();
-            element.normal = normal_direction(parameters_.normal, centres, t_i, t_j, remembered);
-        }
+        element.normal = normal(element, state, remembered);
         follow_support(element, state);
         if constexpr (law::GapShifting<Normal>) element.shift.shift = normal_.gap_shift(element.gap(accepted));
         if constexpr (core::Active<Friction>) {
             element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
             if (!remembered.isZero()) turn_history(element, remembered);
+            element.friction.accepted_offset = accepted_offset(element, state, accepted);
         }
+    }
+
+    Vec3 normal(const Element& element, const Vector& state, const Vec3& remembered) const {
+        const Index i = element.fibre_i, j = element.fibre_j;
+        const Vec3 centres = mesh_->position(state, j, element.u_j) - mesh_->position(state, i, element.u_i);
+        if (element.end_i || element.end_j) {
+            const Vec3 side = remembered.isZero() ? centres : remembered;
+            return unit_or(centres.dot(side) > 0.0 ? centres : side, Vec3::UnitZ());
+        }
+        return normal_direction(parameters_.normal, centres, tangent_of_i(element, state),
+                                contact_tangent(*mesh_, state, j, element.u_j).normalized(), remembered);
+    }
+    /// Unit tangent of fibre i.
+    Vec3 tangent_of_i(const Element& element, const Vector& state) const {
+        return contact_tangent(*mesh_, state, element.fibre_i, element.u_i).normalized();
     }
 
     /// Weights of the particles that lie furthest along the normal in this state.
@@ -328,15 +334,23 @@ private:
                       weigh(element.fibre_j, element.u_j, element.first_j, -element.normal, element.end_j, element.weights_j);
     }
 
-    /// Displacement of particle j against particle i since the last accepted state, of the pair that the last refresh chose.
-    Vec3 slip_since_accepted(const Element& element, const Vector& state) const
+    /// Particle j - particle i of the pair that the last refresh chose [length].
+    static Vec3 particle_offset(const Element& element, const Vector& state)
         requires core::Active<Friction>
     {
-        const auto offset = [&](const Vector& at) {
-            return Vec3(beam::Mesh<B>::point(at, element.first_j, element.friction.weights_j) -
-                        beam::Mesh<B>::point(at, element.first_i, element.friction.weights_i));
-        };
-        return offset(state) - offset(*accepted_state_);
+        return beam::Mesh<B>::point(state, element.first_j, element.friction.weights_j) -
+               beam::Mesh<B>::point(state, element.first_i, element.friction.weights_i);
+    }
+    /// Offset of the friction's particles in the last accepted state, turned as the normal and the tangent have turned
+    /// since: without that, a rigid rotation of a pair would slide it by the gap times the angle.
+    Vec3 accepted_offset(const Element& element, const Vector& state, const Vector& accepted) const
+        requires core::Active<Friction>
+    {
+        const Vec3 offset = particle_offset(element, accepted);
+        const Vec3 before = normal(element, accepted, element.normal);
+        if (element.end_i || element.end_j) return Eigen::Quaterniond::FromTwoVectors(before, element.normal) * offset;
+        const TangentPlane then(tangent_of_i(element, accepted), before), now(tangent_of_i(element, state), element.normal);
+        return offset.dot(then.along) * now.along + offset.dot(then.across) * now.across + offset.dot(before) * element.normal;
     }
 
     void turn_history(Element& element, const Vec3& before) const
@@ -353,7 +367,7 @@ private:
         const double range = 1.5 / parameters_.spacing.points_per_element;
         const RecordedFriction<Friction> recorded =
             accepted_.friction(element.fibre_i, element.fibre_j, element.u_i, element.u_j, range);
-        const TangentPlane plane(contact_tangent(*mesh_, state, element.fibre_i, element.u_i).normalized(), element.normal);
+        const TangentPlane plane(tangent_of_i(element, state), element.normal);
         element.friction.history.reversible = recorded.along * plane.along + recorded.across * plane.across;
     }
 
@@ -367,7 +381,7 @@ private:
             record.normal = element.normal;
             if constexpr (core::Active<Friction>) {
                 if (k < core::count(frictions_) && responses_[core::at(k)].reaction > 0.0) {
-                    const TangentPlane plane(contact_tangent(*mesh_, state, element.fibre_i, element.u_i).normalized(), element.normal);
+                    const TangentPlane plane(tangent_of_i(element, state), element.normal);
                     const Vec3& kept = frictions_[core::at(k)].history.reversible;
                     record.friction = {kept.dot(plane.along), kept.dot(plane.across)};
                 }
@@ -397,7 +411,6 @@ private:
     Search search_;
     Normal normal_;
     [[no_unique_address]] Friction friction_;
-    const Vector* accepted_state_ = nullptr;  // of the increment under way
     std::vector<Zone> zones_, accepted_zones_;
     std::vector<Element> elements_;
     std::vector<ContactResponse> responses_;
