@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "refusal.hpp"
+#include "solver/linear_solver_contract.hpp"
+#include "support/fabric_system.hpp"
+
+#include <fibrant/solver/fibre_block_pcg.hpp>
+#include <fibrant/solver/float_block_cholesky.hpp>
+#include <fibrant/solver/two_level_pcg.hpp>
+
+using namespace fibrant;
+
+namespace {
+
+// Forces between the particles of every contact element: what the residual of a contact step looks like.
+Vector contact_load(const test::FabricSystem& system) {
+    struct Load {
+        Vector b;
+        std::mt19937 generator{3};
+        std::normal_distribution<double> normal{};
+        void dense(const assembly::DenseTerm&) const {}
+        void point(const assembly::PointTerm& term) {
+            const Vec3 force = term.stiffness * Vec3(normal(generator), normal(generator), normal(generator));
+            for (std::size_t i = 0; i < term.vectors.size(); ++i) b.segment<3>(3 * term.vectors[i]) += term.weights[i] * force;
+        }
+    } load{Vector::Zero(system.layout().unknowns())};
+    system.visit(load);
+    return load.b;
+}
+
+template <class Solver>
+int iterations(Solver solver, const test::FabricSystem& system, double tolerance) {
+    const Vector b = contact_load(system);
+    Vector x, ax(b.size());
+    solver.analyse(system);
+    REQUIRE(solver.prepare(system) == solver::SolveStatus::converged);
+    const solver::SolveReport report = solver.solve(system, b, tolerance, x);
+    CHECK(report.status == solver::SolveStatus::converged);
+    system.apply(x, ax);
+    CHECK(solver::scaled_norm(system.layout(), Vector(b - ax)) <= 1.001 * tolerance * solver::scaled_norm(system.layout(), b));
+    return report.iterations;
+}
+
+const test::Fabric bundle{.bundles = 1, .parallel = true, .fibres = 38, .elements = 16, .length = 2.2};
+
+}  // namespace
+
+TEST_CASE("the coarse space takes the bending of a bundle: several times fewer iterations than fibres alone") {
+    const test::FabricSystem system(bundle);
+    const int two = iterations(solver::TwoLevelPcg{}, system, 1e-4);
+    const int one = iterations(solver::FibreBlockPcg{}, system, 1e-4);
+    CHECK(two <= 60);  // about 45 are expected of any number of fibres, a third more is allowed for
+    CHECK(one >= 3 * two);
+}
+
+TEST_CASE("more fibres do not take more iterations, crossing bundles neither") {
+    test::Fabric larger = bundle, crossing = bundle;
+    larger.fibres = 76;
+    crossing.parallel = false;
+    const int base = iterations(solver::TwoLevelPcg{}, test::FabricSystem(bundle), 1e-4);
+    CHECK(iterations(solver::TwoLevelPcg{}, test::FabricSystem(larger), 1e-4) <= base * 3 / 2);
+    CHECK(iterations(solver::TwoLevelPcg{}, test::FabricSystem(crossing), 1e-4) <= base * 3 / 2);
+}
+
+TEST_CASE("neighbours are found without groups, and fibres that are shifted along themselves do no harm") {
+    test::Fabric lone = bundle, shifted = bundle;
+    lone.grouped = false;
+    shifted.misalignment = 1.0;
+    const int base = iterations(solver::TwoLevelPcg{}, test::FabricSystem(bundle), 1e-4);
+    CHECK(iterations(solver::TwoLevelPcg{}, test::FabricSystem(lone), 1e-4) == base);
+    CHECK(iterations(solver::TwoLevelPcg{}, test::FabricSystem(shifted), 1e-4) <= base * 5 / 4);
+}
+
+TEST_CASE("contact a hundred times stiffer is still solved, and agrees with the direct solution") {
+    test::Fabric stiff = bundle;
+    stiff.contact_stiffness *= 100.0;
+    stiff.fibres = 19;
+    const test::FabricSystem system(stiff);
+    CHECK(iterations(solver::TwoLevelPcg{}, system, 1e-4) <= 150);
+    const Vector b = contact_load(system);
+    Vector x, y;
+    solver::TwoLevelPcg two;
+    solver::DoubleBlockCholesky direct;
+    two.analyse(system), direct.analyse(system);
+    two.prepare(system), direct.prepare(system);
+    two.solve(system, b, 1e-9, x), direct.solve(system, b, 1e-12, y);
+    Vector energy(b.size()), error = x - y;
+    system.apply(error, energy);
+    // The documented experience: residual and energy-norm error agree within a factor of two; ten are allowed.
+    CHECK(std::sqrt(error.dot(energy)) < 1e-8 * std::sqrt(b.dot(y)));
+}
+
+TEST_CASE_TEMPLATE("two threads give the bits of one on systems large enough for both", Solver, solver::TwoLevelPcg, solver::FibreBlockPcg,
+                   solver::FloatBlockCholesky) {
+    const test::FabricSystem system(bundle);
+    REQUIRE(system.layout().unknowns() > 8192);  // smaller ones stay on one thread
+    const Vector b = contact_load(system);
+    std::vector<Vector> x(3);
+    for (std::size_t k = 0; k < 3; ++k) {
+        test::with_threads(k == 1 ? 2 : 1, [&] {
+            Solver solver;
+            solver.analyse(system);
+            solver.prepare(system);
+            solver.solve(system, b, 1e-3, x[k]);
+        });
+    }
+    CHECK(x[0] == x[1]);
+    CHECK(x[0] == x[2]);
+}
+
+TEST_CASE("parameters of two levels that mean nothing are refused by name") {
+    using Solver = solver::TwoLevelPcg;
+    CHECK(test::refusal([] { Solver{{.fibres_per_cluster = 0}}; }).starts_with("TwoLevelPcg.fibres_per_cluster = 0"));
+    CHECK(test::refusal([] { Solver{{.elements_per_knot = 0}}; }).starts_with("TwoLevelPcg.elements_per_knot = 0"));
+    CHECK(test::refusal([] { Solver{{.iteration_limit = 0}}; }).starts_with("TwoLevelPcg.iteration_limit = 0"));
+}
