@@ -83,7 +83,7 @@ TEST_CASE("the coarse correction is the projection on rigid motions in the energ
                 solver::RigidCoarseSpace space;
     prepare(system, size, elements, space);
                 Vector r(system.layout().unknowns()), z = Vector::Zero(r.size());
-                // A rigid motion of everything is in the space, whatever the clusters and knots: it comes back whole.
+                // A rigid motion of everything is in the space, whatever the clusters and stations: it comes back whole.
                 // Only if every entry of P^T A P is right.
                 const Vector motion = rigid_motion(system.layout(), {0.3, -0.2, 0.5}, {0.1, 0.4, -0.3});
                 system.apply(motion, r);
@@ -110,7 +110,7 @@ TEST_CASE("the coarse correction is the projection on rigid motions in the energ
     }
 }
 
-TEST_CASE("a motion that is linear between knots along a cluster is in the coarse space") {
+TEST_CASE("a motion that is linear between stations along a cluster is in the coarse space") {
     SyntheticSystem system = test::random_system({.chains = std::vector<scene::Chain>(4, {.nodes = 9, .vectors_per_node = 3, .reach = 2, .group = 0}),
                                                   .points = 60, .seed = 3});
     Vector motion(system.layout().unknowns());
@@ -126,13 +126,13 @@ TEST_CASE("a motion that is linear between knots along a cluster is in the coars
         solver::RigidCoarseSpace space;
     prepare(system, 19, elements, space);
         CHECK(space.clusters() == 1);
-        CHECK(space.knots() == 4 / elements + 1);
+        CHECK(space.stations() == 4 / elements + 1);
         Vector r(motion.size()), z = Vector::Zero(motion.size());
         system.apply(motion, r);
         space.add_correction(system.layout(), r, z);
         const double error = (z - motion).norm() / motion.norm();
         if (elements <= 2) CHECK(error < 1e-8);
-        if (elements == 4) CHECK(error > 0.1);  // the kink is between its knots
+        if (elements == 4) CHECK(error > 0.1);  // the kink is between its stations
     }
 }
 

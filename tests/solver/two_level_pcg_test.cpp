@@ -110,6 +110,6 @@ TEST_CASE_TEMPLATE("two threads give the bits of one on systems large enough for
 TEST_CASE("parameters of two levels that mean nothing are refused by name") {
     using Solver = solver::TwoLevelPcg;
     CHECK(test::refusal([] { Solver{{.fibres_per_cluster = 0}}; }).starts_with("TwoLevelPcg.fibres_per_cluster = 0"));
-    CHECK(test::refusal([] { Solver{{.elements_per_knot = 0}}; }).starts_with("TwoLevelPcg.elements_per_knot = 0"));
+    CHECK(test::refusal([] { Solver{{.elements_per_station = 0}}; }).starts_with("TwoLevelPcg.elements_per_station = 0"));
     CHECK(test::refusal([] { Solver{{.iteration_limit = 0}}; }).starts_with("TwoLevelPcg.iteration_limit = 0"));
 }

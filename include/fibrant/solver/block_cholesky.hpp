@@ -22,7 +22,7 @@ enum class SmallPivot : std::uint8_t {
     magnitude, ///< its magnitude, at least `least_pivot`: nearly an inverse, for use as a preconditioner
 };
 
-/// A = L L^T of a symmetric matrix whose rows and columns come in blocks: nodes, or knots of a coarse space.
+/// A = L L^T of a symmetric matrix whose rows and columns come in blocks: nodes, or stations of a coarse space.
 ///
 /// A pivot that is not positive, or that cancellation has left less than `least_pivot` of, is replaced, so that the factor
 /// is positive definite always; SmallPivot says by what.

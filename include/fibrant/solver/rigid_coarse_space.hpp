@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Coarse space of clusters of chains: rigid motions of their cross-sections, linear between knots along them.
+/// @file Coarse space of clusters of chains: rigid motions of their cross-sections, linear between stations along them.
 
 #include <fibrant/solver/block_cholesky.hpp>
 #include <fibrant/solver/chain_clusters.hpp>
@@ -17,37 +17,37 @@
 
 namespace fibrant::solver {
 
-/// Coarse space spanned by P: three translations and three rotations at each knot of a cluster.
+/// Coarse space spanned by P: three translations and three rotations at each station of a cluster.
 ///
-/// A node between two knots moves with their motions, weighted linearly; a rotation moves positions about the middle of
+/// A node between two stations moves with their motions, weighted linearly; a rotation moves positions about the middle of
 /// the cluster and turns directions. This is the bending of many fibres at once, which factors of single chains do not
 /// see. P^T A P is summed from the bands of the chains, which are at hand when chains are factored, and from
 /// what the terms couple beyond them; A itself is never formed.
 class RigidCoarseSpace {
 public:
-    /// Clusters of about `cluster_size` chains, and a knot every `elements_per_knot` elements; both > 0.
+    /// Clusters of about `cluster_size` chains, and a station every `elements_per_station` elements; both > 0.
     template <assembly::LinearSystem System>
-    void analyse(const System& system, Index cluster_size, Index elements_per_knot) {
+    void analyse(const System& system, Index cluster_size, Index elements_per_station) {
         const scene::DofLayout& layout = system.layout();
         clusters_ = cluster_chains(system, cluster_size);
         chains_.assign(layout.chains.size(), {});
-        knots_ = 0;
+        stations_ = 0;
         for (const ChainCluster& cluster : clusters_) {
             Index intervals = 0;
             for (const Index c : cluster.chains) {
                 const scene::Chain& chain = layout.chains[core::at(c)];
-                const Index step = std::max<Index>(chain.reach, 1) * elements_per_knot;
+                const Index step = std::max<Index>(chain.reach, 1) * elements_per_station;
                 intervals = std::max(intervals, (chain.nodes - 1 + step - 1) / step);
             }
             for (std::size_t l = 0; l < cluster.chains.size(); ++l) {
                 const Index nodes = layout.chains[core::at(cluster.chains[l])].nodes;
                 Chain& chain = chains_[core::at(cluster.chains[l])];
-                chain.first_knot = knots_;
+                chain.first_station = stations_;
                 chain.intervals = nodes > 1 ? intervals : 0;
                 chain.nodes = nodes;
                 chain.reversed = cluster.reversed[l];
             }
-            knots_ += static_cast<int>(intervals) + 1;
+            stations_ += static_cast<int>(intervals) + 1;
         }
         places_.resize(layout.kind.size());
         for (Index c = 0; c < core::count(layout.chains); ++c) {
@@ -61,7 +61,7 @@ public:
     }
 
     Index clusters() const noexcept { return core::count(clusters_); }
-    Index knots() const noexcept { return knots_; }
+    Index stations() const noexcept { return stations_; }
     const BlockCholesky<double>& matrix() const noexcept { return matrix_; }
 
     /// To be called before the chains are added: takes over the values of the layout.
@@ -103,7 +103,7 @@ public:
     /// @return indefinite if P^T A P is not positive semidefinite; the correction is positive semidefinite all the same
     template <assembly::LinearSystem System>
     SolveStatus finish(const System& system) {
-        if (!sum(system)) {  // terms between knots that had none in the analysis
+        if (!sum(system)) {  // terms between stations that had none in the analysis
             find_pattern(system);
             [[maybe_unused]] const bool complete = sum(system);
             assert(complete);
@@ -117,8 +117,8 @@ public:
     ///
     /// @param r, z  zero and not used outside the free directions of held vectors
     void add_correction(const scene::DofLayout& layout, const Vector& r, Vector& z) {
-        restrict_to_knots(layout, r);
-        matrix_.solve(knot_values_);
+        restrict_to_stations(layout, r);
+        matrix_.solve(station_values_);
         prolong(layout, z);
     }
 
@@ -128,33 +128,33 @@ private:
     using Modes = Eigen::Matrix<double, Eigen::Dynamic, 6>;
     using Motion = Eigen::Matrix<double, 6, 1>;
 
-    /// Two knots of the cluster and the share of each in a node's motion; the second may lie beyond the last if its share is 0.
+    /// Two stations of the cluster and the share of each in a node's motion; the second may lie beyond the last if its share is 0.
     struct Hat {
-        int knot = 0;
+        int station = 0;
         double second = 0.0;
         double weight(int k) const noexcept { return k == 0 ? 1.0 - second : second; }
     };
     struct Chain {
-        int first_knot = 0;
+        int first_station = 0;
         Index intervals = 0, nodes = 1;
         bool reversed = false;
-        std::vector<Block> blocks;  // between the knots k and k - d, at k (reach + 1) + d
-        /// Knots that coupled nodes may lie apart.
+        std::vector<Block> blocks;  // between the stations k and k - d, at k (reach + 1) + d
+        /// Stations that coupled nodes may lie apart.
         Index reach(Index nodes_apart) const noexcept {
             return intervals == 0 ? 0 : std::min(intervals, nodes_apart * intervals / (nodes - 1) + 2);
         }
     };
     struct Place {
         int chain = 0, node = 0;
-        Hat hat;  // knot counted over all clusters
+        Hat hat;  // station counted over all clusters
     };
 
     static Hat hat(const Chain& chain, Index node) noexcept {
-        if (chain.intervals == 0) return {chain.first_knot, 0.0};
+        if (chain.intervals == 0) return {chain.first_station, 0.0};
         const Index share = (chain.reversed ? chain.nodes - 1 - node : node) * chain.intervals;  // over nodes - 1
-        const Index knot = std::min(share / (chain.nodes - 1), chain.intervals - 1);
-        return {chain.first_knot + static_cast<int>(knot),
-                static_cast<double>(share - knot * (chain.nodes - 1)) / static_cast<double>(chain.nodes - 1)};
+        const Index station = std::min(share / (chain.nodes - 1), chain.intervals - 1);
+        return {chain.first_station + static_cast<int>(station),
+                static_cast<double>(share - station * (chain.nodes - 1)) / static_cast<double>(chain.nodes - 1)};
     }
 
     template <class Body>
@@ -173,7 +173,7 @@ private:
         rows(1, 3) -= arm.z(), rows(1, 5) += arm.x();
         rows(2, 3) += arm.y(), rows(2, 4) -= arm.x();
     }
-    /// Rows of F P of one vector for a knot of weight 1.
+    /// Rows of F P of one vector for a station of weight 1.
     Mode mode(const scene::DofLayout& layout, const assembly::HeldProjector& held, Index v) const {
         Mode rows = Mode::Zero();
         add_rotation(arm_[core::at(v)], rows);
@@ -188,7 +188,7 @@ private:
             for (int j = 0; j < 2; ++j) {
                 const double weight = row.weight(i) * column.weight(j);
                 if (weight == 0.0) continue;
-                const Index k = row.knot + i - own.first_knot, l = column.knot + j - own.first_knot;
+                const Index k = row.station + i - own.first_station, l = column.station + j - own.first_station;
                 if (k > l || (k == l && diagonal)) {
                     own.blocks[core::at(k * width + (k - l))] += weight * block;
                 } else if (k == l) {
@@ -201,8 +201,8 @@ private:
 
     // What the terms couple beyond the bands. A term is taken apart into parts that lie within the reach of one chain;
     // what couples a part with itself is in the band.
-    struct KnotShare {
-        int knot = 0;
+    struct StationShare {
+        int station = 0;
         double translation = 0.0;       // sum of w and of w arm over vectors that are free,
         Vec3 arm = Vec3::Zero();
         Mode rows = Mode::Zero();       // and of w times the rows of those that are held
@@ -210,27 +210,27 @@ private:
     struct Part {
         int chain = 0, low = 0, high = 0;
         std::size_t used = 0;
-        std::vector<KnotShare> knots;
-        std::span<const KnotShare> shares() const { return {knots.data(), used}; }
-        KnotShare& at(int knot) {
+        std::vector<StationShare> stations;
+        std::span<const StationShare> shares() const { return {stations.data(), used}; }
+        StationShare& at(int station) {
             for (std::size_t k = 0; k < used; ++k) {
-                if (knots[k].knot == knot) return knots[k];
+                if (stations[k].station == station) return stations[k];
             }
-            if (++used > knots.size()) knots.emplace_back();
-            knots[used - 1] = {};
-            knots[used - 1].knot = knot;
-            return knots[used - 1];
+            if (++used > stations.size()) stations.emplace_back();
+            stations[used - 1] = {};
+            stations[used - 1].station = station;
+            return stations[used - 1];
         }
         /// Completes the rows.
         void gather() {
             for (std::size_t k = 0; k < used; ++k) {
-                knots[k].rows.leftCols<3>().diagonal().array() += knots[k].translation;
-                add_rotation(knots[k].arm, knots[k].rows);
+                stations[k].rows.leftCols<3>().diagonal().array() += stations[k].translation;
+                add_rotation(stations[k].arm, stations[k].rows);
             }
         }
     };
 
-    /// Calls body(knot i, knot j, block) for each coupling beyond the bands; both orders are meant. With `Values` false the
+    /// Calls body(station i, station j, block) for each coupling beyond the bands; both orders are meant. With `Values` false the
     /// blocks are not computed.
     template <bool Values, class System, class Body>
     void couple(const System& system, const Body& body) const {
@@ -260,13 +260,13 @@ private:
                 for (int i = 0; i < 2; ++i) {
                     const double share = weight * place.hat.weight(i);
                     if (place.hat.weight(i) == 0.0) continue;
-                    KnotShare& knot = part.at(place.hat.knot + i);
+                    StationShare& station = part.at(place.hat.station + i);
                     if (!free) {
-                        knot.rows += share * space.mode(layout, held, v);
+                        station.rows += share * space.mode(layout, held, v);
                         continue;
                     }
-                    if (position) knot.translation += share;
-                    knot.arm += share * space.arm_[core::at(v)];
+                    if (position) station.translation += share;
+                    station.arm += share * space.arm_[core::at(v)];
                 }
             }
             bool in_band(const Part& a, const Part& b) const {
@@ -280,13 +280,13 @@ private:
                 return false;
             }
             void emit(const Part& a, const Part& b, const Mat3& stiffness) const {
-                for (const KnotShare& column : b.shares()) {
+                for (const StationShare& column : b.shares()) {
                     Mode product = Mode::Zero();
                     if constexpr (Values) product = stiffness * column.rows;
-                    for (const KnotShare& row : a.shares()) {
+                    for (const StationShare& row : a.shares()) {
                         Block block = Block::Zero();
                         if constexpr (Values) block = row.rows.transpose() * product;
-                        body(row.knot, column.knot, block);
+                        body(row.station, column.station, block);
                     }
                 }
             }
@@ -336,7 +336,7 @@ private:
     void find_pattern(const System& system) {
         const scene::DofLayout& layout = system.layout();
         if (arm_.size() != layout.kind.size()) arm_ = layout.value;
-        std::vector<std::vector<int>> columns(core::at(knots_));  // of each row, left of the diagonal, rising
+        std::vector<std::vector<int>> columns(core::at(stations_));  // of each row, left of the diagonal, rising
         const auto insert = [&](int i, int j, const Block&) {
             if (i == j) return;
             std::vector<int>& row = columns[core::at(std::max(i, j))];
@@ -347,14 +347,14 @@ private:
             const Chain& own = chains_[core::at(c)];
             for (int k = 0; k <= static_cast<int>(own.intervals); ++k) {
                 const int reach = static_cast<int>(own.reach(layout.chains[core::at(c)].reach));
-                for (int d = 1; d <= std::min(k, reach); ++d) insert(own.first_knot + k, own.first_knot + k - d, Block::Zero());
+                for (int d = 1; d <= std::min(k, reach); ++d) insert(own.first_station + k, own.first_station + k - d, Block::Zero());
             }
         }
         couple<false>(system, insert);
         std::vector<Supernodes::Pair> pairs;
-        for (int k = 0; k < knots_; ++k)
+        for (int k = 0; k < stations_; ++k)
             for (const int column : columns[core::at(k)]) pairs.emplace_back(k, column);
-        matrix_.analyse(std::vector<int>(core::at(knots_), 6), pairs);
+        matrix_.analyse(std::vector<int>(core::at(stations_), 6), pairs);
     }
 
     /// Sums the matrix; false if the pattern lacks a block.
@@ -367,7 +367,7 @@ private:
             const Index width = own.reach(system.layout().chains[core::at(c)].reach) + 1;
             for (Index k = 0; k <= own.intervals; ++k)
                 for (Index d = 0; d <= std::min(k, width - 1); ++d) {
-                    const int row = own.first_knot + static_cast<int>(k);
+                    const int row = own.first_station + static_cast<int>(k);
                     complete = matrix_.add(row, row - static_cast<int>(d), own.blocks[core::at(k * width + d)]) && complete;
                 }
         }
@@ -377,9 +377,9 @@ private:
         return complete;
     }
 
-    /// knot values = P^T r
-    void restrict_to_knots(const scene::DofLayout& layout, const Vector& r) {
-        knot_values_.setZero(6 * knots_);
+    /// station values = P^T r
+    void restrict_to_stations(const scene::DofLayout& layout, const Vector& r) {
+        station_values_.setZero(6 * stations_);
         core::parallel_for(clusters(), [&](Index cluster) {
             for (const Index c : clusters_[core::at(cluster)].chains) {
                 const scene::Chain& chain = layout.chains[core::at(c)];
@@ -394,22 +394,22 @@ private:
                     const Hat& hat = places_[core::at(first)].hat;
                     Motion both;
                     both << force, moment;
-                    knot_values_.segment<6>(6 * hat.knot) += hat.weight(0) * both;
-                    if (hat.second > 0.0) knot_values_.segment<6>(6 * hat.knot + 6) += hat.second * both;
+                    station_values_.segment<6>(6 * hat.station) += hat.weight(0) * both;
+                    if (hat.second > 0.0) station_values_.segment<6>(6 * hat.station + 6) += hat.second * both;
                 }
             }
         }, grain(layout, clusters()));
     }
 
-    /// z += P times the knot values
+    /// z += P times the station values
     void prolong(const scene::DofLayout& layout, Vector& z) const {
         core::parallel_for(core::count(layout.chains), [&](Index c) {
             const scene::Chain& chain = layout.chains[core::at(c)];
             for (Index a = 0; a < chain.nodes; ++a) {
                 const Index first = chain.first_vector + a * chain.vectors_per_node;
                 const Hat& hat = places_[core::at(first)].hat;
-                Motion motion = hat.weight(0) * knot_values_.segment<6>(6 * hat.knot);
-                if (hat.second > 0.0) motion += hat.second * knot_values_.segment<6>(6 * hat.knot + 6);
+                Motion motion = hat.weight(0) * station_values_.segment<6>(6 * hat.station);
+                if (hat.second > 0.0) motion += hat.second * station_values_.segment<6>(6 * hat.station + 6);
                 const Vec3 translation = motion.head<3>(), rotation = motion.tail<3>();
                 for (Index v = first; v < first + chain.vectors_per_node; ++v) {
                     Vec3 move = rotation.cross(arm_[core::at(v)]);
@@ -424,9 +424,9 @@ private:
     std::vector<Chain> chains_;
     std::vector<Place> places_;  // of each vector
     std::vector<Vec3> arm_;      // of each vector: a direction, or a position from the middle of its cluster
-    int knots_ = 0;
+    int stations_ = 0;
     BlockCholesky<double> matrix_;
-    Vector knot_values_;  // forces and moments, then motions
+    Vector station_values_;  // forces and moments, then motions
 };
 
 }  // namespace fibrant::solver

@@ -16,11 +16,11 @@ class TwoLevelPcg {
 public:
     struct Parameters {
         int fibres_per_cluster = 19;  ///< about, > 0
-        int elements_per_knot = 2;    ///< along the chains, > 0
+        int elements_per_station = 2;    ///< along the chains, > 0
         int iteration_limit = 2000;   ///< > 0
         void validate() const {
             core::require_at_least("TwoLevelPcg.fibres_per_cluster", fibres_per_cluster, 1);
-            core::require_at_least("TwoLevelPcg.elements_per_knot", elements_per_knot, 1);
+            core::require_at_least("TwoLevelPcg.elements_per_station", elements_per_station, 1);
             core::require_at_least("TwoLevelPcg.iteration_limit", iteration_limit, 1);
         }
     };
@@ -30,7 +30,7 @@ public:
     template <assembly::LinearSystem System>
     void analyse(const System& system) {
         work_->factors.analyse(system.layout());
-        work_->coarse.analyse(system, parameters_.fibres_per_cluster, parameters_.elements_per_knot);
+        work_->coarse.analyse(system, parameters_.fibres_per_cluster, parameters_.elements_per_station);
     }
     template <assembly::LinearSystem System>
     SolveStatus prepare(const System& system) {
@@ -61,7 +61,7 @@ public:
     /// Clusters of the last analysis.
     Index clusters() const { return work_->coarse.clusters(); }
     /// Unknowns of the coarse space.
-    Index coarse_unknowns() const { return 6 * work_->coarse.knots(); }
+    Index coarse_unknowns() const { return 6 * work_->coarse.stations(); }
 
 private:
     struct Work {
