@@ -45,6 +45,8 @@ public:
         }
         std::filesystem::rename(part, path);
     }
+    /// Of what was put: two scenes with the same identity are taken for the same.
+    std::uint64_t identity() const noexcept { return hash(data_.data(), data_.size()); }
     /// FNV-1a: tells a damaged file from a whole one.
     static std::uint64_t hash(const char* data, std::size_t size) noexcept {
         std::uint64_t sum = 14695981039346656037ull;

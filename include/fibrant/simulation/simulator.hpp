@@ -52,17 +52,16 @@ public:
             stages.back().most_increments = std::max(loading.increments, stages.back().most_increments);
             for (const std::string& name : channels_.names()) stages.back().ramps.push_back({name, 1.0, false});
         }
-        for (const Stage<M>& stage : stages)
-            for (const Ramp& ramp : stage.ramps) channels_.find(ramp.channel);
+        check_ramps(stages);
         Report report;
         position_ = {};
         position_.from = amplitudes_;
         if (loading.resume && !loading.checkpoint.empty() && std::filesystem::exists(loading.checkpoint))
-            read_checkpoint(loading.checkpoint, core::count(stages), report);
+            read_checkpoint(loading.checkpoint, stages, report);
+        for (Index k = 0; k < position_.stage; ++k) take_laws(stages[core::at(k)]);  // they stay in force
         for (; position_.stage < core::count(stages); next_stage()) {
             const Stage<M>& stage = stages[core::at(position_.stage)];
-            if (stage.normal) contacts_.normal_law() = *stage.normal;
-            if (stage.friction) contacts_.friction_law() = *stage.friction;
+            take_laws(stage);
             while (!position_.stage_over) {
                 if (!advance(loading, stages, stage, report)) {
                     finish(report, start);
@@ -71,7 +70,7 @@ public:
                 // Observers first: an increment that a checkpoint holds has been shown, and one shown twice is told by its number.
                 clock_.time(core::Part::output, [&] {
                     (show(observers, report.increments.back()), ...);
-                    if (!loading.checkpoint.empty()) write_checkpoint(loading.checkpoint, report);
+                    if (!loading.checkpoint.empty()) write_checkpoint(loading.checkpoint, stages, report);
                 });
             }
         }
@@ -151,6 +150,24 @@ private:
         return parameters;
     }
 
+    void check_ramps(const std::vector<Stage<M>>& stages) const {
+        std::vector<double> reached = amplitudes_;
+        for (const Stage<M>& stage : stages) {
+            const std::vector<double> from = reached;
+            for (const Ramp& ramp : stage.ramps) {
+                const std::size_t c = core::at(channels_.find(ramp.channel));
+                if (ramp.geometric && !(from[c] > 0.0 && ramp.to > 0.0))
+                    core::refuse("Ramp.to", core::text(ramp.to), "> 0, from an amplitude > 0, for a geometric ramp");
+                reached[c] = ramp.to;
+            }
+        }
+    }
+
+    void take_laws(const Stage<M>& stage) {
+        if (stage.normal) contacts_.normal_law() = *stage.normal;
+        if (stage.friction) contacts_.friction_law() = *stage.friction;
+    }
+
     void next_stage() {
         ++position_.stage;
         position_.in_stage = 0, position_.easy = 0, position_.progress = 0.0, position_.fraction = 1.0;
@@ -163,8 +180,6 @@ private:
         for (const Ramp& ramp : stage.ramps) {
             const std::size_t c = core::at(channels_.find(ramp.channel));
             const double from = position_.from[c];
-            if (ramp.geometric && !(from > 0.0 && ramp.to > 0.0))
-                core::refuse("Ramp.to", core::text(ramp.to), "> 0, from an amplitude > 0, for a geometric ramp");
             amplitudes[c] = ramp.geometric ? from * std::pow(ramp.to / from, progress) : from + progress * (ramp.to - from);
         }
         return amplitudes;
@@ -269,9 +284,32 @@ private:
         report.wall_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
 
-    void write_checkpoint(const std::string& path, const Report& report) const {
+    /// What a checkpoint must agree with: fibres and channels, and stages but for what ends or relaxes them.
+    std::uint64_t scene_identity() const {
+        CheckpointWriter scene;
+        scene.put(mesh_.rest_state());
+        for (const beam::MeshFibre& fibre : mesh_.fibres()) {
+            scene.put(fibre.first_vector), scene.put(fibre.group);
+            scene.put(fibre.section.semi_axis_1), scene.put(fibre.section.semi_axis_2), scene.put(fibre.section.inertia_factor);
+            scene.put(fibre.material.young_modulus), scene.put(fibre.material.poisson_ratio);
+        }
+        for (const std::string& name : channels_.names()) scene.put(name);
+        return scene.identity();
+    }
+    static std::uint64_t loading_identity(const std::vector<Stage<M>>& stages) {
+        CheckpointWriter loading;
+        for (const Stage<M>& stage : stages) {
+            loading.put(stage.name), loading.put(stage.increments), loading.put(stage.forced_orders);
+            loading.put(stage.gap_limit.value_or(-1.0));
+            for (const Ramp& ramp : stage.ramps) loading.put(ramp.channel), loading.put(ramp.to), loading.put(ramp.geometric);
+        }
+        return loading.identity();
+    }
+
+    void write_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, const Report& report) const {
         CheckpointWriter file;
-        file.put(std::string("fibrant checkpoint 1"));
+        file.put(std::string("fibrant checkpoint 2"));
+        file.put(scene_identity()), file.put(loading_identity(stages));
         file.put(state_);
         file.put(last_external_);
         file.put(energy_), file.put(contacts_work_);
@@ -295,11 +333,12 @@ private:
         file.write(path);
     }
 
-    void read_checkpoint(const std::string& path, Index stages, Report& report) {
+    void read_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, Report& report) {
         CheckpointReader file(path);
-        file.expect(file.get_text() == "fibrant checkpoint 1", "the format");
+        file.expect(file.get_text() == "fibrant checkpoint 2", "the format");
+        file.expect(file.get<std::uint64_t>() == scene_identity(), "the set of fibres and channels");
+        file.expect(file.get<std::uint64_t>() == loading_identity(stages), "the loading");
         Vector state = file.get_vector();
-        file.expect(state.size() == state_.size(), "the number of unknowns");
         state_ = std::move(state);
         last_external_ = file.get_vector();
         energy_ = file.get<EnergyBalance>(), contacts_work_ = file.get<double>();
@@ -307,7 +346,6 @@ private:
         position_.stage = file.get<Index>(), position_.in_stage = file.get<Index>(), position_.accepted = file.get<Index>();
         position_.easy = file.get<Index>(), position_.progress = file.get<double>(), position_.fraction = file.get<double>();
         position_.displacement = file.get<double>(), position_.stage_over = file.get<bool>();
-        file.expect(position_.stage < stages, "the number of stages");
         for (double& amplitude : position_.from) amplitude = file.get<double>();
         std::vector<typename Contacts::Memory::Record> records(core::at(file.get<Index>()));
         for (auto& record : records) record.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+// An interrupted run goes on to the same bits; files that are damaged or belong to another scene are refused.
+#include "simulation/scenes.hpp"
+
+#include <fibrant/law/limited_gap.hpp>
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+using namespace fibrant;
+using simulation::Loading;
+using simulation::Report;
+using simulation::Simulator;
+using simulation::Stage;
+using test::Crossing;
+using test::Record;
+using test::Rod;
+using test::Rough;
+using test::same_bits;
+using test::Smooth;
+
+namespace {
+
+/// A file in the system's folder for temporary files, removed at the end.
+struct TemporaryFile {
+    std::filesystem::path path;
+    explicit TemporaryFile(const std::string& name)
+        : path{std::filesystem::temp_directory_path() / ("fibrant_checkpoint_test_" + name)} {
+        std::filesystem::remove(path);
+    }
+    ~TemporaryFile() {
+        std::error_code ignored;
+        std::filesystem::remove(path, ignored);
+    }
+    std::string name() const { return path.string(); }
+    std::string bytes() const {
+        std::ifstream file(path, std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+    void write(const std::string& bytes) const { std::ofstream(path, std::ios::binary) << bytes; }
+};
+
+struct Interruption {};
+/// Interrupts a run after a number of accepted increments.
+struct Interrupter {
+    Index after;
+    void reported(const simulation::IncrementReport& increment) const {
+        if (increment.number == after) throw Interruption{};
+    }
+};
+
+/// Message of what reading throws.
+template <class Work>
+std::string failure(const Work& work) {
+    try {
+        work();
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+/// Runs a loading at once, and again interrupted after each increment in turn: states and reports must agree.
+template <simulation::Model M>
+void check_resumes(const scene::Assembly& assembly, const simulation::ModelParameters<M>& parameters, Loading<M> loading) {
+    Simulator<M> whole(assembly, parameters);
+    Record<M> record(whole);
+    const Report report = whole.run(loading, record);
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    for (Index after = 1; after <= core::count(report.increments); ++after) {
+        CAPTURE(after);
+        const TemporaryFile file("resume");
+        loading.checkpoint = file.name();
+        {
+            Simulator<M> first(assembly, parameters);
+            Interrupter stop{after};
+            loading.resume = false;
+            CHECK_THROWS_AS(first.run(loading, stop), Interruption);
+        }
+        Simulator<M> second(assembly, parameters);
+        Record<M> rest(second);
+        loading.resume = true;
+        const Report resumed = second.run(loading, rest);
+        REQUIRE(resumed.converged);
+        CHECK(same_bits(second.state(), whole.state()));
+        // Observers come before the file: the increment that was interrupted is computed again.
+        REQUIRE(core::count(rest.states) == core::count(report.increments) - after + 1);
+        for (std::size_t k = 0; k < rest.states.size(); ++k)
+            CHECK(same_bits(rest.states[k], record.states[core::at(after - 1) + k]));
+        REQUIRE(resumed.increments.size() == report.increments.size());
+        CHECK(resumed.counts.newton == report.counts.newton);
+        CHECK(resumed.rejected_increments == report.rejected_increments);
+        CHECK(resumed.energy.external == report.energy.external);
+        CHECK(resumed.energy.elastic == report.energy.elastic);
+        CHECK(resumed.energy.dissipated == report.energy.dissipated);
+        CHECK(resumed.contact.greatest_penetration == report.contact.greatest_penetration);
+        for (std::size_t k = 0; k < report.increments.size(); ++k) {
+            CHECK(resumed.increments[k].stage == report.increments[k].stage);
+            CHECK(resumed.increments[k].progress == report.increments[k].progress);
+            CHECK(resumed.increments[k].displacement == report.increments[k].displacement);
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("an interrupted bending of one fibre resumes to the same bits, through cuts") {
+    const Rod rod;
+    simulation::ModelParameters<Smooth> parameters = test::model_parameters<Smooth>(rod.radius);
+    parameters.iteration.newton_limit = 6;  // too few for the first steps: some are cut
+    check_resumes<Smooth>(rod.pushed(20.0), parameters, {.increments = 4});
+}
+
+TEST_CASE("an interrupted contact with friction resumes to the same bits") {
+    Crossing crossing;
+    crossing.approach = 0.8 * crossing.radius;
+    crossing.drag = 0.2 * crossing.radius;
+    Loading<Rough> loading;
+    loading.stages = {{.name = "press", .increments = 3, .ramps = {{"approach", 1.0}}},
+                      {.name = "drag", .increments = 3, .ramps = {{"drag", 1.0}}}};
+    check_resumes<Rough>(crossing.assembly(), test::model_parameters<Rough>(crossing.radius), loading);
+}
+
+TEST_CASE("laws that an earlier stage has set are in force after a run is resumed") {
+    Crossing crossing;
+    crossing.approach = 0.8 * crossing.radius;
+    crossing.drag = 0.2 * crossing.radius;
+    simulation::ModelParameters<Rough> parameters = test::model_parameters<Rough>(crossing.radius);
+    parameters.friction.friction_coefficient = 0.0;
+    Loading<Rough> loading;
+    loading.stages = {{.name = "press", .increments = 2, .ramps = {{"approach", 1.0}}},
+                      {.name = "handover",
+                       .increments = 1,
+                       .normal = law::RegularisedPenalty({.regularisation_depth = 2e-3 * crossing.radius}),
+                       .friction = law::RegularisedCoulomb({0.3, 0.02 * crossing.radius})},
+                      {.name = "drag", .increments = 3, .ramps = {{"drag", 1.0}}}};
+    check_resumes<Rough>(crossing.assembly(), parameters, loading);
+}
+
+TEST_CASE("a finished run that is resumed has nothing left to do") {
+    const Rod rod;
+    const TemporaryFile file("finished");
+    Loading<Smooth> loading{.increments = 2, .checkpoint = file.name(), .resume = true};  // no file yet: starts anew
+    Simulator<Smooth> first(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
+    const Report report = first.run(loading);
+    REQUIRE(report.converged);
+    Simulator<Smooth> second(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
+    Record<Smooth> record(second);
+    const Report resumed = second.run(loading, record);
+    CHECK(resumed.converged);
+    CHECK(record.states.empty());
+    CHECK(resumed.increments.size() == 2);
+    CHECK(resumed.residual == report.residual);
+    CHECK(same_bits(first.state(), second.state()));
+}
+
+TEST_CASE("a damaged checkpoint is refused, wherever the damage is") {
+    const Rod rod;
+    const TemporaryFile file("damaged");
+    Loading<Smooth> loading{.increments = 1, .checkpoint = file.name()};
+    Simulator<Smooth>(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius)).run(loading);
+    loading.resume = true;
+    const std::string whole = file.bytes();
+    REQUIRE(whole.size() > 1000);
+    const auto refused = [&](const std::string& bytes) {
+        file.write(bytes);
+        return failure([&] { Simulator<Smooth>(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius)).run(loading); });
+    };
+    const std::string expected = "checkpoint " + file.name() + " is damaged";
+    for (const std::size_t place : {std::size_t{0}, std::size_t{9}, whole.size() / 2, whole.size() - 1}) {
+        std::string bytes = whole;
+        bytes[place] = static_cast<char>(bytes[place] ^ 4);
+        CHECK(refused(bytes) == expected);
+    }
+    CHECK(refused(whole.substr(0, whole.size() / 2)) == expected);
+    CHECK(refused(whole.substr(0, 3)) == expected);
+    CHECK(refused("") == expected);
+    CHECK(refused(whole + "x") == expected);
+    CHECK(refused(whole).empty());
+}
+
+TEST_CASE("a checkpoint of another scene is refused, and says what differs") {
+    const TemporaryFile file("foreign");
+    const Rod rod;
+    Loading<Smooth> loading{.increments = 1, .checkpoint = file.name()};
+    Simulator<Smooth>(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius)).run(loading);
+    loading.resume = true;
+    const auto refused = [&](const scene::Assembly& assembly) {
+        return failure([&] { Simulator<Smooth>(assembly, test::model_parameters<Smooth>(rod.radius)).run(loading); });
+    };
+    Rod finer = rod;
+    finer.elements = 17;
+    CHECK(refused(finer.pushed(1.0)) ==
+          "checkpoint " + file.name() + " belongs to another scene: the set of fibres and channels differs");
+    // As many unknowns, but other fibres, other channels, another loading.
+    Rod longer = rod;
+    longer.length *= 2.0;
+    CHECK(refused(longer.pushed(1.0)).starts_with("checkpoint " + file.name() + " belongs to another scene: "));
+    scene::Assembly other = rod.pushed(1.0);
+    other.apply(scene::DeadForce{scene::last_end(0), {}, Vec3::UnitY(), "more"});
+    CHECK(refused(other).starts_with("checkpoint " + file.name() + " belongs to another scene: "));
+    loading.stages = {{.ramps = {{"load", 1.0}}}, {.ramps = {{"load", 2.0}}}};
+    CHECK(refused(rod.pushed(1.0)).starts_with("checkpoint " + file.name() + " belongs to another scene: "));
+}
+
+TEST_CASE("a checkpoint that cannot be written ends the run with a message, and leaves no part of a file") {
+    const Rod rod;
+    Loading<Smooth> loading{.increments = 1, .checkpoint = "no/such/folder/checkpoint"};
+    Simulator<Smooth> simulator(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
+    CHECK(failure([&] { simulator.run(loading); }) == "cannot write checkpoint no/such/folder/checkpoint");
+}
+
+TEST_CASE("a new file takes the place of the old one only when it is whole") {
+    const TemporaryFile file("replaced");
+    simulation::CheckpointWriter one, two;
+    one.put(1.0), one.put(std::string("a"));
+    two.put(2.0), two.put(std::string("bc"));
+    one.write(file.path);
+    two.write(file.path);
+    CHECK(!std::filesystem::exists(file.name() + ".part"));
+    simulation::CheckpointReader reader(file.path);
+    CHECK(reader.get<double>() == 2.0);
+    CHECK(reader.get_text() == "bc");
+    CHECK(failure([&] { reader.get<int>(); }) == "checkpoint " + file.name() + " is damaged");
+}
