@@ -56,6 +56,34 @@ struct Rod {
     }
 };
 
+/// Two crossing fibres, clamped at their ends; the ends of the upper one (fibre 1) move down by `approach` and aside by
+/// `drag`, on the channels of these names.
+struct Crossing {
+    double radius = 0.0201, length = 1.005, young = 7300.0, approach = 0.01, drag = 0.0;
+    Index elements = 8;
+    bool swapped = false;  ///< number the fibres the other way round
+
+    Index lower() const { return swapped ? 1 : 0; }
+    Index upper() const { return swapped ? 0 : 1; }
+    scene::Assembly assembly() const {
+        const scene::CrossSection section = scene::circular(radius);
+        const scene::ElasticMaterial material{young, 0.3};
+        const double half = 0.5 * length, height = 2.0 * radius;
+        const scene::FibreSpecification below{
+            .from = {0, -half, 0}, .to = {0, half, 0}, .section = section, .material = material, .elements = elements};
+        const scene::FibreSpecification above{
+            .from = {-half, 0, height}, .to = {half, 0, height}, .section = section, .material = material, .elements = elements};
+        scene::Assembly scene;
+        scene.add(swapped ? above : below);
+        scene.add(swapped ? below : above);
+        for (const double end : {0.0, 1.0}) {
+            scene.clamp({lower(), end}, Vec3(drag, 0, 0), Vec3::Zero(), Vec3::Zero(), "drag");
+            scene.clamp({upper(), end}, Vec3(0, 0, -approach), Vec3::Zero(), Vec3::Zero(), "approach");
+        }
+        return scene;
+    }
+};
+
 /// Parameters that the models above need; lengths in multiples of `radius`.
 template <simulation::Model M>
 simulation::ModelParameters<M> model_parameters(double radius) {

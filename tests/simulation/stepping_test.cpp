@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+// How a loading is walked: ramps, stages, conditions; steps that are cut, restored and grown; runs that stop.
+#include "refusal.hpp"
+#include "simulation/scenes.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace fibrant;
+using simulation::Loading;
+using simulation::Ramp;
+using simulation::Report;
+using simulation::Simulator;
+using simulation::Stage;
+using test::Crossing;
+using test::Record;
+using test::Rod;
+using test::Rough;
+using test::same_bits;
+using test::Smooth;
+
+namespace {
+
+/// Follows the amplitude of a channel.
+template <simulation::Model M>
+struct Amplitudes {
+    const Simulator<M>* simulator;
+    std::string channel;
+    std::vector<double> values{};
+    void reported(const simulation::IncrementReport&) { values.push_back(simulator->amplitude(channel)); }
+};
+
+}  // namespace
+
+TEST_CASE("a ramp goes by equal steps or by equal factors, and a channel without a ramp stays") {
+    const Rod rod;
+    scene::Assembly assembly = rod.pushed(1.0);
+    assembly.apply(scene::DeadForce{scene::last_end(0), {}, Vec3(0, 1e-5, 0), "side"});
+    Simulator<Smooth> simulator(assembly, test::model_parameters<Smooth>(rod.radius));
+    Amplitudes<Smooth> load{&simulator, "load"}, side{&simulator, "side"};
+    Loading<Smooth> loading;
+    loading.stages = {{.name = "up", .increments = 4, .ramps = {{"load", 2.0}}},
+                      {.name = "down", .increments = 3, .ramps = {{"load", 0.016, true}, {"side", -1.0}}},
+                      {.name = "off", .increments = 1, .ramps = {{"load", 0.0}}}};
+    const Report report = simulator.run(loading, load, side);
+    REQUIRE(report.converged);
+    const std::vector<double> expected_load{0.5, 1.0, 1.5, 2.0, 0.4, 0.08, 0.016, 0.0};  // factor 1/5 three times
+    const std::vector<double> expected_side{0, 0, 0, 0, -1.0 / 3.0, -2.0 / 3.0, -1.0, -1.0};
+    REQUIRE(load.values.size() == 8);
+    for (std::size_t k = 0; k < 8; ++k) {
+        CHECK(load.values[k] == doctest::Approx(expected_load[k]).epsilon(1e-12));
+        CHECK(side.values[k] == doctest::Approx(expected_side[k]).epsilon(1e-12));
+        CHECK(report.increments[k].stage == (k < 4 ? "up" : k < 7 ? "down" : "off"));
+        CHECK(report.increments[k].number == static_cast<Index>(k) + 1);
+    }
+    CHECK(report.increments[1].stage_progress == 0.5);
+    CHECK(report.increments[1].progress == doctest::Approx(0.5 / 3.0));
+    CHECK(report.increments.back().progress == 1.0);
+    // Elastic, and nothing remembers: what is left is the side load's small deflection P L^3 / 3 EI.
+    const Vec3 tip = simulator.value(scene::last_end(0));
+    CHECK(std::abs(tip.x()) < 1e-5 * rod.length);
+    CHECK(tip.y() == doctest::Approx(-1e-5 * std::pow(rod.length, 3) / (3.0 * rod.bending_stiffness())).epsilon(1e-2));
+}
+
+TEST_CASE("without stages all channels go to 1 together") {
+    const Rod rod;
+    Simulator<Smooth> simulator(rod.pushed(0.5), test::model_parameters<Smooth>(rod.radius));
+    Amplitudes<Smooth> load{&simulator, "load"};
+    CHECK(simulator.run({.increments = 4}, load).converged);
+    CHECK(load.values == std::vector<double>{0.25, 0.5, 0.75, 1.0});
+}
+
+TEST_CASE("a second run goes on where the first one ended") {
+    const Rod rod;
+    Simulator<Smooth> simulator(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
+    Loading<Smooth> half, whole;
+    half.stages = {{.increments = 1, .ramps = {{"load", 0.5}}}};
+    whole.stages = {{.increments = 1, .ramps = {{"load", 1.0}}}};
+    REQUIRE(simulator.run(half).converged);
+    CHECK(simulator.amplitude("load") == 0.5);
+    REQUIRE(simulator.run(whole).converged);
+    Simulator<Smooth> direct(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
+    REQUIRE(direct.run(whole).converged);
+    CHECK((simulator.state() - direct.state()).cwiseAbs().maxCoeff() < 1e-8);
+}
+
+TEST_CASE("a stage with a condition goes on at constant loads until it holds") {
+    const Rod rod;
+    Simulator<Smooth> simulator(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
+    Record<Smooth> record(simulator);
+    int asked = 0;
+    Loading<Smooth> loading;
+    loading.stages = {{.name = "wait",
+                       .increments = 2,
+                       .ramps = {{"load", 1.0}},
+                       .until = [&](const simulation::IncrementReport& increment) { return ++asked == 4 && increment.number == 5; }},
+                      {.name = "then", .increments = 1, .ramps = {{"load", 0.5}}}};
+    const Report report = simulator.run(loading, record);
+    REQUIRE(report.converged);
+    CHECK(report.increments.size() == 6);  // two of the ramp; asked at its end and after three more
+    CHECK(report.increments[4].stage == "wait");
+    CHECK(report.increments[5].stage == "then");
+    // Where nothing changes nothing moves, up to the tolerance of the step.
+    CHECK(report.increments[4].displacement < 1e-4 * rod.radius);
+}
+
+TEST_CASE("a condition that never holds ends the run with a reason") {
+    const Rod rod;
+    Simulator<Smooth> simulator(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
+    Loading<Smooth> loading;
+    loading.stages = {{.name = "wait", .increments = 1, .until = [](const auto&) { return false; }, .most_increments = 3}};
+    const Report report = simulator.run(loading);
+    CHECK(!report.converged);
+    CHECK(report.reason == "stage wait did not reach its end in 3 increments");
+    CHECK(report.increments.size() == 3);
+}
+
+TEST_CASE("a step too large is cut, and goes on from the same bits as if it had not been tried") {
+    Crossing crossing;
+    crossing.approach = 20.0 * crossing.radius;
+    crossing.drag = 0.1 * crossing.radius;
+    simulation::ModelParameters<Rough> parameters = test::model_parameters<Rough>(crossing.radius);
+    parameters.iteration.newton_limit = 2;  // too few for ten radii at once
+    const auto stage = [](double to) {
+        return Stage<Rough>{.increments = 1, .ramps = {{"approach", to}, {"drag", to}}};
+    };
+    Simulator<Rough> cut(crossing.assembly(), parameters), direct(crossing.assembly(), parameters);
+    Record<Rough> cut_record(cut), direct_record(direct);
+    Amplitudes<Rough> reached{&cut, "approach"};
+    Loading<Rough> large, accepted;
+    large.stages = {stage(0.0625), stage(0.5625)};  // in contact when the large step comes
+    const Report report = cut.run(large, cut_record, reached);
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    REQUIRE(report.rejected_increments > 0);
+    REQUIRE(report.increments[0].cuts == 0);
+    CHECK(report.increments[0].contact.active > 0);
+    CHECK(report.increments[1].cuts == report.rejected_increments);
+    CHECK(report.increments[1].fraction == std::pow(0.5, report.rejected_increments));
+    for (const double amplitude : reached.values) accepted.stages.push_back(stage(amplitude));  // exact in binary
+    const Report again = direct.run(accepted, direct_record);
+    REQUIRE(again.converged);
+    CHECK(again.rejected_increments == 0);
+    REQUIRE(direct_record.states.size() == cut_record.states.size());
+    for (std::size_t k = 0; k < cut_record.states.size(); ++k) CHECK(same_bits(cut_record.states[k], direct_record.states[k]));
+}
+
+TEST_CASE("after a cut the steps grow back to their size") {
+    const Rod rod;
+    simulation::ModelParameters<Smooth> parameters = test::model_parameters<Smooth>(rod.radius);
+    parameters.iteration.newton_limit = 6;  // too few for the first steps
+    Simulator<Smooth> simulator(rod.pushed(40.0), parameters);
+    const Report report = simulator.run({.increments = 8});
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    REQUIRE(report.rejected_increments > 0);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < report.increments.size(); ++k) {
+        const simulation::IncrementReport& now = report.increments[k];
+        sum += now.fraction / 8.0;
+        if (k == 0) continue;
+        const double before = report.increments[k - 1].fraction;
+        if (now.cuts == 0) {
+            CHECK((now.fraction == before || now.fraction == std::min(1.0, 1.5 * before)));
+        } else {
+            CHECK(now.fraction <= 0.75 * before);
+        }
+    }
+    CHECK(report.increments.back().fraction > report.increments.front().fraction);
+    CHECK(sum >= 1.0 - 1e-12);  // the last one may be shorter than its fraction says
+    CHECK(report.increments.back().stage_progress == 1.0);
+}
+
+TEST_CASE("a run that does not converge reports why, with figures, and keeps the last accepted state") {
+    const Rod rod;
+    simulation::ModelParameters<Smooth> parameters = test::model_parameters<Smooth>(rod.radius);
+    parameters.iteration.newton_limit = 1;
+    Simulator<Smooth> simulator(rod.pushed(5.0), parameters);
+    Report report;
+    CHECK_NOTHROW(report = simulator.run({.increments = 2}));
+    CHECK(!report.converged);
+    CHECK(report.increments.empty());
+    CHECK(report.rejected_increments == 9);  // fractions 1, 1/2 ... 1/256
+    CHECK(report.counts.newton == 9);
+    INFO(report.reason);
+    CHECK(report.reason.starts_with("stage loading, increment 1: Newton did not converge after 1 iterations, residual "));
+    CHECK(report.reason.find(", step ") != std::string::npos);
+    CHECK(same_bits(simulator.state(), simulator.mesh().rest_state()));
+    CHECK(simulator.amplitude("load") == 0.0);
+}
+
+TEST_CASE("a fibre that nothing holds cannot carry a load: a report, not an exception") {
+    Rod rod;
+    scene::Assembly assembly;
+    assembly.add(rod.specification());
+    assembly.apply(scene::DeadForce{scene::last_end(0), {}, Vec3(1e-3, 0, 0), "load"});
+    Simulator<Smooth> simulator(assembly, test::model_parameters<Smooth>(rod.radius));
+    Report report;
+    CHECK_NOTHROW(report = simulator.run({.increments = 1}));
+    CHECK(!report.converged);
+    CHECK(!report.reason.empty());
+    CHECK(simulator.state().allFinite());
+}
+
+TEST_CASE("a loading that cannot be walked is refused before any work") {
+    const Rod rod;
+    Simulator<Smooth> simulator(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
+    const auto refused = [&](const Loading<Smooth>& loading) { return test::refusal([&] { simulator.run(loading); }); };
+    Loading<Smooth> loading;
+    loading.stages = {{.ramps = {{"lod", 1.0}}}};
+    CHECK(refused(loading) == "channel = lod, but it must be one that the scene uses (load, motion)");
+    CHECK(refused({.increments = 0}) == "Loading.increments = 0, but it must be >= 1");
+    CHECK(refused({.smallest_fraction = 2.0}).starts_with("Loading.smallest_fraction = 2,"));
+    CHECK(refused({.growth = 1.0}) == "Loading.growth = 1, but it must be > 1");
+    loading.stages = {{.increments = 0}};
+    CHECK(refused(loading) == "Stage.increments = 0, but it must be >= 1");
+    loading.stages = {{.increments = 5, .most_increments = 4}};
+    CHECK(refused(loading) == "Stage.most_increments = 4, but it must be >= 5");
+    loading.stages = {{.ramps = {{"load", core::unset}}}};
+    CHECK(refused(loading) == "Ramp.to = nan, but it must be finite");
+    loading.stages = {{.looseness = 0.5}};
+    CHECK(refused(loading).starts_with("Stage.looseness = 0.5,"));
+    loading.stages = {{.gap_limit = -1.0}};
+    CHECK(refused(loading).starts_with("Stage.gap_limit = -1,"));
+    loading.stages = {{.ramps = {{"load", 0.5, true}}}};  // from 0: no factor leads there
+    CHECK(refused(loading).starts_with("Ramp.to = 0.5, but it must be > 0, from an amplitude > 0"));
+    loading.stages = {{.increments = 1, .ramps = {{"load", 0.5}}}, {.ramps = {{"load", -0.1, true}}}};
+    CHECK(refused(loading).starts_with("Ramp.to = -0.1,"));
+    CHECK(same_bits(simulator.state(), simulator.mesh().rest_state()));
+}
+
+TEST_CASE("scenes and parameters that cannot be run are refused by the simulator, by name") {
+    const Rod rod;
+    const auto refused = [](const scene::Assembly& assembly, const simulation::ModelParameters<Rough>& parameters) {
+        return test::refusal([&] { Simulator<Rough>(assembly, parameters); });
+    };
+    const simulation::ModelParameters<Rough> good = test::model_parameters<Rough>(rod.radius);
+    CHECK(refused(rod.clamped(), good).empty());
+    CHECK(refused(scene::Assembly{}, good) == "assembly.fibres = none, but it must be at least one fibre");
+    simulation::ModelParameters<Rough> bad = good;
+    bad.normal = {};
+    CHECK(refused(rod.clamped(), bad) == "RegularisedPenalty.regularisation_depth = nan, but it must be finite and > 0");
+    bad = good, bad.friction.friction_coefficient = -0.1;
+    CHECK(refused(rod.clamped(), bad).starts_with("RegularisedCoulomb.friction_coefficient = -0.1,"));
+    bad = good, bad.contact.stiffness = {};
+    CHECK(refused(rod.clamped(), bad).starts_with("StiffnessAdaptation.allowed_penetration = nan,"));
+    bad = good, bad.iteration.step_tolerance = -1.0;
+    CHECK(refused(rod.clamped(), bad).starts_with("IterationParameters.step_tolerance = -1,"));
+    bad = good, bad.beam.shear_factor = 0.0;
+    CHECK(refused(rod.clamped(), bad).starts_with("DirectorBeam.shear_factor = 0,"));
+}
