@@ -123,6 +123,7 @@ void check_indefinite(Solver solver) {
     systems.push_back(random_system({.chains = chains, .points = 30, .held = 3}));
     for (std::size_t k = 0; k < 4; ++k) systems.back().dense[k].stiffness *= -1.0;
     systems.push_back(random_system({.chains = chains, .points = 30, .held = 3, .curvature = -1.0}));
+    systems.push_back(random_system({.chains = chains, .curvature = -1.0}));  // nothing held: descent is all there is
     systems.push_back(random_system({.chains = chains, .points = 30, .held = 3}));
     for (auto& point : systems.back().points) point.stiffness *= -0.5;
     systems.push_back(random_system({.chains = chains, .held = 3}));

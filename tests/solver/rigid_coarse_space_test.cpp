@@ -118,7 +118,7 @@ TEST_CASE("a motion that is linear between stations along a cluster is in the co
         for (Index k = 0; k < 27; ++k) {
             const Index v = system.description.chains[c].first_vector + k, node = c == 2 ? 8 - k / 3 : k / 3;  // one runs backwards
             if (k % 3 == 0) system.description.value[core::at(v)] = Vec3(static_cast<double>(node), static_cast<double>(c), 0);
-            const double t = std::abs(static_cast<double>(node) - 4.0);
+            const double t = std::max(0.0, static_cast<double>(node) - 4.0);
             motion.segment<3>(3 * v) = k % 3 == 0 ? Vec3(t, 2.0 - t, 1.0) : Vec3(Vec3::Zero());
         }
     system.finish();
