@@ -129,6 +129,10 @@ inline std::vector<FibreSet> search_cases() {
         set.name = "the coil, with all but neighbouring segments";
         set.self_skip = 0.05;
         cases.push_back(set);
+        set = {.name = "fine segments, whose neighbours but one already pair", .reach = 0.02};
+        set.add(random_fibre(random, 300, 0.02, 0.3, Vec3::Zero()), 0.05);
+        set.self_skip = 0.015;
+        cases.push_back(set);
     }
     {
         FibreSet set{.name = "radii from 0.01 to 1, lengths from 0.02 to 10", .reach = 0.01};
