@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// A small fabric on its way from flat tows: the same bits for any number of threads, and after an interruption.
+#include "support/threads.hpp"
+
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/compositions/weave/settle.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/solver/two_level_pcg.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+using namespace fibrant;
+using namespace fibrant::compositions;
+
+namespace {
+
+struct Model {
+    using Beam = beam::DirectorBeam<3>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::LimitedGap<law::RegularisedPenalty>;
+    using Friction = law::RegularisedCoulomb;
+    using Solver = solver::TwoLevelPcg;
+};
+
+weave::FabricParameters fabric() {
+    weave::FabricParameters fabric;
+    fabric.pattern = weave::Pattern{};
+    fabric.warp_tows = fabric.weft_tows = 2;
+    fabric.warp = {5, 0.04, 0.05, {7300.0, 0.3}};
+    fabric.weft = fabric.warp;
+    fabric.warp_spacing = fabric.weft_spacing = fabric.overhang = 0.88;
+    fabric.elements = 12;
+    return fabric;
+}
+
+struct Interruption {};
+
+/// Tension, and the first increments in which the tows part.
+struct Run {
+    std::vector<Vector> states;
+    simulation::Report report;
+
+    Run(const std::string& checkpoint, bool resume, Index interrupt_at) {
+        const weave::SettleParameters settle;
+        simulation::Simulator<Model> simulator(weave::flat_fabric(fabric(), settle.tension_strain),
+                                               weave::model_parameters<Model>(fabric(), settle));
+        simulation::Loading<Model> loading = weave::settling<Model>(fabric(), settle);
+        loading.stages.resize(2);
+        loading.stages[1].until = [](const simulation::IncrementReport& increment) { return increment.number >= 4; };
+        loading.checkpoint = checkpoint, loading.resume = resume;
+        struct Watch {
+            const simulation::Simulator<Model>& simulator;
+            std::vector<Vector>& states;
+            Index interrupt_at;
+            void reported(const simulation::IncrementReport& increment) const {
+                states.push_back(simulator.state());
+                if (increment.number == interrupt_at) throw Interruption{};
+            }
+        } watch{simulator, states, interrupt_at};
+        try {
+            report = simulator.run(loading, watch);
+        } catch (const Interruption&) {
+        }
+    }
+};
+
+bool same_bits(const Vector& a, const Vector& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("tows that part go through the same bits on one thread and on two, and after an interruption") {
+    const Run one = test::with_threads(1, [] { return Run("", false, -1); });
+    const Run two = test::with_threads(2, [] { return Run("", false, -1); });
+    CAPTURE(one.report.reason);
+    REQUIRE(one.report.converged);
+    REQUIRE(one.states.size() >= 4);
+    CHECK(one.report.increments.back().contact.active > 100);
+    REQUIRE(two.states.size() == one.states.size());
+    for (std::size_t k = 0; k < one.states.size(); ++k) CHECK(same_bits(one.states[k], two.states[k]));
+    CHECK(one.report.counts.linear_iterations == two.report.counts.linear_iterations);
+
+    const std::string file = (std::filesystem::temp_directory_path() / "fibrant_same_bits_test").string();
+    std::filesystem::remove(file);
+    Run(file, false, 3);
+    const Run resumed(file, true, -1);
+    std::filesystem::remove(file);
+    REQUIRE(resumed.report.converged);
+    REQUIRE(resumed.states.size() + 2 == one.states.size());
+    for (std::size_t k = 0; k < resumed.states.size(); ++k) CHECK(same_bits(resumed.states[k], one.states[k + 2]));
+    std::printf("%td contact elements, %td active, %td Newton iterations\n", one.report.contact.elements, one.report.contact.active,
+                one.report.counts.newton);
+}
