@@ -66,8 +66,11 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     rest.increments = 1;
     rest.until = simulation::until_settled(settle.rest_motion_over_radius * r, allowed);
     rest.most_increments = std::max<Index>(1, settle.rest_increments);
-    for (simulation::Stage<M>* means : {&tension, &handover, &release}) means->looseness = 5.0;
-    separation.looseness = 50.0;  // its path is only a means, and what it leaves over moves in the next increment
+    // Paths are only a means, and what one increment leaves over moves in the next: the last stage tells when it is all.
+    tension.looseness = 5.0;
+    separation.looseness = 50.0;
+    handover.looseness = release.looseness = 20.0;
+    rest.looseness = 5.0;
     loading.stages = {tension, separation, handover, release, rest};
     return loading;
 }
