@@ -52,8 +52,12 @@ public:
     const beam::Mesh<B>& mesh() const noexcept { return *mesh_; }
 
     /// Sets what is imposed, and the state from which the increment starts.
-    void begin(std::span<const double> amplitudes, const Vector& state) {
+    /// @param damping  of a spring from every centre to its place in `state`, >= 0 [force / length]; directors count at the
+    ///                 surface. It holds what nothing else holds, and leaves no force once nothing moves.
+    void begin(std::span<const double> amplitudes, const Vector& state, double damping = 0.0) {
         amplitudes_.assign(amplitudes.begin(), amplitudes.end());
+        damping_ = damping;
+        if (damping_ > 0.0) anchor_ = state;
         motion_.at(amplitudes, system_.layout().held, targets_);
         reset_stresses(state);
     }
@@ -89,6 +93,12 @@ public:
                 residual.template segment<element_unknowns>(mesh_->first_unknown(f, e)) +=
                     beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e));
         });
+        if (damping_ > 0.0) {
+            for (Index v = 0; v < core::count(system_.layout().length); ++v) {
+                const double length = system_.layout().length[core::at(v)];
+                residual.template segment<3>(3 * v) += damping_ * length * length * (state.template segment<3>(3 * v) - anchor_.template segment<3>(3 * v));
+            }
+        }
         external_.setZero(state.size());
         load_.add_forces(amplitudes_, state, external_);
         residual -= external_;
@@ -120,11 +130,11 @@ public:
             contacts_->section_stiffness_terms(f, state, [&](Index first, const beam::ElementWeights<B>& weights, const Mat3& stiffness) {
                 system_.add_rank_one(f, first, weights, stiffness);
             });
-            if (shift > 0.0) {
+            if (shift + damping_ > 0.0) {
                 const scene::Chain& chain = system_.layout().chains[core::at(f)];
                 for (Index v = chain.first_vector; v < chain.first_vector + chain.nodes * chain.vectors_per_node; ++v) {
                     const double length = system_.layout().length[core::at(v)];
-                    system_.add_diagonal(v, shift * length * length * Mat3::Identity());
+                    system_.add_diagonal(v, (shift + damping_) * length * length * Mat3::Identity());
                 }
             }
         });
@@ -150,6 +160,16 @@ public:
         double sum = 0.0;
         for (const double value : part) sum += value;
         return sum;
+    }
+    /// Work that the damping has taken since the increment began [force * length].
+    double damped(const Vector& state) const {
+        if (!(damping_ > 0.0)) return 0.0;
+        double sum = 0.0;
+        for (Index v = 0; v < core::count(system_.layout().length); ++v) {
+            const double length = system_.layout().length[core::at(v)];
+            sum += length * length * (state.segment<3>(3 * v) - anchor_.segment<3>(3 * v)).squaredNorm();
+        }
+        return 0.5 * damping_ * sum;
     }
     /// External forces, and forces on held components, of the last residual.
     const Vector& external() const noexcept { return external_; }
@@ -191,7 +211,8 @@ private:
     std::vector<typename B::Stresses> stresses_;
     std::vector<double> amplitudes_;
     std::vector<Vec3> targets_;
-    Vector external_, reaction_;
+    Vector external_, reaction_, anchor_;
+    double damping_ = 0.0;
     double rounding_ = 0.0;
 };
 

@@ -27,6 +27,8 @@ struct Stage {
     std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
     std::optional<double> gap_limit{};          ///< of a law that limits the gap [length]; scaled down when cut
     bool forced_orders = false;                 ///< keep the scene's forced orders
+    /// Spring from every centre to its last accepted place [force / length]: keeps what is slack from leaping.
+    double damping = 0.0;
     double looseness = 1.0;                     ///< on the tolerances of contact and normal passes, >= 1
     std::optional<typename M::Normal> normal{};
     std::optional<typename M::Friction> friction{};
@@ -53,6 +55,7 @@ struct Loading {
         for (const Stage<M>& stage : stages) {
             core::require_at_least("Stage.increments", stage.increments, 1);
             core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);
+            core::require_not_negative("Stage.damping", stage.damping);
             core::require(stage.looseness >= 1.0 && stage.looseness <= 100.0, "Stage.looseness", stage.looseness, "in [1, 100]");
             if (stage.gap_limit) core::require_positive("Stage.gap_limit", *stage.gap_limit);
             for (const Ramp& ramp : stage.ramps) core::require_finite("Ramp.to", ramp.to);

@@ -17,9 +17,10 @@ struct EnergyBalance {
     double contact = 0.0;       ///< stored in penetrations
     double external = 0.0;      ///< done by loads and prescribed motion
     double dissipated = 0.0;    ///< by sliding, >= 0
+    double damped = 0.0;        ///< taken by the damping of stages that have one, >= 0
     double rearranged = 0.0;    ///< put in by changes of contact elements, gap shifts and penalty stiffness at rest
-    /// What is missing: external + rearranged - dissipated - stored.
-    double error() const noexcept { return external + rearranged - dissipated - elastic - contact; }
+    /// What is missing: external + rearranged - dissipated - damped - stored.
+    double error() const noexcept { return external + rearranged - dissipated - damped - elastic - contact; }
 };
 
 /// One accepted increment.

@@ -205,7 +205,7 @@ private:
             const std::vector<double> amplitudes = amplitudes_at(stage, progress);
             const double contact_before = contacts_work_;
             Vector trial = state_;
-            equilibrium_.begin(amplitudes, state_);
+            equilibrium_.begin(amplitudes, state_, stage.damping);
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver> loops(
                 equilibrium_, contacts_, linear_, parameters_.iteration, radius_, touching, clock_);
             // A limited gap moves fibres by about the limit: the search looks that far ahead.
@@ -256,6 +256,7 @@ private:
         last_external_ = external;
         const contact::ContactFigures now = contacts_.figures(trial);
         energy_.dissipated += now.dissipated;
+        energy_.damped += equilibrium_.damped(trial);
         contacts_.evaluate(state_);  // the same contact elements, where the increment started
         energy_.rearranged += contacts_.figures(state_).work - contact_before;
         contacts_.evaluate(trial);

@@ -54,12 +54,14 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     simulation::Stage<M> handover;
     handover.name = "handover";
     handover.increments = 1;
-    if constexpr (core::Active<typename M::Friction>)
-        handover.friction.emplace(typename M::Friction::Parameters{
-            settle.friction_coefficient, std::max(0.02 * r, settle.friction_coefficient * allowed)});
+    handover.until = simulation::until_settled(0.1 * r, 5.0 * allowed);  // friction meets fibres that are nearly at rest
+    handover.most_increments = settle.separation_increments;
     simulation::Stage<M> release;
     release.name = "release";
     release.increments = settle.release_increments;
+    if constexpr (core::Active<typename M::Friction>)
+        release.friction.emplace(typename M::Friction::Parameters{
+            settle.friction_coefficient, std::max(0.02 * r, settle.friction_coefficient * allowed)});
     release.ramps = {{tension_channel, settle.final_tension_factor, true}};
     simulation::Stage<M> rest;
     rest.name = "rest";
@@ -71,6 +73,15 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     separation.looseness = 50.0;
     handover.looseness = release.looseness = 20.0;
     rest.looseness = 5.0;
+    // A tenth of what the tension of a fibre makes of an element's length: slack fibres creep into their places instead of
+    // leaping, and at rest nothing of it is left.
+    const auto node_stiffness = [&](Family family) {
+        const TowParameters& tow = fabric.tow(family);
+        const double pull = settle.tension_strain * tow.material.young_modulus * tow.section().area();
+        return 4.0 * pull * static_cast<double>(fabric.elements) / fabric.fibre_length(family);
+    };
+    const double damping = 0.1 * std::min(node_stiffness(Family::warp), node_stiffness(Family::weft));
+    for (simulation::Stage<M>* stage : {&separation, &handover, &release, &rest}) stage->damping = damping;
     loading.stages = {tension, separation, handover, release, rest};
     return loading;
 }
