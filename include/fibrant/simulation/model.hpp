@@ -15,15 +15,15 @@ namespace fibrant::simulation {
 
 // One concept a part, so that a missing or ill-formed one is named by the compiler.
 template <class M>
-concept HasBeam = beam::BeamElement<typename M::Beam>;
+concept HasBeam = requires { typename M::Beam; } && beam::BeamElement<typename M::Beam>;
 template <class M>
-concept HasProximity = proximity::ProximitySearch<typename M::Proximity>;
+concept HasProximity = requires { typename M::Proximity; } && proximity::ProximitySearch<typename M::Proximity>;
 template <class M>
-concept HasNormal = law::NormalLaw<typename M::Normal>;
+concept HasNormal = requires { typename M::Normal; } && law::NormalLaw<typename M::Normal>;
 template <class M>
-concept HasFriction = law::FrictionLaw<typename M::Friction>;
+concept HasFriction = requires { typename M::Friction; } && law::FrictionLaw<typename M::Friction>;
 template <class M>
-concept HasSolver = solver::LinearSolver<typename M::Solver, assembly::ChainSystem<typename M::Beam>>;
+concept HasSolver = requires { typename M::Solver; } && solver::LinearSolver<typename M::Solver, assembly::ChainSystem<typename M::Beam>>;
 
 /// A model names its Beam, Proximity, Normal, Friction and Solver, each of which satisfies its own contract.
 template <class M>
