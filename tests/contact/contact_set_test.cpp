@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: MIT
+#include "fibres.hpp"
+
+#include <fibrant/contact/contact_set.hpp>
+#include <fibrant/law/frictionless.hpp>
+#include <fibrant/law/limited_gap.hpp>
+#include <fibrant/law/linear_penalty.hpp>
+#include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/proximity/brute_search.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/proximity/kd_tree_search.hpp>
+#include <fibrant/proximity/test_point_search.hpp>
+
+#include <support/threads.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+using namespace fibrant;
+using law::Frictionless;
+using law::RegularisedCoulomb;
+using law::RegularisedPenalty;
+using test::Beam;
+using test::Mesh;
+using test::straight_fibre;
+
+namespace {
+
+template <class Normal, class Friction>
+using Element = contact::ContactElement<Beam, Normal, Friction>;
+
+/// What a contact element holds without any law's state.
+struct BareElement {
+    double u_i, u_j;
+    beam::ElementWeights<Beam> weights_i, weights_j;
+    Vec3 normal;
+    double cap;
+    std::int32_t fibre_i, fibre_j, first_i, first_j, zone;
+    bool crossing, end_i, end_j;
+};
+static_assert(sizeof(Element<RegularisedPenalty, Frictionless>) == sizeof(BareElement), "null policies take no byte");
+static_assert(sizeof(Element<law::LinearPenalty, Frictionless>) == sizeof(BareElement));
+static_assert(sizeof(Element<RegularisedPenalty, Frictionless>) < sizeof(Element<RegularisedPenalty, RegularisedCoulomb>));
+static_assert(sizeof(Element<RegularisedPenalty, Frictionless>) < sizeof(Element<law::LimitedGap<RegularisedPenalty>, Frictionless>));
+
+const double r = 0.02;
+const RegularisedPenalty penalty({.regularisation_depth = 0.005 * r});
+const RegularisedCoulomb coulomb({.friction_coefficient = 0.3, .reversible_displacement = 0.02 * r});
+
+contact::ContactParameters contact_parameters() {
+    contact::ContactParameters parameters;
+    parameters.stiffness.allowed_penetration = 0.05 * r;
+    return parameters;
+}
+
+template <class Friction = Frictionless, class Search = proximity::GridSearch>
+using Contacts = contact::ContactSet<Beam, Search, RegularisedPenalty, Friction>;
+
+template <class Friction = Frictionless, class Search = proximity::GridSearch>
+Contacts<Friction, Search> contacts_of(const scene::Assembly& assembly, const Mesh& mesh, const Friction& friction = Friction{},
+                                       const Search& search = Search{typename Search::Parameters{}}) {
+    return {assembly, mesh, contact_parameters(), search, penalty, friction};
+}
+
+double random_value(std::mt19937& generator) {
+    static std::uniform_real_distribution<double> value(-1.0, 1.0);
+    return value(generator);
+}
+Vector random_vector(std::mt19937& generator, Index size) {
+    Vector vector(size);
+    for (Index k = 0; k < size; ++k) vector[k] = random_value(generator);
+    return vector;
+}
+
+/// Pairs side by side, at a slant, crossing, and end against side, all slightly pressed together.
+std::vector<scene::FibreSpecification> some_fibres() {
+    std::vector<scene::FibreSpecification> fibres{
+        straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8),
+        straight_fibre({-0.45, 0.01, 1.9 * r}, {0.5, 0.02, 1.9 * r}, r, 8),       // side by side
+        straight_fibre({0.4, -0.03, -1.95 * r}, {-0.5, 0.12, -1.95 * r}, r, 7),   // at 9 degrees, the other way
+        straight_fibre({0.1, -0.4, 3.8 * r}, {-0.1, 0.5, 3.85 * r}, r, 6),        // across
+        straight_fibre({-0.2, 0.3, -3.85 * r}, {0.2, -0.3, -3.85 * r}, r, 6),     // across, below
+        straight_fibre({0.3, 0.9, 0.0}, {0.3, 0.039, 0.0}, r, 8),                 // its end against the first
+    };
+    fibres[3].section = scene::elliptical(1.2 * r, 0.9 * r);
+    fibres[3].director = Vec3(1, 0, 0.3);
+    return fibres;
+}
+
+struct Scene {
+    scene::Assembly assembly;
+    Mesh mesh;
+    static scene::Assembly gather(const std::vector<scene::FibreSpecification>& fibres) {
+        scene::Assembly assembly;
+        for (const scene::FibreSpecification& fibre : fibres) assembly.add(fibre);
+        return assembly;
+    }
+    explicit Scene(const std::vector<scene::FibreSpecification>& fibres) : assembly{gather(fibres)}, mesh{assembly, Beam{}} {}
+    /// The rest state with every vector moved a little: positions by part of a radius, directors by some per cent.
+    Vector shaken(unsigned seed, double amount = 1.0) const {
+        std::mt19937 generator(seed);
+        Vector state = mesh.rest_state();
+        for (Index v = 0; v < mesh.layout().vectors(); ++v) {
+            const double size = amount * (mesh.layout().kind[core::at(v)] == scene::VectorKind::position ? 0.02 * r : 0.05);
+            for (int k = 0; k < 3; ++k) state[3 * v + k] += size * random_value(generator);
+        }
+        return state;
+    }
+};
+
+template <class Contact>
+double energy(Contact& contacts, const Vector& state) {
+    contacts.evaluate(state);
+    return contacts.figures(state).work;
+}
+template <class Contact>
+Vector forces(Contact& contacts, const Vector& state) {
+    contacts.evaluate(state);
+    Vector sum = Vector::Zero(state.size());
+    contacts.add_forces(sum);
+    return sum;
+}
+/// Tangent times a direction, of the state that was evaluated last.
+template <class Contact>
+Vector tangent_times(const Contact& contacts, const Mesh& mesh, const Vector& state, const Vector& x) {
+    Vector y = Vector::Zero(x.size());
+    const auto add = [&](Index first, const beam::ElementWeights<Beam>& weights, const Vec3& force) {
+        for (std::size_t a = 0; a < weights.size(); ++a) y.segment<3>(first + 3 * static_cast<Index>(a)) += weights[a] * force;
+    };
+    for (Index k = 0; k < core::count(contacts.elements()); ++k) {
+        const auto& element = contacts.elements()[core::at(k)];
+        const Vec3 force = contacts.tangent(k) * (Mesh::point(x, element.first_j, element.weights_j) - Mesh::point(x, element.first_i, element.weights_i));
+        add(element.first_j, element.weights_j, force);
+        add(element.first_i, element.weights_i, -force);
+    }
+    for (Index f = 0; f < mesh.fibre_count(); ++f)
+        contacts.section_stiffness_terms(f, state, [&](Index first, const beam::ElementWeights<Beam>& weights, const Mat3& stiffness) {
+            add(first, weights, stiffness * Mesh::point(x, first, weights));
+        });
+    return y;
+}
+
+}  // namespace
+
+TEST_CASE("contact forces are the slope of the contact energy while the normals stand") {
+    const Scene scene(some_fibres());
+    for (const unsigned seed : {1U, 2U, 3U}) {
+        const Vector state = scene.shaken(seed);
+        auto contacts = contacts_of(scene.assembly, scene.mesh);
+        contacts.detect(state, state, 0.5 * r, false);
+        const Vector force = forces(contacts, state);
+        CHECK(contacts.figures(state).active > 5);  // of every kind of pair
+        std::mt19937 generator(seed + 10);
+        for (int n = 0; n < 20; ++n) {
+            const Vector direction = random_vector(generator, state.size());
+            const double step = 1e-3 * r;  // the energy is cubic and parabolic by pieces, joined smoothly
+            const double e = 1e-3 * step;
+            const double slope = (energy(contacts, state + e * direction) - energy(contacts, state - e * direction)) / (2.0 * e);
+            CHECK(std::abs(slope - force.dot(direction)) < 1e-6 * force.norm());
+        }
+    }
+}
+
+TEST_CASE("the tangent of contact is the slope of its forces, symmetric and never negative") {
+    const Scene scene(some_fibres());
+    const Vector state = scene.shaken(4);
+    auto contacts = contacts_of(scene.assembly, scene.mesh);
+    contacts.detect(state, state, 0.5 * r, false);
+    std::mt19937 generator(5);
+    for (int n = 0; n < 20; ++n) {
+        const Vector x = random_vector(generator, state.size()), y = random_vector(generator, state.size());
+        const double e = 1e-7 * r;
+        const Vector difference = (forces(contacts, state + e * x) - forces(contacts, state - e * x)) / (2.0 * e);
+        contacts.evaluate(state);
+        const Vector product = tangent_times(contacts, scene.mesh, state, x);
+        CHECK((difference - product).norm() < 1e-5 * product.norm());  // differences lose digits where a contact is about to open
+        CHECK(x.dot(product) >= 0.0);
+        CHECK(std::abs(y.dot(product) - x.dot(tangent_times(contacts, scene.mesh, state, y))) < 1e-10 * product.norm() * y.norm());
+    }
+}
+
+TEST_CASE("contact forces are equal and opposite, and without net moment on round, undeformed sections") {
+    std::vector<scene::FibreSpecification> fibres = some_fibres();
+    fibres[3].section = scene::circular(r);
+    const Scene scene(fibres);
+    auto contacts = contacts_of(scene.assembly, scene.mesh);
+    for (const bool rest : {true, false}) {
+        const Vector state = rest ? scene.mesh.rest_state() : scene.shaken(6);
+        contacts.detect(state, state, 0.5 * r, false);
+        const Vector force = forces(contacts, state);
+        Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+        double size = 0.0;
+        for (Index v = 0; v < scene.mesh.layout().vectors(); ++v) {
+            const Vec3 f = force.segment<3>(3 * v);
+            if (scene.mesh.layout().kind[core::at(v)] == scene::VectorKind::position) sum += f, size += f.norm();
+            moment += state.segment<3>(3 * v).cross(f);
+        }
+        CHECK(size > 0.0);
+        CHECK(sum.norm() < 1e-13 * size);
+        // A normal between slanting fibres tilts out of their sections, by 0.012 at half of 9 degrees: the particle lies
+        // aside by twice the product, times the radius. A sheared section puts it aside by the shear, 0.05.
+        CHECK(moment.norm() < (rest ? 2e-3 : 0.1) * r * size);
+    }
+}
+
+TEST_CASE("friction answers a slide at a standing reaction by its own slope, stuck or sliding") {
+    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8),
+                       straight_fibre({0.1, -0.4, -1.9 * r}, {0.1, 0.5, -1.9 * r}, r, 6)});
+    const Vector rest = scene.mesh.rest_state();
+    auto contacts = contacts_of(scene.assembly, scene.mesh, coulomb);
+    contacts.detect(rest, rest, 0.5 * r, false);
+    for (const double slide : {0.3, 3.0}) {  // in reversible displacements
+        Vector aside = Vector::Zero(rest.size()), other = aside;  // the first fibre along itself, and across
+        for (Index node = 0; node < scene.mesh.node_count(0); ++node) {
+            aside[3 * scene.mesh.node_vector(0, node)] = 1.0;
+            other.segment<3>(3 * scene.mesh.node_vector(0, node)) = Vec3(0.4, 0.7, 0.0);
+        }
+        const Vector state = rest + slide * 0.02 * r * aside;
+        const double e = 1e-8;
+        const Vector difference = (forces(contacts, state + e * other) - forces(contacts, state - e * other)) / (2.0 * e);
+        const Vector force = forces(contacts, state);
+        const Vector product = tangent_times(contacts, scene.mesh, state, other);
+        CHECK((difference - product).norm() < 1e-6 * product.norm());
+        Vec3 sum = Vec3::Zero();
+        double reaction = 0.0;
+        for (Index node = 0; node < scene.mesh.node_count(0); ++node) sum += force.segment<3>(3 * scene.mesh.node_vector(0, node));
+        for (const contact::ContactResponse& response : contacts.responses()) reaction += response.reaction;
+        // against the slide, as an internal force: up to mu R_N
+        CHECK(std::abs(sum.x() - 0.3 * reaction * std::min(slide, 1.0)) < 1e-12 * reaction);
+        CHECK((contacts.figures(state).dissipated > 0.0) == (slide > 1.0));
+    }
+}
+
+namespace {
+
+/// Two families of four waving fibres that interlace, and an order between them.
+scene::Assembly interlaced() {
+    scene::Assembly assembly;
+    Index groups[2][2];
+    for (auto& family : groups)
+        for (Index& group : family) group = assembly.add_group("group");
+    for (int family = 0; family < 2; ++family)
+        for (int k = 0; k < 4; ++k) {
+            scene::FibreSpecification fibre = test::curved_fibre(
+                [=](double t) {
+                    const double along = 0.6 * (t - 0.5), across = 0.05 * (k - 1.5) + (k > 1 ? 0.04 : -0.04), height = 0.01 * std::sin(9.0 * t + k);
+                    return family == 0 ? Vec3(along, across, height) : Vec3(across, along, height);
+                },
+                r, 8);
+            fibre.group = groups[family][k / 2];
+            assembly.add(fibre);
+        }
+    for (int a = 0; a < 2; ++a)
+        for (int b = 0; b < 2; ++b) {
+            const bool over = (a + b) % 2 == 0;
+            assembly.force_order({over ? groups[0][a] : groups[1][b], over ? groups[1][b] : groups[0][a], Vec3::UnitZ()});
+        }
+    return assembly;
+}
+
+template <class Search>
+auto elements_by(const scene::Assembly& assembly, const Mesh& mesh, const Search& search, bool forced) {
+    auto contacts = contacts_of<Frictionless, Search>(assembly, mesh, Frictionless{}, search);
+    contacts.detect(mesh.rest_state(), mesh.rest_state(), 0.5 * r, forced);
+    contacts.evaluate(mesh.rest_state());
+    return std::pair(contacts.elements(), contacts.zones());
+}
+
+template <class Result>
+void check_same(const Result& a, const Result& b) {
+    REQUIRE(a.first.size() == b.first.size());
+    REQUIRE(a.second.size() == b.second.size());
+    for (std::size_t k = 0; k < a.second.size(); ++k) {
+        CHECK(a.second[k].span == b.second[k].span);
+        CHECK(a.second[k].forced == b.second[k].forced);
+        CHECK(a.second[k].crossing == b.second[k].crossing);
+        CHECK(a.second[k].order == b.second[k].order);
+        CHECK(a.second[k].first == b.second[k].first);
+        CHECK(a.second[k].last == b.second[k].last);
+    }
+    for (std::size_t k = 0; k < a.first.size(); ++k) {
+        const auto &p = a.first[k], &q = b.first[k];
+        const bool same = p.u_i == q.u_i && p.u_j == q.u_j && p.fibre_i == q.fibre_i && p.fibre_j == q.fibre_j && p.normal == q.normal &&
+                          p.weights_i == q.weights_i && p.weights_j == q.weights_j && p.cap == q.cap && p.zone == q.zone;
+        CHECK(same);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("every search finds the same zones and contact elements, with an order forced or without") {
+    const scene::Assembly assembly = interlaced();
+    const Mesh mesh(assembly, Beam{});
+    for (const bool forced : {true, false}) {
+        const auto brute = elements_by(assembly, mesh, proximity::BruteSearch{{}}, forced);
+        CHECK(brute.first.size() > 20);
+        check_same(brute, elements_by(assembly, mesh, proximity::GridSearch{{}}, forced));
+        check_same(brute, elements_by(assembly, mesh, proximity::KdTreeSearch{{}}, forced));
+        check_same(brute, elements_by(assembly, mesh, proximity::TestPointSearch{{.spacing = 0.08}}, forced));
+        check_same(brute, test::with_threads(1, [&] { return elements_by(assembly, mesh, proximity::GridSearch{{}}, forced); }));
+    }
+}
+
+TEST_CASE("a forced order gives the normal wherever fibres are, and every crossing has its element") {
+    const scene::Assembly assembly = interlaced();
+    const Mesh mesh(assembly, Beam{});
+    const auto [elements, zones] = elements_by(assembly, mesh, proximity::GridSearch{{}}, true);
+    int crossings = 0;
+    for (const auto& element : elements) {
+        if (!zones[core::at(element.zone)].forced) continue;
+        ++crossings;
+        CHECK(element.fibre_i < 4);
+        CHECK(element.fibre_j >= 4);
+        const bool over = (element.fibre_i / 2 + (element.fibre_j - 4) / 2) % 2 == 0;  // the first family is above
+        CHECK(element.normal.z() * (over ? -1.0 : 1.0) > 0.9);
+    }
+    CHECK(crossings == 16);
+}
+
+TEST_CASE("the order in which fibres are named changes no force") {
+    const std::vector<scene::FibreSpecification> fibres = some_fibres();
+    const std::vector<std::size_t> order{3, 0, 5, 2, 4, 1};
+    std::vector<scene::FibreSpecification> permuted;
+    for (const std::size_t k : order) permuted.push_back(fibres[k]);
+    const Scene one(fibres), other(permuted);
+    const auto force = [](const Scene& scene) {
+        auto contacts = contacts_of(scene.assembly, scene.mesh);
+        contacts.detect(scene.mesh.rest_state(), scene.mesh.rest_state(), 0.5 * r, false);
+        return forces(contacts, scene.mesh.rest_state());
+    };
+    const Vector f = force(one), g = force(other);
+    CHECK(f.norm() > 0.0);
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const Index size = 9 * one.mesh.node_count(static_cast<Index>(order[k]));
+        // closest points and planes are solved to 1e-11 elements
+        CHECK((f.segment(3 * one.mesh.node_vector(static_cast<Index>(order[k]), 0), size) -
+               g.segment(3 * other.mesh.node_vector(static_cast<Index>(k), 0), size)).norm() < 1e-8 * f.norm());
+    }
+}
+
+TEST_CASE("contacts remember their side when elements are made anew after fibres have passed through each other") {
+    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8),
+                       straight_fibre({0.1, -0.4, -1.9 * r}, {0.1, 0.5, -1.9 * r}, r, 6)});
+    const Vector rest = scene.mesh.rest_state();
+    auto contacts = contacts_of(scene.assembly, scene.mesh);
+    contacts.detect(rest, rest, 0.5 * r, false);
+    contacts.evaluate(rest);
+    contacts.accept(rest);
+    Vector passed = rest;
+    for (Index node = 0; node < scene.mesh.node_count(0); ++node) {
+        passed[3 * scene.mesh.node_vector(1, node) + 2] -= 2.2 * r;  // to the other side of the first fibre
+        if (node < scene.mesh.node_count(2)) passed[3 * scene.mesh.node_vector(2, node) + 2] += 2.2 * r;
+    }
+    for (const bool restored : {false, true}) {
+        if (restored) contacts.restore();
+        contacts.detect(passed, rest, 0.5 * r, false);
+        contacts.evaluate(passed);
+        Index seen = 0;
+        for (const auto& element : contacts.elements()) {
+            if (element.fibre_i != 0) continue;
+            ++seen;
+            CHECK((element.normal - (element.fibre_j == 1 ? 1.0 : -1.0) * Vec3::UnitZ()).norm() < 1e-12);
+            CHECK(element.gap(passed) == doctest::Approx(-2.3 * r).epsilon(1e-12));
+        }
+        CHECK(seen > 10);
+    }
+}
+
+TEST_CASE("accepting a state brings the stiffness of its zones to the target of the penetration") {
+    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({0.1, -0.4, 1.9 * r}, {0.1, 0.5, 1.9 * r}, r, 6)});
+    const Vector rest = scene.mesh.rest_state();
+    auto contacts = contacts_of(scene.assembly, scene.mesh);
+    contacts.detect(rest, rest, 0.5 * r, false);
+    contacts.evaluate(rest);
+    REQUIRE(contacts.zones().size() == 1);
+    const double before = contacts.zones()[0].stiffness;
+    contacts.accept(rest);  // the penetration is 0.1 r, twice the allowed one: over (0.6 * 0.05) it asks for more than three times
+    CHECK(contacts.zones()[0].stiffness == doctest::Approx(3.0 * before).epsilon(1e-12));
+    contacts.detect(rest, rest, 0.5 * r, false);
+    CHECK(contacts.zones()[0].stiffness == doctest::Approx(3.0 * before).epsilon(1e-12));
+}
+
+TEST_CASE("what a contact element costs in memory") {
+    std::printf("contact element: %zu bytes frictionless, %zu with friction, %zu frictionless with a limited gap\n",
+                sizeof(Element<RegularisedPenalty, Frictionless>), sizeof(Element<RegularisedPenalty, RegularisedCoulomb>),
+                sizeof(Element<law::LimitedGap<RegularisedPenalty>, Frictionless>));
+}
