@@ -2,6 +2,7 @@
 #pragma once
 /// @file A linear system as a fabric of fibre bundles gives it: director beams, contact elements side by side and at crossings.
 
+#include <fibrant/assembly/chain_system.hpp>
 #include <fibrant/assembly/visited_system.hpp>
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/core/parallel.hpp>
@@ -64,6 +65,7 @@ public:
 
     const scene::DofLayout& layout() const { return layout_; }
     Index contacts() const { return core::count(points_); }
+    const Fabric& fabric() const { return fabric_; }
 
     void apply(const Vector& x, Vector& y) const {
         force_.resize(points_.size());
@@ -294,5 +296,56 @@ private:
     mutable std::vector<Vec3> force_;
 };
 static_assert(assembly::LinearSystem<FabricSystem>);
+
+/// The same system in the form that a simulation gives it, its contact elements pair by pair along the fibres.
+inline assembly::ChainSystem<FabricSystem::Beam> chain_system(const FabricSystem& fabric) {
+    struct Terms {
+        assembly::ChainSystem<FabricSystem::Beam> system;
+        assembly::VectorPlaces places;
+        void dense(const assembly::DenseTerm& term) {
+            const Index fibre = places.chain(term.vectors.front()), number = places.number(term.vectors.front());
+            if (term.vectors.size() == 9) {
+                system.add(fibre, number / 6, term.stiffness);
+            } else {
+                system.add_diagonal(term.vectors.front(), term.stiffness);
+            }
+        }
+        void point(const assembly::PointTerm& term) {
+            assembly::ChainSystem<FabricSystem::Beam>::Point point;
+            point.first_i = static_cast<std::int32_t>(3 * term.vectors[0]), point.first_j = static_cast<std::int32_t>(3 * term.vectors[9]);
+            point.fibre_i = static_cast<std::int32_t>(places.chain(term.vectors[0]));
+            point.fibre_j = static_cast<std::int32_t>(places.chain(term.vectors[9]));
+            for (std::size_t k = 0; k < 9; ++k) point.weights_i[k] = -term.weights[k], point.weights_j[k] = term.weights[9 + k];
+            point.stiffness = term.stiffness;
+            system.points().push_back(point);
+        }
+    } terms{assembly::ChainSystem<FabricSystem::Beam>(fabric.layout()), assembly::VectorPlaces(fabric.layout())};
+    for (Index f = 0; f < core::count(fabric.layout().chains); ++f) terms.system.clear(f);
+    fabric.visit(terms);
+    std::ranges::stable_sort(terms.system.points(), {}, [](const auto& point) {
+        return std::array{point.fibre_i, point.fibre_j, point.first_i, point.first_j};
+    });
+    terms.system.index_points();
+    return std::move(terms.system);
+}
+
+/// Forces of random size and direction between the particles of every contact element: what the residual of a contact
+/// step looks like.
+template <assembly::LinearSystem System>
+Vector contact_load(const System& system) {
+    struct Load {
+        Vector b;
+        std::mt19937 generator{3};
+        std::normal_distribution<double> normal{};
+        void dense(const assembly::DenseTerm&) const {}
+        void point(const assembly::PointTerm& term) {
+            const Vec3 gap(normal(generator), normal(generator), normal(generator));
+            const Vec3 force = term.stiffness * gap;
+            for (std::size_t i = 0; i < term.vectors.size(); ++i) b.segment<3>(3 * term.vectors[i]) += term.weights[i] * force;
+        }
+    } load{Vector::Zero(system.layout().unknowns())};
+    system.visit(load);
+    return load.b;
+}
 
 }  // namespace fibrant::test

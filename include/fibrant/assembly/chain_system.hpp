@@ -3,13 +3,17 @@
 /// @file The tangent of one iteration, never formed as one matrix: a block band for every fibre, and a point term for every
 /// contact element.
 
+#include <fibrant/assembly/band_product.hpp>
 #include <fibrant/assembly/linear_system.hpp>
+#include <fibrant/assembly/point_product.hpp>
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/core/parallel.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace fibrant::assembly {
@@ -24,6 +28,7 @@ public:
     static constexpr int block = B::dofs_per_node;
     static constexpr int reach = B::reach;
     static constexpr int vectors = B::nodes * B::vectors_per_node;  ///< of an element
+    static_assert(reach == B::nodes - 1, "nodes couple within elements");
     using Row = Eigen::Matrix<double, block, (reach + 1) * block>;  ///< blocks A(a, a - reach) ... A(a, a)
     /// Stiffness between two particles of two elements.
     struct Point {
@@ -33,12 +38,15 @@ public:
         Mat3 stiffness;
     };
 
-    explicit ChainSystem(const beam::Mesh<B>& mesh) : mesh_{&mesh}, layout_{mesh.layout()} {
+    explicit ChainSystem(const beam::Mesh<B>& mesh) : ChainSystem(mesh.layout()) {}
+    /// @param layout  chains of B's nodes
+    explicit ChainSystem(scene::DofLayout layout) : layout_{std::move(layout)} {
         Index nodes = 0;
         for (const scene::Chain& chain : layout_.chains) {
             first_node_.push_back(nodes);
             nodes += chain.nodes;
         }
+        first_node_.push_back(nodes);
         rows_.resize(core::at(nodes));
     }
 
@@ -54,7 +62,7 @@ public:
 
     /// Sets a fibre's band to zero.
     void clear(Index fibre) {
-        for (Index a = 0; a < mesh_->node_count(fibre); ++a) row(fibre, a).setZero();
+        for (Index a = 0; a < nodes(fibre); ++a) row(fibre, a).setZero();
     }
     /// Adds an element's stiffness.
     void add(Index fibre, Index element, const beam::ElementMatrix<B>& stiffness) {
@@ -85,21 +93,10 @@ public:
     Row& row(Index fibre, Index node) noexcept { return rows_[core::at(first_node_[core::at(fibre)] + node)]; }
     const Row& row(Index fibre, Index node) const noexcept { return rows_[core::at(first_node_[core::at(fibre)] + node)]; }
 
-    /// To be called once the points are complete: lists the points of each fibre.
+    /// To be called once bands and points are complete: arranges them for products.
     void index_points() {
-        side_first_.assign(core::at(mesh_->fibre_count() + 1), 0);
-        for (const Point& point : points_) {
-            ++side_first_[core::at(point.fibre_i) + 1];
-            ++side_first_[core::at(point.fibre_j) + 1];
-        }
-        for (std::size_t f = 1; f < side_first_.size(); ++f) side_first_[f] += side_first_[f - 1];
-        sides_.resize(2 * points_.size());
-        std::vector<std::int32_t> next(side_first_.begin(), side_first_.end() - 1);
-        for (std::int32_t k = 0; k < static_cast<std::int32_t>(points_.size()); ++k) {
-            sides_[core::at(next[core::at(points_[core::at(k)].fibre_i)]++)] = 2 * k;
-            sides_[core::at(next[core::at(points_[core::at(k)].fibre_j)]++)] = 2 * k + 1;
-        }
-        force_.resize(points_.size());
+        band_.pack(layout_, [this](Index fibre, Index node) -> const Row& { return row(fibre, node); });
+        pairs_.pack(points_, core::count(rows_), [](const Point& point, int side) { return (side == 0 ? point.first_i : point.first_j) / block; });
     }
 
     /// y = A x, the identity outside the free directions of held vectors.
@@ -117,53 +114,24 @@ public:
 
     /// y = K x, as if nothing were held.
     void apply_unheld(const Vector& x, Vector& y) const {
-        core::parallel_for(core::count(points_), [&](Index k) {
-            const Point& point = points_[core::at(k)];
-            force_[core::at(k)] = point.stiffness * (beam::Mesh<B>::point(x, point.first_j, point.weights_j) -
-                                                     beam::Mesh<B>::point(x, point.first_i, point.weights_i));
-        }, 512);
-        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
-            const Index nodes = mesh_->node_count(f), first = 3 * mesh_->fibre(f).first_vector;
-            y.segment(first, nodes * block).setZero();
-            for (Index a = 0; a < nodes; ++a) {
-                const Index before = std::min<Index>(a, reach);
-                if (before == reach) {
-                    const Row& r = row(f, a);
-                    const Index low = first + (a - reach) * block;
-                    y.template segment<block>(first + a * block).noalias() += r * x.template segment<(reach + 1) * block>(low);
-                    y.template segment<reach * block>(low).noalias() +=
-                        r.template leftCols<reach * block>().transpose() * x.template segment<block>(first + a * block);
-                } else {
-                    for (Index d = 0; d <= before; ++d) {
-                        const auto b = row(f, a).template block<block, block>(0, (reach - d) * block);
-                        y.template segment<block>(first + a * block).noalias() += b * x.template segment<block>(first + (a - d) * block);
-                        if (d > 0)
-                            y.template segment<block>(first + (a - d) * block).noalias() +=
-                                b.transpose() * x.template segment<block>(first + a * block);
-                    }
-                }
-            }
-            for (Index s = side_first_[core::at(f)]; s < side_first_[core::at(f) + 1]; ++s) {
-                const std::int32_t side = sides_[core::at(s)];
-                const Point& point = points_[core::at(side / 2)];
-                const bool of_j = side % 2 == 1;
-                const Vec3 value = of_j ? force_[core::at(side / 2)] : Vec3(-force_[core::at(side / 2)]);
-                const beam::ElementWeights<B>& weights = of_j ? point.weights_j : point.weights_i;
-                const Index start = of_j ? point.first_j : point.first_i;
-                for (std::size_t a = 0; a < weights.size(); ++a)
-                    y.template segment<3>(start + 3 * static_cast<Index>(a)) += weights[a] * value;
-            }
-        });
+        const Index grain = layout_.unknowns() < 8192 ? band_.packs() : 1;
+        core::parallel_for(band_.packs(), [&](Index p) {
+            band_.apply(p, x, y);
+            pairs_.find_motions(sides(p), x);
+        }, grain);
+        core::parallel_for(band_.packs(), [&](Index p) { pairs_.add_forces(sides(p), y); }, grain);
     }
 
     /// Lower block band of a fibre with its own part of every contact: block (a, d) is A(a, a - d).
     void chain_band(Index fibre, Matrix& blocks) const {
-        const Index nodes = mesh_->node_count(fibre);
-        blocks.setZero(nodes * block, (reach + 1) * block);
-        for (Index a = 0; a < nodes; ++a)
+        const Index size = nodes(fibre);
+        blocks.setZero(size * block, (reach + 1) * block);
+        for (Index a = 0; a < size; ++a)
             for (Index d = 0; d <= std::min<Index>(a, reach); ++d)
                 blocks.block<block, block>(a * block, d * block) = row(fibre, a).template block<block, block>(0, (reach - d) * block);
-        for_own_points(fibre, [&](Index node, const beam::ElementWeights<B>& weights, const Mat3& stiffness) {
+        pairs_.add_own(pairs_.sides(first_node_[core::at(fibre)], first_node_[core::at(fibre + 1)]),
+                       [&](std::int32_t first, const beam::ElementWeights<B>& weights, const Mat3& stiffness) {
+            const Index node = (first - first_unknown(fibre)) / block;
             for (Index a = 0; a < B::nodes; ++a)
                 for (Index b = 0; b <= a; ++b)
                     for (Index v = 0; v < B::vectors_per_node; ++v)
@@ -187,10 +155,10 @@ public:
     void visit(Terms& terms) const {
         std::array<Index, core::at((reach + 1) * B::vectors_per_node)> numbers{};
         Matrix dense;
-        for (Index f = 0; f < mesh_->fibre_count(); ++f) {
-            for (Index a = 0; a < mesh_->node_count(f); ++a) {
+        for (Index f = 0; f < fibres(); ++f) {
+            for (Index a = 0; a < nodes(f); ++a) {
                 const Index before = std::min<Index>(a, reach), size = (before + 1) * block;
-                const Index first = mesh_->fibre(f).first_vector + (a - before) * B::vectors_per_node;
+                const Index first = layout_.chains[core::at(f)].first_vector + (a - before) * B::vectors_per_node;
                 for (Index k = 0; k < size / 3; ++k) numbers[core::at(k)] = first + k;
                 dense.setZero(size, size);
                 dense.bottomRows(block) = row(f, a).rightCols(size);
@@ -210,17 +178,10 @@ public:
     }
 
 private:
-    template <class Visit>
-    void for_own_points(Index fibre, const Visit& see) const {
-        const Index first = 3 * mesh_->fibre(fibre).first_vector;
-        for (Index s = side_first_[core::at(fibre)]; s < side_first_[core::at(fibre) + 1]; ++s) {
-            const std::int32_t side = sides_[core::at(s)];
-            const Point& point = points_[core::at(side / 2)];
-            if (side % 2 == 1)
-                see((point.first_j - first) / block, point.weights_j, point.stiffness);
-            else
-                see((point.first_i - first) / block, point.weights_i, point.stiffness);
-        }
+    /// Sides of points on the fibres of a pack, and on one fibre.
+    std::pair<Index, Index> sides(Index pack) const noexcept {
+        const auto [first, last] = band_.chains(pack);
+        return pairs_.sides(first_node_[core::at(first)], first_node_[core::at(last)]);
     }
 
     void project_band(Index fibre, Matrix& blocks) const {
@@ -238,14 +199,17 @@ private:
         }
     }
 
-    const beam::Mesh<B>* mesh_;
+    Index fibres() const noexcept { return core::count(layout_.chains); }
+    Index nodes(Index fibre) const noexcept { return layout_.chains[core::at(fibre)].nodes; }
+    Index first_unknown(Index fibre) const noexcept { return 3 * layout_.chains[core::at(fibre)].first_vector; }
+
     scene::DofLayout layout_;
     std::vector<Index> first_node_;
     std::vector<Row> rows_;
     std::vector<Point> points_;
-    std::vector<std::int32_t> sides_, side_first_;
-    mutable std::vector<Vec3> force_;  // scratch of a product: one system serves one thread at a time
-    mutable Vector free_;
+    BandProduct<block, reach> band_;
+    PointProduct<vectors> pairs_;
+    mutable Vector free_;  // scratch of a product: one system serves one thread at a time
 };
 
 }  // namespace fibrant::assembly
