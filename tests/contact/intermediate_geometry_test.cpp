@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -230,6 +231,51 @@ TEST_CASE("where a fibre ends beside another its rounded end is paired once with
         CHECK(pair.u_i == doctest::Approx(5.25).epsilon(1e-12));
     }
     CHECK(ends == 1);
+}
+
+TEST_CASE("splayed fibres have a pair in their last section, where they are closest") {
+    // 3 degrees apart and closest where they begin; the second of the other direction in the second case
+    const double angle = 3.0 * std::numbers::pi / 180.0;
+    const Vec3 far_end(2.0 * std::cos(angle), 0.0, 0.04 + 2.0 * std::sin(angle));
+    for (const bool against : {false, true}) {
+        const Vec3 near_end(0, 0, 0.04);
+        const Mesh mesh = mesh_of({straight_fibre({0, 0, 0}, {2, 0, 0}, r, 10), against ? straight_fibre(far_end, near_end, r, 10) : straight_fibre(near_end, far_end, r, 10)});
+        const double start = against ? 10.0 : 0.0;
+        const std::vector<StationPair> pairs = pairs_of(mesh, zone(0, 4, start, against ? 6 : 4), false);
+        REQUIRE(pairs.size() == 9);  // two an element, and the last section
+        // Of the two last sections, that of the fibre which ends first: its plane across the mean line cuts the other.
+        CHECK(std::min(pairs[0].u_i, std::abs(pairs[0].u_j - start)) == 0.0);
+        const Vec3 centres = mesh.position(mesh.rest_state(), 1, pairs[0].u_j) - mesh.position(mesh.rest_state(), 0, pairs[0].u_i);
+        const Vec3 mean = (Vec3::UnitX() + (far_end - near_end).normalized()).normalized();
+        CHECK(std::abs(centres.dot(mean)) < 1e-12);
+        CHECK(pairs[0].length == 0.0);
+        CHECK_FALSE(pairs[0].end_i);
+        CHECK_FALSE(pairs[0].end_j);
+        for (std::size_t k = 1; k < pairs.size(); ++k) CHECK(distance(mesh, pairs[k].u_i, pairs[k].u_j) > distance(mesh, pairs[k - 1].u_i, pairs[k - 1].u_j));
+    }
+}
+
+TEST_CASE("where one fibre ends before the other, the pair is in the last section of that one") {
+    // The second begins 0.06 and ends 0.05 inside the first: 0.3 and 0.25 elements of it.
+    const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({-0.94, 0, 0.04}, {0.95, 0, 0.04}, r, 9)});
+    const std::vector<StationPair> pairs = pairs_of(mesh, zone(0.2, 9.8, 0, 9), false);
+    for (const bool last : {false, true}) {
+        const StationPair& pair = last ? pairs.back() : pairs.front();
+        CHECK(pair.u_j == (last ? 9.0 : 0.0));
+        CHECK(pair.u_i == doctest::Approx(last ? 9.75 : 0.3).epsilon(1e-12));
+        CHECK_FALSE(pair.end_j);
+    }
+    CHECK(std::count_if(pairs.begin(), pairs.end(), [](const StationPair& pair) { return pair.length == 0.0; }) == 2);
+}
+
+TEST_CASE("a zone that ends inside both fibres has no pair in a last section, and a short one at an end has one of them") {
+    const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({-1, 0, 0.04}, {1, 0, 0.04}, r, 10)});
+    for (const StationPair& pair : pairs_of(mesh, zone(0.3, 9.7, 0.3, 9.7), false)) CHECK(pair.length > 0.0);
+    const std::vector<StationPair> pairs = pairs_of(mesh, zone(9.9, 10, 9.9, 10), false);
+    REQUIRE(pairs.size() == 2);
+    CHECK(pairs[0].u_i == 10.0);
+    CHECK(pairs[0].u_j == 10.0);
+    CHECK(pairs[1].u_i == doctest::Approx(9.95).epsilon(1e-12));
 }
 
 TEST_CASE("fibres that meet end to end are paired by their two caps") {

@@ -17,7 +17,7 @@ struct StationPair {
     double u_i = 0.0, u_j = 0.0;
     bool crossing = false;               ///< the only pair of its zone
     bool end_i = false, end_j = false;   ///< the station is a fibre's end and the contact is with its cap
-    double length = 0.0;                 ///< of the zone that it stands for [length]; for a crossing the touching length
+    double length = 0.0;                 ///< of the zone that it stands for [length]; for a crossing the touching length, for a last section 0
 };
 
 /// The pair of closest points near a start, both inside their fibres.
@@ -86,8 +86,8 @@ struct ContactSpacing {
 /// in the middle of equal parts of it, and the plane across it cuts the two centrelines.
 ///
 /// Departures: a crossing is one element at the mutual closest points, because every plane near a crossing yields the
-/// same gap along the cross product of the tangents; and where a plane leaves a fibre, its rounded end is paired with the
-/// closest point of the other fibre.
+/// same gap along the cross product of the tangents; where a plane leaves a fibre, its rounded end is paired with the
+/// closest point of the other fibre; and where a zone reaches the end of a fibre, its last section has a point too.
 /// @param zone        abscissae in elements
 /// @param crossing    the zone is a crossing
 /// @param pairs       appended to, in the order of the zone
@@ -141,9 +141,36 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         pairs.push_back(pair);
         return;
     }
+    // The section in which a fibre ends, against the other fibre: points in the middle of equal parts would leave the last
+    // quarter of an element unseen, and there splayed fibres are closest.
+    const std::size_t before = pairs.size();
+    bool at_start = false;  // the zone's start has one
+    const auto add_last_section = [&](double s) {
+        const double u_i = zone.a_i + s * (zone.b_i - zone.a_i), u_j = zone.a_j + s * (zone.b_j - zone.a_j);
+        const double near = 0.5 / spacing.points_per_element;
+        for (const bool of_i : {true, false}) {
+            const Index self = of_i ? i : j, other = of_i ? j : i;
+            const double self_end = of_i ? end_i : end_j, other_end = of_i ? end_j : end_i;
+            double u = of_i ? u_i : u_j, v = of_i ? u_j : u_i;
+            if (u > near && u < self_end - near) continue;
+            u = u <= near ? 0.0 : self_end;
+            const Vec3 origin = mesh.position(state, self, u);
+            const Vec3 tangent = mean_tangent(contact_tangent(mesh, state, self, u).normalized(),
+                                              contact_tangent(mesh, state, other, v).normalized());
+            v = plane_section(mesh, state, other, v, origin, tangent);
+            if ((v <= 0.0 || v >= other_end) && std::abs((mesh.position(state, other, v) - origin).dot(tangent)) > 1e-6 * r)
+                continue;  // the other fibre ends before: its section does it
+            const StationPair pair{of_i ? u : v, of_i ? v : u, false, false, false, 0.0};
+            const bool twice = at_start && std::abs(pair.u_i - pairs[before].u_i) + std::abs(pair.u_j - pairs[before].u_j) < 1e-6;
+            if (!twice) pairs.push_back(pair);  // a short zone has the same end at both of its own
+            at_start = true;
+            return;
+        }
+    };
     const double length = 0.5 * ((zone.b_i - zone.a_i) * h_i + std::abs(zone.b_j - zone.a_j) * h_j);
     const double wanted = length * spacing.points_per_element / (0.5 * (h_i + h_j));
     const Index count = std::max<Index>(1, static_cast<Index>(std::ceil(wanted - 1e-6)));
+    add_last_section(0.0);
     for (Index k = 0; k < count; ++k) {
         const double s = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
         double u_i = zone.a_i + s * (zone.b_i - zone.a_i), u_j = zone.a_j + s * (zone.b_j - zone.a_j);
@@ -162,6 +189,7 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         }
         pairs.push_back({u_i, u_j, false, false, false, length / static_cast<double>(count)});
     }
+    add_last_section(1.0);
 }
 
 }  // namespace fibrant::contact
