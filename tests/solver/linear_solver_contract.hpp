@@ -15,6 +15,7 @@
 #endif
 
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <vector>
 
@@ -185,6 +186,23 @@ void check_same_bits(const Solver& solver) {
     CHECK(one == again);
 }
 
+/// Contact elements come to carry force, or cease to, between two preparations.
+template <solver::LinearSolver<SyntheticSystem> Solver>
+void check_changed_terms(Solver solver) {
+    const SyntheticSystem all = solvable_systems()[1];
+    SyntheticSystem few = all;
+    few.points.resize(few.points.size() / 4);
+    few.finish();
+    solver.analyse(few);
+    const Vector b = random_load(all.layout(), 2);
+    for (const SyntheticSystem* system : std::initializer_list<const SyntheticSystem*>{&few, &all, &few}) {
+        Vector x;
+        CHECK(solver.prepare(*system) == solver::SolveStatus::converged);
+        CHECK(solver.solve(*system, b, 1e-8, x).status == solver::SolveStatus::converged);
+        CHECK(residual_of(*system, b, x) < 2e-8);
+    }
+}
+
 /// All that a linear solver owes.
 template <solver::LinearSolver<SyntheticSystem> Solver>
 void check_linear_solver(const Solver& solver) {
@@ -192,6 +210,7 @@ void check_linear_solver(const Solver& solver) {
     check_held(solver);
     check_indefinite(solver);
     check_not_finite(solver);
+    check_changed_terms(solver);
     check_same_bits(solver);
 }
 
