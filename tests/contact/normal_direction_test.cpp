@@ -135,6 +135,27 @@ TEST_CASE("coincident parallel fibres without a memory part to a fixed side") {
     CHECK(normal == normal_direction(rule, Vec3::Zero(), heading(25), heading(25), new_contact));
 }
 
+TEST_CASE("fibres that part in one plane are pushed apart in that plane, not across it") {
+    const double touching = 0.1;
+    for (const double degrees : {5.0, 20.0, 40.0, 80.0}) {
+        const Vec3 aside = 0.6 * touching * Vec3(-std::sin(0.5 * degrees * std::numbers::pi / 180.0), std::cos(0.5 * degrees * std::numbers::pi / 180.0), 0.0);
+        for (const double height : {0.0, 1e-3 * touching}) {
+            const Vec3 centres = aside + height * Vec3::UnitZ();
+            CHECK((normal_direction(rule, centres, heading(0), heading(degrees), new_contact, touching) - centres.normalized()).norm() < rounding);
+            // and where they pass over each other, across both, with the blend of any other crossing
+            const Vec3 over = height * Vec3::UnitZ() + 0.4 * aside;
+            CHECK((normal_direction(rule, over, heading(0), heading(degrees), new_contact, touching) - normal_direction(rule, over, heading(0), heading(degrees), new_contact)).norm() < rounding);
+        }
+    }
+    Vec3 last = Vec3::UnitZ();
+    for (int k = 0; k <= 4000; ++k) {  // between them it turns continuously
+        const Vec3 normal = normal_direction(rule, 0.3 * touching * Vec3::UnitZ() + touching * k / 4000.0 * heading(115), heading(0), heading(50), last, touching);
+        CHECK((normal - last).norm() < 2e-3);
+        last = normal;
+    }
+    CHECK(last.z() < 0.3);
+}
+
 TEST_CASE("angles in the wrong order are refused") {
     CHECK(test::refusal([] { core::validated(NormalRule{40.0, 30.0}); }).find("NormalRule.crossing_angle_deg") != std::string::npos);
     CHECK(test::refusal([] { core::validated(NormalRule{-1.0, 30.0}); }).find("NormalRule.parallel_angle_deg") != std::string::npos);

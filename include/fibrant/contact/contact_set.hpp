@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace fibrant::contact {
@@ -313,7 +314,9 @@ private:
             return unit_or(centres.dot(side) > 0.0 ? centres : side, Vec3::UnitZ());
         }
         return normal_direction(parameters_.normal, centres, tangent_of_i(element, state),
-                                contact_tangent(*mesh_, state, j, element.u_j).normalized(), remembered);
+                                contact_tangent(*mesh_, state, j, element.u_j).normalized(), remembered,
+                                element.crossing ? std::numeric_limits<double>::infinity()
+                                                 : mesh_->fibre(i).section.radius() + mesh_->fibre(j).section.radius());
     }
     /// Unit tangent of fibre i.
     Vec3 tangent_of_i(const Element& element, const Vector& state) const {
