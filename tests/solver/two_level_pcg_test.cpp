@@ -11,21 +11,7 @@ using namespace fibrant;
 
 namespace {
 
-// Forces between the particles of every contact element: what the residual of a contact step looks like.
-Vector contact_load(const test::FabricSystem& system) {
-    struct Load {
-        Vector b;
-        std::mt19937 generator{3};
-        std::normal_distribution<double> normal{};
-        void dense(const assembly::DenseTerm&) const {}
-        void point(const assembly::PointTerm& term) {
-            const Vec3 force = term.stiffness * Vec3(normal(generator), normal(generator), normal(generator));
-            for (std::size_t i = 0; i < term.vectors.size(); ++i) b.segment<3>(3 * term.vectors[i]) += term.weights[i] * force;
-        }
-    } load{Vector::Zero(system.layout().unknowns())};
-    system.visit(load);
-    return load.b;
-}
+using test::contact_load;
 
 template <class Solver>
 int iterations(Solver solver, const test::FabricSystem& system, double tolerance) {
@@ -89,6 +75,31 @@ TEST_CASE("contact a hundred times stiffer is still solved, and agrees with the 
     CHECK(std::sqrt(error.dot(energy)) < 1e-8 * std::sqrt(b.dot(y)));
 }
 
+TEST_CASE("a solve that takes long goes on with a finer space, which takes fewer iterations and is nothing to the next solve") {
+    test::Fabric stiff = bundle;
+    stiff.contact_stiffness *= 100.0;
+    const test::FabricSystem system(stiff);
+    const Vector b = contact_load(system);
+    Vector first, refined, again;
+    solver::TwoLevelPcg never{{.refine_after = 2000}}, late{{.refine_after = 40}};
+    never.analyse(system), late.analyse(system);
+    never.prepare(system), late.prepare(system);
+    const solver::SolveReport coarse = never.solve(system, b, 1e-8, first);
+    REQUIRE(coarse.iterations > 80);
+    CHECK(never.fine_unknowns() == 0);
+    late.solve(system, b, 1e-2, first);  // done before it comes to that
+    const solver::SolveReport fine = late.solve(system, b, 1e-8, refined);
+    CHECK(fine.status == solver::SolveStatus::converged);
+    CHECK(fine.iterations < coarse.iterations);
+    CHECK(late.fine_unknowns() > 2 * late.coarse_unknowns());
+    late.solve(system, b, 1e-2, again);  // begins with the coarse space, as the first did
+    CHECK(first == again);
+    late.solve(system, b, 1e-8, again);
+    CHECK(refined == again);
+    late.prepare(system);
+    CHECK(late.fine_unknowns() == 0);
+}
+
 TEST_CASE_TEMPLATE("two threads give the bits of one on systems large enough for both", Solver, solver::TwoLevelPcg, solver::FibreBlockPcg,
                    solver::FloatBlockCholesky) {
     const test::FabricSystem system(bundle);
@@ -111,5 +122,6 @@ TEST_CASE("parameters of two levels that mean nothing are refused by name") {
     using Solver = solver::TwoLevelPcg;
     CHECK(test::refusal([] { Solver{{.fibres_per_cluster = 0}}; }).starts_with("TwoLevelPcg.fibres_per_cluster = 0"));
     CHECK(test::refusal([] { Solver{{.elements_per_station = 0}}; }).starts_with("TwoLevelPcg.elements_per_station = 0"));
+    CHECK(test::refusal([] { Solver{{.refine_after = -1}}; }).starts_with("TwoLevelPcg.refine_after = -1"));
     CHECK(test::refusal([] { Solver{{.iteration_limit = 0}}; }).starts_with("TwoLevelPcg.iteration_limit = 0"));
 }

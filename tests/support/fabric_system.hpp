@@ -297,18 +297,22 @@ private:
 };
 static_assert(assembly::LinearSystem<FabricSystem>);
 
-/// The same system in the form that a simulation gives it, its contact elements pair by pair along the fibres.
-inline assembly::ChainSystem<FabricSystem::Beam> chain_system(const FabricSystem& fabric) {
+/// A system of director beams and contact elements in the form that a simulation gives it, its contact elements pair by
+/// pair along the fibres.
+template <assembly::LinearSystem System>
+assembly::ChainSystem<FabricSystem::Beam> chain_system(const System& other) {
     struct Terms {
         assembly::ChainSystem<FabricSystem::Beam> system;
         assembly::VectorPlaces places;
         void dense(const assembly::DenseTerm& term) {
-            const Index fibre = places.chain(term.vectors.front()), number = places.number(term.vectors.front());
-            if (term.vectors.size() == 9) {
-                system.add(fibre, number / 6, term.stiffness);
-            } else {
-                system.add_diagonal(term.vectors.front(), term.stiffness);
-            }
+            const Index fibre = places.chain(term.vectors.front());
+            for (std::size_t i = 0; i < term.vectors.size(); ++i)
+                for (std::size_t j = 0; j < term.vectors.size(); ++j) {
+                    const Index k = places.number(term.vectors[i]), l = places.number(term.vectors[j]), apart = k / 3 - l / 3;
+                    if (apart < 0) continue;
+                    system.row(fibre, k / 3).block<3, 3>(3 * (k % 3), (2 - apart) * 9 + 3 * (l % 3)) +=
+                        term.stiffness.block<3, 3>(3 * static_cast<Index>(i), 3 * static_cast<Index>(j));
+                }
         }
         void point(const assembly::PointTerm& term) {
             assembly::ChainSystem<FabricSystem::Beam>::Point point;
@@ -319,9 +323,9 @@ inline assembly::ChainSystem<FabricSystem::Beam> chain_system(const FabricSystem
             point.stiffness = term.stiffness;
             system.points().push_back(point);
         }
-    } terms{assembly::ChainSystem<FabricSystem::Beam>(fabric.layout()), assembly::VectorPlaces(fabric.layout())};
-    for (Index f = 0; f < core::count(fabric.layout().chains); ++f) terms.system.clear(f);
-    fabric.visit(terms);
+    } terms{assembly::ChainSystem<FabricSystem::Beam>(other.layout()), assembly::VectorPlaces(other.layout())};
+    for (Index f = 0; f < core::count(other.layout().chains); ++f) terms.system.clear(f);
+    other.visit(terms);
     std::ranges::stable_sort(terms.system.points(), {}, [](const auto& point) {
         return std::array{point.fibre_i, point.fibre_j, point.first_i, point.first_j};
     });

@@ -55,6 +55,9 @@ public:
     std::vector<Point>& points() noexcept { return points_; }
     const std::vector<Point>& points() const noexcept { return points_; }
 
+    /// Number of terms that couple fibres.
+    Index couplings() const noexcept { return core::count(points_); }
+
     /// Sets the values of the current state, which preconditioners read.
     void place(const Vector& state) {
         for (Index v = 0; v < layout_.vectors(); ++v) layout_.value[core::at(v)] = state.segment<3>(3 * v);
@@ -101,10 +104,17 @@ public:
 
     /// y = A x, the identity outside the free directions of held vectors.
     void apply(const Vector& x, Vector& y) const {
-        free_ = x;
-        for (const scene::HeldVector& held : layout_.held)
-            free_.segment<3>(3 * held.vector) = held.free * x.segment<3>(3 * held.vector);
-        apply_unheld(free_, y);
+        const auto is_free = [&](const scene::HeldVector& held) {
+            return Vec3(held.free * x.segment<3>(3 * held.vector)) == x.segment<3>(3 * held.vector);
+        };
+        if (std::all_of(layout_.held.begin(), layout_.held.end(), is_free)) {  // as directions of a solver are
+            apply_unheld(x, y);
+        } else {
+            free_ = x;
+            for (const scene::HeldVector& held : layout_.held)
+                free_.segment<3>(3 * held.vector) = held.free * x.segment<3>(3 * held.vector);
+            apply_unheld(free_, y);
+        }
         for (const scene::HeldVector& held : layout_.held) {
             const Vec3 whole = x.segment<3>(3 * held.vector);
             y.segment<3>(3 * held.vector) =

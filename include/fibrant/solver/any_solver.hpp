@@ -2,10 +2,11 @@
 #pragma once
 /// @file A linear solver chosen when the program runs: by a command line, a scene file or a benchmark.
 
-#include <fibrant/solver/fibre_block_pcg.hpp>
+#include <fibrant/solver/automatic_solver.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
-#include <fibrant/solver/two_level_pcg.hpp>
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 #include <variant>
@@ -15,11 +16,15 @@ namespace fibrant::solver {
 /// One of the strategies, dispatched once a call.
 class AnySolver {
 public:
+    static constexpr std::array strategies{"automatic",            "two_level_pcg",         "fibre_block_pcg",
+                                           "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"};
     struct Parameters {
-        std::string strategy = "two_level_pcg";  ///< two_level_pcg, fibre_block_pcg or sparse_cholesky
+        std::string strategy = "two_level_pcg";  ///< one of `AnySolver::strategies`
         void validate() const {
-            if (strategy != "two_level_pcg" && strategy != "fibre_block_pcg" && strategy != "sparse_cholesky")
-                core::refuse("AnySolver.strategy", "\"" + strategy + "\"", "two_level_pcg, fibre_block_pcg or sparse_cholesky");
+            if (std::find(strategies.begin(), strategies.end(), strategy) != strategies.end()) return;
+            std::string names;
+            for (const char* name : strategies) names += (names.empty() ? "" : ", ") + std::string(name);
+            core::refuse("AnySolver.strategy", "\"" + strategy + "\"", "one of " + names);
         }
     };
     AnySolver() : AnySolver(Parameters{}) {}
@@ -38,10 +43,19 @@ public:
         return std::visit([&](auto& solver) { return solver.solve(system, b, tolerance, x); }, strategy_);
     }
 
+    /// What the automatic strategy has used and why; null if another one was chosen.
+    const StrategyUse* use() const noexcept {
+        const auto* automatic = std::get_if<AutomaticSolver>(&strategy_);
+        return automatic != nullptr ? &automatic->use() : nullptr;
+    }
+
 private:
-    using Strategy = std::variant<TwoLevelPcg, FibreBlockPcg, SparseCholesky>;
+    using Strategy = std::variant<TwoLevelPcg, AutomaticSolver, FibreBlockPcg, FloatBlockCholesky, DoubleBlockCholesky, SparseCholesky>;
     static Strategy make(const std::string& name) {
+        if (name == "automatic") return AutomaticSolver();
         if (name == "fibre_block_pcg") return FibreBlockPcg();
+        if (name == "float_block_cholesky") return FloatBlockCholesky();
+        if (name == "double_block_cholesky") return DoubleBlockCholesky();
         if (name == "sparse_cholesky") return SparseCholesky();
         return TwoLevelPcg();
     }

@@ -31,6 +31,10 @@ inline double advance(const scene::DofLayout& layout, double alpha, const Conjug
     });
 }
 
+struct SamePreconditioner {
+    bool operator()(int) const noexcept { return false; }
+};
+
 }  // namespace detail
 
 /// Solves A x = b by conjugate gradients from x = 0, all vectors in double.
@@ -40,9 +44,11 @@ inline double advance(const scene::DofLayout& layout, double alpha, const Conjug
 ///
 /// @param precondition     precondition(r, z): z = M^-1 r, symmetric positive definite
 /// @param iteration_limit  > 0
-template <assembly::LinearSystem System, class Precondition>
+/// @param renewed          renewed(iterations) is asked before every iteration: true if the preconditioner is another one
+///                         from now on, with which the iteration starts again where it is
+template <assembly::LinearSystem System, class Precondition, class Renewed = detail::SamePreconditioner>
 SolveReport conjugate_gradient(const System& system, const Precondition& precondition, const Vector& b, double tolerance,
-                               int iteration_limit, ConjugateGradientVectors& cg, Vector& x) {
+                               int iteration_limit, ConjugateGradientVectors& cg, Vector& x, const Renewed& renewed = {}) {
     const scene::DofLayout& layout = system.layout();
     const assembly::HeldProjector held(layout);
     x.setZero(b.size());
@@ -75,6 +81,7 @@ SolveReport conjugate_gradient(const System& system, const Precondition& precond
             exact = true;
             before = 0.0;
         }
+        if (renewed(report.iterations)) before = 0.0;
         precondition(std::as_const(cg.r), cg.z);
         held.project(cg.z);
         const double rz = core::dot(cg.r, cg.z);

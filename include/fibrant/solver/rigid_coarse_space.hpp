@@ -383,6 +383,12 @@ private:
         core::parallel_for(clusters(), [&](Index cluster) {
             for (const Index c : clusters_[core::at(cluster)].chains) {
                 const scene::Chain& chain = layout.chains[core::at(c)];
+                Motion near = Motion::Zero(), far = Motion::Zero();  // of the two stations that nodes are between
+                int station = places_[core::at(chain.first_vector)].hat.station;
+                const auto store = [&] {
+                    station_values_.segment<6>(6 * station) += near;
+                    if (!far.isZero(0.0)) station_values_.segment<6>(6 * station + 6) += far;
+                };
                 for (Index a = 0; a < chain.nodes; ++a) {
                     Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
                     const Index first = chain.first_vector + a * chain.vectors_per_node;
@@ -392,11 +398,17 @@ private:
                         moment += arm_[core::at(v)].cross(f);
                     }
                     const Hat& hat = places_[core::at(first)].hat;
+                    if (hat.station != station) {
+                        store();
+                        near.setZero(), far.setZero();
+                        station = hat.station;
+                    }
                     Motion both;
                     both << force, moment;
-                    station_values_.segment<6>(6 * hat.station) += hat.weight(0) * both;
-                    if (hat.second > 0.0) station_values_.segment<6>(6 * hat.station + 6) += hat.second * both;
+                    near += hat.weight(0) * both;
+                    far += hat.second * both;
                 }
+                store();
             }
         }, grain(layout, clusters()));
     }

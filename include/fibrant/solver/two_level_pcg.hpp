@@ -6,21 +6,28 @@
 #include <fibrant/solver/conjugate_gradient.hpp>
 #include <fibrant/solver/rigid_coarse_space.hpp>
 
+#include <algorithm>
+#include <cstdint>
+
 namespace fibrant::solver {
 
 /// M^-1 = B^-1 + P (P^T A P)^-1 P^T: B the bands of the chains, P a RigidCoarseSpace.
 ///
 /// The factors take the stiff modes of single fibres exactly; what they leave is the bending of neighbours that contact
-/// ties together, which the coarse space has. Forms no matrix but P^T A P.
+/// ties together, which the coarse space has. Forms no matrix but P^T A P. A solve that takes long goes on with a finer
+/// space: a station every element and a quarter of the fibres in a cluster. It is formed when first wanted, and kept
+/// until the next preparation; every solve begins with the coarser one, so that no solve depends on another.
 class TwoLevelPcg {
 public:
     struct Parameters {
-        int fibres_per_cluster = 19;  ///< about, > 0
-        int elements_per_station = 2;    ///< along the chains, > 0
-        int iteration_limit = 2000;   ///< > 0
+        int fibres_per_cluster = 19;   ///< about, > 0
+        int elements_per_station = 2;  ///< along the chains, > 0
+        int refine_after = 150;        ///< iterations before the space is refined, >= 0
+        int iteration_limit = 2000;    ///< > 0
         void validate() const {
             core::require_at_least("TwoLevelPcg.fibres_per_cluster", fibres_per_cluster, 1);
             core::require_at_least("TwoLevelPcg.elements_per_station", elements_per_station, 1);
+            core::require_at_least("TwoLevelPcg.refine_after", refine_after, 0);
             core::require_at_least("TwoLevelPcg.iteration_limit", iteration_limit, 1);
         }
     };
@@ -38,6 +45,7 @@ public:
         const scene::DofLayout& layout = system.layout();
         const assembly::HeldProjector held(layout);
         work.coarse.begin(layout);
+        work.fine = Fine::none;
         work.status = work.factors.prepare(system, [&](Index chain, const Matrix& band) { work.coarse.add_chain(layout, held, chain, band); });
         if (work.status == SolveStatus::not_finite) return work.status;
         const SolveStatus coarse = work.coarse.finish(system);
@@ -51,25 +59,55 @@ public:
             x.setZero(b.size());
             return {};
         }
+        RigidCoarseSpace* space = &work.coarse;
         const auto precondition = [&](const Vector& r, Vector& z) {
             work.factors.apply(system.layout(), r, z);
-            work.coarse.add_correction(system.layout(), r, z);
+            space->add_correction(system.layout(), r, z);
         };
-        return conjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.vectors, x);
+        const auto renewed = [&](int iterations) {
+            if (iterations != parameters_.refine_after || space == &work.finer || !refine(system)) return false;
+            space = &work.finer;
+            return true;
+        };
+        return conjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.vectors, x, renewed);
     }
 
     /// Clusters of the last analysis.
     Index clusters() const { return work_->coarse.clusters(); }
     /// Unknowns of the coarse space.
     Index coarse_unknowns() const { return 6 * work_->coarse.stations(); }
+    /// Unknowns of the finer space; 0 if no solve since the last preparation has wanted it.
+    Index fine_unknowns() const { return work_->fine == Fine::ready ? 6 * work_->finer.stations() : 0; }
 
 private:
+    enum class Fine : std::uint8_t { none, ready, useless };
     struct Work {
         ChainFactors factors;
-        RigidCoarseSpace coarse;
+        RigidCoarseSpace coarse, finer;
+        Fine fine = Fine::none;
         ConjugateGradientVectors vectors;
         SolveStatus status = SolveStatus::not_finite;
     };
+    /// Forms the finer space of the present values; false if there is none.
+    template <assembly::LinearSystem System>
+    bool refine(const System& system) {
+        Work& work = *work_;
+        if (work.fine != Fine::none) return work.fine == Fine::ready;
+        work.fine = Fine::useless;
+        work.finer.analyse(system, std::max(1, parameters_.fibres_per_cluster / 4), 1);
+        if (work.finer.stations() == work.coarse.stations()) return false;
+        const scene::DofLayout& layout = system.layout();
+        const assembly::HeldProjector held(layout);
+        work.finer.begin(layout);
+        core::parallel_for(core::count(layout.chains), [&](Index chain) {
+            Matrix band;
+            system.chain_band(chain, band);
+            work.finer.add_chain(layout, held, chain, band);
+        }, grain(layout, core::count(layout.chains)));
+        if (work.finer.finish(system) != SolveStatus::not_finite) work.fine = Fine::ready;
+        return work.fine == Fine::ready;
+    }
+
     Parameters parameters_;
     Workspace<Work> work_;
 };

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file The cheapest strategy that does it: fibre blocks, two levels, and a factor of the whole when iterations fail.
+
+#include <fibrant/solver/fibre_block_pcg.hpp>
+#include <fibrant/solver/float_block_cholesky.hpp>
+#include <fibrant/solver/two_level_pcg.hpp>
+
+#include <array>
+#include <concepts>
+#include <cstdio>
+#include <span>
+#include <string>
+
+namespace fibrant::solver {
+
+/// What AutomaticSolver has used, and why.
+struct StrategyUse {
+    Index fibre_block_pcg = 0, two_level_pcg = 0, float_block_cholesky = 0;  ///< solves that each was the last to try
+    Index fallbacks = 0;                                                     ///< solves that more than one tried
+    std::string last_fallback;  ///< what the last of these was for, a sentence; empty if there was none
+};
+
+/// Number of terms that couple chains; a system that knows it says so with couplings().
+template <assembly::LinearSystem System>
+Index count_couplings(const System& system) {
+    if constexpr (requires { { system.couplings() } -> std::convertible_to<Index>; }) {
+        return system.couplings();
+    } else {
+        struct Count {
+            assembly::VectorPlaces places;
+            Index couplings = 0;
+            void add(std::span<const Index> vectors) {
+                for (const Index v : vectors) {
+                    if (places.chain(v) == places.chain(vectors.front())) continue;
+                    ++couplings;
+                    return;
+                }
+            }
+            void point(const assembly::PointTerm& term) { add(term.vectors); }
+            void dense(const assembly::DenseTerm& term) { add(term.vectors); }
+        } count{assembly::VectorPlaces(system.layout())};
+        system.visit(count);
+        return count.couplings;
+    }
+}
+
+/// Starts with FibreBlockPcg where few terms couple the chains and with TwoLevelPcg elsewhere; where that reaches its
+/// limit, goes on to the next, in the end FloatBlockCholesky. What is not wanted is not prepared.
+///
+/// The choice depends on the present system alone, so no solve depends on another. A system that is not positive
+/// definite is reported at once: that is for Newton's iteration to mend.
+class AutomaticSolver {
+public:
+    struct Parameters {
+        double few_couplings = 1.0;     ///< couplings over chains up to which fibre blocks come first, >= 0 [1]
+        int fibre_block_limit = 200;    ///< iterations before two levels are taken, > 0
+        int two_level_limit = 600;      ///< iterations before the whole is factored, > 0
+        double largest_fill = 2.5e8;    ///< entries of a factor that is allowed (4 bytes each), >= 0
+        void validate() const {
+            core::require_not_negative("AutomaticSolver.few_couplings", few_couplings);
+            core::require_at_least("AutomaticSolver.fibre_block_limit", fibre_block_limit, 1);
+            core::require_at_least("AutomaticSolver.two_level_limit", two_level_limit, 1);
+            core::require_not_negative("AutomaticSolver.largest_fill", largest_fill);
+        }
+    };
+    AutomaticSolver() : AutomaticSolver(Parameters{}) {}
+    explicit AutomaticSolver(const Parameters& parameters)
+        : parameters_{core::validated(parameters)}, fibres_{FibreBlockPcg::Parameters{.iteration_limit = parameters.fibre_block_limit}},
+          levels_{two_levels(parameters)} {}
+
+    template <assembly::LinearSystem System>
+    void analyse(const System& system) {
+        fibres_.analyse(system);
+        levels_.analyse(system);
+        prepared_.fill(false);
+    }
+    template <assembly::LinearSystem System>
+    SolveStatus prepare(const System& system) {
+        prepared_.fill(false);
+        const double couplings = static_cast<double>(count_couplings(system));
+        first_ = couplings <= parameters_.few_couplings * static_cast<double>(core::count(system.layout().chains)) ? 0 : 1;
+        return status_ = prepare_strategy(first_, system);
+    }
+    template <assembly::LinearSystem System>
+    SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
+        if (status_ == SolveStatus::not_finite) {
+            x.setZero(b.size());
+            return {};
+        }
+        int iterations = 0;
+        for (std::size_t strategy = first_;; ++strategy) {
+            SolveReport report = with(strategy, [&](auto& solver) { return solver.solve(system, b, tolerance, x); });
+            report.iterations += iterations;
+            const bool last = strategy == 2 || report.status != SolveStatus::iteration_limit;
+            if (last || !fall_back(strategy, system, report, tolerance)) {
+                ++*std::array{&use_.fibre_block_pcg, &use_.two_level_pcg, &use_.float_block_cholesky}[strategy];
+                if (strategy != first_) ++use_.fallbacks;
+                return report;
+            }
+            iterations = report.iterations;
+        }
+    }
+
+    /// Since the solver was made.
+    const StrategyUse& use() const noexcept { return use_; }
+
+private:
+    static TwoLevelPcg::Parameters two_levels(const Parameters& parameters) {
+        TwoLevelPcg::Parameters own;
+        own.iteration_limit = parameters.two_level_limit;
+        return own;
+    }
+
+    template <class Body>
+    auto with(std::size_t strategy, const Body& body) {
+        return strategy == 0 ? body(fibres_) : strategy == 1 ? body(levels_) : body(factor_);
+    }
+    template <class System>
+    SolveStatus prepare_strategy(std::size_t strategy, const System& system) {
+        return with(strategy, [&](auto& solver) {
+            prepared_[strategy] = true;
+            return solver.prepare(system);
+        });
+    }
+    /// Prepares the next strategy; false if there is none that could do better.
+    template <class System>
+    bool fall_back(std::size_t strategy, const System& system, const SolveReport& report, double tolerance) {
+        static constexpr std::array names{"FibreBlockPcg", "TwoLevelPcg"};
+        std::array<char, 160> text{};
+        std::snprintf(text.data(), text.size(), "%s reached a residual of %.1e in %d iterations, and %.1e was asked for",
+                      names[strategy], report.residual, report.iterations, tolerance);
+        use_.last_fallback = text.data();
+        if (prepared_[strategy + 1]) return true;
+        if (strategy == 1) {
+            factor_.analyse(system);
+            if (static_cast<double>(factor_.fill()) > parameters_.largest_fill) {
+                use_.last_fallback += ", but the factor of the whole would be larger than allowed";
+                return false;
+            }
+        }
+        return prepare_strategy(strategy + 1, system) != SolveStatus::not_finite;
+    }
+
+    Parameters parameters_;
+    FibreBlockPcg fibres_;
+    TwoLevelPcg levels_;
+    FloatBlockCholesky factor_;
+    std::array<bool, 3> prepared_{};
+    std::size_t first_ = 1;
+    SolveStatus status_ = SolveStatus::not_finite;
+    StrategyUse use_;
+};
+
+}  // namespace fibrant::solver

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "refusal.hpp"
+#include "solver/linear_solver_contract.hpp"
+
+#include <fibrant/solver/any_solver.hpp>
+
+using namespace fibrant;
+
+namespace {
+
+// Chains in contact: the second of the systems that every solver solves.
+test::SyntheticSystem touching() { return test::solvable_systems()[1]; }
+
+}  // namespace
+
+TEST_CASE("the automatic strategy owes what every solver does, however soon it falls back") {
+    test::check_linear_solver(solver::AutomaticSolver{});
+    test::check_linear_solver(solver::AutomaticSolver{{.few_couplings = 1e9, .fibre_block_limit = 2, .two_level_limit = 3}});
+    test::check_linear_solver(solver::AutomaticSolver{{.few_couplings = 0.0, .two_level_limit = 2}});
+}
+
+TEST_CASE("fibres that hardly touch are solved one by one, fibres that do with two levels") {
+    const test::SyntheticSystem many = touching();
+    test::SyntheticSystem few = many;
+    few.points.resize(5);
+    few.finish();
+    CHECK(solver::count_couplings(few) <= 5);
+    CHECK(solver::count_couplings(many) > core::count(many.layout().chains));
+    const Vector b = test::random_load(many.layout(), 1);
+    Vector x;
+    solver::AutomaticSolver solver;
+    test::solve(solver, few, b, 1e-6, x);
+    CHECK(solver.use().fibre_block_pcg == 1);
+    test::solve(solver, many, b, 1e-6, x);
+    CHECK(solver.use().two_level_pcg == 1);
+    CHECK(solver.use().fallbacks == 0);
+    CHECK(solver.use().last_fallback.empty());
+}
+
+TEST_CASE("a strategy that reaches its limit hands over to the next, and what was done and why is told") {
+    const test::SyntheticSystem system = touching();
+    const Vector b = test::random_load(system.layout(), 1);
+    Vector x;
+    solver::AutomaticSolver solver{{.few_couplings = 1e9, .fibre_block_limit = 2, .two_level_limit = 3}};
+    const solver::SolveReport report = test::solve(solver, system, b, 1e-9, x);
+    CHECK(report.status == solver::SolveStatus::converged);
+    CHECK(report.iterations > 5);  // all of them are counted
+    CHECK(test::residual_of(system, b, x) < 1.1e-9);
+    CHECK(solver.use().float_block_cholesky == 1);
+    CHECK(solver.use().fallbacks == 1);
+    CHECK(solver.use().last_fallback.starts_with("TwoLevelPcg reached a residual of "));
+    CHECK(solver.use().last_fallback.ends_with(" in 5 iterations, and 1.0e-09 was asked for"));
+    solver.solve(system, b, 1e-9, x);
+    CHECK(solver.use().float_block_cholesky == 2);
+}
+
+TEST_CASE("no factor is made that is larger than allowed: the best that iterations gave is returned") {
+    const test::SyntheticSystem system = touching();
+    const Vector b = test::random_load(system.layout(), 1);
+    Vector x;
+    solver::AutomaticSolver solver{{.few_couplings = 0.0, .two_level_limit = 3, .largest_fill = 10.0}};
+    const solver::SolveReport report = test::solve(solver, system, b, 1e-9, x);
+    CHECK(report.status == solver::SolveStatus::iteration_limit);
+    CHECK(report.iterations == 3);
+    CHECK(report.residual == doctest::Approx(test::residual_of(system, b, x)).epsilon(1e-6));
+    CHECK(solver.use().two_level_pcg == 1);
+    CHECK(solver.use().last_fallback.ends_with("larger than allowed"));
+}
+
+TEST_CASE("any strategy can be chosen by name, and a name that means none is refused") {
+    const test::SyntheticSystem system = touching();
+    const Vector b = test::random_load(system.layout(), 1);
+    for (const char* name : solver::AnySolver::strategies) {
+        CAPTURE(name);
+        Vector x;
+        solver::AnySolver solver{{.strategy = name}};
+        CHECK(test::solve(solver, system, b, 1e-8, x).status == solver::SolveStatus::converged);
+        CHECK(test::residual_of(system, b, x) < 1.1e-8);
+        CHECK((solver.use() != nullptr) == (std::string(name) == "automatic"));
+    }
+    CHECK(test::refusal([] { solver::AnySolver{{.strategy = "lu"}}; }) ==
+          "AnySolver.strategy = \"lu\", but it must be one of automatic, two_level_pcg, fibre_block_pcg, "
+          "float_block_cholesky, double_block_cholesky, sparse_cholesky");
+}
+
+TEST_CASE("parameters of the automatic strategy that mean nothing are refused by name") {
+    using Solver = solver::AutomaticSolver;
+    CHECK(test::refusal([] { Solver{{.few_couplings = -1.0}}; }).starts_with("AutomaticSolver.few_couplings = -1"));
+    CHECK(test::refusal([] { Solver{{.fibre_block_limit = 0}}; }).starts_with("AutomaticSolver.fibre_block_limit = 0"));
+    CHECK(test::refusal([] { Solver{{.two_level_limit = 0}}; }).starts_with("AutomaticSolver.two_level_limit = 0"));
+    CHECK(test::refusal([] { Solver{{.largest_fill = -1.0}}; }).starts_with("AutomaticSolver.largest_fill = -1"));
+}
