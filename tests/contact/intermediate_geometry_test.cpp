@@ -169,13 +169,13 @@ TEST_CASE("a plane cuts a curved fibre where dense sampling changes sides") {
     CHECK(contact::plane_section(mesh, mesh.rest_state(), 0, 7.0, {3, 0, 0}, Vec3::UnitX()) == 8.0);
 }
 
-TEST_CASE("near-parallel fibres are paired across their mean line, at equal parts of the zone") {
+TEST_CASE("near-parallel fibres are paired across their mean line, at equal distances that do not move with the zone's ends") {
     // 4 degrees apart, with as many elements that do not face each other
     const double angle = 4.0 * std::numbers::pi / 180.0;
     const Vec3 other(std::cos(angle), std::sin(angle), 0.0);
     const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre(Vec3(0.03, 0, 0.04) - other, Vec3(0.03, 0, 0.04) + other, r, 10)});
     const std::vector<StationPair> pairs = pairs_of(mesh, zone(2, 8, 2, 8), false);
-    REQUIRE(pairs.size() == 12);  // two an element
+    REQUIRE(pairs.size() == 13);  // two an element, and one where the last begins
     const Vec3 mean = (Vec3::UnitX() + other).normalized();
     double last = 0.0, length = 0.0;
     for (const StationPair& pair : pairs) {
@@ -187,7 +187,10 @@ TEST_CASE("near-parallel fibres are paired across their mean line, at equal part
         if (last != 0.0) CHECK(pair.u_i - last == doctest::Approx(0.5).epsilon(1e-9));
         last = pair.u_i, length += pair.length;
     }
-    CHECK(length == doctest::Approx(6 * 0.2).epsilon(1e-12));
+    CHECK(length == doctest::Approx(6.5 * 0.2).epsilon(1e-12));
+    const std::vector<StationPair> shorter = pairs_of(mesh, zone(2.3, 7.6, 2.3, 7.6), false);
+    REQUIRE(shorter.size() == 11);
+    for (std::size_t k = 0; k < shorter.size(); ++k) CHECK(std::abs(shorter[k].u_i - pairs[k + 1].u_i) < 1e-9);
 }
 
 TEST_CASE("a fibre that runs the other way is paired at the same places") {
@@ -217,17 +220,16 @@ TEST_CASE("a short zone has one pair, and a crossing exactly one at the closest 
     CHECK_FALSE(pairs[0].end_j);
 }
 
-TEST_CASE("where a fibre ends beside another its rounded end is paired once with the other's side") {
-    // The second fibre begins half way along the first; the zone reaches beyond its end.
+TEST_CASE("a zone that reaches beyond a fibre's end has one pair in its last section, and no cap beside another's side") {
+    // The second fibre begins half way along the first.
     const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({0.05, 0, 0.04}, {1.05, 0, 0.04}, r, 5)});
     const std::vector<StationPair> pairs = pairs_of(mesh, zone(3, 9, 0, 4), false);
     int ends = 0;
     for (const StationPair& pair : pairs) {
-        if (!pair.end_i && !pair.end_j) continue;
-        ++ends;
-        CHECK(pair.end_j);
+        CHECK_FALSE(pair.end_j);
         CHECK_FALSE(pair.end_i);
-        CHECK(pair.u_j == 0.0);
+        if (pair.u_j > 0.0) continue;
+        ++ends;
         CHECK(pair.u_i == doctest::Approx(5.25).epsilon(1e-12));
     }
     CHECK(ends == 1);
@@ -242,13 +244,10 @@ TEST_CASE("splayed fibres have a pair in their last section, where they are clos
         const Mesh mesh = mesh_of({straight_fibre({0, 0, 0}, {2, 0, 0}, r, 10), against ? straight_fibre(far_end, near_end, r, 10) : straight_fibre(near_end, far_end, r, 10)});
         const double start = against ? 10.0 : 0.0;
         const std::vector<StationPair> pairs = pairs_of(mesh, zone(0, 4, start, against ? 6 : 4), false);
-        REQUIRE(pairs.size() == 9);  // two an element, and the last section
-        // Of the two last sections, that of the fibre which ends first: its plane across the mean line cuts the other.
-        CHECK(std::min(pairs[0].u_i, std::abs(pairs[0].u_j - start)) == 0.0);
-        const Vec3 centres = mesh.position(mesh.rest_state(), 1, pairs[0].u_j) - mesh.position(mesh.rest_state(), 0, pairs[0].u_i);
-        const Vec3 mean = (Vec3::UnitX() + (far_end - near_end).normalized()).normalized();
-        CHECK(std::abs(centres.dot(mean)) < 1e-12);
-        CHECK(pairs[0].length == 0.0);
+        REQUIRE(pairs.size() == 9);  // two an element, and one where the zone ends
+        // in the last section of both, but for the angle times the distance
+        CHECK(pairs[0].u_i < 0.01);
+        CHECK(std::abs(pairs[0].u_j - start) < 0.01);
         CHECK_FALSE(pairs[0].end_i);
         CHECK_FALSE(pairs[0].end_j);
         for (std::size_t k = 1; k < pairs.size(); ++k) CHECK(distance(mesh, pairs[k].u_i, pairs[k].u_j) > distance(mesh, pairs[k - 1].u_i, pairs[k - 1].u_j));
@@ -272,10 +271,9 @@ TEST_CASE("a zone that ends inside both fibres has no pair in a last section, an
     const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({-1, 0, 0.04}, {1, 0, 0.04}, r, 10)});
     for (const StationPair& pair : pairs_of(mesh, zone(0.3, 9.7, 0.3, 9.7), false)) CHECK(pair.length > 0.0);
     const std::vector<StationPair> pairs = pairs_of(mesh, zone(9.9, 10, 9.9, 10), false);
-    REQUIRE(pairs.size() == 2);
+    REQUIRE(pairs.size() == 1);
     CHECK(pairs[0].u_i == 10.0);
     CHECK(pairs[0].u_j == 10.0);
-    CHECK(pairs[1].u_i == doctest::Approx(9.95).epsilon(1e-12));
 }
 
 TEST_CASE("fibres that meet end to end are paired by their two caps") {

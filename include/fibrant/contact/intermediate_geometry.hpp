@@ -83,11 +83,11 @@ struct ContactSpacing {
 };
 
 /// Stations of a zone (Durville, eq. 6 to 8). The intermediate geometry is the mean of the zone's two lines, points stand
-/// in the middle of equal parts of it, and the plane across it cuts the two centrelines.
+/// at equal distances on it, and the plane across it cuts the two centrelines.
 ///
 /// Departures: a crossing is one element at the mutual closest points, because every plane near a crossing yields the
-/// same gap along the cross product of the tangents; where a plane leaves a fibre, its rounded end is paired with the
-/// closest point of the other fibre; and where a zone reaches the end of a fibre, its last section has a point too.
+/// same gap along the cross product of the tangents; where a zone reaches the end of a fibre, its last section has a
+/// point; and fibres that meet end to end are paired by their rounded ends.
 /// @param zone        abscissae in elements
 /// @param crossing    the zone is a crossing
 /// @param pairs       appended to, in the order of the zone
@@ -141,38 +141,35 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         pairs.push_back(pair);
         return;
     }
-    // The section in which a fibre ends, against the other fibre: points in the middle of equal parts would leave the last
-    // quarter of an element unseen, and there splayed fibres are closest.
-    const std::size_t before = pairs.size();
-    bool at_start = false;  // the zone's start has one
-    const auto add_last_section = [&](double s) {
-        const double u_i = zone.a_i + s * (zone.b_i - zone.a_i), u_j = zone.a_j + s * (zone.b_j - zone.a_j);
-        const double near = 0.5 / spacing.points_per_element;
-        for (const bool of_i : {true, false}) {
-            const Index self = of_i ? i : j, other = of_i ? j : i;
-            const double self_end = of_i ? end_i : end_j, other_end = of_i ? end_j : end_i;
-            double u = of_i ? u_i : u_j, v = of_i ? u_j : u_i;
-            if (u > near && u < self_end - near) continue;
-            u = u <= near ? 0.0 : self_end;
-            const Vec3 origin = mesh.position(state, self, u);
-            const Vec3 tangent = mean_tangent(contact_tangent(mesh, state, self, u).normalized(),
-                                              contact_tangent(mesh, state, other, v).normalized());
-            v = plane_section(mesh, state, other, v, origin, tangent);
-            if ((v <= 0.0 || v >= other_end) && std::abs((mesh.position(state, other, v) - origin).dot(tangent)) > 1e-6 * r)
-                continue;  // the other fibre ends before: its section does it
-            const StationPair pair{of_i ? u : v, of_i ? v : u, false, false, false, 0.0};
-            const bool twice = at_start && std::abs(pair.u_i - pairs[before].u_i) + std::abs(pair.u_j - pairs[before].u_j) < 1e-6;
-            if (!twice) pairs.push_back(pair);  // a short zone has the same end at both of its own
-            at_start = true;
-            return;
-        }
+    // Stations stand at whole multiples of the spacing in the mean abscissa of both fibres, so that they stay at the same
+    // material when the ends of a zone move, and meet the nodes of aligned fibres, where a centreline has its kinks.
+    const bool backward = zone.b_j < zone.a_j;
+    const double h = 0.5 * (h_i + h_j), step = 1.0 / spacing.points_per_element;
+    const auto mean_abscissa = [&](double u_i, double u_j) {
+        return 0.5 * (h_i * u_i + h_j * (backward ? end_j - u_j : u_j)) / h;
     };
-    const double length = 0.5 * ((zone.b_i - zone.a_i) * h_i + std::abs(zone.b_j - zone.a_j) * h_j);
-    const double wanted = length * spacing.points_per_element / (0.5 * (h_i + h_j));
-    const Index count = std::max<Index>(1, static_cast<Index>(std::ceil(wanted - 1e-6)));
-    add_last_section(0.0);
-    for (Index k = 0; k < count; ++k) {
-        const double s = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+    const double from = mean_abscissa(zone.a_i, zone.a_j), to = mean_abscissa(zone.b_i, zone.b_j);
+    const auto first = static_cast<Index>(std::ceil(from / step - 1e-6)), last = static_cast<Index>(std::floor(to / step + 1e-6));
+    const auto station = [&](Index k) { return to > from ? std::clamp((static_cast<double>(k) * step - from) / (to - from), 0.0, 1.0) : 0.5; };
+    const std::size_t before = pairs.size();
+    // The last section of a fibre against the other one: there splayed fibres are closest, and no cap sticks out. False if
+    // the other fibre ends before.
+    const auto add_last_section = [&](bool of_i, double u, double v) {
+        const Index self = of_i ? i : j, other = of_i ? j : i;
+        const double other_end = of_i ? end_j : end_i;
+        for (std::size_t k = before; k < pairs.size(); ++k)
+            if (std::abs((of_i ? pairs[k].u_i : pairs[k].u_j) - u) < 0.1 * step) return true;
+        const Vec3 origin = mesh.position(state, self, u);
+        const Vec3 tangent = mean_tangent(contact_tangent(mesh, state, self, u).normalized(),
+                                          contact_tangent(mesh, state, other, v).normalized());
+        v = plane_section(mesh, state, other, v, origin, tangent);
+        if ((v <= 0.0 || v >= other_end) && std::abs((mesh.position(state, other, v) - origin).dot(tangent)) > 0.05 * r) return false;
+        pairs.push_back({of_i ? u : v, of_i ? v : u, false, false, false, 0.0});
+        return true;
+    };
+    const auto nearest_end = [&](bool of_i, double u) { return u > 0.5 * (of_i ? end_i : end_j) ? (of_i ? end_i : end_j) : 0.0; };
+    for (Index k = first; k <= std::max(first, last); ++k) {
+        const double s = first <= last ? station(k) : 0.5;
         double u_i = zone.a_i + s * (zone.b_i - zone.a_i), u_j = zone.a_j + s * (zone.b_j - zone.a_j);
         const Vec3 middle = 0.5 * (mesh.position(state, i, u_i) + mesh.position(state, j, u_j));
         const Vec3 tangent = mean_tangent(contact_tangent(mesh, state, i, u_i).normalized(), contact_tangent(mesh, state, j, u_j).normalized());
@@ -183,13 +180,23 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         const bool left_i = off_i > 0.05 * r && (u_i <= 0.0 || u_i >= end_i);
         const bool left_j = off_j > 0.05 * r && (u_j <= 0.0 || u_j >= end_j);
         if (left_i || left_j) {
-            if (left_i) add_end(true, u_i);
-            if (left_j && !left_i) add_end(false, u_j);
+            const bool of_i = left_i;
+            const double u = of_i ? u_i : u_j;
+            if (!add_last_section(of_i, nearest_end(of_i, u), of_i ? u_j : u_i)) add_end(of_i, u);
             continue;
         }
-        pairs.push_back({u_i, u_j, false, false, false, length / static_cast<double>(count)});
+        pairs.push_back({u_i, u_j, false, false, false, step * h});
     }
-    add_last_section(1.0);
+    // Ends that the zone reaches and no station has met.
+    for (const double s : {0.0, 1.0})
+        for (const bool of_i : {true, false}) {
+            const double u_i = zone.a_i + s * (zone.b_i - zone.a_i), u_j = zone.a_j + s * (zone.b_j - zone.a_j);
+            const double u = of_i ? u_i : u_j, end = nearest_end(of_i, u);
+            if (std::abs(u - end) < 0.5 * step) add_last_section(of_i, end, of_i ? u_j : u_i);
+        }
+    std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(before), pairs.end(), [](const StationPair& a, const StationPair& b) {
+        return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j;
+    });
 }
 
 }  // namespace fibrant::contact

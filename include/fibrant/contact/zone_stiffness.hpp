@@ -30,7 +30,7 @@ struct Zone {
 /// helical wire its radial sink d changes the strain by (d / r_0) cot^2(helix angle).
 struct StiffnessAdaptation {
     double allowed_penetration = core::unset;  ///< p_max [length], > 0
-    double target_fraction = 0.6;              ///< of p_max that a zone is adapted to [1], in (0, 1)
+    double target_fraction = 0.45;             ///< of p_max that a zone is adapted to, since it is deeper between points [1], in (0, 1)
     double initial_fraction = 0.05;            ///< of k_el, for zones without a predecessor [1], > 0
     double largest_change = 3.0;               ///< factor at one adaptation [1], > 1
     double cap_fraction = 10.0;                ///< of k_el, never exceeded [1], > 0
