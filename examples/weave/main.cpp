@@ -59,7 +59,7 @@ bool settle(const weave::Scene& scene, const Options& options, Index threads) {
     const auto audit = weave::cloth::audit(snapshot, scene.fabric, proximity::GridSearch());
     const auto crimp = weave::cloth::crimp_measures(snapshot, scene.fabric);
     weave::Summary summary;
-    weave::fill(summary, report, audit, crimp, radius);
+    weave::fill(summary, report, audit, crimp, radius, scene.settle.allowed_penetration_over_radius * radius);
     summary.fibres = simulator.mesh().fibre_count();
     summary.dofs = simulator.mesh().layout().unknowns();
     summary.nodes = summary.dofs / M::Beam::dofs_per_node;
@@ -72,7 +72,7 @@ bool settle(const weave::Scene& scene, const Options& options, Index threads) {
     summary.peak_memory_bytes = weave::peak_memory_bytes();
     weave::write_summary(folder, summary);
     if (!options.quiet) weave::print(summary, options.output);
-    return summary.converged && summary.wrong_crossings == 0 && summary.missing_crossings == 0;
+    return summary.converged && summary.clean;
 }
 
 int main(int argc, char** argv) {

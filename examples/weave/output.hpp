@@ -123,6 +123,7 @@ public:
                     {"external_work", increment.energy.external},
                     {"dissipated", increment.energy.dissipated},
                     {"rearranged", increment.energy.rearranged},
+                    {"released", increment.energy.released},
                     {"energy_error", increment.energy.error()},
                     {"seconds", increment.seconds}});
     }
@@ -213,7 +214,8 @@ private:
 /// What summary.json holds; scripts rely on the names.
 struct Summary {
     bool converged = false;
-    std::string reason;  ///< why not; empty if it did
+    bool clean = false;  ///< the audit: all crossings right, no two fibres deeper in each other than allowed
+    std::string reason;  ///< why not converged; empty if it did
     Index fibres = 0, nodes = 0, dofs = 0, contact_elements = 0;
     Index increments = 0, rejected_increments = 0, newton_iterations = 0, linear_solves = 0, linear_iterations = 0;
     Index crossings = 0, wrong_crossings = 0, missing_crossings = 0;
@@ -221,6 +223,7 @@ struct Summary {
     double least_gap_over_radius = fibrant::core::unset;             ///< true, between any two fibres [1]
     double crimp_warp = fibrant::core::unset, crimp_weft = fibrant::core::unset;
     double thickness = fibrant::core::unset;
+    double energy_error_over_work = fibrant::core::unset;  ///< of the report's energy balance [1]
     double wall_seconds = 0, cpu_seconds = 0;
     std::int64_t peak_memory_bytes = 0;
     std::array<double, fibrant::core::part_count> seconds_by_stage{};  ///< by core::Part
@@ -230,7 +233,7 @@ struct Summary {
 
 /// Takes over what the report, the audit and the measures say; the rest is for the caller.
 inline void fill(Summary& summary, const fibrant::simulation::Report& report, const cloth::Audit& audit,
-                 const cloth::CrimpMeasures& crimp, double radius) {
+                 const cloth::CrimpMeasures& crimp, double radius, double allowed_penetration) {
     summary.converged = report.converged;
     summary.reason = report.reason;
     summary.contact_elements = report.contact.elements;
@@ -242,6 +245,10 @@ inline void fill(Summary& summary, const fibrant::simulation::Report& report, co
     summary.greatest_penetration_over_radius = report.contact.greatest_penetration / radius;
     summary.wall_seconds = report.wall_seconds;
     summary.seconds_by_stage = report.seconds;
+    summary.clean = audit.clean(allowed_penetration);
+    const fibrant::simulation::EnergyBalance& energy = report.energy;
+    const double turned_over = std::abs(energy.external) + energy.elastic + energy.contact;
+    summary.energy_error_over_work = turned_over > 0.0 ? energy.error() / turned_over : 0.0;
     summary.crossings = audit.crossings;
     summary.wrong_crossings = audit.wrong_crossings;
     summary.missing_crossings = audit.missing_crossings;
@@ -256,6 +263,7 @@ inline void write_summary(const std::filesystem::path& folder, const Summary& su
         seconds.add(fibrant::core::part_names[part], summary.seconds_by_stage[part]);
     observe::JsonObject json;
     json.add("converged", summary.converged)
+        .add("audit_clean", summary.clean)
         .add("reason", summary.reason)
         .add("fibres", summary.fibres)
         .add("nodes", summary.nodes)
@@ -274,6 +282,7 @@ inline void write_summary(const std::filesystem::path& folder, const Summary& su
         .add("crimp_warp", summary.crimp_warp)
         .add("crimp_weft", summary.crimp_weft)
         .add("thickness", summary.thickness)
+        .add("energy_error_over_work", summary.energy_error_over_work)
         .add("wall_seconds", summary.wall_seconds)
         .add("cpu_seconds", summary.cpu_seconds)
         .add("peak_memory_bytes", summary.peak_memory_bytes)
@@ -290,12 +299,13 @@ inline void print(const Summary& summary, const std::string& folder) {
                 summary.converged ? "settled" : "NOT settled", summary.increments, summary.rejected_increments,
                 summary.newton_iterations, clock_text(summary.wall_seconds).c_str());
     if (!summary.converged) std::printf("  %s\n", summary.reason.c_str());
+    else if (!summary.clean) std::printf("  the audit is NOT clean: a crossing is wrong, or two fibres are too deep in each other\n");
     std::printf("  crossings  %td, against the pattern %td, missing %td\n", summary.crossings, summary.wrong_crossings,
                 summary.missing_crossings);
     std::printf("  crimp      warp %.4f  weft %.4f;  thickness %.4f\n", summary.crimp_warp, summary.crimp_weft,
                 summary.thickness);
-    std::printf("  depth / r  %.4f;  least gap / r %.4f\n", summary.greatest_penetration_over_radius,
-                summary.least_gap_over_radius);
+    std::printf("  depth / r  %.4f;  least gap / r %.4f;  energy balance %.1e\n", summary.greatest_penetration_over_radius,
+                summary.least_gap_over_radius, summary.energy_error_over_work);
     std::printf("  results    %s (view.svg, top.svg, slice_*.svg, summary.json, paraview/fibres.pvd)\n", folder.c_str());
 }
 

@@ -29,6 +29,9 @@ struct Stage {
     bool forced_orders = false;                 ///< keep the scene's forced orders
     /// Spring from every centre to its last accepted place [force / length]: keeps what is slack from leaping.
     double damping = 0.0;
+    /// Factor on the damping after each increment without a cut, in (0, 1]; a cut raises it again. Below 1, the stage ends
+    /// only with an increment that had no damping at all.
+    double damping_decay = 1.0;
     double looseness = 1.0;                     ///< on the tolerances of contact and normal passes, >= 1
     std::optional<typename M::Normal> normal{};
     std::optional<typename M::Friction> friction{};
@@ -56,6 +59,7 @@ struct Loading {
             core::require_at_least("Stage.increments", stage.increments, 1);
             core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);
             core::require_not_negative("Stage.damping", stage.damping);
+            core::require(stage.damping_decay > 0.0 && stage.damping_decay <= 1.0, "Stage.damping_decay", stage.damping_decay, "in (0, 1]");
             core::require(stage.looseness >= 1.0 && stage.looseness <= 100.0, "Stage.looseness", stage.looseness, "in [1, 100]");
             if (stage.gap_limit) core::require_positive("Stage.gap_limit", *stage.gap_limit);
             for (const Ramp& ramp : stage.ramps) core::require_finite("Ramp.to", ramp.to);

@@ -19,8 +19,11 @@ struct EnergyBalance {
     double dissipated = 0.0;    ///< by sliding, >= 0
     double damped = 0.0;        ///< taken by the damping of stages that have one, >= 0
     double rearranged = 0.0;    ///< put in by changes of contact elements, gap shifts and penalty stiffness at rest
-    /// What is missing: external + rearranged - dissipated - damped - stored.
-    double error() const noexcept { return external + rearranged - dissipated - damped - elastic - contact; }
+    double released = 0.0;      ///< let go in stages that force an order: an increment starts from an imposed overlap and leaps
+    /// What is missing: external + rearranged - released - dissipated - damped - stored.
+    double error() const noexcept {
+        return external + rearranged - released - dissipated - damped - elastic - contact;
+    }
 };
 
 /// One accepted increment.

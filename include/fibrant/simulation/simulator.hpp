@@ -136,10 +136,13 @@ public:
     }
 
 private:
+    static constexpr double least_damping = 1e-3;  ///< over that of the stage: below, none
+
     /// Where a run stands between two increments.
     struct Position {
         Index stage = 0, in_stage = 0, accepted = 0, easy = 0;
         double progress = 0.0, fraction = 1.0, displacement = 0.0;
+        double damping = 1.0;      ///< over that of the stage
         bool stage_over = false;
         std::vector<double> from;  ///< amplitudes at the start of the stage
     };
@@ -171,6 +174,7 @@ private:
     void next_stage() {
         ++position_.stage;
         position_.in_stage = 0, position_.easy = 0, position_.progress = 0.0, position_.fraction = 1.0;
+        position_.damping = 1.0;
         position_.stage_over = false;
         position_.from = amplitudes_;
     }
@@ -205,7 +209,7 @@ private:
             const std::vector<double> amplitudes = amplitudes_at(stage, progress);
             const double contact_before = contacts_work_;
             Vector trial = state_;
-            equilibrium_.begin(amplitudes, state_, stage.damping);
+            equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping);
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver> loops(
                 equilibrium_, contacts_, linear_, parameters_.iteration, radius_, touching, clock_);
             // A limited gap moves fibres by about the limit: the search looks that far ahead.
@@ -213,7 +217,7 @@ private:
             const solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, stage.looseness);
             increment.counts += attempt.counts;
             if (attempt.converged) {
-                account(trial, increment, contact_before);
+                account(trial, increment, contact_before, stage.forced_orders);
                 state_ = trial;
                 amplitudes_ = amplitudes;
                 increment.residual = attempt.residual;
@@ -225,6 +229,7 @@ private:
             ++report.rejected_increments, ++increment.cuts;
             contacts_.restore();
             position_.fraction *= 0.5, position_.easy = 0;
+            position_.damping = std::clamp(4.0 * position_.damping, least_damping, 1.0 / least_damping);
             if (position_.fraction < loading.smallest_fraction || report.rejected_increments > loading.most_rejected) {
                 report.counts += increment.counts;
                 report.reason = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": " + attempt.reason;
@@ -240,7 +245,12 @@ private:
         increment.stage = stage.name;
         increment.stage_progress = position_.progress;
         increment.progress = (static_cast<double>(position_.stage) + position_.progress) / static_cast<double>(stages.size());
-        position_.stage_over = position_.progress >= 1.0 && (!stage.until || stage.until(increment));
+        // A state is at rest when nothing that holds it is taken away any more: the last increment has no damping.
+        const bool reached = position_.progress >= 1.0 && (!stage.until || stage.until(increment));
+        const bool held = stage.damping > 0.0 && stage.damping_decay < 1.0 && position_.damping > 0.0;
+        position_.stage_over = reached && !held;
+        if (increment.cuts == 0) position_.damping *= position_.damping > 1.0 ? 0.5 : stage.damping_decay;
+        if (position_.damping < least_damping) position_.damping = 0.0;
         contacts_.accept(state_);
         increment.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         report.counts += increment.counts;
@@ -249,7 +259,8 @@ private:
     }
 
     /// Energy balance of an increment that has converged.
-    void account(const Vector& trial, IncrementReport& increment, double contact_before) {
+    void account(const Vector& trial, IncrementReport& increment, double contact_before, bool forced) {
+        const double error_before = energy_.error();
         const Vector external = equilibrium_.external() + equilibrium_.reaction();
         if (last_external_.size() != external.size()) last_external_ = Vector::Zero(external.size());
         energy_.external += 0.5 * (trial - state_).dot(external + last_external_);
@@ -262,6 +273,7 @@ private:
         contacts_.evaluate(trial);
         energy_.contact = contacts_work_ = now.work;
         energy_.elastic = equilibrium_.elastic_energy(trial);
+        if (forced) energy_.released += energy_.error() - error_before;  // a leap has no balance to check
         increment.energy = energy_;
     }
 
@@ -309,14 +321,15 @@ private:
 
     void write_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, const Report& report) const {
         CheckpointWriter file;
-        file.put(std::string("fibrant checkpoint 2"));
+        file.put(std::string("fibrant checkpoint 3"));
         file.put(scene_identity()), file.put(loading_identity(stages));
         file.put(state_);
         file.put(last_external_);
         file.put(energy_), file.put(contacts_work_);
         for (const double amplitude : amplitudes_) file.put(amplitude);
         file.put(position_.stage), file.put(position_.in_stage), file.put(position_.accepted), file.put(position_.easy);
-        file.put(position_.progress), file.put(position_.fraction), file.put(position_.displacement), file.put(position_.stage_over);
+        file.put(position_.progress), file.put(position_.fraction), file.put(position_.displacement);
+        file.put(position_.damping), file.put(position_.stage_over);
         for (const double amplitude : position_.from) file.put(amplitude);
         file.put(core::count(contacts_.accepted_memory().records()));
         for (const auto& record : contacts_.accepted_memory().records()) record.each([&](const auto& value) { file.put(value); });
@@ -336,7 +349,7 @@ private:
 
     void read_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, Report& report) {
         CheckpointReader file(path);
-        file.expect(file.get_text() == "fibrant checkpoint 2", "the format");
+        file.expect(file.get_text() == "fibrant checkpoint 3", "the format");
         file.expect(file.get<std::uint64_t>() == scene_identity(), "the set of fibres and channels");
         file.expect(file.get<std::uint64_t>() == loading_identity(stages), "the loading");
         Vector state = file.get_vector();
@@ -346,7 +359,8 @@ private:
         for (double& amplitude : amplitudes_) amplitude = file.get<double>();
         position_.stage = file.get<Index>(), position_.in_stage = file.get<Index>(), position_.accepted = file.get<Index>();
         position_.easy = file.get<Index>(), position_.progress = file.get<double>(), position_.fraction = file.get<double>();
-        position_.displacement = file.get<double>(), position_.stage_over = file.get<bool>();
+        position_.displacement = file.get<double>();
+        position_.damping = file.get<double>(), position_.stage_over = file.get<bool>();
         for (double& amplitude : position_.from) amplitude = file.get<double>();
         std::vector<typename Contacts::Memory::Record> records(core::at(file.get<Index>()));
         for (auto& record : records) record.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });

@@ -124,11 +124,11 @@ struct SettleParameters {
     double tension_strain = 2e-3;        ///< tension of a tow over its E A while tows part [1], > 0
     double final_tension_factor = 1e-2;  ///< tension at the end over that at the start [1], in (0, 1]
     Index tension_increments = 1;        ///< in which the tension is raised from its first part, >= 1
-    double gap_limit_over_radius = 1.0;  ///< deepest penetration that a law is shown in an increment [1], > 0
+    double gap_limit_over_radius = 0.25;  ///< deepest penetration that a law is shown in an increment, about its motion [1], > 0
     double allowed_penetration_over_radius = 1e-2;  ///< [1], in (0, 0.5]
-    Index separation_increments = 60;               ///< at most, until no tows overlap, >= 1
-    Index release_increments = 4;                   ///< in which the tension is lowered, >= 1
-    Index rest_increments = 8;                      ///< at most, at the final tension until nothing moves, >= 0
+    Index separation_increments = 250;              ///< at most, until no tows overlap, >= 1
+    Index release_increments = 12;                  ///< in which the tension is lowered, >= 1
+    Index rest_increments = 200;                    ///< at most, at either tension until nothing moves, >= 1
     double rest_motion_over_radius = 1e-2;          ///< greatest nodal motion of an increment at rest [1], > 0
     double friction_coefficient = 0.15;             ///< from the handover on [1], >= 0; tows part without friction
 
@@ -143,7 +143,7 @@ struct SettleParameters {
                       name + "allowed_penetration_over_radius", allowed_penetration_over_radius, "> 0 and <= 0.5");
         core::require_at_least(name + "separation_increments", separation_increments, 1);
         core::require_at_least(name + "release_increments", release_increments, 1);
-        core::require_at_least(name + "rest_increments", rest_increments, 0);
+        core::require_at_least(name + "rest_increments", rest_increments, 1);
         core::require_positive(name + "rest_motion_over_radius", rest_motion_over_radius);
         core::require_not_negative(name + "friction_coefficient", friction_coefficient);
     }

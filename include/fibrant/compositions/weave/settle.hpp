@@ -9,6 +9,7 @@
 #include <fibrant/simulation/simulator.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fibrant::compositions::weave {
 
@@ -51,37 +52,41 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     separation.gap_limit = settle.gap_limit_over_radius * r;
     separation.until = simulation::until_separated(5.0 * allowed);
     separation.most_increments = settle.separation_increments;
+    // Friction meets fibres that have just parted. Without it a tow would spread for ever more slowly, and how far it had
+    // come would depend on the increments.
     simulation::Stage<M> handover;
     handover.name = "handover";
     handover.increments = 1;
-    handover.until = simulation::until_settled(0.1 * r, 5.0 * allowed);  // friction meets fibres that are nearly at rest
-    handover.most_increments = settle.separation_increments;
+    if constexpr (core::Active<typename M::Friction>)
+        handover.friction.emplace(typename M::Friction::Parameters{
+            settle.friction_coefficient, std::max(0.02 * r, settle.friction_coefficient * allowed)});
+    handover.until = simulation::until_settled(0.08 * settle.gap_limit_over_radius * r, 5.0 * allowed);
+    handover.most_increments = settle.rest_increments;
     simulation::Stage<M> release;
     release.name = "release";
     release.increments = settle.release_increments;
-    if constexpr (core::Active<typename M::Friction>)
-        release.friction.emplace(typename M::Friction::Parameters{
-            settle.friction_coefficient, std::max(0.02 * r, settle.friction_coefficient * allowed)});
     release.ramps = {{tension_channel, settle.final_tension_factor, true}};
     simulation::Stage<M> rest;
     rest.name = "rest";
     rest.increments = 1;
     rest.until = simulation::until_settled(settle.rest_motion_over_radius * r, allowed);
-    rest.most_increments = std::max<Index>(1, settle.rest_increments);
+    rest.most_increments = settle.rest_increments;
     // Paths are only a means, and what one increment leaves over moves in the next: the last stage tells when it is all.
-    tension.looseness = 5.0;
-    separation.looseness = 50.0;
-    handover.looseness = release.looseness = 20.0;
-    rest.looseness = 5.0;
-    // A tenth of what the tension of a fibre makes of an element's length: slack fibres creep into their places instead of
-    // leaping, and at rest nothing of it is left.
+    tension.looseness = rest.looseness = 5.0;
+    separation.looseness = handover.looseness = release.looseness = 10.0;
+    // Slack fibres creep into their places instead of leaping. At the gap limit of one radius, a tenth of what the tension
+    // makes of an element's length; an increment is a time, and half the time is twice the spring, so that the path is the
+    // same when increments are halved. It falls with the tension, and at the end to nothing: rest is an equilibrium.
     const auto node_stiffness = [&](Family family) {
         const TowParameters& tow = fabric.tow(family);
         const double pull = settle.tension_strain * tow.material.young_modulus * tow.section().area();
         return 4.0 * pull * static_cast<double>(fabric.elements) / fabric.fibre_length(family);
     };
-    const double damping = 0.1 * std::min(node_stiffness(Family::warp), node_stiffness(Family::weft));
-    for (simulation::Stage<M>* stage : {&separation, &handover, &release, &rest}) stage->damping = damping;
+    const double damping = 0.1 / settle.gap_limit_over_radius * std::min(node_stiffness(Family::warp), node_stiffness(Family::weft));
+    separation.damping = handover.damping = release.damping = damping;
+    release.damping_decay = std::pow(settle.final_tension_factor, 1.0 / static_cast<double>(settle.release_increments));
+    rest.damping = damping * settle.final_tension_factor;
+    rest.damping_decay = 0.5;
     loading.stages = {tension, separation, handover, release, rest};
     return loading;
 }
