@@ -1,0 +1,53 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Runs the example `weave` as a user would: a small scene to its end, the same one stopped and resumed to the same bits, and
+# scenes that are refused before any work.
+# usage: weave_example.sh <the program> <scene file> <scratch folder>
+weave=$1
+scene=$2
+out=$3
+rm -rf "$out"
+mkdir -p "$out" || exit 1
+small="--set fabric.warp_tows=2 --set fabric.weft_tows=2 --set fabric.elements=20 --set warp.fibres=3 --set warp.real_fibres=60
+  --set warp.aspect=1 --set output.paraview=false --set output.pictures=false --quiet"
+fail() {
+  echo "weave_example: $*"
+  exit 1
+}
+# All that a run found; what depends on the clock and on memory is left out.
+figures() {
+  grep -v -e seconds -e memory -e '"[a-z]*": [0-9.e-]*,\{0,1\}$' "$1/summary.json"
+  grep -e crimp -e thickness -e gap -e penetration -e iterations -e increments "$1/summary.json"
+}
+
+"$weave" "$scene" --output "$out/whole" $small || fail "the small scene did not settle"
+for key in converged fibres nodes dofs contact_elements increments rejected_increments newton_iterations linear_solves \
+  linear_iterations wrong_crossings greatest_penetration_over_radius least_gap_over_radius crimp_warp crimp_weft thickness \
+  wall_seconds cpu_seconds peak_memory_bytes seconds_by_stage solver threads version; do
+  grep -q "\"$key\"" "$out/whole/summary.json" || fail "summary.json has no $key"
+done
+
+"$weave" "$scene" --output "$out/parts" $small --set settle.separation_increments=6
+[ $? -eq 1 ] || fail "a run that was stopped early did not say so"
+grep -q '"converged": false' "$out/parts/summary.json" || fail "summary.json of a run that was stopped says nothing of it"
+"$weave" "$scene" --output "$out/parts" $small --resume || fail "the resumed run did not settle"
+figures "$out/whole" > "$out/whole.txt"
+figures "$out/parts" > "$out/parts.txt"
+cmp "$out/whole.txt" "$out/parts.txt" || fail "the resumed run found another state"
+
+refused() {
+  text=$1
+  shift
+  "$weave" "$scene" --output "$out/refused" --quiet "$@" 2> "$out/message" && fail "accepted: $*"
+  grep -q "$text" "$out/message" || fail "$* says: $(cat "$out/message")"
+  [ ! -e "$out/refused/summary.json" ] || fail "$* was refused after work had begun"
+}
+refused "fabric.warp_towz" --set fabric.warp_towz=4
+refused "radius" --set warp.radius=-0.02
+refused "radius" --set warp.radius=nan
+refused "fibres" --set warp.fibres=0
+refused "warp_tows" --set fabric.warp_tows=\"four\"
+refused "pattern" --set 'fabric.pattern=["101", "010"]'
+refused "pattern" --set 'fabric.pattern=["1111", "1111", "1111", "1111"]'
+refused "elements" --set fabric.elements=4000
+exit 0
