@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Every header compiles alone, included twice, without a warning.
+# Every header compiles alone, included twice, without a warning. One that needs a header which the compiler does not
+# find, and says so with `#if !__has_include(<...>)`, is left out.
 # usage: headers_alone.sh INCLUDE_FOLDER COMPILER FLAG...
 set -eu
 include=$1
@@ -10,6 +11,12 @@ export include
 (cd "$include" && find fibrant -name '*.hpp' | sort) | xargs -P 2 -I HEADER sh -c '
   header=$1
   shift
+  for needed in $(sed -n "s/^#if !__has_include(\(<[^>]*>\))$/\1/p" "$include/$header"); do
+    printf "#if !__has_include(%s)\n#error\n#endif\n" "$needed" | "$@" -fsyntax-only -x c++ - 2>/dev/null || {
+      echo "$header left out: $needed is not found"
+      exit 0
+    }
+  done
   printf "#include <%s>\n#include <%s>\n" "$header" "$header" |
     "$@" -I"$include" -Wall -Wextra -Wpedantic -Wconversion -Werror -fsyntax-only -x c++ - ||
     { echo "$header does not compile alone with $1"; exit 1; }' headers_alone HEADER "$@"

@@ -8,8 +8,8 @@
 
 #include <array>
 #include <concepts>
-#include <cstdio>
 #include <span>
+#include <sstream>
 #include <string>
 
 namespace fibrant::solver {
@@ -127,10 +127,11 @@ private:
     template <class System>
     bool fall_back(std::size_t strategy, const System& system, const SolveReport& report, double tolerance) {
         static constexpr std::array names{"FibreBlockPcg", "TwoLevelPcg"};
-        std::array<char, 160> text{};
-        std::snprintf(text.data(), text.size(), "%s reached a residual of %.1e in %d iterations, and %.1e was asked for",
-                      names[strategy], report.residual, report.iterations, tolerance);
-        use_.last_fallback = text.data();
+        std::ostringstream text;
+        text.precision(1);
+        text << std::scientific << names[strategy] << " reached a residual of " << report.residual << " in " << report.iterations
+             << " iterations, and " << tolerance << " was asked for";
+        use_.last_fallback = text.str();
         if (prepared_[strategy + 1]) return true;
         if (strategy == 1) {
             factor_.analyse(system);

@@ -5,8 +5,6 @@
 #include <fibrant/solver/linear_solver.hpp>
 #include <fibrant/solver/saved_system.hpp>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -40,10 +38,10 @@ public:
     template <class System>
     SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
         if (++solves_ % parameters_.every == 0) {
-            std::array<char, 40> name{};
-            std::snprintf(name.data(), name.size(), "system_%06lld.bin", static_cast<long long>(solves_));
+            const std::string number = std::to_string(solves_);
             std::filesystem::create_directories(parameters_.folder);
-            write_system(std::filesystem::path(parameters_.folder) / name.data(), system, b);
+            const std::string name = "system_" + std::string(number.size() < 6 ? 6 - number.size() : 0, '0') + number + ".bin";
+            write_system(std::filesystem::path(parameters_.folder) / name, system, b);
         }
         return base_.solve(system, b, tolerance, x);
     }
