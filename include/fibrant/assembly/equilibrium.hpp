@@ -93,12 +93,7 @@ public:
                 residual.template segment<element_unknowns>(mesh_->first_unknown(f, e)) +=
                     beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e));
         });
-        if (damping_ > 0.0) {
-            for (Index v = 0; v < core::count(system_.layout().length); ++v) {
-                const double length = system_.layout().length[core::at(v)];
-                residual.template segment<3>(3 * v) += damping_ * length * length * (state.template segment<3>(3 * v) - anchor_.template segment<3>(3 * v));
-            }
-        }
+        if (damping_ > 0.0) residual += damping_force(state);
         external_.setZero(state.size());
         load_.add_forces(amplitudes_, state, external_);
         residual -= external_;
@@ -161,15 +156,15 @@ public:
         for (const double value : part) sum += value;
         return sum;
     }
-    /// Work that the damping has taken since the increment began [force * length].
-    double damped(const Vector& state) const {
-        if (!(damping_ > 0.0)) return 0.0;
-        double sum = 0.0;
+    /// Force of the damping on the fibres' supports in a state: what it takes is work of this force [force].
+    Vector damping_force(const Vector& state) const {
+        Vector force = Vector::Zero(state.size());
+        if (!(damping_ > 0.0)) return force;
         for (Index v = 0; v < core::count(system_.layout().length); ++v) {
             const double length = system_.layout().length[core::at(v)];
-            sum += length * length * (state.segment<3>(3 * v) - anchor_.segment<3>(3 * v)).squaredNorm();
+            force.segment<3>(3 * v) = damping_ * length * length * (state.segment<3>(3 * v) - anchor_.segment<3>(3 * v));
         }
-        return 0.5 * damping_ * sum;
+        return force;
     }
     /// External forces, and forces on held components, of the last residual.
     const Vector& external() const noexcept { return external_; }

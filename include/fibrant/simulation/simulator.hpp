@@ -267,7 +267,10 @@ private:
         last_external_ = external;
         const contact::ContactFigures now = contacts_.figures(trial);
         energy_.dissipated += now.dissipated;
-        energy_.damped += equilibrium_.damped(trial);
+        const Vector damping = equilibrium_.damping_force(trial);
+        if (last_damping_.size() != damping.size()) last_damping_ = Vector::Zero(damping.size());
+        energy_.damped += 0.5 * (trial - state_).dot(damping + last_damping_);
+        last_damping_ = damping;
         contacts_.evaluate(state_);  // the same contact elements, where the increment started
         energy_.rearranged += contacts_.figures(state_).work - contact_before;
         contacts_.evaluate(trial);
@@ -324,7 +327,7 @@ private:
         file.put(std::string("fibrant checkpoint 3"));
         file.put(scene_identity()), file.put(loading_identity(stages));
         file.put(state_);
-        file.put(last_external_);
+        file.put(last_external_), file.put(last_damping_);
         file.put(energy_), file.put(contacts_work_);
         for (const double amplitude : amplitudes_) file.put(amplitude);
         file.put(position_.stage), file.put(position_.in_stage), file.put(position_.accepted), file.put(position_.easy);
@@ -354,7 +357,7 @@ private:
         file.expect(file.get<std::uint64_t>() == loading_identity(stages), "the loading");
         Vector state = file.get_vector();
         state_ = std::move(state);
-        last_external_ = file.get_vector();
+        last_external_ = file.get_vector(), last_damping_ = file.get_vector();
         energy_ = file.get<EnergyBalance>(), contacts_work_ = file.get<double>();
         for (double& amplitude : amplitudes_) amplitude = file.get<double>();
         position_.stage = file.get<Index>(), position_.in_stage = file.get<Index>(), position_.accepted = file.get<Index>();
@@ -395,7 +398,7 @@ private:
     Position position_;
     EnergyBalance energy_;
     double contacts_work_ = 0.0;
-    Vector last_external_;
+    Vector last_external_, last_damping_;
     core::StageClock clock_;
 };
 
