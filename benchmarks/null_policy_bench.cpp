@@ -3,6 +3,7 @@
 // Coulomb and with the empty law, in one run. Prints CSV: bytes of each part, then medians of time per contact element.
 // usage: benchmark_null_policy_bench [fibres a tow [repeats]]; default 7 and 7
 #include <fibrant/beam/director_beam.hpp>
+#include <fibrant/compositions/weave/measures.hpp>
 #include <fibrant/compositions/weave/settle.hpp>
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/proximity/grid_search.hpp>

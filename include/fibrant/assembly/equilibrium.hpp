@@ -138,7 +138,7 @@ public:
         points.clear();
         const auto& elements = contacts_->elements();
         for (Index k = 0; k < core::count(elements); ++k) {
-            if (contacts_->responses()[core::at(k)].slope == 0.0) continue;
+            if (!contacts_->carries(k)) continue;
             const auto& element = elements[core::at(k)];
             points.push_back({element.first_i, element.first_j, element.fibre_i, element.fibre_j, element.weights_i,
                               element.weights_j, contacts_->tangent(k)});

@@ -29,6 +29,7 @@ template <beam::BeamElement B, law::FrictionLaw Friction>
 struct FrictionState<B, Friction> {
     typename Friction::History history;        ///< of the last accepted state, turned with the fibres
     beam::ElementWeights<B> weights_i{}, weights_j{};  ///< of the pair of particles whose slip is counted
+    double bound = -1.0;                       ///< R_N that bounds friction until normals are renewed; < 0: the present one [force]
     Vec3 accepted_offset = Vec3::Zero();  ///< particle j - particle i in the last accepted state, turned since with the pair
 };
 

@@ -98,7 +98,16 @@ public:
             if (k < core::count(responses_) && responses_[core::at(k)].reaction > 0.0)
                 turned[core::at(k)] = std::atan2(before.cross(element.normal).norm(), before.dot(element.normal));
         });
+        hold_reactions();
         return turned.empty() ? 0.0 : *std::max_element(turned.begin(), turned.end());
+    }
+
+    /// Middle loop: the reactions of the last evaluation bound friction from now on. Without the change of its own bound,
+    /// friction has a convex potential and Newton does not cycle between stick and slip.
+    void hold_reactions() {
+        if constexpr (core::Active<Friction>)
+            for (std::size_t k = 0; k < std::min(elements_.size(), responses_.size()); ++k)
+                elements_[k].friction.bound = responses_[k].reaction;
     }
 
     /// Inner loop: gaps, reactions and friction of a state.
@@ -115,7 +124,8 @@ public:
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             if constexpr (core::Active<Friction>) {
                 slip -= slip.dot(element.normal) * element.normal;
-                frictions_[core::at(k)] = friction_.response(slip, response.reaction, element.friction.history);
+                const double bound = element.friction.bound < 0.0 ? response.reaction : element.friction.bound;
+                frictions_[core::at(k)] = friction_.response(slip, bound, element.friction.history);
             }
         });
     }
@@ -126,16 +136,20 @@ public:
         if constexpr (core::Active<Friction>) sum += frictions_[core::at(k)].force;
         return sum;
     }
+    /// Element k exerts a force or may do so at once.
+    bool carries(Index k) const noexcept {
+        if (responses_[core::at(k)].slope != 0.0 || responses_[core::at(k)].reaction != 0.0) return true;
+        if constexpr (core::Active<Friction>) return elements_[core::at(k)].friction.bound > 0.0;
+        return false;
+    }
     /// Stiffness of element k between its two particles, symmetric and positive semidefinite [force / length]. The
     /// reaction in the friction bound is taken as constant, which keeps it symmetric.
     Mat3 tangent(Index k) const noexcept {
         const Vec3& normal = elements_[core::at(k)].normal;
         Mat3 sum = -responses_[core::at(k)].slope * normal * normal.transpose();
         if constexpr (core::Active<Friction>) {
-            if (responses_[core::at(k)].reaction > 0.0) {
-                const Mat3 plane = Mat3::Identity() - normal * normal.transpose();
-                sum += plane * frictions_[core::at(k)].tangent * plane;
-            }
+            const Mat3 plane = Mat3::Identity() - normal * normal.transpose();
+            sum += plane * frictions_[core::at(k)].tangent * plane;
         }
         return sum;
     }
@@ -171,7 +185,7 @@ public:
         core::parallel_for(mesh_->fibre_count(), [&](Index f) {
             for (const std::int32_t side : sides(f)) {
                 const Index k = side / 2;
-                if (responses_[core::at(k)].reaction == 0.0) continue;
+                if (!carries(k)) continue;
                 const Element& element = elements_[core::at(k)];
                 const bool of_j = side % 2 == 1;
                 const Vec3 value = of_j ? force(k) : Vec3(-force(k));

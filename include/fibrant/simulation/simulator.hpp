@@ -228,7 +228,10 @@ private:
             }
             ++report.rejected_increments, ++increment.cuts;
             contacts_.restore();
-            position_.fraction *= 0.5, position_.easy = 0;
+            // Once its ramps are over, only more damping makes an increment easier.
+            const bool damped = stage.damping > 0.0 && position_.damping < 1.0 / least_damping;
+            if (position_.progress < 1.0 || !damped) position_.fraction *= 0.5;
+            position_.easy = 0;
             position_.damping = std::clamp(4.0 * position_.damping, least_damping, 1.0 / least_damping);
             if (position_.fraction < loading.smallest_fraction || report.rejected_increments > loading.most_rejected) {
                 report.counts += increment.counts;
@@ -249,7 +252,7 @@ private:
         const bool reached = position_.progress >= 1.0 && (!stage.until || stage.until(increment));
         const bool held = stage.damping > 0.0 && stage.damping_decay < 1.0 && position_.damping > 0.0;
         position_.stage_over = reached && !held;
-        if (increment.cuts == 0) position_.damping *= position_.damping > 1.0 ? 0.5 : stage.damping_decay;
+        if (increment.cuts == 0) position_.damping *= position_.damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, position_.fraction);
         if (position_.damping < least_damping) position_.damping = 0.0;
         contacts_.accept(state_);
         increment.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

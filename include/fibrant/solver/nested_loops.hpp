@@ -60,6 +60,7 @@ public:
             });
             clock_->time(core::Part::preparation, [&] {
                 contacts_->evaluate(state);
+                contacts_->hold_reactions();
                 equilibrium_->linearise(state, false, 0.0);
                 linear_->analyse(equilibrium_->system());
             });
