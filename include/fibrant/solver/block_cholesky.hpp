@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -48,9 +49,10 @@ public:
     ///
     /// @param sizes  of the blocks, each a multiple of 3: unknowns come in vectors
     /// @param pairs  blocks that may be non-zero off the diagonal, in either order, repetitions allowed
-    void analyse(const std::vector<int>& sizes, const std::vector<Supernodes::Pair>& pairs) {
+    /// @param places where the blocks stand in space, if they do
+    void analyse(const std::vector<int>& sizes, const std::vector<Supernodes::Pair>& pairs, std::span<const Vec3> places = {}) {
         const int n = static_cast<int>(sizes.size());
-        supernodes_.analyse(n, pairs);
+        supernodes_.analyse(n, pairs, places);
         offset_.assign(core::at(n) + 1, 0);
         for (int v = 0; v < n; ++v) offset_[core::at(supernodes_.place(v)) + 1] = sizes[core::at(v)];
         for (int k = 0; k < n; ++k) offset_[core::at(k) + 1] += offset_[core::at(k)];

@@ -31,12 +31,14 @@ public:
         const scene::DofLayout& layout = system.layout();
         Work& work = *work_;
         std::vector<int> sizes;
+        std::vector<Vec3> places;
         work.place.assign(layout.kind.size(), {});
         for (const scene::Chain& chain : layout.chains) {
             for (Index k = 0; k < chain.nodes * chain.vectors_per_node; ++k) {
                 work.place[core::at(chain.first_vector + k)] = {static_cast<int>(core::count(sizes) + k / chain.vectors_per_node),
                                                                 static_cast<int>(k % chain.vectors_per_node)};
             }
+            for (Index a = 0; a < chain.nodes; ++a) places.push_back(layout.value[core::at(chain.first_vector + a * chain.vectors_per_node)]);
             sizes.insert(sizes.end(), core::at(chain.nodes), static_cast<int>(3 * chain.vectors_per_node));
         }
         struct Graph {
@@ -62,7 +64,7 @@ public:
         std::vector<Supernodes::Pair> pairs;
         for (int i = 0; i < static_cast<int>(sizes.size()); ++i)
             for (const int j : graph.columns[core::at(i)]) pairs.emplace_back(i, j);
-        work.factor.analyse(sizes, pairs);
+        work.factor.analyse(sizes, pairs, places);
     }
 
     template <assembly::LinearSystem System>

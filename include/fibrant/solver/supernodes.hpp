@@ -2,7 +2,7 @@
 #pragma once
 /// @file Symbolic sparse Cholesky on a graph of blocks: an order with little fill, and the supernodes of the factor.
 
-#include <fibrant/core/types.hpp>
+#include <fibrant/solver/dissection.hpp>
 
 #include <Eigen/OrderingMethods>
 
@@ -25,11 +25,16 @@ public:
 
     /// @param vertices  of the graph
     /// @param pairs     neighbours, in either order, each once or several times; loops may be there
-    void analyse(int vertices, const std::vector<Pair>& pairs) {
-        order(vertices, pairs);
-        const std::vector<int> parent = elimination_tree();
-        relabel(postorder(parent));
-        find_supernodes();
+    /// @param places    of the vertices in space, if they are known: an order by dissection is then tried too, which is
+    ///                  better the larger the graph
+    void analyse(int vertices, const std::vector<Pair>& pairs, std::span<const Vec3> places = {}) {
+        const SparseMatrix graph = matrix_of(vertices, pairs);
+        eliminate(graph, minimum_degree(graph));
+        if (!places.empty() && vertices > 1000) {
+            Supernodes other;
+            other.eliminate(graph, Dissection(graph, places).order());
+            if (other.operations() < operations()) *this = std::move(other);
+        }
         merge_supernodes();
     }
 
@@ -43,10 +48,9 @@ public:
     }
 
 private:
-    /// Minimum degree.
-    void order(int n, const std::vector<Pair>& pairs) {
+    static SparseMatrix matrix_of(int n, const std::vector<Pair>& pairs) {
         std::vector<Eigen::Triplet<double, int>> entries;
-        entries.reserve(2 * pairs.size());
+        entries.reserve(2 * pairs.size() + core::at(n));
         for (const Pair& pair : pairs) {
             if (pair.first == pair.second) continue;
             entries.emplace_back(pair.first, pair.second, 1.0);
@@ -55,24 +59,43 @@ private:
         for (int v = 0; v < n; ++v) entries.emplace_back(v, v, 1.0);  // without it the ordering takes a vertex for dense
         SparseMatrix graph(n, n);
         graph.setFromTriplets(entries.begin(), entries.end());
+        return graph;
+    }
+    static std::vector<int> minimum_degree(const SparseMatrix& graph) {
         Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
         Eigen::AMDOrdering<int>()(graph, order);
-        place_.assign(core::at(n), 0);
-        for (int k = 0; k < n; ++k) place_[core::at(order.indices()[k])] = k;
-        neighbours_ = std::move(graph);
-        list_later();
+        return {order.indices().data(), order.indices().data() + order.size()};
+    }
+    /// Columns and rows of the factor for an order of elimination.
+    void eliminate(const SparseMatrix& graph, const std::vector<int>& order) {
+        place_.assign(order.size(), 0);
+        for (int k = 0; k < static_cast<int>(order.size()); ++k) place_[core::at(order[core::at(k)])] = k;
+        list_later(graph);
+        const std::vector<int> renamed = postorder(elimination_tree());
+        for (int& place : place_) place = renamed[core::at(place)];
+        list_later(graph);
+        find_supernodes();
+    }
+    /// Of the elimination of blocks of one size, in its unit.
+    double operations() const {
+        double sum = 0.0;
+        for (const Supernode& s : list_) {
+            const double columns = s.last - s.first, rows = static_cast<double>(s.rows.size());
+            sum += columns * (rows * rows + rows * columns + columns * columns / 3.0);
+        }
+        return sum;
     }
 
-    void list_later() {
+    void list_later(const SparseMatrix& graph) {
         const int n = vertices();
         start_.assign(core::at(n) + 1, 0);
         for (int v = 0; v < n; ++v)
-            for (SparseMatrix::InnerIterator it(neighbours_, v); it; ++it) start_[core::at(place(v)) + 1] += place(static_cast<int>(it.row())) > place(v);
+            for (SparseMatrix::InnerIterator it(graph, v); it; ++it) start_[core::at(place(v)) + 1] += place(static_cast<int>(it.row())) > place(v);
         for (int k = 0; k < n; ++k) start_[core::at(k) + 1] += start_[core::at(k)];
         later_.resize(core::at(start_.back()));
         std::vector<int> next(start_.begin(), start_.end() - 1);
         for (int v = 0; v < n; ++v)
-            for (SparseMatrix::InnerIterator it(neighbours_, v); it; ++it) {
+            for (SparseMatrix::InnerIterator it(graph, v); it; ++it) {
                 const int other = place(static_cast<int>(it.row()));
                 if (other > place(v)) later_[core::at(next[core::at(place(v))]++)] = other;
             }
@@ -123,11 +146,6 @@ private:
             }
         }
         return renamed;
-    }
-    void relabel(const std::vector<int>& renamed) {
-        for (int& place : place_) place = renamed[core::at(place)];
-        list_later();
-        neighbours_ = {};
     }
 
     /// Columns whose rows are the next column and its rows are joined.
@@ -192,7 +210,6 @@ private:
         for (Supernode& s : list_) s.parent = s.rows.empty() ? -1 : supernode[core::at(s.rows.front())];
     }
 
-    SparseMatrix neighbours_;
     std::vector<int> place_;
     std::vector<int> start_, later_;
     std::vector<Supernode> list_;
