@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// How do time and memory of a settled weave grow with the number of fibres? Plain weaves with more and more tows of the
+// same kind, from flat tows to rest. Prints CSV and, last, the exponents fitted over the unknowns.
+// usage: benchmark_scaling_bench [fibres a tow [tows a family]...]; default 19 2 3 4 6
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/compositions/weave/audit.hpp>
+#include <fibrant/compositions/weave/settle.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/solver/two_level_pcg.hpp>
+
+#include <sys/resource.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+using namespace fibrant;
+namespace cloth = compositions::weave;
+
+namespace {
+
+struct Weave {
+    using Beam = beam::DirectorBeam<>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::LimitedGap<law::RegularisedPenalty>;
+    using Friction = law::RegularisedCoulomb;
+    using Solver = solver::TwoLevelPcg;
+};
+
+/// The tows of the chapter's tables: 380 real fibres of 18 um, `fibres` macro-fibres in their place.
+cloth::FabricParameters fabric_of(Index tows, Index fibres) {
+    cloth::FabricParameters fabric;
+    fabric.warp_tows = fabric.weft_tows = tows;
+    fabric.warp.fibres = fibres;
+    fabric.warp.fibre_radius = 0.009 * std::sqrt(380.0 / static_cast<double>(fibres));
+    fabric.warp.inertia_factor = static_cast<double>(fibres) / 380.0;
+    fabric.warp.material = {7300.0, 0.3};
+    fabric.weft = fabric.warp;
+    fabric.warp_spacing = fabric.weft_spacing = fabric.overhang = 0.88;
+    const double elements = 32.0 / 4.4 * fabric.fibre_length(cloth::Family::warp);  // of the length of the chapter's
+    fabric.elements = static_cast<Index>(std::lround(elements));
+    return fabric;
+}
+
+double peak_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+/// Slope of log y over log x.
+double exponent(const std::vector<double>& x, const std::vector<double>& y) {
+    double sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        const double a = std::log(x[k]), b = std::log(y[k]);
+        sx += a, sy += b, sxx += a * a, sxy += a * b;
+    }
+    const auto n = static_cast<double>(x.size());
+    return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const Index fibres = argc > 1 ? std::atol(argv[1]) : 19;
+    std::vector<Index> sizes;
+    for (int k = 2; k < argc; ++k) sizes.push_back(std::atol(argv[k]));
+    if (sizes.empty()) sizes = {2, 3, 4, 6};
+    std::vector<double> unknowns, seconds, each, linear, bytes;
+    std::printf("tows,fibres,unknowns,contact_elements,converged,wrong_crossings,least_gap_over_radius,increments,rejected,"
+                "newton,linear_iterations_a_solve,seconds,seconds_a_newton,peak_bytes\n");
+    bool sound = true;
+    for (const Index tows : sizes) {
+        const cloth::FabricParameters fabric = fabric_of(tows, fibres);
+        const cloth::SettleParameters settle;
+        simulation::Simulator<Weave> simulator(cloth::flat_fabric(fabric, settle.tension_strain),
+                                               cloth::model_parameters<Weave>(fabric, settle));
+        const simulation::Report report = simulator.run(cloth::settling<Weave>(fabric, settle));
+        const cloth::Audit audit = cloth::audit(simulator.snapshot(), fabric, proximity::GridSearch());
+        const auto solves = static_cast<double>(report.counts.linear_solves);
+        unknowns.push_back(static_cast<double>(simulator.mesh().layout().unknowns()));
+        seconds.push_back(report.wall_seconds);
+        each.push_back(report.wall_seconds / static_cast<double>(report.counts.newton));
+        linear.push_back(static_cast<double>(report.counts.linear_iterations) / solves);
+        bytes.push_back(peak_bytes());
+        std::printf("%td,%td,%.0f,%td,%d,%td,%.4f,%zu,%td,%td,%.1f,%.2f,%.4f,%.0f\n", tows, fabric.fibres(), unknowns.back(),
+                    report.contact.elements, report.converged ? 1 : 0, audit.wrong_crossings + audit.missing_crossings,
+                    audit.least_gap.gap_over_radius, report.increments.size(), report.rejected_increments, report.counts.newton,
+                    linear.back(), seconds.back(), each.back(), bytes.back());
+        std::fflush(stdout);
+        sound = sound && report.converged;
+    }
+    if (unknowns.size() > 1)
+        std::printf("# exponents over unknowns: seconds %.2f, seconds a Newton iteration %.2f, iterations a solve %.2f, bytes %.2f\n",
+                    exponent(unknowns, seconds), exponent(unknowns, each), exponent(unknowns, linear), exponent(unknowns, bytes));
+    return sound ? 0 : 1;
+}
