@@ -91,14 +91,14 @@ std::vector<Drawn> draw(double mu, double travel) {
             still.at = {guide, static_cast<double>(k) / 80.0}, still.vector = vector;
             assembly.hold(still);
         }
-    // Ends go the way of a taut string that is wound on, stretched by 0.2 % from the start on; beyond 1, along the string.
+    // Ends go the way of a taut string that is wound on, stretched by 0.6 % from the start on; beyond 1, along the string.
     for (const double side : {-1.0, 1.0}) {
         scene::Hold end;
         end.at = side < 0.0 ? scene::first_end(fibre) : scene::last_end(fibre);
         end.channel = "ends";
         end.path = [=](double amplitude) {
             const double angle = 0.5 * pi * std::min(amplitude, 1.0), drawn = side * travel * std::max(0.0, amplitude - 1.0);
-            const double free = half * (1.0 + 0.002 * std::min(1.0, 20.0 * amplitude)) - rho * angle;
+            const double free = half * (1.0 + 0.006 * std::min(1.0, 20.0 * amplitude)) - rho * angle;
             return Vec3(side * (rho * std::sin(angle) + free * std::cos(angle) - half),
                         rho * std::cos(angle) - free * std::sin(angle) - rho - drawn, 0.0);
         };
