@@ -22,7 +22,7 @@ struct Scene {
     cloth::FabricParameters fabric;
     cloth::SettleParameters settle;
     fibrant::solver::IterationParameters iteration;
-    std::string linear_solver = "two_level_pcg";  ///< two_level_pcg, fibre_block_pcg or sparse_cholesky
+    std::string linear_solver = "two_level_pcg";  ///< one of solver::AnySolver
     Index threads = 0;                            ///< 0: as many as the machine has
     bool paraview = true;                         ///< write the ParaView files
     Index paraview_every = 1;                     ///< increments
@@ -131,7 +131,7 @@ inline Scene read_scene(const std::string& path, const std::vector<std::string>&
 
         auto& iteration = scene.iteration;
         file.read("solver", "linear_solver", scene.linear_solver,
-                  {"two_level_pcg", "fibre_block_pcg", "sparse_cholesky"});
+                  {"automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"});
         file.read("solver", "threads", scene.threads);
         file.read("solver", "step_tolerance", iteration.step_tolerance);
         file.read("solver", "residual_tolerance", iteration.residual_tolerance);

@@ -42,6 +42,7 @@
 #include <fibrant/contact/contact_set.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/normal_direction.hpp>
+#include <fibrant/contact/side_index.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
 
 #include <fibrant/connection/applied_load.hpp>
@@ -55,10 +56,15 @@
 #include <fibrant/assembly/terms.hpp>
 #include <fibrant/assembly/visited_system.hpp>
 
+#include <fibrant/solver/any_solver.hpp>
+#include <fibrant/solver/automatic_solver.hpp>
 #include <fibrant/solver/fibre_block_pcg.hpp>
+#include <fibrant/solver/float_block_cholesky.hpp>
 #include <fibrant/solver/linear_solver.hpp>
 #include <fibrant/solver/nested_loops.hpp>
 #include <fibrant/solver/newton.hpp>
+#include <fibrant/solver/recording_solver.hpp>
+#include <fibrant/solver/saved_system.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
 

@@ -7,6 +7,7 @@
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/particle.hpp>
+#include <fibrant/contact/side_index.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -84,7 +85,7 @@ public:
         last.assign(records(state));
         const Memory& memory = last.records().empty() ? accepted_ : last;
         generate(state, accepted, memory);
-        index_sides();
+        sides_.build(mesh_->fibre_count(), elements_);
     }
 
     /// Middle loop: normals and particles at the same stations.
@@ -197,11 +198,8 @@ public:
         });
     }
 
-    /// Sides of contact elements on a fibre, 2 k for fibre i and 2 k + 1 for fibre j of element k, in order.
-    std::span<const std::int32_t> sides(Index fibre) const noexcept {
-        const std::size_t first = core::at(side_first_[core::at(fibre)]), last = core::at(side_first_[core::at(fibre) + 1]);
-        return std::span<const std::int32_t>(sides_).subspan(first, last - first);
-    }
+    /// Sides of contact elements on a fibre, in order.
+    std::span<const std::int32_t> sides(Index fibre) const noexcept { return sides_.of(fibre); }
 
     ContactFigures figures(const Vector& state) const {
         ContactFigures sum;
@@ -236,7 +234,7 @@ public:
     void restore() {
         zones_ = accepted_zones_;
         elements_.clear(), responses_.clear(), frictions_.clear();
-        sides_.clear(), side_first_.assign(core::at(mesh_->fibre_count() + 1), 0);
+        sides_.clear(mesh_->fibre_count());
     }
 
     const std::vector<Zone>& accepted_zones() const noexcept { return accepted_zones_; }
@@ -407,21 +405,6 @@ private:
         return list;
     }
 
-    void index_sides() {
-        side_first_.assign(core::at(mesh_->fibre_count() + 1), 0);
-        for (const Element& element : elements_) {
-            ++side_first_[core::at(element.fibre_i) + 1];
-            ++side_first_[core::at(element.fibre_j) + 1];
-        }
-        for (std::size_t f = 1; f < side_first_.size(); ++f) side_first_[f] += side_first_[f - 1];
-        sides_.resize(2 * elements_.size());
-        std::vector<std::int32_t> next(side_first_.begin(), side_first_.end() - 1);
-        for (std::int32_t k = 0; k < static_cast<std::int32_t>(elements_.size()); ++k) {
-            sides_[core::at(next[core::at(elements_[core::at(k)].fibre_i)]++)] = 2 * k;
-            sides_[core::at(next[core::at(elements_[core::at(k)].fibre_j)]++)] = 2 * k + 1;
-        }
-    }
-
     const beam::Mesh<B>* mesh_;
     ContactParameters parameters_;
     ForcedOrders orders_;
@@ -432,7 +415,7 @@ private:
     std::vector<Element> elements_;
     std::vector<ContactResponse> responses_;
     std::vector<law::FrictionResponse<typename Friction::History>> frictions_;
-    std::vector<std::int32_t> sides_, side_first_;
+    SideIndex sides_;
     Memory accepted_;
 };
 

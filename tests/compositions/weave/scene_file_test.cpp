@@ -98,7 +98,8 @@ TEST_CASE("a wrong scene is refused by section, key, value and bound") {
     CHECK(refused({"settle.release_increments=0"}) == "settle.release_increments = 0, but it must be >= 1");
     CHECK(refused({"solver.newton_limit=0"}) == "solver.newton_limit = 0, but it must be >= 1");
     CHECK(refused({"solver.linear_solver=lu"}) ==
-          "solver.linear_solver = 'lu', but it must be one of two_level_pcg, fibre_block_pcg, sparse_cholesky");
+          "solver.linear_solver = 'lu', but it must be one of automatic, two_level_pcg, fibre_block_pcg, "
+          "float_block_cholesky, double_block_cholesky, sparse_cholesky");
     CHECK(refused({"solver.threads=-1"}) == "solver.threads = -1, but it must be >= 0");
     CHECK(refused({"output.paraview_every=0"}) == "output.paraview_every = 0, but it must be >= 1");
     CHECK(refused({"fabric.elements=60"}).find("fabric.elements = 60, but it must be <= 54") == 0);
