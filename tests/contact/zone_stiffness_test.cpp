@@ -48,17 +48,17 @@ TEST_CASE("under a given force the stiffness of a zone settles where the penetra
             k = adaptation.adapted(k, reference, penetration(regularised, k, force), 0.1 * allowed);
             k_linear = adaptation.adapted(k_linear, reference, penetration(linear, k_linear, force), 0.0);
         }
-        CHECK(penetration(regularised, k, force) / allowed == doctest::Approx(0.6).epsilon(1e-6));
-        CHECK(penetration(linear, k_linear, force) / allowed == doctest::Approx(0.6).epsilon(1e-6));
+        CHECK(penetration(regularised, k, force) / allowed == doctest::Approx(adaptation.target_fraction).epsilon(1e-6));
+        CHECK(penetration(linear, k_linear, force) / allowed == doctest::Approx(adaptation.target_fraction).epsilon(1e-6));
     }
 }
 
 TEST_CASE("one adaptation within reach is exact beyond the quadratic start of the law") {
     const law::RegularisedPenalty law({.regularisation_depth = 0.1 * allowed});
     const double k = adaptation.adapted(20.0, reference, allowed, 0.1 * allowed);
-    // the same force: 20 (1 - 0.05) = k (0.6 - 0.05), in allowed penetrations
-    CHECK(k == doctest::Approx(20.0 * 0.95 / 0.55).epsilon(1e-14));
-    CHECK(law.response(-0.6 * allowed, k).reaction == doctest::Approx(law.response(-allowed, 20.0).reaction).epsilon(1e-12));
+    // the same force: 20 (1 - 0.05) = k (target - 0.05), in allowed penetrations
+    CHECK(k == doctest::Approx(20.0 * 0.95 / (adaptation.target_fraction - 0.05)).epsilon(1e-14));
+    CHECK(law.response(-adaptation.target_fraction * allowed, k).reaction == doctest::Approx(law.response(-allowed, 20.0).reaction).epsilon(1e-12));
 }
 
 TEST_CASE("the stiffness changes by at most the largest factor and stays between floor and cap") {
