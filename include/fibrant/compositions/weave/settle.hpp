@@ -73,7 +73,7 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     rest.most_increments = settle.rest_increments;
     // Paths are only a means, and what one increment leaves over moves in the next: the last stage tells when it is all.
     tension.looseness = rest.looseness = 5.0;
-    separation.looseness = handover.looseness = release.looseness = 30.0;
+    separation.looseness = handover.looseness = release.looseness = settle.looseness;
     // Slack fibres creep into their places instead of leaping. At the gap limit of one radius, a tenth of what the tension
     // makes of an element's length; an increment is a time, and half the time is twice the spring, so that the path is the
     // same when increments are halved. It falls with the tension, and at the end to nothing: rest is an equilibrium.
