@@ -83,6 +83,33 @@ TEST_CASE("a second run goes on where the first one ended") {
     CHECK((simulator.state() - direct.state()).cwiseAbs().maxCoeff() < 1e-8);
 }
 
+TEST_CASE("damping that decays slows a fibre down and leaves no force on it, and what it took is in the balance") {
+    const Rod rod;
+    const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3);  // of the tip
+    Simulator<Smooth> direct(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
+    REQUIRE(direct.run({.increments = 1}).converged);
+    Loading<Smooth> loading;
+    loading.stages = {{.increments = 1, .ramps = {{"load", 1.0}}, .damping = stiffness, .damping_decay = 0.5,
+                       .until = simulation::until_settled(1e-3 * rod.radius, 0.0)}};
+    Simulator<Smooth> simulator(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
+    Record<Smooth> record(simulator);
+    const Report report = simulator.run(loading, record);
+    REQUIRE(report.converged);
+    CHECK(report.increments.size() >= 10);  // ten halvings until there is none
+    CHECK(record.states.front().isApprox(direct.state(), 1e-2) == false);
+    CHECK((simulator.state() - direct.state()).cwiseAbs().maxCoeff() < 1e-7);
+    // The load does F u, the fibre keeps about half of it, and the damping takes the rest; 12 increments by the trapezoidal rule.
+    CHECK(report.energy.damped > 0.1 * report.energy.external);
+    CHECK(std::abs(report.energy.error()) < 0.03 * report.energy.external);
+    // Damping that does not decay holds the fibre where it stops creeping, short of the equilibrium.
+    loading.stages[0].damping_decay = 1.0;
+    loading.stages[0].damping = 300.0 * stiffness;
+    loading.stages[0].until = simulation::until_settled(1e-2 * rod.length, 0.0);
+    Simulator<Smooth> held(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
+    REQUIRE(held.run(loading).converged);
+    CHECK((held.state() - direct.state()).cwiseAbs().maxCoeff() > 1e-2 * rod.length);
+}
+
 TEST_CASE("a stage with a condition goes on at constant loads until it holds") {
     const Rod rod;
     Simulator<Smooth> simulator(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
