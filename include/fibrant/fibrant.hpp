@@ -20,6 +20,7 @@
 #include <fibrant/beam/section_law.hpp>
 
 #include <fibrant/proximity/brute_search.hpp>
+#include <fibrant/proximity/bvh_search.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/proximity/kd_tree_search.hpp>
 #include <fibrant/proximity/proximity_search.hpp>

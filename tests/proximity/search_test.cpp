@@ -2,6 +2,7 @@
 #include "search_contract.hpp"
 
 #include <fibrant/core/parallel.hpp>
+#include <fibrant/proximity/bvh_search.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/proximity/kd_tree_search.hpp>
 #include <fibrant/proximity/test_point_search.hpp>
@@ -86,7 +87,8 @@ struct Threads {  // OpenMP's number of threads, put back at the end
 
 }  // namespace
 
-#define EVERY_SEARCH BruteSearch, GridSearch, KdTreeSearch, TestPointSearch, VerletSearch<GridSearch>, VerletSearch<KdTreeSearch>
+#define EVERY_SEARCH \
+    BruteSearch, BvhSearch, GridSearch, KdTreeSearch, TestPointSearch, VerletSearch<GridSearch>, VerletSearch<KdTreeSearch>
 
 TEST_CASE_TEMPLATE("a search finds the close pairs and zones that brute force finds, and no other", Search, EVERY_SEARCH) {
     static const std::vector<FibreSet> sets = test::search_cases();
@@ -134,7 +136,7 @@ TEST_CASE("brute force agrees with the definition of a close pair on sampled seg
     }
 }
 
-TEST_CASE_TEMPLATE("a search finds the published pairs of a random mat of 10,000 segments", Search, GridSearch, KdTreeSearch,
+TEST_CASE_TEMPLATE("a search finds the published pairs of a random mat of 10,000 segments", Search, BvhSearch, GridSearch, KdTreeSearch,
                    TestPointSearch, VerletSearch<GridSearch>) {
     const FibreSet set = read_scene("mat10k.fpl");
     Search search = make_search<Search>(4.0 * set.radius[0], set.radius[0]);

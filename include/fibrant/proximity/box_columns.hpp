@@ -25,6 +25,8 @@ public:
         }
         group_.resize(core::at(n + width));
     }
+    std::int32_t size() const noexcept { return std::max(0, static_cast<std::int32_t>(group_.size()) - width); }
+    std::size_t bytes() const noexcept { return 7 * group_.capacity() * sizeof(float); }
     void set(std::int32_t k, const Box& box) noexcept {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             column_[2 * axis][core::at(k)] = box.low[axis];

@@ -21,6 +21,7 @@ struct BoxFrame {
     Vec3 middle = Vec3::Zero();
     double slack = 0.0;           ///< for rounding to single precision [length]
     double mean_length = 0.0;     ///< of a segment [length]
+    double longest = 0.0;         ///< segment [length]
     double mean_thickness = 0.0;  ///< 2 (radius + inflation) + reach [length]
     bool selfish = false;         ///< groups pair too, and the filter decides; a segment never pairs with itself
 
@@ -30,7 +31,7 @@ struct BoxFrame {
         struct Moments {
             Mat3 directions = Mat3::Zero();
             Vec3 low = Vec3::Constant(1.0e300), high = Vec3::Constant(-1.0e300);
-            double length = 0.0, half = 0.0;
+            double length = 0.0, longest = 0.0, half = 0.0;
         };
         constexpr Index block = 4096;
         const Index n = table.size(), blocks = (n + block - 1) / block;
@@ -44,6 +45,7 @@ struct BoxFrame {
                 const double length = chord.norm();
                 if (length > 0.0) sum.directions += chord * (chord / length).transpose();
                 sum.length += length;
+                sum.longest = std::max(sum.longest, length);
                 sum.half += record.half;
                 sum.low = sum.low.cwiseMin(start).cwiseMin(start + chord);
                 sum.high = sum.high.cwiseMax(start).cwiseMax(start + chord);
@@ -56,6 +58,7 @@ struct BoxFrame {
             all.low = all.low.cwiseMin(sum.low);
             all.high = all.high.cwiseMax(sum.high);
             all.length += sum.length;
+            longest = std::max(longest, sum.longest);
             all.half += sum.half;
         }
         const Eigen::SelfAdjointEigenSolver<Mat3> principal(all.directions);
@@ -80,6 +83,10 @@ struct BoxFrame {
             made.high[axis] = static_cast<float>(std::max(a[axis], b[axis]) + wide);
         }
         return made;
+    }
+    /// Box of a segment, widened by half its threshold.
+    Box whole_box(const SegmentRecord& record, double reach) const noexcept {
+        return box(record, 0.0, 1.0, record.half + 0.5 * reach);
     }
 };
 

@@ -57,6 +57,10 @@ public:
     }
 
     std::int32_t size() const noexcept { return static_cast<std::int32_t>(entries_.size()); }
+    std::size_t bytes() const noexcept {
+        return (entries_.capacity() + spare_.capacity()) * sizeof(CellEntry) + cell_key_.capacity() * sizeof(std::uint64_t) +
+               cell_first_.capacity() * sizeof(std::int32_t) + columns_.bytes();
+    }
     std::int32_t cells() const noexcept { return static_cast<std::int32_t>(cell_key_.size()); }
     /// Number of the box at place k of the grid's order.
     std::int32_t box(std::int32_t k) const noexcept { return entries_[core::at(k)].box; }
@@ -137,11 +141,12 @@ private:
             width_[axis] *= 1.0 + 1.0e-5;
             // An empty cell all around keeps runs over neighbours from reaching into the next row; 20 bits an axis.
             width_[axis] = std::max(width_[axis], (high[axis] - origin_[axis]) / 1.0e6);
-            cells_[axis] = static_cast<std::uint64_t>((high[axis] - origin_[axis]) / width_[axis]) + 3;
+            per_width_[axis] = 1.0 / width_[axis];
+            cells_[axis] = static_cast<std::uint64_t>((high[axis] - origin_[axis]) * per_width_[axis]) + 3;
         }
     }
     std::uint64_t cell(double x, std::size_t axis) const noexcept {
-        const double c = (x - origin_[axis]) / width_[axis] + 1.0;
+        const double c = (x - origin_[axis]) * per_width_[axis] + 1.0;  // rounding is in the 1e-5 that a cell is wider
         return c > 0.0 ? std::min(static_cast<std::uint64_t>(c), cells_[axis] - 1) : 0;
     }
     std::uint64_t key(const Box& box) const noexcept {
@@ -154,7 +159,7 @@ private:
         return static_cast<std::int32_t>(std::lower_bound(cell_key_.begin(), cell_key_.end(), key) - cell_key_.begin());
     }
 
-    double origin_[3], width_[3];
+    double origin_[3], width_[3], per_width_[3];
     std::uint64_t cells_[3];
     std::vector<CellEntry> entries_, spare_;
     std::vector<std::uint64_t> cell_key_;

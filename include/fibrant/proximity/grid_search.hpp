@@ -2,55 +2,14 @@
 #pragma once
 /// @file The default search: boxes of segments in a uniform grid, and the exact filter on those that overlap.
 
+#include <fibrant/proximity/candidate_sink.hpp>
 #include <fibrant/proximity/cell_grid.hpp>
 #include <fibrant/proximity/sorted_pairs.hpp>
 #include <fibrant/proximity/zones.hpp>
 
+#include <bit>
+
 namespace fibrant::proximity {
-namespace detail {
-
-/// Collects candidates and filters them by the thousand.
-class CandidateSink {
-public:
-    /// @param records       of segments
-    /// @param map_a, map_b  places of the first and second of a candidate to places of records; null where they are these
-    CandidateSink(const SegmentTable& table, const SegmentRecord* records, const std::int32_t* map_a,
-                  const std::int32_t* map_b, std::vector<SegmentPair>& close)
-        : table_(table), records_(records), map_a_(map_a), map_b_(map_b), close_(close), batch_(least) {}
-
-    Candidate* room(std::int32_t n) {
-        if (filled_ + core::at(n) > batch_.size()) {
-            flush();
-            if (core::at(n) > batch_.size()) batch_.resize(core::at(n));
-        }
-        return batch_.data() + filled_;
-    }
-    void take(const Candidate* end) noexcept { filled_ = core::at(end - batch_.data()); }
-    void flush() {
-        if (map_a_ != nullptr) {
-            std::size_t kept = 0;
-            for (std::size_t k = 0; k < filled_; ++k) {
-                const Candidate mapped{map_a_[batch_[k].a], map_b_[batch_[k].b]};
-                batch_[kept] = mapped;
-                kept += mapped.a != mapped.b ? 1 : 0;
-            }
-            filled_ = kept;
-        }
-        keep_close(table_, records_, {batch_.data(), filled_}, close_);
-        filled_ = 0;
-    }
-
-private:
-    static constexpr std::size_t least = 4096;
-    const SegmentTable& table_;
-    const SegmentRecord* records_;
-    const std::int32_t *map_a_, *map_b_;
-    std::vector<SegmentPair>& close_;
-    std::vector<Candidate> batch_;
-    std::size_t filled_ = 0;
-};
-
-}  // namespace detail
 
 /// Sort-based uniform grid, linear in segments and close pairs for any mixture of lengths and radii.
 ///
@@ -64,16 +23,36 @@ public:
 
     std::vector<SegmentPair> pairs(std::span<const Centreline> fibres, double reach) {
         const detail::SegmentTable table(fibres, reach);
-        if (table.size() == 0) return {};
-        for (auto& some : close_) some.clear();
-        make_boxes(table);
-        sort_into_levels();
-        search(table);
-        return detail::sorted_pairs(close_, table.size(), cut_);
+        build(table);
+        return search(table);
     }
 
     std::vector<ProximityZone> find(std::span<const Centreline> fibres, double reach) {
         return zones_from_pairs(fibres, reach, pairs(fibres, reach));
+    }
+
+    /// @name The two halves of `pairs`, to be timed apart. The table must be the same.
+    /// @{
+    void build(const detail::SegmentTable& table) {
+        if (table.size() == 0) return;
+        make_boxes(table);
+        sort_into_levels();
+        order_records(table);
+    }
+    std::vector<SegmentPair> search(const detail::SegmentTable& table) {
+        for (auto& some : close_) some.clear();
+        if (table.size() > 0) overlaps(table);
+        return sorter_.sorted(close_, table.size(), cut_);
+    }
+    /// @}
+
+    /// Memory that is kept, without the pairs [byte].
+    std::size_t bytes() const noexcept {
+        std::size_t sum = (first_.capacity() + owner_.capacity()) * sizeof(std::int32_t) + boxes_.capacity() * sizeof(detail::Box) +
+                          records_.capacity() * sizeof(detail::SegmentRecord);
+        for (const detail::CellGrid& grid : levels_) sum += grid.bytes();
+        for (const auto& places : place_owner_) sum += places.capacity() * sizeof(std::int32_t);
+        return sum;
     }
 
 private:
@@ -85,24 +64,28 @@ private:
         const std::int32_t n = table.size();
         const double mean = frame.mean_length, thickness = frame.mean_thickness;
         const double piece = mean > pieces_from * thickness ? piece_length * thickness : 2.0 * std::max(mean, thickness);
+        cut_ = frame.longest > piece;
+        if (!cut_) {
+            boxes_.resize(core::at(n));
+            in_blocks(n, block, [&](Index, std::int32_t k) { boxes_[core::at(k)] = frame.whole_box(table.record(k), table.reach()); });
+            return;
+        }
         first_.resize(core::at(n) + 1);
         first_[0] = 0;
-        cut_ = false;
         for (std::int32_t k = 0; k < n; ++k) {
             const detail::SegmentRecord record = table.record(k);
             const double pieces = std::ceil(std::sqrt(detail::dot(record.chord, record.chord)) / piece);
             first_[core::at(k) + 1] = first_[core::at(k)] + std::max(1, static_cast<std::int32_t>(pieces));
-            cut_ = cut_ || pieces > 1.0;
         }
         boxes_.resize(core::at(first_.back()));
-        owner_.resize(cut_ ? boxes_.size() : 0);
+        owner_.resize(boxes_.size());
         in_blocks(n, block, [&](Index, std::int32_t k) {
             const detail::SegmentRecord record = table.record(k);
             const std::int32_t begin = first_[core::at(k)], end = first_[core::at(k) + 1];
             const double margin = record.half + 0.5 * table.reach(), per = 1.0 / (end - begin);
             for (std::int32_t p = begin; p < end; ++p) {
                 boxes_[core::at(p)] = frame.box(record, (p - begin) * per, (p - begin + 1) * per, margin);
-                if (cut_) owner_[core::at(p)] = k;
+                owner_[core::at(p)] = k;
             }
         });
     }
@@ -110,11 +93,9 @@ private:
     /// One grid for boxes within a factor of about 4 in size.
     void sort_into_levels() {
         std::array<std::int32_t, 256> bin{};  // by the binary exponent of the largest side
-        const auto size_of = [](const detail::Box& box) {
+        const auto size_of = [](const detail::Box& box) -> std::size_t {
             const float side = std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
-            int exponent = 0;
-            static_cast<void>(std::frexp(side, &exponent));
-            return core::at(std::clamp(exponent + 128, 0, 255));
+            return std::bit_cast<std::uint32_t>(side) >> 23 & 0xffU;
         };
         for (const detail::Box& box : boxes_) ++bin[size_of(box)];
         std::array<int, 256> level{};
@@ -146,13 +127,13 @@ private:
         for (std::size_t k = 0; k < levels_.size(); ++k) levels_[k].build(boxes_, members[k]);
     }
 
-    /// Fills the first blocks of `close_`, in an order that the data alone gives; returns how many.
-    std::size_t search(const detail::SegmentTable& table) {
-        // One level of whole segments: records in the order of the cells. Else records by segment, and places mapped to them.
+    /// Records as the filter reads them. One level of whole segments: in the order of the cells. Else in that of the segments,
+    /// with places mapped to them.
+    void order_records(const detail::SegmentTable& table) {
         const bool mapped = cut_ || levels_.size() > 1;
         records_.resize(core::at(table.size()));
-        if (mapped) place_owner_.resize(levels_.size());
-        for (std::size_t level = 0; level < levels_.size() && mapped; ++level) {
+        place_owner_.resize(mapped ? levels_.size() : 0);
+        for (std::size_t level = 0; level < place_owner_.size(); ++level) {
             place_owner_[level].resize(core::at(levels_[level].size()));
             for (std::int32_t k = 0; k < levels_[level].size(); ++k) {
                 const std::int32_t box = levels_[level].box(k);
@@ -162,10 +143,14 @@ private:
         in_blocks(table.size(), block, [&](Index, std::int32_t k) {
             records_[core::at(k)] = table.record(mapped ? k : levels_[0].box(k));
         });
+    }
+
+    /// Fills the first blocks of `close_`, in an order that the data alone gives.
+    void overlaps(const detail::SegmentTable& table) {
         std::size_t done = 0;
         for (std::size_t level = 0; level < levels_.size(); ++level) {
             const detail::CellGrid& grid = levels_[level];
-            const std::int32_t* map = mapped ? place_owner_[level].data() : nullptr;
+            const std::int32_t* map = place_owner_.empty() ? nullptr : place_owner_[level].data();
             const Index blocks = (grid.cells() + cells_together - 1) / cells_together;
             reserve_blocks(done + core::at(blocks));
             core::parallel_for(blocks, [&](Index b) {
@@ -177,7 +162,6 @@ private:
             done += core::at(blocks);
             for (std::size_t lower = 0; lower < level; ++lower) done = search_between(table, level, lower, done);
         }
-        return done;
     }
 
     /// Boxes of a level against those of a finer one.
@@ -217,6 +201,7 @@ private:
     std::vector<std::vector<std::int32_t>> place_owner_;  // of each level: segment at each place
     std::vector<detail::SegmentRecord> records_;
     std::vector<std::vector<SegmentPair>> close_;
+    detail::PairSorter sorter_;
 };
 static_assert(ProximitySearch<GridSearch>);
 

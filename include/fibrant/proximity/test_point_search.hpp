@@ -101,7 +101,7 @@ public:
                     for (std::int32_t j = i + 1; j <= point.last; ++j) candidates.push_back({i, j});
             detail::keep_close(table, records.data(), candidates, close.emplace_back());
         }
-        return detail::sorted_pairs(close, table.size(), true);
+        return detail::PairSorter{}.sorted(close, table.size(), true);
     }
 
     std::vector<ProximityZone> find(std::span<const Centreline> fibres, double reach) const {
