@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Times of a search in halves, and what its pairs miss.
+
+#include <fibrant/core/parallel.hpp>
+#include <fibrant/proximity/segment_table.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace fibrant::benchmarks {
+
+using Pairs = std::vector<proximity::SegmentPair>;
+
+/// Processor time for one thread, which others on the machine disturb least; else time on the wall [s].
+inline double now() {
+    if (core::threads() == 1) {
+        timespec time{};
+        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+        return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    }
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+inline double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
+/// One call of a search. `built` is when its structure stood; 0 if it has no such moment.
+struct Call {
+    Pairs pairs{};
+    double built = 0.0;
+    std::size_t bytes = 0;  ///< that it holds then, without pairs; 0 if unknown
+};
+using Method = std::function<Call()>;
+
+struct Figures {
+    double build = 0.0, query = 0.0, total = 0.0;  ///< medians [s]; halves 0 where not known
+    std::size_t bytes = 0;
+    Pairs pairs{};  ///< sorted
+};
+
+inline Figures measure(int repeats, const Method& method) {
+    std::vector<double> build, query, total;
+    Figures figures;
+    for (int k = 0; k < repeats; ++k) {
+        const double start = now();
+        Call call = method();
+        const double end = now();
+        total.push_back(end - start);
+        if (call.built > 0.0) build.push_back(call.built - start), query.push_back(end - call.built);
+        figures.bytes = call.bytes;
+        figures.pairs = std::move(call.pairs);
+    }
+    std::sort(figures.pairs.begin(), figures.pairs.end());
+    figures.total = median(total);
+    if (!build.empty()) figures.build = median(build), figures.query = median(query);
+    return figures;
+}
+
+/// Sum modulo 2^64 of the splitmix64 step of (i << 32) | j.
+inline std::uint64_t checksum(const Pairs& pairs) {
+    std::uint64_t sum = 0;
+    for (const proximity::SegmentPair& pair : pairs) {
+        std::uint64_t z = ((static_cast<std::uint64_t>(pair.i) << 32) | static_cast<std::uint64_t>(pair.j)) + 0x9E3779B97F4A7C15u;
+        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+        z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+        sum += z ^ (z >> 31);
+    }
+    return sum;
+}
+
+/// Pairs of `all` that `some` lacks; both sorted.
+inline std::size_t lacking(const Pairs& all, const Pairs& some) {
+    Pairs missed;
+    std::set_difference(all.begin(), all.end(), some.begin(), some.end(), std::back_inserter(missed));
+    return missed.size();
+}
+
+/// What no method with this filter can beat: the vertices read once, and the filter on the pairs that are wanted [s].
+inline double floor_seconds(int repeats, std::span<const proximity::Centreline> fibres, double reach, const Pairs& wanted) {
+    const proximity::detail::SegmentTable table(fibres, reach);
+    const auto records = table.records();
+    std::vector<proximity::detail::Candidate> candidates;
+    for (const proximity::SegmentPair& pair : wanted) candidates.push_back({pair.i, pair.j});
+    std::vector<double> seconds;
+    volatile double keep = 0.0;
+    for (int k = 0; k < repeats; ++k) {
+        Pairs close;
+        close.reserve(wanted.size() + 64);
+        const double start = now();
+        Vec3 sum = Vec3::Zero();
+        for (const proximity::Centreline& line : fibres)
+            for (const Vec3& x : line.points) sum += x;
+        proximity::detail::keep_close(table, records.data(), candidates, close);
+        seconds.push_back(now() - start);
+        keep = keep + sum.sum();
+    }
+    return median(seconds);
+}
+
+}  // namespace fibrant::benchmarks

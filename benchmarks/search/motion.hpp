@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Searches of fibres that move a little at each call.
+
+#include "peers.hpp"
+#include "scene_file.hpp"
+
+#include <fibrant/proximity/bvh_search.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/proximity/verlet_search.hpp>
+
+#include <cstdio>
+
+namespace fibrant::benchmarks {
+
+/// Each vertex goes its own way, straight on, by `step` a call. Prints CSV: mean time of a call, first one left out.
+/// @param step  [smallest radius]
+inline void measure_motion(Scene scene, double step, int calls, bool self) {
+    const double r = *std::min_element(scene.radius.begin(), scene.radius.end());
+    std::mt19937_64 random(2);
+    std::normal_distribution<double> normal;
+    std::vector<std::vector<Vec3>> way;
+    for (const auto& line : scene.points) {
+        way.emplace_back();
+        for (std::size_t k = 0; k < line.size(); ++k) {
+            const double x = normal(random), y = normal(random), z = normal(random);
+            way.back().push_back(step * r * Vec3(x, y, z).normalized());
+        }
+    }
+    struct Strategy {
+        std::string name;
+        std::function<Pairs(std::span<const proximity::Centreline>)> pairs;
+        std::function<Index()> builds;
+        double seconds = 0.0;
+        std::size_t wrong = 0;
+    };
+    std::vector<Strategy> strategies;
+    const double reach = scene.margin;
+    proximity::GridSearch grid;
+    proximity::BvhSearch tree;
+    using Verlet = proximity::VerletSearch<proximity::GridSearch>;
+    std::vector<Verlet> verlet;
+    for (const double skin : {0.25, 0.5, 1.0, 2.0}) verlet.emplace_back(Verlet::Parameters{.base = {}, .skin = skin * r});
+    strategies.push_back({"nanoflann rebuilt", [&](auto lines) { return nanoflann_pairs(lines, reach).pairs; }, {}});
+    strategies.push_back({"GridSearch rebuilt", [&](auto lines) { return grid.pairs(lines, reach); }, {}});
+    strategies.push_back({"BvhSearch rebuilt", [&](auto lines) { return tree.pairs(lines, reach); }, {}});
+    for (std::size_t k = 0; k < verlet.size(); ++k)
+        strategies.push_back({"VerletSearch skin " + core::text(0.25 * std::pow(2.0, static_cast<double>(k))) + " r",
+                              [&verlet, k, reach](auto lines) { return verlet[k].pairs(lines, reach); },
+                              [&verlet, k] { return verlet[k].builds(); }});
+    double least = 0.0;
+    for (int call = 0; call <= calls; ++call) {
+        const auto lines = scene.centrelines(self);
+        Pairs expected;
+        for (Strategy& strategy : strategies) {
+            const double start = now();
+            Pairs pairs = strategy.pairs(lines);
+            if (call > 0) strategy.seconds += now() - start;
+            std::sort(pairs.begin(), pairs.end());
+            if (expected.empty()) expected = pairs;
+            strategy.wrong += lacking(expected, pairs) + lacking(pairs, expected);
+        }
+        if (call > 0) least += floor_seconds(1, lines, reach, expected);
+        for (std::size_t f = 0; f < scene.points.size(); ++f)
+            for (std::size_t k = 0; k < scene.points[f].size(); ++k) scene.points[f][k] += way[f][k];
+    }
+    std::printf("scene,strategy,step_over_r,calls,builds,wrong,milliseconds,ratio_to_nanoflann,ratio_to_rebuilt,ratio_to_floor\n");
+    for (const Strategy& s : strategies)
+        std::printf("%s,%s,%g,%d,%ld,%zu,%.3f,%.4f,%.3f,%.2f\n", scene.name.c_str(), s.name.c_str(), step, calls,
+                    static_cast<long>(s.builds ? s.builds() : calls), s.wrong, 1e3 * s.seconds / calls,
+                    s.seconds / strategies[0].seconds, s.seconds / strategies[1].seconds, s.seconds / least);
+}
+
+}  // namespace fibrant::benchmarks

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Searches of other libraries, each as one would write it by hand, with the filter of ours: nanoflann, and, where the
+/// build found them, Boost's R-tree and CGAL's intersection of boxes. Their pairs are neither sorted nor joined.
+
+#include "measure.hpp"
+
+#include <fibrant/proximity/kd_tree_search.hpp>
+
+#if defined(FIBRANT_BENCHMARK_BOOST)
+#include <boost/function_output_iterator.hpp>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#endif
+#if defined(FIBRANT_BENCHMARK_CGAL)
+#include <CGAL/Box_intersection_d/Box_with_info_d.h>
+#include <CGAL/box_intersection_d.h>
+#endif
+
+#include <utility>
+
+namespace fibrant::benchmarks {
+
+/// nanoflann's static kd-tree over the middles of segments, leaves of 20, every search wide enough for the longest segment.
+inline Call nanoflann_pairs(std::span<const proximity::Centreline> fibres, double reach) {
+    using namespace proximity::detail;
+    const SegmentTable table(fibres, reach);
+    const std::vector<SegmentRecord> records = table.records();
+    std::vector<Plain3> middles;
+    middles.reserve(records.size());
+    double longest = 0.0;
+    for (const SegmentRecord& r : records) {
+        middles.push_back({r.start.x + 0.5 * r.chord.x, r.start.y + 0.5 * r.chord.y, r.start.z + 0.5 * r.chord.z});
+        longest = std::max(longest, 0.5 * std::sqrt(dot(r.chord, r.chord)) + r.half);
+    }
+    const PointTree tree(middles);
+    Call call{.built = now()};
+    std::vector<std::int32_t> found;
+    std::vector<Candidate> candidates;
+    for (const SegmentRecord& r : records) {
+        found.clear();
+        candidates.clear();
+        tree.within(middles[core::at(r.segment)],
+                    (0.5 * std::sqrt(dot(r.chord, r.chord)) + r.half + longest + reach) * (1.0 + 1e-12), found);
+        for (const std::int32_t f : found)
+            if (f > r.segment) candidates.push_back({r.segment, f});
+        keep_close(table, records.data(), candidates, call.pairs);
+    }
+    return call;
+}
+
+#if defined(FIBRANT_BENCHMARK_BOOST) || defined(FIBRANT_BENCHMARK_CGAL)
+namespace detail {
+
+/// Lower and upper corner of a segment, widened by half its threshold.
+inline std::pair<Vec3, Vec3> corners(const proximity::detail::SegmentRecord& r, double reach) {
+    const Vec3 start(r.start.x, r.start.y, r.start.z), end = start + Vec3(r.chord.x, r.chord.y, r.chord.z);
+    const Vec3 wide = Vec3::Constant((r.half + 0.5 * reach) * (1.0 + 1e-12));
+    return {start.cwiseMin(end) - wide, start.cwiseMax(end) + wide};
+}
+
+}  // namespace detail
+#endif
+
+#if defined(FIBRANT_BENCHMARK_BOOST)
+/// Boost's R-tree, packed, 8 boxes a node.
+inline Call boost_pairs(std::span<const proximity::Centreline> fibres, double reach) {
+    namespace geometry = boost::geometry;
+    using namespace proximity::detail;
+    using Point = geometry::model::point<double, 3, geometry::cs::cartesian>;
+    using Entry = std::pair<geometry::model::box<Point>, std::int32_t>;
+    const SegmentTable table(fibres, reach);
+    const std::vector<SegmentRecord> records = table.records();
+    std::vector<Entry> entries;
+    for (const SegmentRecord& r : records) {
+        const auto [low, high] = detail::corners(r, reach);
+        entries.push_back({{Point(low[0], low[1], low[2]), Point(high[0], high[1], high[2])}, r.segment});
+    }
+    const geometry::index::rtree<Entry, geometry::index::quadratic<8>> tree(entries.begin(), entries.end());
+    Call call{.built = now()};
+    std::vector<Candidate> candidates;
+    for (const Entry& entry : entries) {
+        candidates.clear();
+        tree.query(geometry::index::intersects(entry.first), boost::make_function_output_iterator([&](const Entry& other) {
+                       if (other.second > entry.second) candidates.push_back({entry.second, other.second});
+                   }));
+        keep_close(table, records.data(), candidates, call.pairs);
+    }
+    return call;
+}
+#endif
+
+#if defined(FIBRANT_BENCHMARK_CGAL)
+/// CGAL's hybrid of segment trees and scans, cutoff 500.
+inline Call cgal_pairs(std::span<const proximity::Centreline> fibres, double reach) {
+    using namespace proximity::detail;
+    using Entry = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::int32_t>;
+    const SegmentTable table(fibres, reach);
+    const std::vector<SegmentRecord> records = table.records();
+    std::vector<Entry> entries;
+    for (const SegmentRecord& r : records) {
+        auto [low, high] = detail::corners(r, reach);
+        entries.emplace_back(low.data(), high.data(), r.segment);
+    }
+    Call call;
+    std::vector<Candidate> candidates;
+    CGAL::box_self_intersection_d(
+        entries.begin(), entries.end(),
+        [&](const Entry& a, const Entry& b) {
+            candidates.push_back({a.info(), b.info()});
+            if (candidates.size() < 4096) return;
+            keep_close(table, records.data(), candidates, call.pairs);
+            candidates.clear();
+        },
+        500);
+    keep_close(table, records.data(), candidates, call.pairs);
+    return call;
+}
+#endif
+
+}  // namespace fibrant::benchmarks
