@@ -3,7 +3,7 @@
 /// @file Times of a search in halves, and what its pairs miss.
 
 #include <fibrant/core/parallel.hpp>
-#include <fibrant/proximity/segment_table.hpp>
+#include <fibrant/proximity/exact_filter.hpp>
 
 #include <algorithm>
 #include <chrono>

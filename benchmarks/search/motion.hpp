@@ -40,12 +40,12 @@ inline void measure_motion(Scene scene, double step, int calls, bool self) {
     proximity::BvhSearch tree;
     using Verlet = proximity::VerletSearch<proximity::GridSearch>;
     std::vector<Verlet> verlet;
-    for (const double skin : {0.25, 0.5, 1.0, 2.0}) verlet.emplace_back(Verlet::Parameters{.base = {}, .skin = skin * r});
+    for (const double skin : {0.25, 0.5, 1.0, 2.0, 0.0}) verlet.emplace_back(Verlet::Parameters{.base = {}, .skin = skin * r});
     strategies.push_back({"nanoflann rebuilt", [&](auto lines) { return nanoflann_pairs(lines, reach).pairs; }, {}});
     strategies.push_back({"GridSearch rebuilt", [&](auto lines) { return grid.pairs(lines, reach); }, {}});
     strategies.push_back({"BvhSearch rebuilt", [&](auto lines) { return tree.pairs(lines, reach); }, {}});
     for (std::size_t k = 0; k < verlet.size(); ++k)
-        strategies.push_back({"VerletSearch skin " + core::text(0.25 * std::pow(2.0, static_cast<double>(k))) + " r",
+        strategies.push_back({k < 4 ? "VerletSearch skin " + core::text(0.25 * std::pow(2.0, static_cast<double>(k))) + " r" : "VerletSearch",
                               [&verlet, k, reach](auto lines) { return verlet[k].pairs(lines, reach); },
                               [&verlet, k] { return verlet[k].builds(); }});
     double least = 0.0;

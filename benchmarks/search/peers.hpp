@@ -8,7 +8,7 @@
 #include <fibrant/proximity/kd_tree_search.hpp>
 
 #if defined(FIBRANT_BENCHMARK_BOOST)
-#include <boost/function_output_iterator.hpp>
+#include <boost/iterator/function_output_iterator.hpp>
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>

@@ -255,7 +255,7 @@ TEST_CASE("parameters of searches are refused by name") {
     CHECK_THROWS_WITH_AS((TestPointSearch{{.spacing = 0.0}}),
                          "TestPointSearch.spacing = 0, but it must be finite and > 0", std::invalid_argument);
     CHECK_THROWS_WITH_AS((VerletSearch<GridSearch>{{.base = {}, .skin = -1.0}}),
-                         "VerletSearch.skin = -1, but it must be finite and > 0", std::invalid_argument);
+                         "VerletSearch.skin = -1, but it must be finite and >= 0", std::invalid_argument);
     CHECK_THROWS_AS((TestPointSearch{TestPointSearch::Parameters{}}), std::invalid_argument);
 }
 
@@ -277,6 +277,34 @@ TEST_CASE("a Verlet list serves small motions, and is built anew before it could
     // 0.05 / (2 x 0.002 sqrt(3)) = 7 steps at least to a list while steps add up (random ones add up less), 3 jumps, 1 reach.
     CHECK(search.builds() <= steps / 7 + 4);
     CHECK(search.builds() >= 4);
+}
+
+TEST_CASE("a Verlet list without a skin of its own takes one from the motion, and none where it would not live") {
+    FibreSet set = test::random_fibres(43, 60, 10, 0.2, 0.4, 0.6);  // of radius 0.05
+    set.self_skip = 0.5;
+    VerletSearch<GridSearch> search{{}};
+    std::mt19937 random(44);
+    Index last = 0;
+    // Two calls a step. 15 calls a list; bounded by 1.5 radii, so that 0.075 / (2 x 0.01) = 3.75 steps; below 3 calls, the base
+    // alone.
+    struct Motion {
+        double step;
+        Index least, most;  // builds
+    };
+    for (const Motion& motion : {Motion{1e-4, 2, 5}, Motion{0.01, 9, 12}, Motion{0.05, 59, 61}, Motion{0.001, 2, 5}}) {
+        std::vector<Vec3> way;
+        for (std::size_t k = 0; k < 660; ++k) way.push_back(motion.step * test::random_vector(random).normalized());
+        for (int call = 0; call < 30; ++call) {
+            std::size_t vertex = 0;
+            for (auto& line : set.points)
+                for (Vec3& x : line) x += way[vertex++];
+            test::check_search(search, set, BruteSearch{}.pairs(set.centrelines(), set.reach));
+        }
+        CAPTURE(motion.step);
+        CHECK(search.builds() - last >= motion.least);
+        CHECK(search.builds() - last <= motion.most);
+        last = search.builds();
+    }
 }
 
 TEST_CASE("a Verlet list does not miss fibres that approach each other step by step") {

@@ -3,7 +3,7 @@
 /// @file Single-precision boxes of segments in a frame that suits them.
 
 #include <fibrant/core/parallel.hpp>
-#include <fibrant/proximity/segment_table.hpp>
+#include <fibrant/proximity/exact_filter.hpp>
 
 #include <Eigen/Eigenvalues>
 

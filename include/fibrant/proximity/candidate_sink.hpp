@@ -2,7 +2,7 @@
 #pragma once
 /// @file Candidates on their way from boxes that overlap to the exact filter.
 
-#include <fibrant/proximity/segment_table.hpp>
+#include <fibrant/proximity/exact_filter.hpp>
 
 namespace fibrant::proximity::detail {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Segments of all fibres under one numbering, which of them may pair, and the exact filter all searches share.
+/// @file Segments of all fibres under one numbering, and which of them may pair.
 
 #include <fibrant/proximity/proximity_search.hpp>
 #include <fibrant/proximity/segment_distance.hpp>
@@ -118,79 +118,5 @@ private:
     std::vector<std::int32_t> first_, fibre_;
     std::vector<double> arc_, length_;  // of each segment, only where a fibre may pair with itself
 };
-
-/// Two positions in a list of records that may be close.
-struct Candidate {
-    std::int32_t a, b;
-};
-
-/// Candidates laid out for the vector units: one lane a pair.
-struct FilterLanes {
-    static constexpr int size = 64;
-    alignas(64) double w[3][size], u[3][size], v[3][size], threshold[size], squared[size];
-    SegmentPair pair[size];
-
-    void set(int lane, const SegmentRecord& i, const SegmentRecord& j, double reach) noexcept {
-        const Plain3 difference = i.start - j.start;
-        w[0][lane] = difference.x, w[1][lane] = difference.y, w[2][lane] = difference.z;
-        u[0][lane] = i.chord.x, u[1][lane] = i.chord.y, u[2][lane] = i.chord.z;
-        v[0][lane] = j.chord.x, v[1][lane] = j.chord.y, v[2][lane] = j.chord.z;
-        threshold[lane] = i.half + j.half + reach;
-        pair[lane] = {i.segment, j.segment};
-    }
-    void measure(int first) noexcept {
-        for (int l = first; l < first + 8; ++l)
-            squared[l] = least_squared({w[0][l], w[1][l], w[2][l]}, {u[0][l], u[1][l], u[2][l]}, {v[0][l], v[1][l], v[2][l]});
-    }
-};
-
-/// Appends the pairs of the candidates that are close. The one filter of all searches: it takes each pair in the order
-/// of its segments, in whole vectors only, and is compiled once (never inlined), so that a pair on the very threshold is
-/// decided alike by all.
-#if defined(__GNUC__)
-__attribute__((noinline))
-#endif
-inline void keep_close(const SegmentTable& table, const SegmentRecord* records, std::span<const Candidate> candidates,
-                       std::vector<SegmentPair>& close) {
-    constexpr std::size_t ahead = 12;  // candidates to ask memory for in advance
-    FilterLanes lanes;
-    int filled = 0;
-    const auto flush = [&] {
-        // The rest of the last vector repeats its first lane: no lane is ever read unset.
-        for (int l = filled; l % 8 != 0; ++l)
-            for (int axis = 0; axis < 3; ++axis) {
-                lanes.w[axis][l] = lanes.w[axis][filled - 1];
-                lanes.u[axis][l] = lanes.u[axis][filled - 1];
-                lanes.v[axis][l] = lanes.v[axis][filled - 1];
-            }
-        for (int first = 0; first < filled; first += 8) lanes.measure(first);
-        const std::size_t before = close.size();
-        close.resize(before + core::at(filled));
-        SegmentPair* end = close.data() + before;
-        for (int l = 0; l < filled; ++l) {
-            *end = lanes.pair[l];
-            end += lanes.squared[l] < lanes.threshold[l] * lanes.threshold[l] ? 1 : 0;
-        }
-        close.resize(core::at(end - close.data()));
-        filled = 0;
-    };
-    for (std::size_t k = 0; k < candidates.size(); ++k) {
-        const Candidate candidate = candidates[k];
-#if defined(__GNUC__)
-        if (k + ahead < candidates.size()) __builtin_prefetch(records + candidates[k + ahead].b);
-#endif
-        // No branch on what is as good as random: which of the two is first, and whether both are of one fibre.
-        const SegmentRecord* two[2] = {records + candidate.a, records + candidate.b};
-        const std::size_t second = two[0]->segment < two[1]->segment ? 1 : 0;
-        const SegmentRecord& i = *two[1 - second];
-        const SegmentRecord& j = *two[second];
-        int keep = i.group != j.group ? 1 : 0;
-        if (table.selfish() && keep == 0) keep = table.may_pair_in_group(i.segment, j.segment) ? 1 : 0;
-        lanes.set(filled, i, j, table.reach());
-        filled += keep;
-        if (filled == FilterLanes::size) flush();
-    }
-    if (filled > 0) flush();
-}
 
 }  // namespace fibrant::proximity::detail

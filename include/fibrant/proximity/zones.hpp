@@ -3,7 +3,7 @@
 /// @file Joins close pairs of segments into proximity zones; the same function for every search.
 
 #include <fibrant/core/parallel.hpp>
-#include <fibrant/proximity/segment_table.hpp>
+#include <fibrant/proximity/exact_filter.hpp>
 
 #include <algorithm>
 #include <numeric>
