@@ -2,14 +2,11 @@
 #pragma once
 /// @file Sixteen boxes compared at once: the inner loop of the grid.
 
+#include <fibrant/core/vector_units.hpp>
 #include <fibrant/proximity/boxes.hpp>
 
 #include <bit>
 #include <cstring>
-
-#if defined(__AVX2__)
-#include <immintrin.h>
-#endif
 
 namespace fibrant::proximity::detail {
 

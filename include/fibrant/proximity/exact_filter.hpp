@@ -2,13 +2,13 @@
 #pragma once
 /// @file The exact filter that all searches share, eight candidates at once.
 
+#include <fibrant/core/vector_units.hpp>
 #include <fibrant/proximity/segment_table.hpp>
 
 #include <bit>
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 #define FIBRANT_FILTER_AVX512 1
-#include <immintrin.h>
 #endif
 
 namespace fibrant::proximity::detail {
