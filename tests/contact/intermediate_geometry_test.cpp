@@ -170,8 +170,8 @@ TEST_CASE("a plane cuts a curved fibre where dense sampling changes sides") {
 }
 
 TEST_CASE("near-parallel fibres are paired across their mean line, at equal distances that do not move with the zone's ends") {
-    // 4 degrees apart, with as many elements that do not face each other
-    const double angle = 4.0 * std::numbers::pi / 180.0;
+    // 3 degrees apart, with as many elements that do not face each other
+    const double angle = 3.0 * std::numbers::pi / 180.0;
     const Vec3 other(std::cos(angle), std::sin(angle), 0.0);
     const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre(Vec3(0.03, 0, 0.04) - other, Vec3(0.03, 0, 0.04) + other, r, 10)});
     const std::vector<StationPair> pairs = pairs_of(mesh, zone(2, 8, 2, 8), false);
@@ -191,6 +191,30 @@ TEST_CASE("near-parallel fibres are paired across their mean line, at equal dist
     const std::vector<StationPair> shorter = pairs_of(mesh, zone(2.3, 7.6, 2.3, 7.6), false);
     REQUIRE(shorter.size() == 11);
     for (std::size_t k = 0; k < shorter.size(); ++k) CHECK(std::abs(shorter[k].u_i - pairs[k + 1].u_i) < 1e-9);
+}
+
+TEST_CASE("fibres that slant have more pairs, so that none of their depth is missed") {
+    // Closest half way between two stations, where half an element's spacing misses 0.002, 0.008, 0.04 and 0.3 radii.
+    const auto missed = [](double degrees, const ContactSpacing& used) {
+        const double angle = degrees * std::numbers::pi / 180.0;
+        const Vec3 along(std::cos(angle), std::sin(angle), 0.0), middle(0.05, 0.0, 0.039);
+        const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre(middle - 1.05 * along, middle + 0.95 * along, r, 10)});
+        std::vector<StationPair> pairs;
+        contact::station_pairs(mesh, mesh.rest_state(), zone(4.3, 6.2, 4.3, 6.2), false, used, pairs);
+        double least = 1e300;
+        for (const StationPair& pair : pairs) least = std::min(least, distance(mesh, pair.u_i, pair.u_j));
+        return std::pair((least - 0.039) / r, pairs.size());
+    };
+    ContactSpacing even = spacing;
+    even.largest_slant = 1e3;
+    const double bound = 0.25 * spacing.largest_slant * spacing.largest_slant * 1.06;  // a depth of x^2 / (2 * 0.039) is missed
+    for (const double degrees : {2.0, 4.0, 9.0, 25.0}) {
+        CAPTURE(degrees);
+        const auto [depth, count] = missed(degrees, spacing);
+        CHECK(depth <= bound);
+        CHECK(count == (degrees < 3.0 ? 4u : degrees < 5.0 ? 7u : degrees < 10.0 ? 15u : 31u));
+        if (degrees > 5.0) CHECK(missed(degrees, even).first > 2.0 * bound);
+    }
 }
 
 TEST_CASE("a fibre that runs the other way is paired at the same places") {

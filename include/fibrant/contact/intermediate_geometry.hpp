@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace fibrant::contact {
@@ -75,8 +76,12 @@ struct ContactSpacing {
     double points_per_element = 2.0;    ///< along near-parallel fibres [1], > 0
     double crossing_angle_deg = 30.0;   ///< above: one contact element for the zone [degree]
     double angle_hysteresis_deg = 5.0;  ///< a zone keeps its kind within this of the bound [degree]
+    /// Lateral way of one fibre past the other in half a spacing, beyond which the spacing is halved, up to three times
+    /// [radius], > 0. Between contact points a depth of a quarter of its square [radius] goes unseen.
+    double largest_slant = 0.15;
     void validate() const {
         core::require_positive("ContactSpacing.points_per_element", points_per_element);
+        core::require_positive("ContactSpacing.largest_slant", largest_slant);
         core::require_between("ContactSpacing.crossing_angle_deg", crossing_angle_deg, 1.0, 90.0);
         core::require_between("ContactSpacing.angle_hysteresis_deg", angle_hysteresis_deg, 0.0, 20.0);
     }
@@ -150,7 +155,7 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
     };
     const double from = mean_abscissa(zone.a_i, zone.a_j), to = mean_abscissa(zone.b_i, zone.b_j);
     const auto first = static_cast<Index>(std::ceil(from / step - 1e-6)), last = static_cast<Index>(std::floor(to / step + 1e-6));
-    const auto station = [&](Index k) { return to > from ? std::clamp((static_cast<double>(k) * step - from) / (to - from), 0.0, 1.0) : 0.5; };
+    const auto share = [&](double k) { return to > from ? std::clamp((k * step - from) / (to - from), 0.0, 1.0) : 0.5; };
     const std::size_t before = pairs.size();
     // The last section of a fibre against the other one: there splayed fibres are closest, and no cap sticks out. False if
     // the other fibre ends before.
@@ -168,11 +173,12 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         return true;
     };
     const auto nearest_end = [&](bool of_i, double u) { return u > 0.5 * (of_i ? end_i : end_j) ? (of_i ? end_i : end_j) : 0.0; };
-    for (Index k = first; k <= std::max(first, last); ++k) {
-        const double s = first <= last ? station(k) : 0.5;
+    // The pair of the plane at the share s of the zone. @returns the sine of the angle between the fibres there
+    const auto add_station = [&](double s, double length) {
         double u_i = zone.a_i + s * (zone.b_i - zone.a_i), u_j = zone.a_j + s * (zone.b_j - zone.a_j);
         const Vec3 middle = 0.5 * (mesh.position(state, i, u_i) + mesh.position(state, j, u_j));
-        const Vec3 tangent = mean_tangent(contact_tangent(mesh, state, i, u_i).normalized(), contact_tangent(mesh, state, j, u_j).normalized());
+        const Vec3 t_i = contact_tangent(mesh, state, i, u_i).normalized(), t_j = contact_tangent(mesh, state, j, u_j).normalized();
+        const Vec3 tangent = mean_tangent(t_i, t_j);
         u_i = plane_section(mesh, state, i, u_i, middle, tangent);
         u_j = plane_section(mesh, state, j, u_j, middle, tangent);
         const double off_i = std::abs((mesh.position(state, i, u_i) - middle).dot(tangent));
@@ -183,10 +189,30 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
             const bool of_i = left_i;
             const double u = of_i ? u_i : u_j;
             if (!add_last_section(of_i, nearest_end(of_i, u), of_i ? u_j : u_i)) add_end(of_i, u);
-            continue;
+        } else {
+            pairs.push_back({u_i, u_j, false, false, false, length});
         }
-        pairs.push_back({u_i, u_j, false, false, false, step * h});
+        return t_i.cross(t_j).norm();
+    };
+    if (first > last) add_station(0.5, step * h);
+    // Between two stations where fibres slant they come closer than at either: the spacing is halved there. Not where they
+    // cross, which only zones with a prescribed normal do that come here.
+    const double crossing_sine = std::sin(spacing.crossing_angle_deg * std::numbers::pi / 180.0);
+    const auto add_between = [&](Index k, double sine) {
+        int parts = 1;
+        while (parts < 8 && sine < crossing_sine && 0.5 * step * h * sine > spacing.largest_slant * r * parts) parts *= 2;
+        for (int m = 1; m < parts; ++m) {
+            const double at = static_cast<double>(k) + static_cast<double>(m) / parts;
+            if (at * step > from && at * step < to) add_station(share(at), step * h / parts);
+        }
+    };
+    double sine = 0.0;
+    for (Index k = first; k <= last; ++k) {
+        const double here = add_station(share(static_cast<double>(k)), step * h);
+        add_between(k - 1, k == first ? here : std::max(sine, here));
+        sine = here;
     }
+    if (first <= last) add_between(last, sine);
     // Ends that the zone reaches and no station has met.
     for (const double s : {0.0, 1.0})
         for (const bool of_i : {true, false}) {
