@@ -110,6 +110,52 @@ TEST_CASE("damping that decays slows a fibre down and leaves no force on it, and
     CHECK((held.state() - direct.state()).cwiseAbs().maxCoeff() > 1e-2 * rod.length);
 }
 
+TEST_CASE("damping is not lowered while fibres still move far, and where they come to rest is the same") {
+    const Rod rod;
+    const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3);  // of the tip
+    Simulator<Smooth> direct(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
+    REQUIRE(direct.run({.increments = 1}).converged);
+    Loading<Smooth> loading;
+    loading.stages = {{.increments = 1, .ramps = {{"load", 1.0}}, .damping = stiffness, .damping_decay = 0.5,
+                       .damping_calm = 0.02 * rod.length, .until = simulation::until_settled(1e-3 * rod.radius, 0.0)}};
+    Simulator<Smooth> simulator(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
+    const Report report = simulator.run(loading);
+    REQUIRE(report.converged);
+    // What is left falls by a constant factor while damping stays, and damping falls in ten halvings.
+    Index far = 0;
+    for (const simulation::IncrementReport& increment : report.increments) far += increment.displacement > 0.02 * rod.length ? 1 : 0;
+    CHECK(far >= 2);
+    CHECK(core::count(report.increments) >= far + 10);
+    CHECK((simulator.state() - direct.state()).cwiseAbs().maxCoeff() < 1e-7);
+    // Without a condition a stage ends with its ramps, damped as it is.
+    loading.stages[0].until = {};
+    Simulator<Smooth> once(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
+    const Report short_report = once.run(loading);
+    REQUIRE(short_report.converged);
+    CHECK(short_report.increments.size() == 1);
+}
+
+TEST_CASE("a stage may allow more penetration than the model, and the next one takes it back at the same force") {
+    const Crossing crossing;
+    const double allowed = 1e-2 * crossing.radius;
+    Loading<Smooth> loading;
+    loading.stages = {{.name = "soft", .increments = 8, .ramps = {{"approach", 1.0}}, .allowed_penetration = 8.0 * allowed},
+                      {.name = "stiff", .increments = 1, .until = simulation::until_settled(1e-4 * crossing.radius, allowed)}};
+    Simulator<Smooth> simulator(crossing.assembly(), test::tight_parameters<Smooth>(crossing.radius));
+    const Report report = simulator.run(loading);
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    const double soft = report.increments[7].contact.greatest_penetration, stiff = report.contact.greatest_penetration;
+    CHECK(soft > 2.0 * allowed);
+    CHECK(soft < 8.0 * allowed);
+    CHECK(stiff <= allowed);
+    CHECK(stiff > 0.2 * allowed);
+    // The fibres' supports are a spring in series: what contact gives way less they bend more, by part of the approach.
+    const double more = (soft - stiff) / crossing.approach;
+    CHECK(report.contact.reaction_sum > report.increments[7].contact.reaction_sum);
+    CHECK(report.contact.reaction_sum < report.increments[7].contact.reaction_sum * (1.0 + 2.0 * more));
+}
+
 TEST_CASE("a stage with a condition goes on at constant loads until it holds") {
     const Rod rod;
     Simulator<Smooth> simulator(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
@@ -246,6 +292,10 @@ TEST_CASE("a loading that cannot be walked is refused before any work") {
     CHECK(refused(loading) == "Ramp.to = nan, but it must be finite");
     loading.stages = {{.looseness = 0.5}};
     CHECK(refused(loading).starts_with("Stage.looseness = 0.5,"));
+    loading.stages = {{.allowed_penetration = 0.0}};
+    CHECK(refused(loading) == "Stage.allowed_penetration = 0, but it must be finite and > 0");
+    loading.stages = {{.damping_calm = 0.0}};
+    CHECK(refused(loading) == "Stage.damping_calm = 0, but it must be > 0");
     loading.stages = {{.gap_limit = -1.0}};
     CHECK(refused(loading).starts_with("Stage.gap_limit = -1,"));
     loading.stages = {{.ramps = {{"load", 0.5, true}}}};  // from 0: no factor leads there

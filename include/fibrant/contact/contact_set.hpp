@@ -217,6 +217,11 @@ public:
         return sum;
     }
 
+    /// Penetration that zones are adapted to from now on [length], > 0.
+    void allow_penetration(double length) {
+        parameters_.stiffness.allowed_penetration = length;
+        parameters_.stiffness.validate();
+    }
     /// Keeps normals, friction and zones of an accepted state, and adapts the stiffness of the zones to it.
     void accept(const Vector& state) {
         accepted_.assign(records(state));

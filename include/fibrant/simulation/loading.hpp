@@ -6,6 +6,7 @@
 #include <fibrant/simulation/report.hpp>
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,12 +27,15 @@ struct Stage {
     Index increments = 10;                      ///< that its ramps take when none is cut, >= 1
     std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
     std::optional<double> gap_limit{};          ///< of a law that limits the gap [length]; scaled down when cut
+    std::optional<double> allowed_penetration{};  ///< that the penalty adapts to in this stage, for the model's [length]
     bool forced_orders = false;                 ///< keep the scene's forced orders
     /// Spring from every centre to its last accepted place [force / length]: keeps what is slack from leaping.
     double damping = 0.0;
-    /// Factor on the damping after each increment without a cut, in (0, 1]; a cut raises it again. Below 1, the stage ends
-    /// only with an increment that had no damping at all.
+    /// Factor on the damping after each increment without a cut, in (0, 1]; a cut raises it again. Below 1, a stage with an
+    /// `until` ends only with an increment that had no damping at all.
     double damping_decay = 1.0;
+    /// Greatest displacement of an increment after which damping is lowered [length], > 0.
+    double damping_calm = std::numeric_limits<double>::infinity();
     double looseness = 1.0;                     ///< on the tolerances of contact and normal passes, >= 1
     std::optional<typename M::Normal> normal{};
     std::optional<typename M::Friction> friction{};
@@ -60,7 +64,9 @@ struct Loading {
             core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);
             core::require_not_negative("Stage.damping", stage.damping);
             core::require(stage.damping_decay > 0.0 && stage.damping_decay <= 1.0, "Stage.damping_decay", stage.damping_decay, "in (0, 1]");
+            core::require(stage.damping_calm > 0.0, "Stage.damping_calm", stage.damping_calm, "> 0");
             core::require(stage.looseness >= 1.0 && stage.looseness <= 100.0, "Stage.looseness", stage.looseness, "in [1, 100]");
+            if (stage.allowed_penetration) core::require_positive("Stage.allowed_penetration", *stage.allowed_penetration);
             if (stage.gap_limit) core::require_positive("Stage.gap_limit", *stage.gap_limit);
             for (const Ramp& ramp : stage.ramps) core::require_finite("Ramp.to", ramp.to);
         }

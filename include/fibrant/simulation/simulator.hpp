@@ -206,6 +206,7 @@ private:
                 if (stage.gap_limit) contacts_.normal_law() = contacts_.normal_law().with_limit(*stage.gap_limit * position_.fraction);
                 else contacts_.normal_law() = contacts_.normal_law().with_limit(std::numeric_limits<double>::infinity());
             }
+            contacts_.allow_penetration(stage.allowed_penetration.value_or(parameters_.contact.stiffness.allowed_penetration));
             const std::vector<double> amplitudes = amplitudes_at(stage, progress);
             const double contact_before = contacts_work_;
             Vector trial = state_;
@@ -250,9 +251,10 @@ private:
         increment.progress = (static_cast<double>(position_.stage) + position_.progress) / static_cast<double>(stages.size());
         // A state is at rest when nothing that holds it is taken away any more: the last increment has no damping.
         const bool reached = position_.progress >= 1.0 && (!stage.until || stage.until(increment));
-        const bool held = stage.damping > 0.0 && stage.damping_decay < 1.0 && position_.damping > 0.0;
+        const bool held = stage.until && stage.damping > 0.0 && stage.damping_decay < 1.0 && position_.damping > 0.0;
         position_.stage_over = reached && !held;
-        if (increment.cuts == 0) position_.damping *= position_.damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, position_.fraction);
+        if (increment.cuts == 0 && increment.displacement <= stage.damping_calm)
+            position_.damping *= position_.damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, position_.fraction);
         if (position_.damping < least_damping) position_.damping = 0.0;
         contacts_.accept(state_);
         increment.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
