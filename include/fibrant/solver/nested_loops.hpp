@@ -43,9 +43,9 @@ public:
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
         Vector searched;                                          // state of the last search
-        Index passes = 0, searches = 0;
+        Index passes = 0, searches = 0, moves = 0;
         while (true) {
-            if (passes >= parameters_.contact_limit || report.counts.contact_passes >= parameters_.contact_limit + 16) {
+            if (passes >= parameters_.contact_limit || moves > most_moves) {
                 report.reason = "contact passes do not settle: last displacement " + core::text(change / radius_) + " radii";
                 return report;
             }
@@ -68,7 +68,10 @@ public:
             const bool moved = !normal_passes(newton, state, accepted, searched, bound, looseness, report);
             if (!report.reason.empty()) return report;
             change = equilibrium_->greatest(state - before_pass);
-            if (moved) continue;
+            if (moved) {
+                ++moves;
+                continue;
+            }
             ++passes;
             if (!contact_possible_ || change < contact_tolerance) break;
         }
@@ -78,6 +81,8 @@ public:
     }
 
 private:
+    static constexpr Index most_moves = 6;  ///< further than a search reaches; fibres that go on are lost
+
     /// Normal passes on one set of contact elements. @returns false if the search has to be repeated first.
     bool normal_passes(Newton<Equilibrium, Contacts, Linear>& newton, Vector& state, const Vector& accepted,
                        const Vector& searched, double bound, double looseness, AttemptReport& report) {

@@ -114,7 +114,9 @@ public:
             }
             if (!mixed) equilibrium.reset_stresses(state);
             const double ratio = before.residual > 0.0 ? report.residual.residual / before.residual : 0.0;
-            eta = std::clamp(0.9 * ratio * ratio, parameters_.linear_tolerance, 1e-2);
+            // A tenth of what the residual may have left is as good as nothing.
+            const double enough = 0.1 * residual_tolerance(tolerance) / std::max(report.residual.relative(), residual_tolerance(tolerance));
+            eta = std::clamp(0.9 * ratio * ratio, std::min(std::max(parameters_.linear_tolerance, enough), 1e-2), 1e-2);
             if (scale == 1.0 && report.step <= tolerance && report.residual.relative() <= residual_tolerance(tolerance)) {
                 report.status = NewtonStatus::converged;
                 return report;
