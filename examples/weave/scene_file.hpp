@@ -125,6 +125,7 @@ inline Scene read_scene(const std::string& path, const std::vector<std::string>&
         file.read("settle", "separation_increments", settle.separation_increments);
         file.read("settle", "release_increments", settle.release_increments);
         file.read("settle", "rest_increments", settle.rest_increments);
+        file.read("settle", "softness", settle.softness);
         file.read("settle", "looseness", settle.looseness);
         file.read("settle", "rest_motion_over_radius", settle.rest_motion_over_radius);
         file.read("contact", "friction_coefficient", settle.friction_coefficient);

@@ -24,7 +24,7 @@ simulation::ModelParameters<M> model_parameters(const FabricParameters& fabric, 
     settle.validate();
     const double r = smallest_radius(fabric), allowed = settle.allowed_penetration_over_radius * r;
     simulation::ModelParameters<M> parameters;
-    parameters.normal.law.regularisation_depth = 0.1 * allowed;
+    parameters.normal.law.regularisation_depth = allowed;
     parameters.normal.limit = settle.gap_limit_over_radius * r;
     parameters.contact.stiffness.allowed_penetration = allowed;
     if constexpr (core::Active<typename M::Friction>) {
@@ -38,6 +38,7 @@ simulation::ModelParameters<M> model_parameters(const FabricParameters& fabric, 
 template <simulation::Model M>
 simulation::Loading<M> settling(const FabricParameters& fabric, const SettleParameters& settle) {
     const double r = smallest_radius(fabric), allowed = settle.allowed_penetration_over_radius * r;
+    const double soft = settle.softness * allowed;
     simulation::Loading<M> loading;
     simulation::Stage<M> tension;
     tension.name = "tension";
@@ -50,7 +51,7 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     separation.increments = 1;
     separation.forced_orders = true;
     separation.gap_limit = settle.gap_limit_over_radius * r;
-    separation.until = simulation::until_separated(5.0 * allowed);
+    separation.until = simulation::until_separated(5.0 * soft);
     separation.most_increments = settle.separation_increments;
     // Friction meets fibres that have just parted. Without it a tow would spread for ever more slowly, and how far it had
     // come would depend on the increments.
@@ -60,12 +61,24 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     if constexpr (core::Active<typename M::Friction>)
         handover.friction.emplace(typename M::Friction::Parameters{
             settle.friction_coefficient, std::max(0.02 * r, settle.friction_coefficient * allowed)});
-    handover.until = simulation::until_settled(0.08 * settle.gap_limit_over_radius * r, 5.0 * allowed);
+    handover.until = simulation::until_settled(0.08 * settle.gap_limit_over_radius * r, 5.0 * soft);
     handover.most_increments = settle.rest_increments;
     simulation::Stage<M> release;
     release.name = "release";
     release.increments = settle.release_increments;
     release.ramps = {{tension_channel, settle.final_tension_factor, true}};
+    simulation::Stage<M> relaxation;
+    relaxation.name = "relaxation";
+    relaxation.increments = 1;
+    relaxation.until = simulation::until_settled(0.08 * settle.gap_limit_over_radius * r, 5.0 * soft);
+    relaxation.most_increments = settle.rest_increments;
+    // On the way contact is softer: contacts that change their status one by one are what Newton's method and the linear
+    // solver spend their iterations on. Rest has the stiffness that was asked for.
+    for (simulation::Stage<M>* stage : {&tension, &separation, &handover, &release, &relaxation}) stage->allowed_penetration = soft;
+    simulation::Stage<M> stiffening = relaxation;
+    stiffening.name = "stiffening";
+    stiffening.allowed_penetration.reset();
+    stiffening.until = simulation::until_settled(0.08 * settle.gap_limit_over_radius * r, allowed);
     simulation::Stage<M> rest;
     rest.name = "rest";
     rest.increments = 1;
@@ -73,21 +86,22 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     rest.most_increments = settle.rest_increments;
     // Paths are only a means, and what one increment leaves over moves in the next: the last stage tells when it is all.
     tension.looseness = rest.looseness = 5.0;
-    separation.looseness = handover.looseness = release.looseness = settle.looseness;
+    separation.looseness = handover.looseness = release.looseness = relaxation.looseness = stiffening.looseness = settle.looseness;
     // Slack fibres creep into their places instead of leaping. At the gap limit of one radius, a tenth of what the tension
     // makes of an element's length; an increment is a time, and half the time is twice the spring, so that the path is the
-    // same when increments are halved. It falls with the tension, and at the end to nothing: rest is an equilibrium.
+    // same when increments are halved. After the tension it falls to nothing, and once more while contact stiffens: rest is
+    // an equilibrium.
     const auto node_stiffness = [&](Family family) {
         const TowParameters& tow = fabric.tow(family);
         const double pull = settle.tension_strain * tow.material.young_modulus * tow.section().area();
         return 4.0 * pull * static_cast<double>(fabric.elements) / fabric.fibre_length(family);
     };
     const double damping = 0.1 / settle.gap_limit_over_radius * std::min(node_stiffness(Family::warp), node_stiffness(Family::weft));
-    separation.damping = handover.damping = release.damping = damping;
-    release.damping_decay = std::pow(settle.final_tension_factor, 1.0 / static_cast<double>(settle.release_increments));
-    rest.damping = damping * settle.final_tension_factor;
-    rest.damping_decay = 0.5;
-    loading.stages = {tension, separation, handover, release, rest};
+    separation.damping = handover.damping = release.damping = relaxation.damping = damping;
+    stiffening.damping = 0.1 * damping;
+    relaxation.damping_decay = stiffening.damping_decay = 0.5;
+    relaxation.damping_calm = stiffening.damping_calm = 0.6 * settle.gap_limit_over_radius * r;
+    loading.stages = {tension, separation, handover, release, relaxation, stiffening, rest};
     return loading;
 }
 
