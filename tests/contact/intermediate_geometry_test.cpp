@@ -206,8 +206,8 @@ TEST_CASE("fibres that slant have more pairs, so that none of their depth is mis
         return std::pair((least - 0.039) / r, pairs.size());
     };
     ContactSpacing even = spacing;
-    even.largest_slant = 1e3;
-    const double bound = 0.25 * spacing.largest_slant * spacing.largest_slant * 1.06;  // a depth of x^2 / (2 * 0.039) is missed
+    even.largest_unseen = 1e3;
+    const double bound = spacing.largest_unseen * 1.1;  // a depth of x^2 / (2 * 0.039) is missed
     for (const double degrees : {2.0, 4.0, 9.0, 25.0}) {
         CAPTURE(degrees);
         const auto [depth, count] = missed(degrees, spacing);
@@ -215,6 +215,39 @@ TEST_CASE("fibres that slant have more pairs, so that none of their depth is mis
         CHECK(count == (degrees < 3.0 ? 4u : degrees < 5.0 ? 7u : degrees < 10.0 ? 15u : 31u));
         if (degrees > 5.0) CHECK(missed(degrees, even).first > 2.0 * bound);
     }
+}
+
+TEST_CASE("fibres that bend towards each other have more pairs where they do, and those that bend together have not") {
+    // Relative curvature k over half an element, 0.1: a depth of k 0.1^2 / 8 goes unseen, 0.0016 and 0.012 radii.
+    for (const double curvature : {0.025, 0.2}) {
+        CAPTURE(curvature);
+        const auto count = [&](double below, double above) {
+            const Mesh mesh = mesh_of({curved_fibre([&](double t) { return Vec3(2.0 * t, 0.0, 0.5 * below * (2.0 * t - 1.0) * (2.0 * t - 1.0)); }, r, 10),
+                                       curved_fibre([&](double t) { return Vec3(2.0 * t, 0.0, 2.0 * r + 0.5 * above * (2.0 * t - 1.0) * (2.0 * t - 1.0)); }, r, 10)});
+            return pairs_of(mesh, zone(4, 6, 4, 6), false).size();
+        };
+        const std::size_t halved = curvature < 0.1 ? 5 : 9;
+        CHECK(count(0.0, curvature) == halved);
+        CHECK(count(-0.5 * curvature, 0.5 * curvature) == halved);
+        CHECK(count(curvature, curvature) == 5);
+        CHECK(count(curvature, 0.0) == 5);  // away from each other: closest at the stations
+    }
+}
+
+TEST_CASE("a spacing that was halved stays so, between the same stations, when the fibres have straightened") {
+    const auto pair_of = [](double curvature) {
+        return mesh_of({curved_fibre([](double t) { return Vec3(2.0 * t, 0.0, 0.0); }, r, 10),
+                        curved_fibre([&](double t) { return Vec3(2.0 * t, 0.0, 2.0 * r + curvature * (t > 0.5 ? 2.0 * (t - 0.5) * (t - 0.5) : 0.0)); }, r, 10)});
+    };
+    const Mesh bent = pair_of(0.2), straight = pair_of(0.0);
+    const std::vector<StationPair> halved = pairs_of(bent, zone(4, 6, 4, 6), false);
+    REQUIRE(halved.size() == 7);  // two more than for straight fibres, both beyond the middle
+    std::vector<StationPair> again;
+    contact::station_pairs(straight, straight.rest_state(), zone(4, 6, 4, 6), false, spacing, again,
+                           [&](const auto& see) { for (const StationPair& pair : halved) see(pair.u_i, pair.u_j); });
+    REQUIRE(again.size() == halved.size());
+    for (std::size_t k = 0; k < again.size(); ++k) CHECK(std::abs(again[k].u_i - halved[k].u_i) < 0.02);  // the bent fibre has longer elements
+    CHECK(pairs_of(straight, zone(4, 6, 4, 6), false).size() == 5);
 }
 
 TEST_CASE("a fibre that runs the other way is paired at the same places") {

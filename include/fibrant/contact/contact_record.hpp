@@ -3,6 +3,7 @@
 /// @file What is remembered of contacts when contact elements are made anew: normals, and friction on material abscissae.
 
 #include <fibrant/contact/contact_element.hpp>
+#include <fibrant/proximity/proximity_search.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -113,6 +114,12 @@ public:
         if (before) return before->friction;
         if (after) return after->friction;
         return {};
+    }
+
+    /// Calls see(record) with the records between the two fibres of a zone, inside its interval of the first one.
+    template <class See>
+    void visit(const proximity::ProximityZone& zone, const See& see) const noexcept {
+        visit(zone.fibre_i, zone.fibre_j, 0.5 * (zone.a_i + zone.b_i), 0.5 * (zone.b_i - zone.a_i), see);
     }
 
 private:

@@ -272,7 +272,9 @@ private:
             for (Index z = b * block; z < std::min(core::count(zones_), (b + 1) * block); ++z) {
                 Zone& zone = zones_[core::at(z)];
                 pairs.clear();
-                station_pairs(*mesh_, state, zone.span, zone.crossing, parameters_.spacing, pairs);
+                station_pairs(*mesh_, state, zone.span, zone.crossing, parameters_.spacing, pairs, [&](const auto& see) {
+                    memory.visit(zone.span, [&](const auto& record) { see(record.u_i, record.u_j); });
+                });
                 zone.first = core::count(made[core::at(b)]);
                 for (const StationPair& pair : pairs) {
                     Element element = make(zone, z, pair);

@@ -76,12 +76,12 @@ struct ContactSpacing {
     double points_per_element = 2.0;    ///< along near-parallel fibres [1], > 0
     double crossing_angle_deg = 30.0;   ///< above: one contact element for the zone [degree]
     double angle_hysteresis_deg = 5.0;  ///< a zone keeps its kind within this of the bound [degree]
-    /// Lateral way of one fibre past the other in half a spacing, beyond which the spacing is halved, up to three times
-    /// [radius], > 0. Between contact points a depth of a quarter of its square [radius] goes unseen.
-    double largest_slant = 0.15;
+    /// Depth that may go unseen between two contact points, where fibres slant or bend towards each other; beyond it the
+    /// spacing is halved, up to three times [radius], > 0.
+    double largest_unseen = 0.005;
     void validate() const {
         core::require_positive("ContactSpacing.points_per_element", points_per_element);
-        core::require_positive("ContactSpacing.largest_slant", largest_slant);
+        core::require_positive("ContactSpacing.largest_unseen", largest_unseen);
         core::require_between("ContactSpacing.crossing_angle_deg", crossing_angle_deg, 1.0, 90.0);
         core::require_between("ContactSpacing.angle_hysteresis_deg", angle_hysteresis_deg, 0.0, 20.0);
     }
@@ -96,9 +96,11 @@ struct ContactSpacing {
 /// @param zone        abscissae in elements
 /// @param crossing    the zone is a crossing
 /// @param pairs       appended to, in the order of the zone
-template <class B>
+/// @param earlier     earlier(see) calls see(u_i, u_j) with the stations that the two fibres had before: a spacing that was
+///                    halved stays so, or the contact that it found would come and go for ever
+template <class B, class Earlier>
 void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone, bool crossing,
-                   const ContactSpacing& spacing, std::vector<StationPair>& pairs) {
+                   const ContactSpacing& spacing, std::vector<StationPair>& pairs, const Earlier& earlier) {
     const Index i = zone.fibre_i, j = zone.fibre_j;
     const double h_i = mesh.fibre(i).element_length, h_j = mesh.fibre(j).element_length;
     const double end_i = static_cast<double>(mesh.fibre(i).elements), end_j = static_cast<double>(mesh.fibre(j).elements);
@@ -195,12 +197,31 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         return t_i.cross(t_j).norm();
     };
     if (first > last) add_station(0.5, step * h);
-    // Between two stations where fibres slant they come closer than at either: the spacing is halved there. Not where they
-    // cross, which only zones with a prescribed normal do that come here.
+    // Between two stations fibres come closer than at either where they slant past each other, the distance of their centres
+    // being a hyperbola, and where they bend towards each other: the spacing is halved there. Not where they cross, which
+    // only zones with a prescribed normal do that come here.
     const double crossing_sine = std::sin(spacing.crossing_angle_deg * std::numbers::pi / 180.0);
+    std::vector<double> between;  // earlier stations at parts of the spacing
+    earlier([&](double u_i, double u_j) {
+        const double k = mean_abscissa(u_i, u_j) / step;
+        if (std::abs(k - std::round(k)) > 0.1) between.push_back(k);
+    });
+    const auto was_halved = [&](Index k, int parts) {
+        return std::any_of(between.begin(), between.end(), [&](double station) {
+            const double place = (station - static_cast<double>(k)) * 2.0 * parts;  // odd at the stations of this halving
+            return place > 0.0 && place < 2.0 * parts && std::abs(std::remainder(place - 1.0, 2.0)) < 0.2;
+        });
+    };
     const auto add_between = [&](Index k, double sine) {
+        if (sine >= crossing_sine) return;
+        const double s = share(static_cast<double>(k) + 0.5);
+        const double u_i = zone.a_i + s * (zone.b_i - zone.a_i), u_j = zone.a_j + s * (zone.b_j - zone.a_j);
+        const Vec3 centres = mesh.position(state, j, u_j) - mesh.position(state, i, u_i);
+        const Vec3 bend = mesh.second_derivative(state, j, u_j) / (h_j * h_j) - mesh.second_derivative(state, i, u_i) / (h_i * h_i);
+        const double half = 0.5 * step * h, bending = std::max(0.0, bend.dot(centres.normalized()));
+        const double unseen = 0.5 * half * half * (sine * sine / (2.0 * r) + bending);
         int parts = 1;
-        while (parts < 8 && sine < crossing_sine && 0.5 * step * h * sine > spacing.largest_slant * r * parts) parts *= 2;
+        while (parts < 8 && (unseen > spacing.largest_unseen * r * parts * parts || was_halved(k, parts))) parts *= 2;
         for (int m = 1; m < parts; ++m) {
             const double at = static_cast<double>(k) + static_cast<double>(m) / parts;
             if (at * step > from && at * step < to) add_station(share(at), step * h / parts);
@@ -223,6 +244,13 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
     std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(before), pairs.end(), [](const StationPair& a, const StationPair& b) {
         return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j;
     });
+}
+
+/// Stations of a zone that had none before.
+template <class B>
+void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone, bool crossing,
+                   const ContactSpacing& spacing, std::vector<StationPair>& pairs) {
+    station_pairs(mesh, state, zone, crossing, spacing, pairs, [](const auto&) {});
 }
 
 }  // namespace fibrant::contact
