@@ -113,6 +113,7 @@ public:
                     {"indefinite_tangents", counts.indefinite},
                     {"residual", increment.residual},
                     {"displacement_over_radius", increment.displacement / radius_},
+                    {"damping_share", increment.damping},
                     {"contact_elements", increment.contact.elements},
                     {"active_contacts", increment.contact.active},
                     {"limited_gaps", increment.contact.shifted},

@@ -84,6 +84,7 @@
 #include <fibrant/simulation/model.hpp>
 #include <fibrant/simulation/report.hpp>
 #include <fibrant/simulation/simulator.hpp>
+#include <fibrant/simulation/snapshot_of.hpp>
 
 #include <fibrant/compositions/weave/audit.hpp>
 #include <fibrant/compositions/weave/fabric.hpp>

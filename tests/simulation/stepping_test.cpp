@@ -135,6 +135,47 @@ TEST_CASE("damping is not lowered while fibres still move far, and where they co
     CHECK(short_report.increments.size() == 1);
 }
 
+TEST_CASE("a stage may end while its damping holds no more than a share of the forces, and the next one goes on from there") {
+    const Rod rod;
+    const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3);  // of the tip
+    Simulator<Smooth> direct(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
+    REQUIRE(direct.run({.increments = 1}).converged);
+    const auto always = [](const simulation::IncrementReport&) { return true; };
+    Loading<Smooth> loading;
+    loading.stages = {{.name = "early", .increments = 1, .ramps = {{"load", 1.0}}, .damping = stiffness, .damping_decay = 0.5, .damping_share = 0.01, .until = always},
+                      {.name = "late", .increments = 1, .damping = stiffness, .damping_goes_on = true, .damping_decay = 0.5, .damping_share = 1e-6, .until = always}};
+    Simulator<Smooth> simulator(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
+    const Report report = simulator.run(loading);
+    REQUIRE(report.converged);
+    std::size_t early = 0;
+    while (report.increments[early].stage == "early") ++early;
+    CHECK(report.increments[early - 2].damping > 0.01);
+    CHECK(report.increments[early - 1].damping <= 0.01);
+    CHECK(report.increments.back().damping <= 1e-6);
+    // Had the damping started anew, the first late increment would be held by about as much as the last early one.
+    CHECK(report.increments[early].damping < 0.6 * report.increments[early - 1].damping);
+    // Held by a millionth of the load, the fibre is short of equilibrium by about a millionth of its displacement.
+    const double sag = std::abs(direct.value(scene::last_end(0)).y()) + std::abs(direct.value(scene::last_end(0)).z());
+    CHECK((simulator.state() - direct.state()).cwiseAbs().maxCoeff() < 1e-4 * (sag + rod.length));
+}
+
+TEST_CASE("an increment that moves further than its stage allows is cut") {
+    const Rod rod;
+    Loading<Smooth> loading;
+    loading.stages = {{.increments = 1, .ramps = {{"load", 1.0}}}};
+    Simulator<Smooth> free(rod.pushed(2.0), test::model_parameters<Smooth>(rod.radius));
+    const Report whole = free.run(loading);
+    REQUIRE(whole.converged);
+    const double most = 0.6 * whole.increments[0].displacement;
+    loading.stages[0].largest_displacement = most;
+    Simulator<Smooth> bounded(rod.pushed(2.0), test::model_parameters<Smooth>(rod.radius));
+    const Report report = bounded.run(loading);
+    REQUIRE(report.converged);
+    CHECK(report.rejected_increments > 0);
+    for (const simulation::IncrementReport& increment : report.increments) CHECK(increment.displacement <= most);
+    CHECK((bounded.state() - free.state()).cwiseAbs().maxCoeff() < 1e-3 * rod.length);
+}
+
 TEST_CASE("a stage may allow more penetration than the model, and the next one takes it back at the same force") {
     const Crossing crossing;
     const double allowed = 1e-2 * crossing.radius;
@@ -296,6 +337,10 @@ TEST_CASE("a loading that cannot be walked is refused before any work") {
     CHECK(refused(loading) == "Stage.allowed_penetration = 0, but it must be finite and > 0");
     loading.stages = {{.damping_calm = 0.0}};
     CHECK(refused(loading) == "Stage.damping_calm = 0, but it must be > 0");
+    loading.stages = {{.damping_share = -1.0}};
+    CHECK(refused(loading).starts_with("Stage.damping_share = -1,"));
+    loading.stages = {{.largest_displacement = 0.0}};
+    CHECK(refused(loading) == "Stage.largest_displacement = 0, but it must be > 0");
     loading.stages = {{.gap_limit = -1.0}};
     CHECK(refused(loading).starts_with("Stage.gap_limit = -1,"));
     loading.stages = {{.ramps = {{"load", 0.5, true}}}};  // from 0: no factor leads there

@@ -31,11 +31,16 @@ struct Stage {
     bool forced_orders = false;                 ///< keep the scene's forced orders
     /// Spring from every centre to its last accepted place [force / length]: keeps what is slack from leaping.
     double damping = 0.0;
-    /// Factor on the damping after each increment without a cut, in (0, 1]; a cut raises it again. Below 1, a stage with an
-    /// `until` ends only with an increment that had no damping at all.
+    bool damping_goes_on = false;               ///< starts from what the stage before it ended with, if that is less
+    /// Factor on the damping after each increment without a cut, in (0, 1]; a cut raises it again.
     double damping_decay = 1.0;
+    /// Where damping decays, an `until` holds only once the damping's force is at most this part of the scale of forces, which
+    /// a residual is measured by too, >= 0. 0: once there is no damping at all.
+    double damping_share = 0.0;
     /// Greatest displacement of an increment after which damping is lowered [length], > 0.
     double damping_calm = std::numeric_limits<double>::infinity();
+    /// Displacement beyond which an attempt at an increment is given up and cut [length], > 0.
+    double largest_displacement = std::numeric_limits<double>::infinity();
     double looseness = 1.0;                     ///< on the tolerances of contact and normal passes, >= 1
     std::optional<typename M::Normal> normal{};
     std::optional<typename M::Friction> friction{};
@@ -65,7 +70,9 @@ struct Loading {
             core::require_not_negative("Stage.damping", stage.damping);
             core::require(stage.damping_decay > 0.0 && stage.damping_decay <= 1.0, "Stage.damping_decay", stage.damping_decay, "in (0, 1]");
             core::require(stage.damping_calm > 0.0, "Stage.damping_calm", stage.damping_calm, "> 0");
-            core::require(stage.looseness >= 1.0 && stage.looseness <= 100.0, "Stage.looseness", stage.looseness, "in [1, 100]");
+            core::require_not_negative("Stage.damping_share", stage.damping_share);
+            core::require(stage.largest_displacement > 0.0, "Stage.largest_displacement", stage.largest_displacement, "> 0");
+            core::require(stage.looseness >= 1.0 && stage.looseness <= 1000.0, "Stage.looseness", stage.looseness, "in [1, 1000]");
             if (stage.allowed_penetration) core::require_positive("Stage.allowed_penetration", *stage.allowed_penetration);
             if (stage.gap_limit) core::require_positive("Stage.gap_limit", *stage.gap_limit);
             for (const Ramp& ramp : stage.ramps) core::require_finite("Ramp.to", ramp.to);

@@ -37,6 +37,7 @@ struct IncrementReport {
     solver::IterationCounts counts;  ///< rejected attempts included
     double residual = 0;        ///< over loads, reactions and contact forces [1]
     double displacement = 0;    ///< greatest [length]
+    double damping = 0;         ///< norm of the damping's force, over loads, reactions and contact forces [1]
     contact::ContactFigures contact;
     EnergyBalance energy;
     double seconds = 0;         ///< wall time of the increment

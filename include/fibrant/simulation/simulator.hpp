@@ -3,9 +3,9 @@
 /// @file Runs a loading on a scene with a model: steps that are cut, restored and grown again.
 
 #include <fibrant/observe/observer.hpp>
-#include <fibrant/observe/snapshot.hpp>
 #include <fibrant/simulation/checkpoint.hpp>
 #include <fibrant/simulation/loading.hpp>
+#include <fibrant/simulation/snapshot_of.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -59,7 +59,7 @@ public:
         if (loading.resume && !loading.checkpoint.empty() && std::filesystem::exists(loading.checkpoint))
             read_checkpoint(loading.checkpoint, stages, report);
         for (Index k = 0; k < position_.stage; ++k) take_laws(stages[core::at(k)]);  // they stay in force
-        for (; position_.stage < core::count(stages); next_stage()) {
+        for (; position_.stage < core::count(stages); next_stage(stages)) {
             const Stage<M>& stage = stages[core::at(position_.stage)];
             take_laws(stage);
             while (!position_.stage_over) {
@@ -97,43 +97,7 @@ public:
     }
 
     /// The present state as plain data.
-    observe::Snapshot snapshot() const {
-        observe::Snapshot shot;
-        for (Index f = 0; f < mesh_.fibre_count(); ++f) {
-            observe::FibreSnapshot fibre;
-            fibre.section = mesh_.fibre(f).section;
-            fibre.group = mesh_.fibre(f).group;
-            for (Index a = 0; a < mesh_.node_count(f); ++a) {
-                const double u = static_cast<double>(a) / static_cast<double>(Beam::nodes - 1);
-                const Vec3 position = mesh_.position(state_, f, u);
-                const Vec3 first = mesh_.derivative(state_, f, u), second = mesh_.second_derivative(state_, f, u);
-                fibre.position.push_back(position);
-                fibre.displacement.push_back(position - mesh_.position(mesh_.rest_state(), f, u));
-                const auto [element, xi] = mesh_.locate(f, u);
-                fibre.director_1.push_back(Mesh::point(state_, mesh_.first_unknown(f, element), beam::director_weights<Beam>(xi, 1)));
-                fibre.director_2.push_back(Mesh::point(state_, mesh_.first_unknown(f, element), beam::director_weights<Beam>(xi, 2)));
-                fibre.curvature.push_back(first.cross(second).norm() / std::pow(first.norm(), 3));
-            }
-            shot.fibres.push_back(std::move(fibre));
-        }
-        for (Index k = 0; k < core::count(contacts_.elements()); ++k) {
-            const auto& element = contacts_.elements()[core::at(k)];
-            observe::ContactSnapshot contact;
-            contact.fibre_i = element.fibre_i, contact.fibre_j = element.fibre_j;
-            contact.abscissa_i = element.u_i * mesh_.fibre(element.fibre_i).element_length;
-            contact.abscissa_j = element.u_j * mesh_.fibre(element.fibre_j).element_length;
-            contact.position = 0.5 * (Mesh::point(state_, element.first_i, element.weights_i) +
-                                      Mesh::point(state_, element.first_j, element.weights_j));
-            contact.normal = element.normal;
-            contact.gap = element.gap(state_);
-            contact.reaction = contacts_.responses()[core::at(k)].reaction;
-            if constexpr (core::Active<typename M::Friction>) contact.friction = contacts_.frictions()[core::at(k)].force;
-            contact.stiffness = contacts_.stiffness(element);
-            contact.crossing = element.crossing;
-            shot.contacts.push_back(contact);
-        }
-        return shot;
-    }
+    observe::Snapshot snapshot() const { return snapshot_of(mesh_, contacts_, state_); }
 
 private:
     static constexpr double least_damping = 1e-3;  ///< over that of the stage: below, none
@@ -171,10 +135,15 @@ private:
         if (stage.friction) contacts_.friction_law() = *stage.friction;
     }
 
-    void next_stage() {
+    void next_stage(const std::vector<Stage<M>>& stages) {
+        const double left = position_.damping * stages[core::at(position_.stage)].damping;
         ++position_.stage;
         position_.in_stage = 0, position_.easy = 0, position_.progress = 0.0, position_.fraction = 1.0;
         position_.damping = 1.0;
+        if (position_.stage < core::count(stages)) {
+            const Stage<M>& next = stages[core::at(position_.stage)];
+            if (next.damping_goes_on && next.damping > 0.0) position_.damping = std::min(left / next.damping, 1.0);
+        }
         position_.stage_over = false;
         position_.from = amplitudes_;
     }
@@ -193,6 +162,7 @@ private:
     bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report) {
         const auto start = std::chrono::steady_clock::now();
         IncrementReport increment;
+        double attempt_newton = 0.0;  // iterations a normal pass of the last attempt
         const bool touching = mesh_.fibre_count() > 1 || parameters_.contact.detection.self_contact;
         while (true) {
             if (position_.in_stage >= stage.most_increments) {
@@ -215,14 +185,16 @@ private:
                 equilibrium_, contacts_, linear_, parameters_.iteration, radius_, touching, clock_);
             // A limited gap moves fibres by about the limit: the search looks that far ahead.
             const double ahead = std::max(position_.displacement, stage.forced_orders ? stage.gap_limit.value_or(0.0) : 0.0);
-            const solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, stage.looseness);
+            const solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, stage.looseness, stage.largest_displacement);
             increment.counts += attempt.counts;
+            attempt_newton = static_cast<double>(attempt.counts.newton) / static_cast<double>(std::max<Index>(1, attempt.counts.normal_passes));
             if (attempt.converged) {
                 account(trial, increment, contact_before, stage.forced_orders);
                 state_ = trial;
                 amplitudes_ = amplitudes;
                 increment.residual = attempt.residual;
                 increment.displacement = attempt.displacement;
+                increment.damping = attempt.force_scale > 0.0 ? equilibrium_.norm(last_damping_) / attempt.force_scale : 0.0;
                 increment.fraction = position_.fraction;
                 position_.progress = progress;
                 break;
@@ -249,12 +221,16 @@ private:
         increment.stage = stage.name;
         increment.stage_progress = position_.progress;
         increment.progress = (static_cast<double>(position_.stage) + position_.progress) / static_cast<double>(stages.size());
-        // A state is at rest when nothing that holds it is taken away any more: the last increment has no damping.
+        // A state is at rest when the force of what holds it is no more than what the balance of forces may miss anyway.
         const bool reached = position_.progress >= 1.0 && (!stage.until || stage.until(increment));
-        const bool held = stage.until && stage.damping > 0.0 && stage.damping_decay < 1.0 && position_.damping > 0.0;
+        const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
         position_.stage_over = reached && !held;
-        if (increment.cuts == 0 && increment.displacement <= stage.damping_calm)
+        // Damping is the inverse of a time step: what was solved with ease goes on faster, and what was hard more slowly.
+        const double effort = attempt_newton / static_cast<double>(parameters_.iteration.newton_limit);
+        if (increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= 0.6)
             position_.damping *= position_.damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, position_.fraction);
+        else if (stage.damping_decay < 1.0 && effort > 0.75)
+            position_.damping = std::min(2.0 * position_.damping, 1.0 / least_damping);
         if (position_.damping < least_damping) position_.damping = 0.0;
         contacts_.accept(state_);
         increment.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -329,7 +305,7 @@ private:
 
     void write_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, const Report& report) const {
         CheckpointWriter file;
-        file.put(std::string("fibrant checkpoint 3"));
+        file.put(std::string("fibrant checkpoint 4"));
         file.put(scene_identity()), file.put(loading_identity(stages));
         file.put(state_);
         file.put(last_external_), file.put(last_damping_);
@@ -349,7 +325,7 @@ private:
             IncrementReport plain = increment;
             file.put(plain.stage);
             file.put(plain.number), file.put(plain.stage_progress), file.put(plain.progress), file.put(plain.fraction);
-            file.put(plain.cuts), file.put(plain.counts), file.put(plain.residual), file.put(plain.displacement);
+            file.put(plain.cuts), file.put(plain.counts), file.put(plain.residual), file.put(plain.displacement), file.put(plain.damping);
             file.put(plain.contact), file.put(plain.energy), file.put(plain.seconds);
         }
         file.write(path);
@@ -357,7 +333,7 @@ private:
 
     void read_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, Report& report) {
         CheckpointReader file(path);
-        file.expect(file.get_text() == "fibrant checkpoint 3", "the format");
+        file.expect(file.get_text() == "fibrant checkpoint 4", "the format");
         file.expect(file.get<std::uint64_t>() == scene_identity(), "the set of fibres and channels");
         file.expect(file.get<std::uint64_t>() == loading_identity(stages), "the loading");
         Vector state = file.get_vector();
@@ -384,6 +360,7 @@ private:
             increment.progress = file.get<double>(), increment.fraction = file.get<double>();
             increment.cuts = file.get<Index>(), increment.counts = file.get<solver::IterationCounts>();
             increment.residual = file.get<double>(), increment.displacement = file.get<double>();
+            increment.damping = file.get<double>();
             increment.contact = file.get<contact::ContactFigures>(), increment.energy = file.get<EnergyBalance>();
             increment.seconds = file.get<double>();
             report.wall_seconds += increment.seconds;

@@ -35,7 +35,9 @@ public:
     /// @param expected  displacement that the search should reach over [length]
     /// @param forced    keep forced orders
     /// @param looseness multiplies the tolerances of normal and contact passes, >= 1: for paths that are only a means
-    AttemptReport solve(Vector& state, const Vector& accepted, double expected, bool forced, double looseness = 1.0) {
+    /// @param furthest  displacement beyond which the attempt is given up [length]
+    AttemptReport solve(Vector& state, const Vector& accepted, double expected, bool forced, double looseness = 1.0,
+                        double furthest = std::numeric_limits<double>::infinity()) {
         AttemptReport report;
         Newton<Equilibrium, Contacts, Linear> newton(*equilibrium_, *contacts_, *linear_, parameters_, radius_, *clock_);
         const double reach = std::clamp(2.0 * expected, parameters_.margin * radius_, parameters_.largest_margin * radius_);
@@ -67,6 +69,11 @@ public:
             const Vector before_pass = state;
             const bool moved = !normal_passes(newton, state, accepted, searched, bound, looseness, report);
             if (!report.reason.empty()) return report;
+            report.displacement = equilibrium_->greatest(state - accepted);
+            if (report.displacement > furthest) {
+                report.reason = "fibres moved by " + core::text(report.displacement / radius_) + " radii in an increment";
+                return report;
+            }
             change = equilibrium_->greatest(state - before_pass);
             if (moved) {
                 ++moves;
@@ -75,7 +82,6 @@ public:
             ++passes;
             if (!contact_possible_ || change < contact_tolerance) break;
         }
-        report.displacement = equilibrium_->greatest(state - accepted);
         report.converged = true;
         return report;
     }

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file The state of a simulation as plain data.
+
+#include <fibrant/beam/mesh.hpp>
+#include <fibrant/contact/contact_set.hpp>
+#include <fibrant/observe/snapshot.hpp>
+
+#include <cmath>
+#include <utility>
+
+namespace fibrant::simulation {
+
+/// Fibres at their nodes, and contacts that have been evaluated at `state`.
+template <beam::BeamElement Beam, class Search, class Normal, class Friction>
+observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const contact::ContactSet<Beam, Search, Normal, Friction>& contacts,
+                              const Vector& state) {
+    using Mesh = beam::Mesh<Beam>;
+    observe::Snapshot shot;
+    for (Index f = 0; f < mesh.fibre_count(); ++f) {
+        observe::FibreSnapshot fibre;
+        fibre.section = mesh.fibre(f).section;
+        fibre.group = mesh.fibre(f).group;
+        for (Index a = 0; a < mesh.node_count(f); ++a) {
+            const double u = static_cast<double>(a) / static_cast<double>(Beam::nodes - 1);
+            const Vec3 position = mesh.position(state, f, u);
+            const Vec3 first = mesh.derivative(state, f, u), second = mesh.second_derivative(state, f, u);
+            fibre.position.push_back(position);
+            fibre.displacement.push_back(position - mesh.position(mesh.rest_state(), f, u));
+            const auto [element, xi] = mesh.locate(f, u);
+            fibre.director_1.push_back(Mesh::point(state, mesh.first_unknown(f, element), beam::director_weights<Beam>(xi, 1)));
+            fibre.director_2.push_back(Mesh::point(state, mesh.first_unknown(f, element), beam::director_weights<Beam>(xi, 2)));
+            fibre.curvature.push_back(first.cross(second).norm() / std::pow(first.norm(), 3));
+        }
+        shot.fibres.push_back(std::move(fibre));
+    }
+    for (Index k = 0; k < core::count(contacts.elements()); ++k) {
+        const auto& element = contacts.elements()[core::at(k)];
+        observe::ContactSnapshot contact;
+        contact.fibre_i = element.fibre_i, contact.fibre_j = element.fibre_j;
+        contact.abscissa_i = element.u_i * mesh.fibre(element.fibre_i).element_length;
+        contact.abscissa_j = element.u_j * mesh.fibre(element.fibre_j).element_length;
+        contact.position = 0.5 * (Mesh::point(state, element.first_i, element.weights_i) +
+                                  Mesh::point(state, element.first_j, element.weights_j));
+        contact.normal = element.normal;
+        contact.gap = element.gap(state);
+        contact.reaction = contacts.responses()[core::at(k)].reaction;
+        if constexpr (core::Active<Friction>) contact.friction = contacts.frictions()[core::at(k)].force;
+        contact.stiffness = contacts.stiffness(element);
+        contact.crossing = element.crossing;
+        shot.contacts.push_back(contact);
+    }
+    return shot;
+}
+
+}  // namespace fibrant::simulation
