@@ -131,7 +131,7 @@ struct SettleParameters {
     Index rest_increments = 200;                    ///< at most, at either tension until nothing moves, >= 1
     double rest_motion_over_radius = 1e-2;          ///< greatest nodal motion of an increment at rest [1], > 0
     double softness = 5.0;  ///< penetration allowed on the way over that at rest [1], in [1, 20]
-    double looseness = 10.0;  ///< on the tolerances of passes before rest: a path is only a means [1], in [1, 100]
+    double looseness = 1000.0;  ///< on the tolerances of passes before rest: a path is only a means [1], in [1, 1000]
     double friction_coefficient = 0.15;             ///< from the handover on [1], >= 0; tows part without friction
 
     void validate() const {
@@ -148,7 +148,7 @@ struct SettleParameters {
         core::require_at_least(name + "rest_increments", rest_increments, 1);
         core::require_positive(name + "rest_motion_over_radius", rest_motion_over_radius);
         core::require_between(name + "softness", softness, 1.0, 20.0);
-        core::require_between(name + "looseness", looseness, 1.0, 100.0);
+        core::require_between(name + "looseness", looseness, 1.0, 1000.0);
         core::require_not_negative(name + "friction_coefficient", friction_coefficient);
     }
 };

@@ -84,13 +84,14 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     rest.increments = 1;
     rest.until = simulation::until_settled(settle.rest_motion_over_radius * r, allowed);
     rest.most_increments = settle.rest_increments;
-    // Paths are only a means, and what one increment leaves over moves in the next: the last stage tells when it is all.
+    // Paths are only a means: an increment keeps its normals, what it leaves over moves in the next, and the last stage tells
+    // when that is all.
     tension.looseness = rest.looseness = 5.0;
     separation.looseness = handover.looseness = release.looseness = relaxation.looseness = stiffening.looseness = settle.looseness;
     // Slack fibres creep into their places instead of leaping. At the gap limit of one radius, a tenth of what the tension
     // makes of an element's length; an increment is a time, and half the time is twice the spring, so that the path is the
-    // same when increments are halved. After the tension it falls to nothing, and once more while contact stiffens: rest is
-    // an equilibrium.
+    // same when increments are halved. After the tension it falls, at first until it holds a thousandth of the forces, then,
+    // contact being stiff, a ten-thousandth, which is what the balance of forces is solved to: rest is an equilibrium.
     const auto node_stiffness = [&](Family family) {
         const TowParameters& tow = fabric.tow(family);
         const double pull = settle.tension_strain * tow.material.young_modulus * tow.section().area();
@@ -98,9 +99,15 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     };
     const double damping = 0.1 / settle.gap_limit_over_radius * std::min(node_stiffness(Family::warp), node_stiffness(Family::weft));
     separation.damping = handover.damping = release.damping = relaxation.damping = damping;
-    stiffening.damping = 0.1 * damping;
-    relaxation.damping_decay = stiffening.damping_decay = 0.5;
-    relaxation.damping_calm = stiffening.damping_calm = 0.6 * settle.gap_limit_over_radius * r;
+    stiffening.damping = 4.0 * damping;
+    rest.damping = stiffening.damping;
+    rest.damping_goes_on = true;
+    relaxation.damping_decay = stiffening.damping_decay = rest.damping_decay = 0.5;
+    relaxation.damping_calm = stiffening.damping_calm = rest.damping_calm = 0.6 * settle.gap_limit_over_radius * r;
+    relaxation.damping_share = 1e-3;
+    stiffening.damping_share = rest.damping_share = 1e-4;
+    for (simulation::Stage<M>* stage : {&separation, &handover, &release, &relaxation, &stiffening, &rest})
+        stage->largest_displacement = 4.0 * settle.gap_limit_over_radius * r;
     loading.stages = {tension, separation, handover, release, relaxation, stiffening, rest};
     return loading;
 }
