@@ -102,9 +102,10 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     stiffening.damping = 4.0 * damping;
     rest.damping = stiffening.damping;
     rest.damping_goes_on = true;
-    relaxation.damping_decay = stiffening.damping_decay = rest.damping_decay = 0.5;
-    relaxation.damping_calm = stiffening.damping_calm = rest.damping_calm = 0.6 * settle.gap_limit_over_radius * r;
-    relaxation.damping_share = 1e-3;
+    handover.damping_decay = relaxation.damping_decay = stiffening.damping_decay = rest.damping_decay = 0.5;
+    handover.damping_calm = relaxation.damping_calm = stiffening.damping_calm = rest.damping_calm =
+        0.6 * settle.gap_limit_over_radius * r;
+    handover.damping_share = relaxation.damping_share = 1e-3;
     stiffening.damping_share = rest.damping_share = 1e-4;
     for (simulation::Stage<M>* stage : {&separation, &handover, &release, &relaxation, &stiffening, &rest})
         stage->largest_displacement = 4.0 * settle.gap_limit_over_radius * r;
