@@ -2,10 +2,9 @@
 // How do time and memory of a settled weave grow with the number of fibres? Plain weaves with more and more tows of the
 // same kind, from flat tows to rest. Prints CSV and, last, the exponents fitted over the unknowns.
 // usage: benchmark_scaling_bench [fibres a tow [tows a family]...]; default 19 2 3 4 6
-#include <fibrant/beam/director_beam.hpp>
+#include "chapter_fabric.hpp"
+
 #include <fibrant/compositions/weave/audit.hpp>
-#include <fibrant/compositions/weave/settle.hpp>
-#include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
 
 #include <sys/resource.h>
@@ -20,28 +19,7 @@ namespace cloth = compositions::weave;
 
 namespace {
 
-struct Weave {
-    using Beam = beam::DirectorBeam<>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::LimitedGap<law::RegularisedPenalty>;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::TwoLevelPcg;
-};
-
-/// The tows of the chapter's tables: 380 real fibres of 18 um, `fibres` macro-fibres in their place.
-cloth::FabricParameters fabric_of(Index tows, Index fibres) {
-    cloth::FabricParameters fabric;
-    fabric.warp_tows = fabric.weft_tows = tows;
-    fabric.warp.fibres = fibres;
-    fabric.warp.fibre_radius = 0.009 * std::sqrt(380.0 / static_cast<double>(fibres));
-    fabric.warp.inertia_factor = static_cast<double>(fibres) / 380.0;
-    fabric.warp.material = {7300.0, 0.3};
-    fabric.weft = fabric.warp;
-    fabric.warp_spacing = fabric.weft_spacing = fabric.overhang = 0.88;
-    const double elements = 32.0 / 4.4 * fabric.fibre_length(cloth::Family::warp);  // of the length of the chapter's
-    fabric.elements = static_cast<Index>(std::lround(elements));
-    return fabric;
-}
+using Weave = benchmarks::SettledWeave<solver::TwoLevelPcg>;
 
 double peak_bytes() {
     rusage usage{};
@@ -72,7 +50,7 @@ int main(int argc, char** argv) {
                 "newton,linear_iterations_a_solve,seconds,seconds_a_newton,peak_bytes\n");
     bool sound = true;
     for (const Index tows : sizes) {
-        const cloth::FabricParameters fabric = fabric_of(tows, fibres);
+        const cloth::FabricParameters fabric = benchmarks::chapter_fabric("plain", tows, fibres);
         const cloth::SettleParameters settle;
         simulation::Simulator<Weave> simulator(cloth::flat_fabric(fabric, settle.tension_strain),
                                                cloth::model_parameters<Weave>(fabric, settle));
