@@ -80,7 +80,8 @@ TEST_CASE("tows that part go through the same bits on one thread and on two, and
     CAPTURE(one.report.reason);
     REQUIRE(one.report.converged);
     REQUIRE(one.states.size() >= 4);
-    CHECK(one.report.increments.back().contact.active > 100);
+    // 10 warp fibres cross 10 weft fibres: where at least half of the crossings bear, threads share real contact work.
+    CHECK(one.report.increments.back().contact.active >= 50);
     REQUIRE(two.states.size() == one.states.size());
     for (std::size_t k = 0; k < one.states.size(); ++k) CHECK(same_bits(one.states[k], two.states[k]));
     CHECK(one.report.counts.linear_iterations == two.report.counts.linear_iterations);
