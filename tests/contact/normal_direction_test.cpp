@@ -160,3 +160,17 @@ TEST_CASE("angles in the wrong order are refused") {
     CHECK(test::refusal([] { core::validated(NormalRule{40.0, 30.0}); }).find("NormalRule.crossing_angle_deg") != std::string::npos);
     CHECK(test::refusal([] { core::validated(NormalRule{-1.0, 30.0}); }).find("NormalRule.parallel_angle_deg") != std::string::npos);
 }
+
+TEST_CASE("the least turn takes one direction to the other and leaves what is across both of them") {
+    std::mt19937 generator(5);
+    for (int k = 0; k < 200; ++k) {
+        const Vec3 before = random_vector(generator).normalized();
+        const Vec3 after = k == 0 ? Vec3(-before) : k == 1 ? before : random_vector(generator).normalized();
+        const Vec3 vector = random_vector(generator), image = contact::turned(vector, before, after);
+        const double amplified = 1e-15 / std::max(1e-14, 1.0 + before.dot(after));  // the axis is a difference of rounded products
+        CHECK((contact::turned(before, before, after) - after).norm() < rounding + amplified);
+        CHECK(std::abs(image.norm() - vector.norm()) < vector.norm() * (rounding + amplified));
+        const Vec3 axis = before.cross(after);
+        if (k > 1) CHECK((contact::turned(axis, before, after) - axis).norm() < rounding);
+    }
+}

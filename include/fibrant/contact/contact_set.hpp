@@ -370,7 +370,7 @@ private:
     {
         const Vec3 offset = particle_offset(element, accepted);
         const Vec3 before = normal(element, accepted, element.normal);
-        if (element.end_i || element.end_j) return Eigen::Quaterniond::FromTwoVectors(before, element.normal) * offset;
+        if (element.end_i || element.end_j) return turned(offset, before, element.normal);
         const TangentPlane then(tangent_of_i(element, accepted), before), now(tangent_of_i(element, state), element.normal);
         return offset.dot(then.along) * now.along + offset.dot(then.across) * now.across + offset.dot(before) * element.normal;
     }
@@ -379,7 +379,7 @@ private:
         requires core::Active<Friction>
     {
         Vec3& reversible = element.friction.history.reversible;
-        reversible = Eigen::Quaterniond::FromTwoVectors(before, element.normal) * reversible;
+        reversible = turned(reversible, before, element.normal);
         reversible -= reversible.dot(element.normal) * element.normal;
     }
 

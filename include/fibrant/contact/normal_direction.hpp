@@ -38,6 +38,17 @@ inline Vec3 unit_or(const Vec3& direction, const Vec3& otherwise) noexcept {
     return size > 0.0 ? Vec3(direction / size) : otherwise;
 }
 
+/// A vector turned by the least rotation that takes the unit vector `before` to the unit vector `after`.
+inline Vec3 turned(const Vec3& vector, const Vec3& before, const Vec3& after) noexcept {
+    const Vec3 axis = before.cross(after);  // Rodrigues' formula, by sine and cosine; opposite: half a turn, about any axis
+    const double cosine = before.dot(after);
+    if (1.0 + cosine < 1e-14) {
+        const Vec3 across = before.unitOrthogonal();
+        return 2.0 * across.dot(vector) * across - vector;
+    }
+    return cosine * vector + axis.cross(vector) + axis.dot(vector) / (1.0 + cosine) * axis;
+}
+
 /// Mean direction of two tangents, the second turned so that the angle is acute.
 inline Vec3 mean_tangent(const Vec3& t_i, const Vec3& t_j) noexcept {
     const Vec3 sum = t_i.dot(t_j) < 0.0 ? Vec3(t_i - t_j) : Vec3(t_i + t_j);
