@@ -71,7 +71,7 @@ Figures measure(const cloth::FabricParameters& fabric, const cloth::SettleParame
     figures.element_bytes = sizeof(typename Contacts::Element);
     figures.response_bytes = sizeof(contact::ContactResponse) +
                              (core::Active<Law> ? sizeof(law::FrictionResponse<typename Law::History>) : 0);
-    figures.record_bytes = sizeof(contact::ContactRecord<Law>);
+    figures.record_bytes = sizeof(contact::ContactRecord<law::RegularisedPenalty, Law>);
     return figures;
 }
 

@@ -13,6 +13,7 @@
 #include <fibrant/scene/dof_layout.hpp>
 #include <fibrant/scene/elastic_material.hpp>
 #include <fibrant/scene/reference_shape.hpp>
+#include <fibrant/scene/tool.hpp>
 
 #include <fibrant/beam/beam_element.hpp>
 #include <fibrant/beam/director_beam.hpp>
@@ -29,6 +30,7 @@
 #include <fibrant/proximity/verlet_search.hpp>
 #include <fibrant/proximity/zones.hpp>
 
+#include <fibrant/law/augmented.hpp>
 #include <fibrant/law/friction_law.hpp>
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/limited_gap.hpp>
@@ -41,9 +43,13 @@
 #include <fibrant/contact/contact_element.hpp>
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/contact/contact_set.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/normal_direction.hpp>
 #include <fibrant/contact/side_index.hpp>
+#include <fibrant/contact/support.hpp>
+#include <fibrant/contact/tool_contacts.hpp>
+#include <fibrant/contact/tool_element.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
 
 #include <fibrant/connection/applied_load.hpp>

@@ -4,6 +4,7 @@
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
 
 #include <doctest/doctest.h>
 
@@ -12,10 +13,10 @@
 #include <random>
 
 using namespace fibrant;
-using Memory = contact::ContactMemory<law::RegularisedCoulomb>;
+using Memory = contact::ContactMemory<law::RegularisedPenalty, law::RegularisedCoulomb>;
 using Record = Memory::Record;
 
-static_assert(sizeof(contact::ContactRecord<law::Frictionless>) + 2 * sizeof(double) == sizeof(Record),
+static_assert(sizeof(contact::ContactRecord<law::RegularisedPenalty, law::Frictionless>) + 2 * sizeof(double) == sizeof(Record),
               "a record without friction keeps nothing of it");
 
 namespace {

@@ -20,6 +20,7 @@ public:
         for (const scene::Hold& hold : assembly.holds()) names_.push_back(hold.channel);
         for (const scene::DeadForce& force : assembly.forces()) names_.push_back(force.channel);
         for (const scene::Moment& moment : assembly.moments()) names_.push_back(moment.channel);
+        for (const scene::Tool& tool : assembly.tools()) names_.push_back(tool.channel);
         std::sort(names_.begin(), names_.end());
         names_.erase(std::unique(names_.begin(), names_.end()), names_.end());
     }

@@ -20,6 +20,12 @@ struct GapShift<Normal> {
     double shift = 0.0;
     double value() const noexcept { return shift; }
 };
+template <law::Augmenting Normal>
+struct GapShift<Normal> {
+    double multiplier = 0.0;  ///< reaction without a penetration [force]
+    double shift = 0.0;       ///< less what a penalty would sink under it, <= 0 [length]
+    double value() const noexcept { return shift; }
+};
 
 /// Memory of friction, for laws that have one; nothing otherwise.
 template <beam::BeamElement B, law::FrictionLaw Friction>
@@ -61,5 +67,13 @@ struct ContactResponse {
     double reaction = 0.0;  ///< R_N [force]
     double slope = 0.0;     ///< dR_N / dgap [force / length]
 };
+
+/// Penetration that the stiffness of an element adapts to: with the shift of a law that limits the gap, and without that of a
+/// multiplier [length].
+template <class Element>
+double adapting_penetration(const Element& element, const ContactResponse& response) noexcept {
+    if constexpr (requires { element.shift.multiplier; }) return element.shift.value() - response.gap;
+    return -response.gap;
+}
 
 }  // namespace fibrant::contact

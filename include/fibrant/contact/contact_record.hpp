@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -22,12 +23,21 @@ struct RecordedFriction<Friction> {
     double along = 0.0, across = 0.0;  ///< [length]
 };
 
+/// Multiplier, for laws that have one; nothing otherwise.
+template <law::NormalLaw Normal>
+struct RecordedMultiplier {};
+template <law::Augmenting Normal>
+struct RecordedMultiplier<Normal> {
+    double force = 0.0;  ///< reaction of the last evaluation [force]
+};
+
 /// One contact element of the past. Records are sorted by pair of fibres, then by abscissa on fibre i.
-template <law::FrictionLaw Friction>
+template <law::NormalLaw Normal, law::FrictionLaw Friction>
 struct ContactRecord {
     std::int32_t fibre_i = -1, fibre_j = -1;
     double u_i = 0.0, u_j = 0.0;
     Vec3 normal = Vec3::Zero();
+    [[no_unique_address]] RecordedMultiplier<Normal> multiplier;
     [[no_unique_address]] RecordedFriction<Friction> friction;
 
     /// Calls see(number) with each number of the record, in a fixed order: for files.
@@ -49,6 +59,7 @@ private:
     static void visit_numbers(Self& self, const See& see) {
         see(self.fibre_i), see(self.fibre_j), see(self.u_i), see(self.u_j);
         see(self.normal.x()), see(self.normal.y()), see(self.normal.z());
+        if constexpr (law::Augmenting<Normal>) see(self.multiplier.force);
         if constexpr (core::Active<Friction>) see(self.friction.along), see(self.friction.across);
     }
 };
@@ -69,10 +80,10 @@ struct TangentPlane {
 };
 
 /// Reads the memory of contacts at a new pair of stations.
-template <law::FrictionLaw Friction>
+template <law::NormalLaw Normal, law::FrictionLaw Friction>
 class ContactMemory {
 public:
-    using Record = ContactRecord<Friction>;
+    using Record = ContactRecord<Normal, Friction>;
 
     const std::vector<Record>& records() const noexcept { return records_; }
     void assign(std::vector<Record> records) {
@@ -134,5 +145,21 @@ private:
     }
     std::vector<Record> records_;
 };
+
+/// Hands each record's multiplier to the nearest of the new elements of its zone: their sum is kept, whatever their spacing.
+/// @param elements  of the zone, sorted by u_i
+template <class Memory, class Element>
+void hand_multipliers(const Memory& memory, const proximity::ProximityZone& zone, std::span<Element> elements) {
+    const double range = 1.5;  // elements of the mesh
+    memory.visit(zone, [&](const auto& record) {
+        const auto distance = [&](const Element& e) { return std::max(std::abs(e.u_i - record.u_i), std::abs(e.u_j - record.u_j)); };
+        auto element = std::lower_bound(elements.begin(), elements.end(), record.u_i - range,
+                                        [](const Element& e, double u) { return e.u_i < u; });
+        auto nearest = element;
+        for (; element != elements.end() && element->u_i <= record.u_i + range; ++element)
+            if (distance(*element) < distance(*nearest)) nearest = element;
+        if (nearest != elements.end() && distance(*nearest) <= range) nearest->shift.multiplier += record.multiplier.force;
+    });
+}
 
 }  // namespace fibrant::contact

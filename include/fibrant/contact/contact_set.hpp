@@ -6,8 +6,8 @@
 #include <fibrant/contact/contact_element.hpp>
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>
-#include <fibrant/contact/particle.hpp>
 #include <fibrant/contact/side_index.hpp>
+#include <fibrant/contact/support.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +47,7 @@ template <beam::BeamElement B, proximity::ProximitySearch Search, law::NormalLaw
 class ContactSet {
 public:
     using Element = ContactElement<B, Normal, Friction>;
-    using Memory = ContactMemory<Friction>;
+    using Memory = ContactMemory<Normal, Friction>;
 
     ContactSet(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const ContactParameters& parameters,
                Search search, Normal normal, Friction friction)
@@ -55,6 +55,7 @@ public:
           normal_{normal}, friction_{friction} {}
 
     Normal& normal_law() noexcept { return normal_; }
+    const Normal& normal_law() const noexcept { return normal_; }
     Friction& friction_law() noexcept { return friction_; }
     ContactParameters& parameters() noexcept { return parameters_; }
     const std::vector<Element>& elements() const noexcept { return elements_; }
@@ -155,29 +156,17 @@ public:
         return sum;
     }
 
-    /// Second derivative of the gap by one side's directors: the support distance of a section is convex in them, so this
-    /// part of the tangent is positive. Without it a section between two contacts would tip over like a pencil on its point.
-    /// Calls add(first unknown, weights on the nodal vectors, stiffness) of a rank-one term R_N / h (m m^T) (x) N N^T.
+    /// Stiffness of a fibre's sections under their contacts: add(first unknown, weights, stiffness) of rank-one terms.
     template <class Add>
     void section_stiffness_terms(Index fibre, const Vector& state, const Add& add) const {
         for (const std::int32_t side : sides(fibre)) {
             const Index k = side / 2;
-            const double reaction = responses_[core::at(k)].reaction;
             const Element& element = elements_[core::at(k)];
-            const bool of_j = side % 2 == 1;
-            if (reaction == 0.0) continue;
-            const double xi = mesh_->locate(fibre, of_j ? element.u_j : element.u_i).second;
-            const Index first = of_j ? element.first_j : element.first_i;
-            const beam::ElementWeights<B> w_1 = beam::director_weights<B>(xi, 1), w_2 = beam::director_weights<B>(xi, 2);
-            const scene::CrossSection& section = mesh_->fibre(fibre).section;
-            const double p = section.semi_axis_1 * beam::Mesh<B>::point(state, first, w_1).dot(element.normal);
-            const double q = section.semi_axis_2 * beam::Mesh<B>::point(state, first, w_2).dot(element.normal);
-            const double h = std::hypot(p, q);
-            if ((of_j ? element.end_j : element.end_i) || h < 0.1 * section.radius()) continue;
-            beam::ElementWeights<B> weights;
-            for (std::size_t a = 0; a < weights.size(); ++a)
-                weights[a] = (-section.semi_axis_1 * q * w_1[a] + section.semi_axis_2 * p * w_2[a]) / h;
-            add(first, weights, Mat3(reaction / h * element.normal * element.normal.transpose()));
+            const double reaction = responses_[core::at(k)].reaction;
+            if (side % 2 == 1)
+                section_stiffness_term(*mesh_, state, fibre, element.u_j, element.first_j, element.normal, reaction, element.end_j, add);
+            else
+                section_stiffness_term(*mesh_, state, fibre, element.u_i, element.first_i, element.normal, reaction, element.end_i, add);
         }
     }
 
@@ -200,6 +189,14 @@ public:
 
     /// Sides of contact elements on a fibre, in order.
     std::span<const std::int32_t> sides(Index fibre) const noexcept { return sides_.of(fibre); }
+
+    /// Greatest gap or penetration of what carries force [length].
+    double misfit() const {
+        double most = 0.0;
+        for (std::size_t k = 0; k < elements_.size(); ++k)
+            if (responses_[k].reaction > 0.0) most = std::max(most, std::abs(responses_[k].gap - elements_[k].shift.value()));
+        return most;
+    }
 
     ContactFigures figures(const Vector& state) const {
         ContactFigures sum;
@@ -225,12 +222,11 @@ public:
     /// Keeps normals, friction and zones of an accepted state, and adapts the stiffness of the zones to it.
     void accept(const Vector& state) {
         accepted_.assign(records(state));
-        const double depth = law::regularisation_depth(normal_);
         for (Zone& zone : zones_) {
             double penetration = 0.0;
             for (Index k = zone.first; k < zone.last; ++k)
-                penetration = std::max(penetration, -responses_[core::at(k)].gap);
-            zone.stiffness = parameters_.stiffness.adapted(zone.stiffness, zone.reference, penetration, depth);
+                penetration = std::max(penetration, adapting_penetration(elements_[core::at(k)], responses_[core::at(k)]));
+            zone.stiffness = adapted_stiffness(parameters_.stiffness, normal_, zone.stiffness, zone.reference, penetration);
         }
         accepted_zones_ = zones_;
     }
@@ -290,6 +286,12 @@ private:
                     made[core::at(b)].push_back(element);
                 }
                 zone.last = core::count(made[core::at(b)]);
+                if constexpr (law::Augmenting<Normal>) {
+                    const auto first = made[core::at(b)].begin() + zone.first;
+                    hand_multipliers(memory, zone.span, std::span<Element>(first, made[core::at(b)].end()));
+                    for (auto element = first; element != made[core::at(b)].end(); ++element)
+                        element->shift.shift = -normal_.penetration(element->shift.multiplier, zone.stiffness);
+                }
             }
         });
         elements_.clear();
@@ -318,6 +320,7 @@ private:
         element.normal = normal(element, state, remembered);
         follow_support(element, state);
         if constexpr (law::GapShifting<Normal>) element.shift.shift = normal_.gap_shift(element.gap(accepted));
+        if constexpr (law::Augmenting<Normal>) element.shift.shift = -normal_.penetration(element.shift.multiplier, stiffness(element));
         if constexpr (core::Active<Friction>) {
             element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
             if (!remembered.isZero()) turn_history(element, remembered);
@@ -344,16 +347,10 @@ private:
 
     /// Weights of the particles that lie furthest along the normal in this state.
     void follow_support(Element& element, const Vector& state) const {
-        const auto weigh = [&](Index fibre, double u, Index first, const Vec3& direction, bool end, beam::ElementWeights<B>& weights) {
-            const double xi = mesh_->locate(fibre, u).second;
-            const Vec3 g_1 = beam::Mesh<B>::point(state, first, beam::director_weights<B>(xi, 1));
-            const Vec3 g_2 = beam::Mesh<B>::point(state, first, beam::director_weights<B>(xi, 2));
-            const Particle particle = support_particle(mesh_->fibre(fibre).section, g_1, g_2, direction, end);
-            weights = B::particle_weights(xi, particle.xi_1, particle.xi_2);
-            return particle.cap;
-        };
-        element.cap = weigh(element.fibre_i, element.u_i, element.first_i, element.normal, element.end_i, element.weights_i) +
-                      weigh(element.fibre_j, element.u_j, element.first_j, -element.normal, element.end_j, element.weights_j);
+        element.cap = support_weights(*mesh_, state, element.fibre_i, element.u_i, element.first_i, element.normal,
+                                      element.end_i, element.weights_i) +
+                      support_weights(*mesh_, state, element.fibre_j, element.u_j, element.first_j, Vec3(-element.normal),
+                                      element.end_j, element.weights_j);
     }
 
     /// Particle j - particle i of the pair that the last refresh chose [length].
@@ -401,6 +398,8 @@ private:
             record.fibre_i = element.fibre_i, record.fibre_j = element.fibre_j;
             record.u_i = element.u_i, record.u_j = element.u_j;
             record.normal = element.normal;
+            if constexpr (law::Augmenting<Normal>)
+                if (k < core::count(responses_)) record.multiplier.force = responses_[core::at(k)].reaction;
             if constexpr (core::Active<Friction>) {
                 if (k < core::count(frictions_) && responses_[core::at(k)].reaction > 0.0) {
                     const TangentPlane plane(tangent_of_i(element, state), element.normal);

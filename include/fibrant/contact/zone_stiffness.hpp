@@ -3,6 +3,7 @@
 /// @file Penalty stiffness of proximity zones: where it starts, and how it adapts to an allowed penetration.
 
 #include <fibrant/core/parameters.hpp>
+#include <fibrant/law/normal_law.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
 #include <fibrant/scene/elastic_material.hpp>
 
@@ -53,6 +54,15 @@ struct StiffnessAdaptation {
                           floor_fraction * reference, cap_fraction * reference);
     }
 };
+
+/// Stiffness after an increment. Multipliers converge the faster the stiffer contact is, and take its penetration away: with
+/// them it is never lowered.
+template <law::NormalLaw Normal>
+double adapted_stiffness(const StiffnessAdaptation& adaptation, const Normal& normal, double stiffness, double reference,
+                         double penetration) noexcept {
+    const double adapted = adaptation.adapted(stiffness, reference, penetration, law::regularisation_depth(normal));
+    return law::Augmenting<Normal> ? std::max(stiffness, adapted) : adapted;
+}
 
 /// Compliance of two opposite line loads on a section, as a stiffness over a length: (pi / 2) E / (1 - nu^2) * length
 /// [force / length]. A penalty far above it gains nothing physically.

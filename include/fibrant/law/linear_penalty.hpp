@@ -23,7 +23,10 @@ public:
     double energy(double gap, double stiffness) const noexcept {
         return gap >= 0.0 ? 0.0 : 0.5 * stiffness * gap * gap;
     }
+
+    /// Penetration under a reaction >= 0 [length].
+    double penetration(double reaction, double stiffness) const noexcept { return reaction / stiffness; }
 };
-static_assert(NormalLaw<LinearPenalty>);
+static_assert(InvertibleLaw<LinearPenalty>);
 
 }  // namespace fibrant::law

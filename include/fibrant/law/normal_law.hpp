@@ -35,6 +35,19 @@ concept Regularised = NormalLaw<L> && requires(const L law) {
     { law.regularisation_depth() } -> std::same_as<double>;
 };
 
+/// A normal law that can tell the penetration of a reaction: response(-penetration(reaction, stiffness), stiffness) has it.
+template <class L>
+concept InvertibleLaw = NormalLaw<L> && requires(const L law, double reaction, double stiffness) {
+    { law.penetration(reaction, stiffness) } -> std::same_as<double>;
+};
+
+/// A normal law whose contact elements carry a multiplier from one contact pass to the next, until what they carry is held
+/// without a penetration.
+template <class L>
+concept Augmenting = InvertibleLaw<L> && requires(const L law) {
+    { law.largest_penetration() } -> std::same_as<double>;
+};
+
 /// Depth lost to the quadratic start: R_N = k_N (penetration - depth / 2) beyond it; 0 for a law without one [length].
 template <NormalLaw L>
 double regularisation_depth(const L& law) noexcept {

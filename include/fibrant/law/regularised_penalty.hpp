@@ -4,6 +4,8 @@
 
 #include <fibrant/law/normal_law.hpp>
 
+#include <cmath>
+
 namespace fibrant::law {
 
 /// Penalty law, quadratic below a threshold of penetration and linear beyond it.
@@ -37,11 +39,17 @@ public:
         return stiffness * (0.5 * gap * gap + 0.5 * gap * depth + depth * depth / 6.0);
     }
 
+    /// Penetration under a reaction >= 0 [length].
+    double penetration(double reaction, double stiffness) const noexcept {
+        const double depth = parameters_.regularisation_depth;
+        return reaction < 0.5 * stiffness * depth ? std::sqrt(2.0 * depth * reaction / stiffness) : reaction / stiffness + 0.5 * depth;
+    }
+
     double regularisation_depth() const noexcept { return parameters_.regularisation_depth; }
 
 private:
     Parameters parameters_;
 };
-static_assert(Regularised<RegularisedPenalty>);
+static_assert(Regularised<RegularisedPenalty> && InvertibleLaw<RegularisedPenalty>);
 
 }  // namespace fibrant::law

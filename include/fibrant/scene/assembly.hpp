@@ -6,10 +6,12 @@
 #include <fibrant/scene/cross_section.hpp>
 #include <fibrant/scene/elastic_material.hpp>
 #include <fibrant/scene/reference_shape.hpp>
+#include <fibrant/scene/tool.hpp>
 
 #include <Eigen/Geometry>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fibrant::scene {
@@ -162,6 +164,15 @@ public:
         orders_.push_back(order);
     }
 
+    /// A rigid tool, for models that have a part `Tools`.
+    /// @returns index of the tool, counted from 0
+    Index add(Tool tool) {
+        tool.validate();
+        tool.axis.normalize();
+        tools_.push_back(std::move(tool));
+        return core::count(tools_) - 1;
+    }
+
     // What stands in the scene, in the order in which it was added.
     const std::vector<FibreSpecification>& fibres() const noexcept { return fibres_; }
     const std::vector<Group>& groups() const noexcept { return groups_; }
@@ -169,6 +180,7 @@ public:
     const std::vector<DeadForce>& forces() const noexcept { return forces_; }
     const std::vector<Moment>& moments() const noexcept { return moments_; }
     const std::vector<ForcedOrder>& orders() const noexcept { return orders_; }
+    const std::vector<Tool>& tools() const noexcept { return tools_; }
 
 private:
     void check(const Station& at) const {
@@ -183,6 +195,7 @@ private:
     std::vector<DeadForce> forces_;
     std::vector<Moment> moments_;
     std::vector<ForcedOrder> orders_;
+    std::vector<Tool> tools_;
 };
 
 }  // namespace fibrant::scene

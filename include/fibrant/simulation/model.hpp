@@ -5,6 +5,7 @@
 #include <fibrant/assembly/chain_system.hpp>
 #include <fibrant/beam/beam_element.hpp>
 #include <fibrant/contact/contact_set.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/law/friction_law.hpp>
 #include <fibrant/law/normal_law.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
@@ -25,9 +26,25 @@ concept HasFriction = requires { typename M::Friction; } && law::FrictionLaw<typ
 template <class M>
 concept HasSolver = requires { typename M::Solver; } && solver::LinearSolver<typename M::Solver, assembly::ChainSystem<typename M::Beam>>;
 
+/// A model whose scenes have rigid tools says so: `using Tools = contact::RigidTools;`. The only part that may be left out.
+template <class M>
+concept HasTools = requires { typename M::Tools; } && core::Policy<typename M::Tools> && core::Active<typename M::Tools>;
+
 /// A model names its Beam, Proximity, Normal, Friction and Solver, each of which satisfies its own contract.
 template <class M>
 concept Model = HasBeam<M> && HasProximity<M> && HasNormal<M> && HasFriction<M> && HasSolver<M>;
+
+namespace detail {
+template <Model M>
+struct ContactsOf {
+    using Type = contact::ContactSet<typename M::Beam, typename M::Proximity, typename M::Normal, typename M::Friction>;
+};
+template <Model M>
+    requires HasTools<M>
+struct ContactsOf<M> {
+    using Type = contact::ContactsWithTools<typename M::Beam, typename M::Proximity, typename M::Normal, typename M::Friction>;
+};
+}  // namespace detail
 
 /// Parameters of a model's parts, by the names of the parts.
 template <Model M>

@@ -22,7 +22,7 @@ class Simulator {
 public:
     using Beam = typename M::Beam;
     using Mesh = beam::Mesh<Beam>;
-    using Contacts = contact::ContactSet<Beam, typename M::Proximity, typename M::Normal, typename M::Friction>;
+    using Contacts = typename detail::ContactsOf<M>::Type;
     using Equilibrium = assembly::Equilibrium<Beam, Contacts>;
 
     /// @throws std::invalid_argument naming the field that is wrong
@@ -33,6 +33,12 @@ public:
           equilibrium_{assembly, mesh_, beam_, contacts_, channels_}, linear_{parameters.solver},
           state_{mesh_.rest_state()}, amplitudes_(channels_.names().size(), 0.0) {
         if (mesh_.fibre_count() == 0) core::refuse("assembly.fibres", "none", "at least one fibre");
+        if constexpr (HasTools<M>) {
+            for (const scene::Tool& tool : assembly.tools()) tool_channels_.push_back(channels_.find(tool.channel));
+            move_tools(amplitudes_);
+        } else if (!assembly.tools().empty()) {
+            core::refuse("assembly.tools", std::to_string(assembly.tools().size()), "none, for a model without a part Tools");
+        }
         radius_ = mesh_.fibre(0).section.radius();
         for (const beam::MeshFibre& fibre : mesh_.fibres()) radius_ = std::min(radius_, fibre.section.radius());
     }
@@ -130,6 +136,14 @@ private:
         }
     }
 
+    void move_tools([[maybe_unused]] const std::vector<double>& amplitudes) {
+        if constexpr (HasTools<M>) {
+            std::vector<double> own;
+            for (const Index channel : tool_channels_) own.push_back(amplitudes[core::at(channel)]);
+            contacts_.tools().move(own);
+        }
+    }
+
     void take_laws(const Stage<M>& stage) {
         if (stage.normal) contacts_.normal_law() = *stage.normal;
         if (stage.friction) contacts_.friction_law() = *stage.friction;
@@ -163,7 +177,7 @@ private:
         const auto start = std::chrono::steady_clock::now();
         IncrementReport increment;
         double attempt_newton = 0.0;  // iterations a normal pass of the last attempt
-        const bool touching = mesh_.fibre_count() > 1 || parameters_.contact.detection.self_contact;
+        const bool touching = mesh_.fibre_count() > 1 || parameters_.contact.detection.self_contact || HasTools<M>;
         while (true) {
             if (position_.in_stage >= stage.most_increments) {
                 report.reason = "stage " + stage.name + " did not reach its end in " + std::to_string(stage.most_increments) + " increments";
@@ -180,6 +194,7 @@ private:
             const std::vector<double> amplitudes = amplitudes_at(stage, progress);
             const double contact_before = contacts_work_;
             Vector trial = state_;
+            move_tools(amplitudes);
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping);
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver> loops(
                 equilibrium_, contacts_, linear_, parameters_.iteration, radius_, touching, clock_);
@@ -252,8 +267,10 @@ private:
         if (last_damping_.size() != damping.size()) last_damping_ = Vector::Zero(damping.size());
         energy_.damped += 0.5 * (trial - state_).dot(damping + last_damping_);
         last_damping_ = damping;
+        if constexpr (HasTools<M>) energy_.external += contacts_.tools().half_work(), contacts_.tools().stand_back(true);
         contacts_.evaluate(state_);  // the same contact elements, where the increment started
         energy_.rearranged += contacts_.figures(state_).work - contact_before;
+        if constexpr (HasTools<M>) energy_.external += contacts_.tools().half_work(), contacts_.tools().stand_back(false);
         contacts_.evaluate(trial);
         energy_.contact = contacts_work_ = now.work;
         energy_.elastic = equilibrium_.elastic_energy(trial);
@@ -319,6 +336,7 @@ private:
         for (const auto& record : contacts_.accepted_memory().records()) record.each([&](const auto& value) { file.put(value); });
         file.put(core::count(contacts_.accepted_zones()));
         for (const contact::Zone& zone : contacts_.accepted_zones()) file.put(zone);
+        if constexpr (HasTools<M>) contacts_.tools().each_accepted([&](const auto& value) { file.put(value); });
         file.put(report.rejected_increments), file.put(report.counts), file.put(clock_.seconds());
         file.put(core::count(report.increments));
         for (const IncrementReport& increment : report.increments) {
@@ -351,6 +369,10 @@ private:
         std::vector<contact::Zone> zones(core::at(file.get<Index>()));
         for (contact::Zone& zone : zones) zone = file.get<contact::Zone>();
         contacts_.resume(std::move(records), std::move(zones));
+        if constexpr (HasTools<M>) {
+            move_tools(amplitudes_);
+            contacts_.tools().resume([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
+        }
         report.rejected_increments = file.get<Index>(), report.counts = file.get<solver::IterationCounts>();
         clock_.seconds() = file.get<std::array<double, core::part_count>>();
         report.increments.resize(core::at(file.get<Index>()));
@@ -377,6 +399,7 @@ private:
     Vector state_;
     std::vector<double> amplitudes_;
     double radius_ = 0.0;
+    std::vector<Index> tool_channels_;
     Position position_;
     EnergyBalance energy_;
     double contacts_work_ = 0.0;

@@ -45,7 +45,7 @@ public:
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
         Vector searched;                                          // state of the last search
-        Index passes = 0, searches = 0, moves = 0;
+        Index passes = 0, searches = 0, moves = 0, renewals = 0;
         while (true) {
             if (passes >= parameters_.contact_limit || moves > most_moves) {
                 report.reason = "contact passes do not settle: last displacement " + core::text(change / radius_) + " radii";
@@ -79,14 +79,28 @@ public:
                 ++moves;
                 continue;
             }
-            ++passes;
-            if (!contact_possible_ || change < contact_tolerance) break;
+            if (!contact_possible_) break;
+            if (change >= contact_tolerance) {
+                ++passes;
+            } else if (!multipliers_change()) {
+                break;
+            } else if (++renewals > parameters_.multiplier_limit) {
+                report.reason = "multipliers do not settle: a contact misses its surface by " + core::text(contacts_->misfit() / radius_) + " radii";
+                return report;
+            }
         }
         report.converged = true;
         return report;
     }
 
 private:
+    /// Contacts of a law with multipliers carry them on at the next pass, and are not yet where they should be.
+    bool multipliers_change() const {
+        if constexpr (requires { contacts_->normal_law().largest_penetration(); })
+            return contacts_->misfit() > contacts_->normal_law().largest_penetration();
+        return false;
+    }
+
     static constexpr Index most_moves = 6;  ///< further than a search reaches; fibres that go on are lost
 
     /// Normal passes on one set of contact elements. @returns false if the search has to be repeated first.

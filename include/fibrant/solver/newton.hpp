@@ -24,6 +24,7 @@ struct IterationParameters {
     Index newton_limit = 15;              ///< iterations of one inner loop
     Index normal_limit = 6;               ///< normal passes of one set of contact elements
     Index contact_limit = 8;              ///< contact passes of an increment
+    Index multiplier_limit = 20;          ///< contact passes that change nothing but multipliers, where a law has them
     double margin = 0.2;                  ///< least reach of the search beyond touching [radius], > 0
     double largest_margin = 2.0;          ///< greatest reach of the search beyond touching [radius]
     bool mixed = true;                    ///< independent point stresses (falls back to the plain form)
@@ -39,6 +40,7 @@ struct IterationParameters {
         core::require_at_least("IterationParameters.newton_limit", newton_limit, 1);
         core::require_at_least("IterationParameters.normal_limit", normal_limit, 1);
         core::require_at_least("IterationParameters.contact_limit", contact_limit, 1);
+        core::require_at_least("IterationParameters.multiplier_limit", multiplier_limit, 1);
         core::require_positive("IterationParameters.margin", margin);
         core::require(largest_margin >= margin, "IterationParameters.largest_margin", largest_margin, ">= margin");
         core::require(linear_tolerance > 0.0 && linear_tolerance <= 1e-2, "IterationParameters.linear_tolerance",

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Rigid tools that fibres touch: planes, cylinders and spheres, held or moved on a path.
+
+#include <fibrant/core/parameters.hpp>
+#include <fibrant/core/types.hpp>
+
+#include <functional>
+#include <string>
+
+namespace fibrant::scene {
+
+enum class ToolShape { plane, cylinder, sphere };
+
+/// A rigid, unbounded surface. Fibres stay on one side of it: where the normal of a plane points, outside a cylinder or a
+/// sphere, inside a hollow one.
+///
+/// A material point X of the tool is at origin + rotation(a) (X - origin) + displacement(a); a is the amplitude of the channel.
+struct Tool {
+    std::string name{};
+    ToolShape shape = ToolShape::plane;
+    Vec3 origin = Vec3::Zero();     ///< a point of the plane or of the cylinder's axis, or the centre of the sphere [length]
+    Vec3 axis = Vec3::UnitZ();      ///< normal of the plane, on the fibres' side, or direction of the cylinder; made unit
+    double radius = core::unset;    ///< of a cylinder or a sphere [length], > 0
+    bool hollow = false;            ///< fibres are inside the cylinder or the sphere
+    double friction_factor = 1.0;   ///< on the coefficient of the friction law [1], >= 0
+    std::string channel = "tools";
+    Vec3 displacement = Vec3::Zero();        ///< at amplitude 1 [length]
+    std::function<Vec3(double)> path{};      ///< displacement at amplitude a, where it is not proportional
+    std::function<Mat3(double)> rotation{};  ///< at amplitude a, about the origin; none: identity
+
+    void validate() const {
+        for (int k = 0; k < 3; ++k) {
+            core::require_finite("Tool.origin", origin[k]);
+            core::require_finite("Tool.displacement", displacement[k]);
+        }
+        core::require_positive("Tool.axis: length", axis.norm());
+        if (shape != ToolShape::plane) core::require_positive("Tool.radius", radius);
+        core::require_not_negative("Tool.friction_factor", friction_factor);
+    }
+};
+
+/// Where a tool is: x = turn X + shift.
+struct ToolPose {
+    Mat3 turn = Mat3::Identity();
+    Vec3 shift = Vec3::Zero();
+    Vec3 place(const Vec3& material) const { return turn * material + shift; }
+    Vec3 material(const Vec3& place) const { return turn.transpose() * (place - shift); }
+};
+
+inline ToolPose tool_pose(const Tool& tool, double amplitude) {
+    ToolPose pose;
+    if (tool.rotation) pose.turn = tool.rotation(amplitude);
+    pose.shift = tool.origin - pose.turn * tool.origin + (tool.path ? tool.path(amplitude) : Vec3(amplitude * tool.displacement));
+    return pose;
+}
+
+/// Distance of a point from a tool's surface, < 0 beyond it, and its gradient.
+struct ToolDistance {
+    double distance;  ///< [length]
+    Vec3 normal;      ///< unit, away from the tool
+};
+
+/// @param tool  with a unit axis
+/// @param x     in the tool's own axes, as it stands at amplitude 0 [length]
+inline ToolDistance tool_distance(const Tool& tool, const Vec3& x) {
+    Vec3 from = x - tool.origin;
+    if (tool.shape == ToolShape::plane) return {from.dot(tool.axis), tool.axis};
+    if (tool.shape == ToolShape::cylinder) from -= from.dot(tool.axis) * tool.axis;
+    const double length = from.norm();
+    // On the axis no direction is better than another; fibres never rest there, but a search may ask.
+    const Vec3 outwards = length > 0.0 ? Vec3(from / length) : Vec3(tool.axis.unitOrthogonal());
+    return tool.hollow ? ToolDistance{tool.radius - length, -outwards} : ToolDistance{length - tool.radius, outwards};
+}
+
+}  // namespace fibrant::scene

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+// Fibres against rigid planes, cylinders and spheres: forces and tangent by differences, reactions by balance, and scenes
+// whose answer is known.
+#include <contact/contact_model.hpp>
+#include <refusal.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <random>
+
+using namespace fibrant;
+using test::Beam;
+using test::Mesh;
+using test::straight_fibre;
+
+namespace {
+
+const double r = 0.02, pi = std::numbers::pi;
+const law::RegularisedPenalty penalty({.regularisation_depth = 0.005 * r});
+const law::RegularisedCoulomb coulomb({.friction_coefficient = 0.3, .reversible_displacement = 0.02 * r});
+
+struct Pressing : test::Rough {
+    using Tools = contact::RigidTools;
+};
+using Tools = contact::ToolContacts<Beam, law::RegularisedPenalty, law::RegularisedCoulomb>;
+using Simulator = simulation::Simulator<Pressing>;
+
+// Without the part there is not a byte of it.
+static_assert(std::is_same_v<simulation::Simulator<test::Smooth>::Contacts,
+                             contact::ContactSet<Beam, proximity::GridSearch, law::RegularisedPenalty, law::Frictionless>>);
+
+scene::Tool plane(const Vec3& origin, const Vec3& normal) {
+    scene::Tool tool;
+    tool.origin = origin, tool.axis = normal;
+    return tool;
+}
+scene::Tool round(scene::ToolShape shape, const Vec3& origin, const Vec3& axis, double radius, bool hollow = false) {
+    scene::Tool tool;
+    tool.shape = shape, tool.origin = origin, tool.axis = axis, tool.radius = radius, tool.hollow = hollow;
+    return tool;
+}
+
+/// A bent fibre with an elliptical section in the middle of all kinds of tools, each a little too close.
+scene::Assembly crowded() {
+    scene::Assembly assembly;
+    scene::FibreSpecification fibre = straight_fibre({-0.3, 0, 0}, {0.3, 0.01, 0.01}, r, 6);
+    fibre.section = scene::elliptical(1.1 * r, 0.9 * r);
+    fibre.director = Vec3(0, 1, 0.4);
+    assembly.add(fibre);
+    assembly.add(plane({0, 0, -0.93 * r}, {0.02, 0.03, 2.0}));
+    assembly.add(round(scene::ToolShape::cylinder, {-0.1, 0, 0.3 + 0.9 * r}, {0.1, 1, 0}, 0.3));
+    assembly.add(round(scene::ToolShape::sphere, {0.2, 0.2 + 0.93 * r, 0}, Vec3::UnitZ(), 0.2));
+    assembly.add(round(scene::ToolShape::cylinder, {0, 0, 0}, {1, 0, 0}, 1.02 * r, true));
+    assembly.add(round(scene::ToolShape::sphere, {0.05, 0, 0}, Vec3::UnitZ(), 0.3, true));
+    return assembly;
+}
+
+Vector shaken(const Mesh& mesh, unsigned seed, double amount) {
+    std::mt19937 generator(seed);
+    std::uniform_real_distribution<double> value(-1.0, 1.0);
+    Vector state = mesh.rest_state();
+    for (Index v = 0; v < mesh.layout().vectors(); ++v)
+        for (int k = 0; k < 3; ++k)
+            state[3 * v + k] += amount * (mesh.layout().kind[core::at(v)] == scene::VectorKind::position ? 0.02 * r : 0.05) * value(generator);
+    return state;
+}
+
+Vector forces(const Tools& tools, Index size) {
+    Vector sum = Vector::Zero(size);
+    tools.add_forces(sum);
+    return sum;
+}
+
+simulation::ModelParameters<Pressing> parameters(double mu) {
+    auto all = test::tight_parameters<Pressing>(1e-3 * r);
+    all.friction = {.friction_coefficient = mu, .reversible_displacement = 0.02 * r};
+    all.contact.stiffness.largest_change = 1.0 + 1e-12;  // else reactions creep where nothing moves
+    all.contact.stiffness.initial_fraction = 10.0;
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("the distance of a point from a tool grows along its normal by as much as the point moves") {
+    std::mt19937 generator(7);
+    std::uniform_real_distribution<double> value(-1.0, 1.0);
+    const scene::Assembly assembly = crowded();
+    for (const scene::Tool& tool : assembly.tools())
+        for (int n = 0; n < 20; ++n) {
+            const Vec3 x = 0.1 * Vec3(value(generator), value(generator), value(generator));
+            const scene::ToolDistance here = scene::tool_distance(tool, x);
+            CHECK(std::abs(here.normal.norm() - 1.0) < 1e-14);
+            CHECK(std::abs(scene::tool_distance(tool, x - here.distance * here.normal).distance) < 1e-14);
+            for (int k = 0; k < 3; ++k) {
+                const double h = 1e-6;
+                const Vec3 step = h * Vec3::Unit(k);
+                const double slope = (scene::tool_distance(tool, x + step).distance - scene::tool_distance(tool, x - step).distance) / (2 * h);
+                CHECK(std::abs(slope - here.normal[k]) < 1e-7);  // h^2 over the smallest square of a radius, and rounding / h
+            }
+        }
+}
+
+TEST_CASE("forces of tools are the slope of their energy, and the tangent is the slope of the forces") {
+    const scene::Assembly assembly = crowded();
+    const Mesh mesh(assembly, Beam{});
+    contact::StiffnessAdaptation adaptation;
+    adaptation.allowed_penetration = 0.05 * r;
+    for (const bool rough : {false, true}) {
+        // Friction is only in the tangent at a standing bound, and it is not the slope of an energy.
+        const law::RegularisedCoulomb friction({.friction_coefficient = rough ? 0.3 : 0.0, .reversible_displacement = 0.02 * r});
+        Tools tools(assembly, mesh, adaptation, 2.0);
+        const Vector accepted = shaken(mesh, 3, 0.7);
+        tools.detect(mesh.rest_state(), accepted, 0.1 * r, penalty);
+        tools.evaluate(mesh.rest_state(), penalty, friction);
+        tools.hold_reactions();
+        const Vector state = shaken(mesh, 1, 1.0), along = shaken(mesh, 2, 1.0) - mesh.rest_state();
+        const auto figures = [&](const Vector& at) {
+            tools.evaluate(at, penalty, friction);
+            contact::ContactFigures sum;
+            tools.add_figures(at, penalty, sum);
+            return sum;
+        };
+        CHECK(figures(state).active > 20);
+        const double h = 1e-6;
+        const Vector ahead = state + h * along, behind = state - h * along;
+        const double energy_slope = (figures(ahead).work - figures(behind).work) / (2 * h);
+        const Vector force_ahead = (tools.evaluate(ahead, penalty, friction), forces(tools, state.size()));
+        const Vector force_behind = (tools.evaluate(behind, penalty, friction), forces(tools, state.size()));
+        const Vector force_slope = (force_ahead - force_behind) / (2 * h);
+        tools.evaluate(state, penalty, friction);
+        const Vector here = forces(tools, state.size());
+        if (!rough) CHECK(std::abs(here.dot(along) / energy_slope - 1.0) < 1e-6);
+        Vector product = Vector::Zero(state.size());
+        tools.stiffness_terms(0, state, [&](Index first, const beam::ElementWeights<Beam>& weights, const Mat3& stiffness) {
+            CHECK((stiffness - stiffness.transpose()).norm() <= 1e-12 * stiffness.norm());
+            const Vec3 force = stiffness * Mesh::point(along, first, weights);
+            for (std::size_t a = 0; a < weights.size(); ++a) product.segment<3>(first + 3 * static_cast<Index>(a)) += weights[a] * force;
+        });
+        // Without friction the tangent is complete. The friction's arm moves with the support too, and that small part is left
+        // out, as between fibres: it would not be symmetric.
+        std::printf("%s: tangent off by %.1e\n", rough ? "rough" : "smooth", (product - force_slope).norm() / product.norm());
+        CHECK((product - force_slope).norm() < (rough ? 5e-2 : 1e-6) * product.norm());
+    }
+}
+
+TEST_CASE("what a tool feels is what its fibre feels, turned round") {
+    const scene::Assembly assembly = crowded();
+    const Mesh mesh(assembly, Beam{});
+    contact::StiffnessAdaptation adaptation;
+    adaptation.allowed_penetration = 0.05 * r;
+    Tools tools(assembly, mesh, adaptation, 2.0);
+    tools.detect(mesh.rest_state(), shaken(mesh, 3, 0.7), 0.1 * r, penalty);
+    tools.evaluate(mesh.rest_state(), penalty, coulomb);
+    const Vector on_fibre = -forces(tools, mesh.rest_state().size());
+    Vec3 sum = Vec3::Zero(), total = Vec3::Zero();
+    for (Index node = 0; node < mesh.node_count(0); ++node) total += on_fibre.segment<3>(3 * mesh.node_vector(0, node));
+    double scale = 0.0;
+    for (Index t = 0; t < 5; ++t) sum += tools.reaction(t).force, scale += tools.reaction(t).force.norm();
+    CHECK(scale > 0.0);
+    CHECK((sum + total).norm() < 1e-12 * scale);
+}
+
+TEST_CASE("a fibre pressed between two plates carries what the theory of its section says, and gives it to both") {
+    // The section between two opposite line loads: the closed form of the St Venant-Kirchhoff law, E_11 = S_11 / E with the
+    // length free to change (section.json), S_11 = -2 r p / (A |g_1|).
+    const double length = 1.0, squeeze = 0.01;  // of the diameter
+    scene::Assembly assembly;
+    scene::FibreSpecification fibre = straight_fibre({0, 0, 0}, {length, 0, 0}, r, 20);
+    fibre.director = Vec3::UnitZ();
+    assembly.add(fibre);
+    assembly.hold_position({0, 0.5});
+    assembly.hold_axial_rotation({0, 0.5});
+    scene::Tool below = plane({0, 0, -r}, Vec3::UnitZ()), above = plane({0, 0, r}, -Vec3::UnitZ());
+    below.displacement = {0, 0, squeeze * r}, above.displacement = {0, 0, -squeeze * r};
+    assembly.add(below), assembly.add(above);
+    Simulator simulator(assembly, parameters(0.0));
+    const simulation::Report report = simulator.run(test::stage<Pressing>({{"tools", 1.0}}, 6));
+    REQUIRE_MESSAGE(report.converged, report.reason);
+    const Vec3 down = simulator.contacts().tools().reaction(0).force, up = simulator.contacts().tools().reaction(1).force;
+    double load = 0.0;  // mean along the fibre, by Simpson's rule
+    for (Index node = 0; node <= 40; ++node) {
+        const double stretch = simulator.value({0, static_cast<double>(node) / 40.0}, scene::NodeVector::director_1).norm();
+        const double weight = node % 2 == 1 ? 4.0 / 120.0 : (node == 0 || node == 40 ? 1.0 : 2.0) / 120.0;
+        load -= weight * 0.5 * (stretch * stretch - 1.0) * test::glass.young_modulus * pi * r * r * stretch / (2.0 * r);
+        CHECK(std::abs(stretch - (1.0 - squeeze)) < 0.2 * squeeze);  // the rest is penetration
+    }
+    std::printf("plates: %.6f N/mm below, %.6f above, %.6f expected; energy %.2e of %.2e missing\n", -down.z() / length, up.z() / length, load,
+                report.energy.error(), report.energy.external);
+    CHECK((down + up).norm() < 1e-6 * up.norm());
+    CHECK(std::abs(up.z() / length / load - 1.0) < 1e-3);
+    CHECK(report.energy.external > 0.0);
+    CHECK(std::abs(report.energy.error()) < 1e-3 * report.energy.external);  // the trapezoidal rule over six increments
+}
+
+TEST_CASE("a fibre pressed on a rough plate is dragged along with it, and slips at the friction of its pressure") {
+    const double mu = 0.3;
+    scene::Assembly assembly;
+    assembly.add(straight_fibre({0, 0, r}, {0.5, 0, r}, r, 6));
+    scene::Tool table = plane(Vec3::Zero(), Vec3::UnitZ());
+    table.channel = "table", table.displacement = {0, 0.02 * r, 0};  // a reversible displacement
+    assembly.add(table);
+    for (const double end : {0.0, 1.0}) assembly.clamp({0, end}, Vec3(0, 0, -0.01 * r), Vec3::Zero(), Vec3::Zero(), "press");
+    Simulator simulator(assembly, parameters(mu));
+    simulation::Report report = simulator.run(test::stage<Pressing>({{"press", 1.0}}, 4));
+    REQUIRE_MESSAGE(report.converged, report.reason);
+    const auto felt = [&] { return simulator.contacts().tools().reaction(0).force; };
+    const Vec3 before = felt();
+    CHECK(before.head<2>().norm() < 1e-6 * before.norm());
+    // Friction holds the fibre's middle while its ends are held still: a part of the reversible way is in the fibre.
+    report = simulator.run(test::stage<Pressing>({{"table", 0.25}}, 2));
+    REQUIRE_MESSAGE(report.converged, report.reason);
+    const double quarter = -felt().y();
+    CHECK(quarter > 0.1 * mu * -before.z());
+    CHECK(quarter < 0.25 * mu * -before.z() * 1.001);
+    CHECK(report.energy.dissipated == 0.0);
+    report = simulator.run(test::stage<Pressing>({{"table", 0.0}}, 2));
+    CHECK(std::abs(felt().y()) < 1e-3 * quarter);  // elastic
+    report = simulator.run(test::stage<Pressing>({{"table", 20.0}}, 10));
+    REQUIRE_MESSAGE(report.converged, report.reason);
+    std::printf("plate: presses %.5f N, drags %.5f N, ratio %.5f\n", -felt().z(), -felt().y(), felt().y() / felt().z());
+    CHECK(std::abs(felt().y() / felt().z() - mu) < 1e-3 * mu);
+    CHECK(report.energy.dissipated > 0.0);
+    std::printf("energy %.2e of %.2e missing\n", report.energy.error(), report.energy.external);
+    CHECK(std::abs(report.energy.error()) < 0.01 * report.energy.external);  // of sliding: the trapezoidal rule over ten increments
+}
+
+TEST_CASE("a stuck fibre that turns with its tool feels nothing of it") {
+    // From -1 to 0 the fibre is pressed on a drum and drawn along it by a part of the reversible way; then both turn about the
+    // drum's axis as one rigid body.
+    const double R = 0.3;
+    const auto turned = [](double a) { return Mat3(Eigen::AngleAxisd(std::max(a, 0.0), Vec3::UnitZ())); };
+    scene::Assembly assembly;
+    assembly.add(straight_fibre({-0.1, R + r, 0}, {0.1, R + r, 0}, r, 5));
+    scene::Tool drum = round(scene::ToolShape::cylinder, Vec3::Zero(), Vec3::UnitZ(), R);
+    drum.channel = "turn", drum.rotation = turned;
+    assembly.add(drum);
+    for (const double end : {0.0, 1.0})
+        for (const auto vector : {scene::NodeVector::position, scene::NodeVector::director_1, scene::NodeVector::director_2}) {
+            scene::Hold hold;
+            hold.at = {0, end}, hold.vector = vector, hold.channel = "turn", hold.rotation = turned;
+            if (vector == scene::NodeVector::position)
+                hold.path = [=](double a) {
+                    const double pressed = 1.0 + std::min(a, 0.0);
+                    return Vec3(turned(a) * Vec3(0.008 * r * pressed, -0.02 * r * pressed, 0.0));
+                };
+            assembly.hold(hold);
+        }
+    auto all = parameters(0.3);
+    all.contact.stiffness.initial_fraction = 0.1;
+    Simulator simulator(assembly, all);
+    simulation::Report report = simulator.run(test::stage<Pressing>({{"turn", -1.0}}, 1));
+    report = simulator.run(test::stage<Pressing>({{"turn", 0.0}}, 4));
+    REQUIRE_MESSAGE(report.converged, report.reason);
+    const contact::ToolReaction before = simulator.contacts().tools().reaction(0);
+    const double elastic = report.energy.elastic;
+    report = simulator.run(test::stage<Pressing>({{"turn", 0.5 * pi}}, 5));
+    REQUIRE_MESSAGE(report.converged, report.reason);
+    const contact::ToolReaction after = simulator.contacts().tools().reaction(0);
+    const Mat3 turn(Eigen::AngleAxisd(0.5 * pi, Vec3::UnitZ()));
+    std::printf("turning: %.5f N on the drum, tangential %.5f N; after a quarter turn off by %.1e, moment by %.1e, energy by %.1e\n", before.force.norm(), before.force.x(),
+                (after.force - turn * before.force).norm() / before.force.norm(), (after.moment - before.moment).norm() / before.moment.norm(), report.energy.elastic / elastic - 1.0);
+    CHECK(std::abs(before.force.x()) > 0.01 * before.force.norm());
+    CHECK((after.force - turn * before.force).norm() < 1e-5 * before.force.norm());
+    CHECK((after.moment - turn * before.moment).norm() < 1e-5 * before.moment.norm());
+    CHECK(report.energy.dissipated == 0.0);
+}
+
+TEST_CASE("a tool that is not one, and a scene whose model knows no tools, are refused by name") {
+    scene::Assembly assembly;
+    CHECK(test::refusal([&] { assembly.add(plane(Vec3::Zero(), Vec3::Zero())); }) == "Tool.axis: length = 0, but it must be finite and > 0");
+    CHECK(test::refusal([&] { assembly.add(round(scene::ToolShape::sphere, Vec3::Zero(), Vec3::UnitZ(), -1.0)); }) ==
+          "Tool.radius = -1, but it must be finite and > 0");
+    assembly.add(straight_fibre({0, 0, r}, {0.5, 0, r}, r, 6));
+    assembly.add(plane(Vec3::Zero(), Vec3::UnitZ()));
+    CHECK(test::refusal([&] { simulation::Simulator<test::Smooth>(assembly, test::tight_parameters<test::Smooth>(r)); }).find("assembly.tools = 1") == 0);
+}
