@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A fibre drawn over a fixed circular guide with friction. Reference: elastica arms and sliding contact at the surface, for
+// A fibre drawn over a fixed cylinder with friction: a rigid tool, and a guide that is a fibre itself. Reference: elastica arms and sliding contact at the surface, for
 // the forces at the two ends as they are measured.
 #include <contact/contact_model.hpp>
 
@@ -68,37 +68,52 @@ struct Drawn {
     double angle = 0.0;     ///< that the fibre turns through, by the directions of the two forces [radian]
     double penetration = 0.0;
     Index active = 0;
+    double moment = 0.0;    ///< on the tool about its axis, over what the two forces at the ends exert [1]
 };
 
-/// Half a turn around the guide, wound on without friction, then drawn. The guide is a held fibre, bent to a circle in the
-/// plane of motion, whose outer side has the radius R; motion stays in that plane.
+struct Tooled : Rough {
+    using Tools = contact::RigidTools;
+};
+
+/// Half a turn around the guide, wound on without friction, then drawn. Motion stays in the plane of the turn.
+/// @tparam M      Tooled: the guide is a rigid cylinder; Rough: a held fibre, bent to a circle, whose outer side has its radius
+/// @param tension strain of the winding
+/// @param spacing of contact points [degree]
 /// @returns after winding, and after each quarter of the way drawn
-std::vector<Drawn> draw(double mu, double travel) {
+template <class M>
+std::vector<Drawn> draw(double mu, double travel, double tension, double spacing) {
     const double half = 2.0, tube = 0.1, allowed = 1e-2 * r;
-    const Index elements = static_cast<Index>(std::ceil(half / (5.0 * pi / 180.0 * rho)));  // a point every 5 degrees
+    const Index elements = static_cast<Index>(std::ceil(half / (spacing * pi / 180.0 * rho)));
     scene::Assembly assembly;
     const scene::FibreSpecification specification = test::straight_fibre({-half, rho, 0}, {half, rho, 0}, r, elements);
     const Index fibre = assembly.add(specification);
-    const Index guide = assembly.add(test::curved_fibre(
-        [=](double t) {
-            const double angle = (2.0 * t - 1.0) * 100.0 * pi / 180.0;
-            return Vec3((R - tube) * std::sin(angle), (R - tube) * std::cos(angle), 0.0);
-        },
-        tube, 40));
-    for (Index k = 0; k <= 80; ++k)
-        for (const auto vector : {scene::NodeVector::position, scene::NodeVector::director_1, scene::NodeVector::director_2}) {
-            scene::Hold still;
-            still.at = {guide, static_cast<double>(k) / 80.0}, still.vector = vector;
-            assembly.hold(still);
-        }
-    // Ends go the way of a taut string that is wound on, stretched by 0.6 % from the start on; beyond 1, along the string.
+    if constexpr (simulation::HasTools<M>) {
+        scene::Tool guide;
+        guide.shape = scene::ToolShape::cylinder, guide.radius = R;
+        guide.channel = "ends";
+        assembly.add(guide);
+    } else {
+        const Index guide = assembly.add(test::curved_fibre(
+            [=](double t) {
+                const double angle = (2.0 * t - 1.0) * 100.0 * pi / 180.0;
+                return Vec3((R - tube) * std::sin(angle), (R - tube) * std::cos(angle), 0.0);
+            },
+            tube, 40));
+        for (Index k = 0; k <= 80; ++k)
+            for (const auto vector : {scene::NodeVector::position, scene::NodeVector::director_1, scene::NodeVector::director_2}) {
+                scene::Hold still;
+                still.at = {guide, static_cast<double>(k) / 80.0}, still.vector = vector;
+                assembly.hold(still);
+            }
+    }
+    // Ends go the way of a taut string that is wound on, stretched from the start on; beyond 1, along the string.
     for (const double side : {-1.0, 1.0}) {
         scene::Hold end;
         end.at = side < 0.0 ? scene::first_end(fibre) : scene::last_end(fibre);
         end.channel = "ends";
         end.path = [=](double amplitude) {
             const double angle = 0.5 * pi * std::min(amplitude, 1.0), drawn = side * travel * std::max(0.0, amplitude - 1.0);
-            const double free = half * (1.0 + 0.006 * std::min(1.0, 20.0 * amplitude)) - rho * angle;
+            const double free = half * (1.0 + tension * std::min(1.0, 20.0 * amplitude)) - rho * angle;
             return Vec3(side * (rho * std::sin(angle) + free * std::cos(angle) - half),
                         rho * std::cos(angle) - free * std::sin(angle) - rho - drawn, 0.0);
         };
@@ -108,22 +123,22 @@ std::vector<Drawn> draw(double mu, double travel) {
     for (Index k = 0; k <= 2 * elements; ++k) assembly.hold_position({fibre, static_cast<double>(k) / static_cast<double>(2 * elements)}, across);
     assembly.hold_axial_rotation(scene::first_end(fibre));
 
-    simulation::ModelParameters<Rough> parameters;
+    simulation::ModelParameters<M> parameters;
     parameters.normal.regularisation_depth = 0.1 * allowed;
     parameters.contact.stiffness.allowed_penetration = allowed;
     const double range = 0.02 * r;
     parameters.friction = {.friction_coefficient = 0.0, .reversible_displacement = range};
     parameters.iteration.contact_tolerance = 2e-3;  // a tenth of the reversible displacement
     parameters.iteration.margin = 2.0, parameters.iteration.largest_margin = 20.0;  // ends swing far, and a search is cheap here
-    simulation::Simulator<Rough> simulator(assembly, parameters);
+    simulation::Simulator<M> simulator(assembly, parameters);
 
     std::vector<Drawn> results;
     for (const double to : {1.0, 1.25, 1.5, 1.75, 2.0}) {
-        simulation::Stage<Rough> stage;
+        simulation::Stage<M> stage;
         stage.increments = to > 1.0 ? 6 : 30;
         stage.ramps = {{"ends", to}};
         stage.friction.emplace(law::RegularisedCoulomb::Parameters{to > 1.0 ? mu : 0.0, range});
-        simulation::Loading<Rough> loading;
+        simulation::Loading<M> loading;
         loading.stages = {stage};
         const simulation::Report report = simulator.run(loading);
         const Vec3 slack = simulator.reaction(scene::first_end(fibre)), taut = simulator.reaction(scene::last_end(fibre));
@@ -131,10 +146,40 @@ std::vector<Drawn> draw(double mu, double travel) {
         now.ratio = taut.norm() / slack.norm(), now.low = slack.norm();
         now.angle = pi - std::atan2(slack.cross(taut).norm(), slack.dot(taut));
         now.penetration = report.contact.greatest_penetration / allowed, now.active = report.contact.active;
+        if constexpr (simulation::HasTools<M>) {
+            const Vec3 ends = simulator.value(scene::first_end(fibre)).cross(slack) + simulator.value(scene::last_end(fibre)).cross(taut);
+            now.moment = simulator.contacts().tools().reaction(0).moment.z() / ends.z();
+        }
         results.push_back(now);
         if (!now.converged) break;
     }
     return results;
+}
+
+
+TEST_CASE("the reference of this test is that of the table") {
+    CHECK(std::abs(reference_ratio(0.15, stiffness, 0.02, pi) - 1.5303156580055) < 1e-6);
+    CHECK(std::abs(reference_ratio(0.15, stiffness, 0.2, pi) - 1.5677088680113) < 1e-6);
+    CHECK(std::abs(reference_ratio(0.15, stiffness, 0.02, 0.5 * pi) - 1.2391685624612) < 1e-6);
+    CHECK(std::abs(reference_ratio(0.3, stiffness, 0.02, pi) - 2.3526016160556) < 1e-6);
+}
+
+template <class M>
+void check_drawn(double mu, double tension, double spacing, double tolerance) {
+    const std::vector<Drawn> drawn = draw<M>(mu, 0.06, tension, spacing);
+    CAPTURE(drawn.back().reason);
+    REQUIRE(drawn.back().converged);
+    CHECK(std::abs(drawn[0].ratio - 1.0) < 1e-3);  // without friction: residual tolerance, and the sinking of single points
+    for (std::size_t k = 2; k < drawn.size(); ++k) {  // by half of the way all of it slides
+        const double expected = reference_ratio(mu, stiffness, drawn[k].low, drawn[k].angle);
+        std::printf("drawn %zu/4: %.5f at the slack end, %.2f degrees, ratio %.5f, %.5f expected, error %+.2e, %.5f by Euler; penetration %.2f of the allowed\n", k,
+                    drawn[k].low, drawn[k].angle * 180.0 / pi, drawn[k].ratio, expected, drawn[k].ratio / expected - 1.0, std::exp(mu * drawn[k].angle), drawn[k].penetration);
+        CHECK(std::abs(drawn[k].angle - pi) < 0.1);
+        CHECK(std::abs(drawn[k].ratio / expected - 1.0) < tolerance);  // single points come on and go off the guide
+        CHECK(drawn[k].penetration < 1.0);
+        CHECK(drawn[k].active > 20);
+        if constexpr (simulation::HasTools<M>) CHECK(std::abs(drawn[k].moment - 1.0) < 1e-3);
+    }
 }
 
 }  // namespace
@@ -147,18 +192,15 @@ TEST_CASE("the reference of this test is that of the table") {
 }
 
 TEST_CASE("a fibre drawn half a turn around a guide is held back as the reference says") {
-    const double mu = 0.15;
-    const std::vector<Drawn> drawn = draw(mu, 0.06);
-    CAPTURE(drawn.back().reason);
-    REQUIRE(drawn.back().converged);
-    CHECK(std::abs(drawn[0].ratio - 1.0) < 1e-3);  // without friction: residual tolerance, and the sinking of single points
-    for (std::size_t k = 1; k < drawn.size(); ++k) {
-        const double expected = reference_ratio(mu, stiffness, drawn[k].low, drawn[k].angle);
-        std::printf("drawn %zu/4: %.5f at the slack end, %.2f degrees, ratio %.5f, %.5f expected, error %+.2e, %.5f by Euler; penetration %.2f of the allowed\n", k,
-                    drawn[k].low, drawn[k].angle * 180.0 / pi, drawn[k].ratio, expected, drawn[k].ratio / expected - 1.0, std::exp(mu * drawn[k].angle), drawn[k].penetration);
-        CHECK(std::abs(drawn[k].angle - pi) < 0.1);
-        CHECK(std::abs(drawn[k].ratio / expected - 1.0) < 0.02);  // single points, 5 degrees apart, come on and go off the guide
-        CHECK(drawn[k].penetration < 1.0);
-        CHECK(drawn[k].active > 20);
-    }
+    check_drawn<Rough>(0.15, 0.006, 5.0, 0.02);
+}
+
+TEST_CASE("a fibre drawn half a turn around a rigid cylinder is held back as the reference says") {
+    // The reference is a rod on a hard surface. The point force with which the fibre leaves it is spread by what sections give
+    // way: over (4 E I / k)^(1/4) = 1.4 r for k = (pi / 2) E / 2 a length, 3 degrees here, whatever the spacing and the penalty.
+    // That part of the error is in proportion to that of bending in the ratio, and is less than half of it.
+    check_drawn<Tooled>(0.15, 0.006, 5.0, 0.01);  // bending takes 1.5 % off the ratio
+    check_drawn<Tooled>(0.15, 0.03, 2.5, 0.005);  // 0.3 %
+    check_drawn<Tooled>(0.3, 0.03, 2.5, 0.01);    // 0.9 %
+    check_drawn<Tooled>(0.15, 0.0025, 5.0, 0.02);  // 3 %
 }

@@ -3,6 +3,7 @@
 /// @file Proximity zones of a deformed mesh, by any search policy; forced orders are searched across their axis.
 
 #include <fibrant/beam/mesh.hpp>
+#include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 namespace fibrant::contact {
@@ -19,7 +19,7 @@ namespace fibrant::contact {
 struct Detection {
     double chord_bound = 0.02;    ///< deviation of a curve from its segments, over the radius [1], > 0
     Index finest_cut = 8;         ///< segments an element, at most; what they miss is added to the reach
-    bool self_contact = false;    ///< search each fibre against itself, beyond an arc of max(pi r, 1.5 elements)
+    bool self_contact = false;    ///< search each fibre against itself, beyond an arc of max(pi r, 2 elements)
     void validate() const {
         core::require_positive("Detection.chord_bound", chord_bound);
         core::require_at_least("Detection.finest_cut", finest_cut, 1);
@@ -139,8 +139,7 @@ struct SampledCentrelines {
             line.points = std::span<const Vec3>(points).subspan(core::at(piece.first_point), core::at(count + 1));
             line.inflation = std::span<const double>(inflation).subspan(core::at(piece.first_segment), core::at(count));
             line.radius = fibre_data.section.radius();
-            if (detection.self_contact)
-                line.self_skip = std::max(std::numbers::pi * fibre_data.section.radius(), 1.5 * fibre_data.element_length);
+            if (detection.self_contact) line.self_skip = self_contact_arc(fibre_data.section.radius(), fibre_data.element_length);
             centrelines.push_back(line);
             fibre.push_back(piece.fibre);
             cut.push_back(static_cast<double>(piece.cut));

@@ -71,6 +71,12 @@ double plane_section(const beam::Mesh<B>& mesh, const Vector& state, Index fibre
     return u;
 }
 
+/// Arc within which a fibre does not touch itself: pi r is the shortest one that can come back to do so, and elements of one
+/// contact have no node in common [length].
+inline double self_contact_arc(double radius, double element_length) noexcept {
+    return std::max(std::numbers::pi * radius, 2.0 * element_length);
+}
+
 /// How contact points are placed.
 struct ContactSpacing {
     double points_per_element = 2.0;    ///< along near-parallel fibres [1], > 0
@@ -106,6 +112,11 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
     const double end_i = static_cast<double>(mesh.fibre(i).elements), end_j = static_cast<double>(mesh.fibre(j).elements);
     const double r = 0.5 * (mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius());
     bool first_i = false, last_i = false, first_j = false, last_j = false;  // ends that already have their element
+    const std::size_t before = pairs.size();
+    // In a bend the points of a fibre that are closest to each other are next to each other, or one.
+    const auto is_one = [&](const StationPair& pair) {
+        return i == j && std::abs(pair.u_j - pair.u_i) * h_i < self_contact_arc(r, h_i);
+    };
 
     // A fibre's end against the other fibre's side; the same end is paired once in a zone.
     const auto add_end = [&](bool of_i, double u) {
@@ -139,6 +150,7 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
 
     if (crossing) {
         StationPair pair = closest_points(mesh, state, i, j, zone.closest_i, zone.closest_j);
+        if (is_one(pair)) pair.u_i = zone.closest_i, pair.u_j = zone.closest_j, pair.crossing = false;  // nor across both tangents
         pair.length = r;
         const Vec3 centres = mesh.position(state, j, pair.u_j) - mesh.position(state, i, pair.u_i);
         const double off_i = std::abs(centres.dot(mesh.derivative(state, i, pair.u_i).normalized()));
@@ -158,7 +170,6 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
     const double from = mean_abscissa(zone.a_i, zone.a_j), to = mean_abscissa(zone.b_i, zone.b_j);
     const auto first = static_cast<Index>(std::ceil(from / step - 1e-6)), last = static_cast<Index>(std::floor(to / step + 1e-6));
     const auto share = [&](double k) { return to > from ? std::clamp((k * step - from) / (to - from), 0.0, 1.0) : 0.5; };
-    const std::size_t before = pairs.size();
     // The last section of a fibre against the other one: there splayed fibres are closest, and no cap sticks out. False if
     // the other fibre ends before.
     const auto add_last_section = [&](bool of_i, double u, double v) {
@@ -241,6 +252,7 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
             const double u = of_i ? u_i : u_j, end = nearest_end(of_i, u);
             if (std::abs(u - end) < 0.5 * step) add_last_section(of_i, end, of_i ? u_j : u_i);
         }
+    pairs.erase(std::remove_if(pairs.begin() + static_cast<std::ptrdiff_t>(before), pairs.end(), is_one), pairs.end());
     std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(before), pairs.end(), [](const StationPair& a, const StationPair& b) {
         return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j;
     });
