@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <fibrant/law/augmented.hpp>
 #include <fibrant/law/limited_gap.hpp>
 #include <fibrant/law/linear_penalty.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
@@ -106,4 +107,23 @@ TEST_CASE("parameters that cannot hold are refused with field, value and bound")
     CHECK(test::refusal([] { LimitedGap<RegularisedPenalty>{{.law = {}, .limit = 1.0}}; }) ==
           "RegularisedPenalty.regularisation_depth = nan, but it must be finite and > 0");
     CHECK(test::refusal([] { LimitedGap<LinearPenalty>{{.law = {}, .limit = 1.0}}; }).empty());
+}
+
+TEST_CASE("a law that can be inverted tells the penetration of every reaction") {
+    const auto check = [](const auto& law) {
+        for (const double gap : test::gaps_around(1e-3)) {
+            if (gap >= 0.0) continue;
+            CHECK(law.penetration(law.response(gap, 50.0).reaction, 50.0) == doctest::Approx(-gap).epsilon(1e-12));
+        }
+        CHECK(law.penetration(0.0, 50.0) == 0.0);
+    };
+    check(LinearPenalty{});
+    check(RegularisedPenalty{{.regularisation_depth = 1e-3}});
+    check(law::Augmented<RegularisedPenalty>{{.law = {.regularisation_depth = 1e-3}, .largest_penetration = 1e-6}});
+}
+
+TEST_CASE("multipliers leave a law as it is, and a law without them is not one that has") {
+    test::check_normal_law(law::Augmented<RegularisedPenalty>{{.law = {.regularisation_depth = 1e-3}, .largest_penetration = 1e-6}}, 50.0, 1e-3);
+    static_assert(law::Augmenting<law::Augmented<LinearPenalty>> && !law::Augmenting<RegularisedPenalty>);
+    CHECK(test::refusal([] { law::Augmented<LinearPenalty>{{}}; }) == "Augmented.largest_penetration = nan, but it must be finite and > 0");
 }
