@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <random>
 
 using namespace fibrant;
 using Rough = test::PressedFibres<law::RegularisedCoulomb>;
@@ -38,6 +40,41 @@ TEST_CASE("the tangent is the derivative of the residual, with contacts active a
     const double error = derivative_error(fibres, everywhere);
     std::printf("tangent against differences: %.1e, %td active contacts\n", error, fibres.active());
     CHECK(error < 1e-6);
+}
+
+TEST_CASE("friction that follows the reaction: the part that is not symmetric completes the derivative") {
+    Rough fibres(false);
+    fibres.contacts.parameters().friction_bound = contact::FrictionBound::following;
+    // Fibres move as wholes, so that no particle moves on its section: how friction's lever changes is in no tangent.
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> any(-1.0, 1.0);
+    const auto translation = [&](double size) {
+        Vector x = Vector::Zero(fibres.state.size());
+        for (Index f = 0; f < fibres.mesh.fibre_count(); ++f) {
+            const double a = any(random), b = any(random), c = any(random);
+            for (Index n = 0; n < fibres.mesh.node_count(f); ++n) x.segment<3>(3 * fibres.mesh.node_vector(f, n, 0)) = size * Vec3(a, b, c);
+        }
+        return x;
+    };
+    double worst = 0.0, symmetric = 0.0, sliding = 0.0;
+    for (int trial = 0; trial < 8; ++trial) {
+        const Vector at = fibres.state + translation(0.03 * fibres.radius), x = translation(fibres.radius);
+        fibres.linearise(at);
+        const auto& system = fibres.equilibrium.system();
+        REQUIRE(system.unsymmetric());
+        Vector product(x.size());
+        system.apply_unheld(x, product);
+        const double h = 1e-6;  // rounding over h: 1e-9 of forces that are differences of some hundred elements'
+        const Vector slope = (fibres.residual(at + h * x) - fibres.residual(at - h * x)) / (2.0 * h);
+        symmetric = std::max(symmetric, (product - slope).norm() / slope.norm());
+        system.apply_skews(x, product);
+        worst = std::max(worst, (product - slope).norm() / slope.norm());
+        for (const auto& friction : fibres.contacts.frictions()) sliding += friction.sliding ? 1.0 : 0.0;
+    }
+    std::printf("following friction: %.1e, without its skew part %.1e\n", worst, symmetric);
+    CHECK(sliding > 8.0);  // on both branches of the law
+    CHECK(symmetric > 0.01);
+    CHECK(worst < 1e-5);
 }
 
 TEST_CASE("a moment that turns with its section, in its plane") {

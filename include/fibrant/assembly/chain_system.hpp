@@ -55,6 +55,34 @@ public:
     std::vector<Point>& points() noexcept { return points_; }
     const std::vector<Point>& points() const noexcept { return points_; }
 
+    /// Part of a point term that is not symmetric: `column` (x) `row` beside its stiffness [force / length, 1].
+    struct Skew {
+        std::int32_t point;
+        Vec3 column, row;
+    };
+    std::vector<Skew>& skews() noexcept { return skews_; }
+    /// The tangent has a part that `apply` leaves out, and `apply_skews` adds.
+    bool unsymmetric() const noexcept { return !skews_.empty(); }
+    /// y += F S x, S the part that is not symmetric, for an x that lies within the free directions.
+    void apply_skews(const Vector& x, Vector& y) const {
+        free_.setZero(x.size());
+        for (const Skew& skew : skews_) {
+            const Point& point = points_[core::at(skew.point)];
+            Vec3 apart = Vec3::Zero();
+            for (Index a = 0; a < vectors; ++a)
+                apart += point.weights_j[core::at(a)] * x.segment<3>(point.first_j + 3 * a) -
+                         point.weights_i[core::at(a)] * x.segment<3>(point.first_i + 3 * a);
+            const Vec3 force = skew.row.dot(apart) * skew.column;
+            for (Index a = 0; a < vectors; ++a) {
+                free_.segment<3>(point.first_j + 3 * a) += point.weights_j[core::at(a)] * force;
+                free_.segment<3>(point.first_i + 3 * a) -= point.weights_i[core::at(a)] * force;
+            }
+        }
+        for (const scene::HeldVector& held : layout_.held)
+            free_.segment<3>(3 * held.vector) = (held.free * free_.segment<3>(3 * held.vector)).eval();
+        y += free_;
+    }
+
     /// Number of terms that couple fibres.
     Index couplings() const noexcept { return core::count(points_); }
 
@@ -217,6 +245,7 @@ private:
     std::vector<Index> first_node_;
     std::vector<Row> rows_;
     std::vector<Point> points_;
+    std::vector<Skew> skews_;
     BandProduct<block, reach> band_;
     PointProduct<vectors> pairs_;
     mutable Vector free_;  // scratch of a product: one system serves one thread at a time

@@ -136,12 +136,16 @@ public:
         load_.add_stiffness(amplitudes_, state, [&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
         auto& points = system_.points();
         points.clear();
+        system_.skews().clear();
         const auto& elements = contacts_->elements();
         for (Index k = 0; k < core::count(elements); ++k) {
             if (!contacts_->carries(k)) continue;
             const auto& element = elements[core::at(k)];
             points.push_back({element.first_i, element.first_j, element.fibre_i, element.fibre_j, element.weights_i,
                               element.weights_j, contacts_->tangent(k)});
+            if (!contacts_->follows()) continue;
+            const Vec3 column = contacts_->friction_by_gap(k);
+            if (!column.isZero(0.0)) system_.skews().push_back({static_cast<std::int32_t>(points.size() - 1), column, element.normal});
         }
         system_.index_points();
     }

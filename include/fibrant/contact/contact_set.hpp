@@ -4,6 +4,7 @@
 
 #include <fibrant/contact/contact_detection.hpp>
 #include <fibrant/contact/contact_element.hpp>
+#include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/side_index.hpp>
@@ -15,31 +16,6 @@
 #include <vector>
 
 namespace fibrant::contact {
-
-/// Parameters of contact that no law holds.
-struct ContactParameters {
-    Detection detection;
-    ContactSpacing spacing;
-    NormalRule normal;
-    StiffnessAdaptation stiffness;
-    void validate() const {
-        detection.validate();
-        spacing.validate();
-        normal.validate();
-        stiffness.validate();
-    }
-};
-
-/// Figures of the contacts in a state.
-struct ContactFigures {
-    Index elements = 0;              ///< contact elements, candidates included
-    Index active = 0;                ///< with a reaction
-    Index shifted = 0;               ///< still shown a limited gap
-    double greatest_penetration = 0; ///< true, of all elements; 0 if none [length]
-    double work = 0;                 ///< stored by the normal law [force * length]
-    double dissipated = 0;           ///< by sliding since the last accepted state [force * length]
-    double reaction_sum = 0;         ///< sum of R_N [force]
-};
 
 /// The contacts of a mesh. The order of elements and of every sum is fixed by fibres and abscissae, so results do not
 /// depend on the number of threads.
@@ -108,7 +84,7 @@ public:
     /// friction has a convex potential and Newton does not cycle between stick and slip.
     void hold_reactions() {
         if constexpr (core::Active<Friction>)
-            for (std::size_t k = 0; k < std::min(elements_.size(), responses_.size()); ++k)
+            if (!follows()) for (std::size_t k = 0; k < std::min(elements_.size(), responses_.size()); ++k)
                 elements_[k].friction.bound = responses_[k].reaction;
     }
 
@@ -154,6 +130,16 @@ public:
             sum += plane * frictions_[core::at(k)].tangent * plane;
         }
         return sum;
+    }
+
+    /// Friction is bounded by the reactions of the moment.
+    bool follows() const noexcept { return core::Active<Friction> && parameters_.friction_bound == FrictionBound::following; }
+    /// What `tangent` leaves out where the bound follows: slope of element k's friction force by its gap [force / length].
+    Vec3 friction_by_gap(Index k) const noexcept {
+        const ContactResponse& response = responses_[core::at(k)];
+        if constexpr (core::Active<Friction>)
+            if (follows() && response.reaction > 0.0) return response.slope / response.reaction * frictions_[core::at(k)].force;
+        return Vec3::Zero();
     }
 
     /// Stiffness of a fibre's sections under their contacts: add(first unknown, weights, stiffness) of rank-one terms.

@@ -87,11 +87,13 @@ inline std::function<bool(const IncrementReport&)> until_separated(double penetr
     };
 }
 
-/// Ends a stage once the last increment moved nothing by more than `displacement` [length] and nothing penetrates by more
-/// than `penetration` [length].
-inline std::function<bool(const IncrementReport&)> until_settled(double displacement, double penetration) {
-    return [displacement, penetration](const IncrementReport& increment) {
-        return increment.contact.shifted == 0 && increment.displacement <= displacement &&
+/// Ends a stage once nothing penetrates by more than `penetration` [length] and forces balance: the last increment moved
+/// nothing by more than `displacement` [length], or damping held no more than `share` of the forces [1]. The first alone may
+/// never come true: what hardly anything holds goes the further the less it is damped.
+inline std::function<bool(const IncrementReport&)> until_settled(double displacement, double penetration, double share = 0.0) {
+    return [displacement, penetration, share](const IncrementReport& increment) {
+        const bool balanced = increment.damping > 0.0 && increment.damping <= share;
+        return increment.contact.shifted == 0 && (balanced || increment.displacement <= displacement) &&
                increment.contact.greatest_penetration <= penetration;
     };
 }

@@ -5,6 +5,7 @@
 #include <fibrant/solver/chain_factors.hpp>
 #include <fibrant/solver/conjugate_gradient.hpp>
 #include <fibrant/solver/rigid_coarse_space.hpp>
+#include <fibrant/solver/stabilised_biconjugate_gradient.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -24,6 +25,7 @@ public:
         int elements_per_station = 2;  ///< along the chains, > 0
         int refine_after = 150;        ///< iterations before the space is refined, >= 0
         int iteration_limit = 2000;    ///< > 0
+        bool unsymmetric = true;       ///< where a system is not symmetric: BiCGStab on all of it, not CG on its symmetric part
         void validate() const {
             core::require_at_least("TwoLevelPcg.fibres_per_cluster", fibres_per_cluster, 1);
             core::require_at_least("TwoLevelPcg.elements_per_station", elements_per_station, 1);
@@ -64,6 +66,9 @@ public:
             work.factors.apply(system.layout(), r, z);
             space->add_correction(system.layout(), r, z);
         };
+        if constexpr (UnsymmetricSystem<System>)
+            if (parameters_.unsymmetric && system.unsymmetric())
+                return stabilised_biconjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.biconjugate, x);
         const auto renewed = [&](int iterations) {
             if (iterations != parameters_.refine_after || space == &work.finer || !refine(system)) return false;
             space = &work.finer;
@@ -86,6 +91,7 @@ private:
         RigidCoarseSpace coarse, finer;
         Fine fine = Fine::none;
         ConjugateGradientVectors vectors;
+        BiconjugateVectors biconjugate;
         SolveStatus status = SolveStatus::not_finite;
     };
     /// Forms the finer space of the present values; false if there is none.

@@ -38,7 +38,8 @@ simulation::ModelParameters<M> model_parameters(const FabricParameters& fabric, 
 template <simulation::Model M>
 simulation::Loading<M> settling(const FabricParameters& fabric, const SettleParameters& settle) {
     const double r = smallest_radius(fabric), allowed = settle.allowed_penetration_over_radius * r;
-    const double soft = settle.softness * allowed;
+    const double soft = settle.softness * allowed, motion = 0.08 * settle.gap_limit_over_radius * r;
+    const double share_on_the_way = 1e-3, share_at_rest = 1e-4;  // of the forces, that damping may hold at a stage's end
     simulation::Loading<M> loading;
     simulation::Stage<M> tension;
     tension.name = "tension";
@@ -61,7 +62,7 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     if constexpr (core::Active<typename M::Friction>)
         handover.friction.emplace(typename M::Friction::Parameters{
             settle.friction_coefficient, std::max(0.02 * r, settle.friction_coefficient * allowed)});
-    handover.until = simulation::until_settled(0.08 * settle.gap_limit_over_radius * r, 5.0 * soft);
+    handover.until = simulation::until_settled(motion, 5.0 * soft, share_on_the_way);
     handover.most_increments = settle.rest_increments;
     simulation::Stage<M> release;
     release.name = "release";
@@ -70,7 +71,7 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     simulation::Stage<M> relaxation;
     relaxation.name = "relaxation";
     relaxation.increments = 1;
-    relaxation.until = simulation::until_settled(0.08 * settle.gap_limit_over_radius * r, 5.0 * soft);
+    relaxation.until = simulation::until_settled(motion, 5.0 * soft, share_on_the_way);
     relaxation.most_increments = settle.rest_increments;
     // On the way contact is softer: contacts that change their status one by one are what Newton's method and the linear
     // solver spend their iterations on. Rest has the stiffness that was asked for.
@@ -78,11 +79,11 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     simulation::Stage<M> stiffening = relaxation;
     stiffening.name = "stiffening";
     stiffening.allowed_penetration.reset();
-    stiffening.until = simulation::until_settled(0.08 * settle.gap_limit_over_radius * r, allowed);
+    stiffening.until = simulation::until_settled(motion, allowed, share_at_rest);
     simulation::Stage<M> rest;
     rest.name = "rest";
     rest.increments = 1;
-    rest.until = simulation::until_settled(settle.rest_motion_over_radius * r, allowed);
+    rest.until = simulation::until_settled(settle.rest_motion_over_radius * r, allowed, share_at_rest);
     rest.most_increments = settle.rest_increments;
     // Paths are only a means: an increment keeps its normals, what it leaves over moves in the next, and the last stage tells
     // when that is all.
@@ -105,8 +106,8 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     handover.damping_decay = relaxation.damping_decay = stiffening.damping_decay = rest.damping_decay = 0.5;
     handover.damping_calm = relaxation.damping_calm = stiffening.damping_calm = rest.damping_calm =
         0.6 * settle.gap_limit_over_radius * r;
-    handover.damping_share = relaxation.damping_share = 1e-3;
-    stiffening.damping_share = rest.damping_share = 1e-4;
+    handover.damping_share = relaxation.damping_share = share_on_the_way;
+    stiffening.damping_share = rest.damping_share = share_at_rest;
     for (simulation::Stage<M>* stage : {&separation, &handover, &release, &relaxation, &stiffening, &rest})
         stage->largest_displacement = 4.0 * settle.gap_limit_over_radius * r;
     loading.stages = {tension, separation, handover, release, relaxation, stiffening, rest};

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Parameters of contact that no law holds, and the figures of the contacts in a state.
+
+#include <fibrant/contact/contact_detection.hpp>
+#include <fibrant/contact/intermediate_geometry.hpp>
+#include <fibrant/contact/normal_direction.hpp>
+
+#include <cstdint>
+
+namespace fibrant::contact {
+
+/// Reaction that bounds friction within Newton: that of the last normal pass, or the one of the moment. The first has a
+/// convex potential and a symmetric tangent; the second an unsymmetric one, of which symmetric solvers leave a part out.
+enum class FrictionBound : std::uint8_t { held, following };
+
+/// Parameters of contact that no law holds.
+struct ContactParameters {
+    FrictionBound friction_bound = FrictionBound::held;
+    Detection detection;
+    ContactSpacing spacing;
+    NormalRule normal;
+    StiffnessAdaptation stiffness;
+    void validate() const {
+        detection.validate();
+        spacing.validate();
+        normal.validate();
+        stiffness.validate();
+    }
+};
+
+/// Figures of the contacts in a state.
+struct ContactFigures {
+    Index elements = 0;              ///< contact elements, candidates included
+    Index active = 0;                ///< with a reaction
+    Index shifted = 0;               ///< still shown a limited gap
+    double greatest_penetration = 0; ///< true, of all elements; 0 if none [length]
+    double work = 0;                 ///< stored by the normal law [force * length]
+    double dissipated = 0;           ///< by sliding since the last accepted state [force * length]
+    double reaction_sum = 0;         ///< sum of R_N [force]
+};
+
+}  // namespace fibrant::contact
