@@ -203,9 +203,8 @@ public:
     Series(const std::filesystem::path& folder, observe::Start start, Index every) : every_{every} {
         if (every > 0) writer_.emplace(folder, start);
     }
-    void accepted(const observe::Snapshot& snapshot) {
-        if (writer_ && snapshot.increment % every_ == 0) writer_->accepted(snapshot);
-    }
+    bool due(Index increment) const noexcept { return writer_ && increment % every_ == 0; }
+    void accepted(const observe::Snapshot& snapshot) { writer_->accepted(snapshot); }
 
 private:
     Index every_;

@@ -47,7 +47,7 @@ public:
             nodes += chain.nodes;
         }
         first_node_.push_back(nodes);
-        rows_.resize(core::at(nodes));
+        rows_.resize(core::at(nodes), Row::Zero());
     }
 
     const scene::DofLayout& layout() const noexcept { return layout_; }
@@ -204,6 +204,11 @@ public:
                 terms.dense(DenseTerm{std::span<const Index>(numbers.data(), core::at(size / 3)), dense});
             }
         }
+        visit_couplings(terms);
+    }
+    /// The points alone: a beam's stiffness couples nothing beyond its chain's band.
+    template <class Terms>
+    void visit_couplings(Terms& terms) const {
         std::array<Index, core::at(2 * vectors)> both{};
         std::array<double, core::at(2 * vectors)> weights{};
         for (const Point& point : points_) {

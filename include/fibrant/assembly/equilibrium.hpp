@@ -134,20 +134,15 @@ public:
             }
         });
         load_.add_stiffness(amplitudes_, state, [&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
-        auto& points = system_.points();
-        points.clear();
-        system_.skews().clear();
-        const auto& elements = contacts_->elements();
-        for (Index k = 0; k < core::count(elements); ++k) {
-            if (!contacts_->carries(k)) continue;
-            const auto& element = elements[core::at(k)];
-            points.push_back({element.first_i, element.first_j, element.fibre_i, element.fibre_j, element.weights_i,
-                              element.weights_j, contacts_->tangent(k)});
-            if (!contacts_->follows()) continue;
-            const Vec3 column = contacts_->friction_by_gap(k);
-            if (!column.isZero(0.0)) system_.skews().push_back({static_cast<std::int32_t>(points.size() - 1), column, element.normal});
-        }
+        gather_points();
         system_.index_points();
+    }
+
+    /// What couples what, for a solver's analysis: the points of a state whose contacts have been evaluated. Bands keep the
+    /// values of an earlier state, and products wait for `linearise`.
+    void outline(const Vector& state) {
+        system_.place(state);
+        gather_points();
     }
 
     double elastic_energy(const Vector& state) const {
@@ -186,13 +181,27 @@ public:
     /// Greatest displacement of a step, directors counted at the surface [length].
     double greatest(const Vector& step) const {
         const std::vector<double>& length = system_.layout().length;
-        double most = 0.0;
-        for (Index v = 0; v < core::count(length); ++v)
-            most = std::max(most, step.segment<3>(3 * v).squaredNorm() * length[core::at(v)] * length[core::at(v)]);
-        return std::sqrt(most);
+        return std::sqrt(core::largest(core::count(length), 0.0, [&](Index v) {
+            return step.segment<3>(3 * v).squaredNorm() * length[core::at(v)] * length[core::at(v)];
+        }));
     }
 
 private:
+    void gather_points() {
+        auto& points = system_.points();
+        points.clear();
+        system_.skews().clear();
+        const auto& elements = contacts_->elements();
+        for (Index k = 0; k < core::count(elements); ++k) {
+            if (!contacts_->carries(k)) continue;
+            const auto& element = elements[core::at(k)];
+            points.push_back({element.first_i, element.first_j, element.fibre_i, element.fibre_j, element.weights_i,
+                              element.weights_j, contacts_->tangent(k)});
+            if (!contacts_->follows()) continue;
+            const Vec3 column = contacts_->friction_by_gap(k);
+            if (!column.isZero(0.0)) system_.skews().push_back({static_cast<std::int32_t>(points.size() - 1), column, element.normal});
+        }
+    }
     typename B::Stresses& stress(Index f, Index e) noexcept { return stresses_[core::at(mesh_->element_index(f, e))]; }
     template <class Body>
     void for_elements(const Body& body) {

@@ -33,6 +33,14 @@ concept LinearSystem = requires(const T system, const Vector& x, Vector& y, Inde
     system.visit(terms);
 };
 
+/// Visits the terms that may couple what lies beyond the bands of chains: a system that knows them has a member of this name,
+/// else they are among all of its terms.
+template <class T, class Visitor>
+void visit_couplings(const T& system, Visitor& visitor) {
+    if constexpr (requires { system.visit_couplings(visitor); }) system.visit_couplings(visitor);
+    else system.visit(visitor);
+}
+
 /// A system that forms its matrix: all of A, both triangles, F included. The pattern depends on the terms' vectors only.
 template <class T>
 concept AssembledSystem = LinearSystem<T> && requires(const T system, SparseMatrix& a) { system.assemble(a); };

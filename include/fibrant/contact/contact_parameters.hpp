@@ -6,6 +6,7 @@
 #include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/normal_direction.hpp>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace fibrant::contact {
@@ -38,6 +39,12 @@ struct ContactFigures {
     double work = 0;                 ///< stored by the normal law [force * length]
     double dissipated = 0;           ///< by sliding since the last accepted state [force * length]
     double reaction_sum = 0;         ///< sum of R_N [force]
+    ContactFigures& operator+=(const ContactFigures& other) noexcept {
+        elements += other.elements, active += other.active, shifted += other.shifted;
+        greatest_penetration = std::max(greatest_penetration, other.greatest_penetration);
+        work += other.work, dissipated += other.dissipated, reaction_sum += other.reaction_sum;
+        return *this;
+    }
 };
 
 }  // namespace fibrant::contact

@@ -185,19 +185,21 @@ public:
     }
 
     ContactFigures figures(const Vector& state) const {
-        ContactFigures sum;
-        sum.elements = core::count(elements_);
-        for (Index k = 0; k < core::count(elements_); ++k) {
-            const Element& element = elements_[core::at(k)];
-            const ContactResponse& response = responses_[core::at(k)];
-            if (response.reaction > 0.0) ++sum.active;
-            if (element.shift.value() > 0.0) ++sum.shifted;
-            sum.greatest_penetration = std::max(sum.greatest_penetration, -element.gap(state));
-            sum.work += normal_.energy(response.gap, stiffness(element));
-            sum.reaction_sum += response.reaction;
-            if constexpr (core::Active<Friction>) sum.dissipated += frictions_[core::at(k)].dissipated;
-        }
-        return sum;
+        return core::ordered_sum(core::count(elements_), ContactFigures{}, [&](Index first, Index last) {
+            ContactFigures sum;
+            sum.elements = last - first;
+            for (Index k = first; k < last; ++k) {
+                const Element& element = elements_[core::at(k)];
+                const ContactResponse& response = responses_[core::at(k)];
+                if (response.reaction > 0.0) ++sum.active;
+                if (element.shift.value() > 0.0) ++sum.shifted;
+                sum.greatest_penetration = std::max(sum.greatest_penetration, -element.gap(state));
+                sum.work += normal_.energy(response.gap, stiffness(element));
+                sum.reaction_sum += response.reaction;
+                if constexpr (core::Active<Friction>) sum.dissipated += frictions_[core::at(k)].dissipated;
+            }
+            return sum;
+        });
     }
 
     /// Penetration that zones are adapted to from now on [length], > 0.

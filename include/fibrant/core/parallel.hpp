@@ -52,12 +52,26 @@ void parallel_for(Index n, const Body& body, [[maybe_unused]] Index grain = 1) {
 template <class Value, class Body>
 Value ordered_sum(Index n, Value zero, const Body& body, Index block = 2048) {
     const Index blocks = (n + block - 1) / block;
-    if (blocks <= 1) return n > 0 ? Value(zero + body(Index{0}, n)) : zero;
+    if (blocks <= 1) return n > 0 ? Value(zero += body(Index{0}, n)) : zero;
     std::vector<Value> part(at(blocks), zero);
     parallel_for(blocks, [&](Index b) { part[at(b)] = body(b * block, std::min(n, (b + 1) * block)); });
     Value total = zero;
     for (const Value& value : part) total += value;
     return total;
+}
+
+/// Largest of body(k) for k in [0, n), not below `least`.
+template <class Body>
+double largest(Index n, double least, const Body& body, Index block = 2048) {
+    struct Most {
+        double value;
+        Most& operator+=(const Most& other) noexcept { return value = std::max(value, other.value), *this; }
+    };
+    return ordered_sum(n, Most{least}, [&](Index first, Index last) {
+        Most most{least};
+        for (Index k = first; k < last; ++k) most.value = std::max(most.value, body(k));
+        return most;
+    }, block).value;
 }
 
 /// Dot product with bits that do not depend on the number of threads.

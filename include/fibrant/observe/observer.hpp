@@ -7,7 +7,8 @@
 namespace fibrant::observe {
 
 /// Is shown the state after each accepted increment, in order. A run that is resumed shows the increments that follow
-/// the last accepted one; an observer that writes files keeps what they hold of the earlier ones.
+/// the last accepted one; an observer that writes files keeps what they hold of the earlier ones. One that has a member
+/// due(number of the increment) is shown only those for which it is true; the others cost no snapshot.
 template <class O>
 concept Observer = requires(O observer, const Snapshot& snapshot) {
     observer.accepted(snapshot);

@@ -57,12 +57,14 @@ struct Loading {
     double smallest_fraction = 1.0 / 256.0;  ///< of an increment, below which the run stops
     double growth = 1.5;                     ///< of the fraction after two increments without a cut
     Index most_rejected = 200;               ///< attempts in a whole run
-    std::string checkpoint{};                ///< file written after each accepted increment; empty: none
+    std::string checkpoint{};                ///< file written after accepted increments; empty: none
+    double checkpoint_seconds = 0.0;         ///< at least between two of them, but for the end of a stage or of the run, >= 0
     bool resume = false;                     ///< start from that file, if it exists
 
     void validate() const {
         core::require_at_least("Loading.increments", increments, 1);
         core::require_between("Loading.smallest_fraction", smallest_fraction, 1e-9, 1.0);
+        core::require_not_negative("Loading.checkpoint_seconds", checkpoint_seconds);
         core::require(growth > 1.0, "Loading.growth", growth, "> 1");
         for (const Stage<M>& stage : stages) {
             core::require_at_least("Stage.increments", stage.increments, 1);

@@ -64,19 +64,26 @@ public:
         position_.from = amplitudes_;
         if (loading.resume && !loading.checkpoint.empty() && std::filesystem::exists(loading.checkpoint))
             read_checkpoint(loading.checkpoint, stages, report);
+        auto saved = start;
+        bool unsaved = false;
         for (Index k = 0; k < position_.stage; ++k) take_laws(stages[core::at(k)]);  // they stay in force
         for (; position_.stage < core::count(stages); next_stage(stages)) {
             const Stage<M>& stage = stages[core::at(position_.stage)];
             take_laws(stage);
             while (!position_.stage_over) {
                 if (!advance(loading, stages, stage, report)) {
+                    if (unsaved) write_checkpoint(loading.checkpoint, stages, report);
                     finish(report, start);
                     return report;
                 }
                 // Observers first: an increment that a checkpoint holds has been shown, and one shown twice is told by its number.
                 clock_.time(core::Part::output, [&] {
                     (show(observers, report.increments.back()), ...);
-                    if (!loading.checkpoint.empty()) write_checkpoint(loading.checkpoint, stages, report);
+                    const auto now = std::chrono::steady_clock::now();
+                    unsaved = !loading.checkpoint.empty();
+                    if (!unsaved || (!position_.stage_over && std::chrono::duration<double>(now - saved).count() < loading.checkpoint_seconds)) return;
+                    write_checkpoint(loading.checkpoint, stages, report);
+                    saved = now, unsaved = false;
                 });
             }
         }
@@ -281,6 +288,8 @@ private:
     template <class Observer>
     void show(Observer& observer, const IncrementReport& increment) {
         if constexpr (requires { observer.reported(increment); }) observer.reported(increment);
+        if constexpr (requires { observer.due(increment.number); })
+            if (!observer.due(increment.number)) return;
         if constexpr (observe::Observer<Observer>) {
             observe::Snapshot shot = snapshot();
             shot.increment = increment.number, shot.stage = increment.stage, shot.progress = increment.progress;

@@ -94,7 +94,7 @@ std::vector<Index> join_neighbours(const System& system) {
         void point(const assembly::PointTerm& term) { add(term.vectors); }
         void dense(const assembly::DenseTerm& term) { add(term.vectors); }
     } pairs{layout, assembly::VectorPlaces(layout), {}};
-    system.visit(pairs);
+    assembly::visit_couplings(system, pairs);
     std::sort(pairs.list.begin(), pairs.list.end());
     std::vector<Index> parent(layout.chains.size());
     std::iota(parent.begin(), parent.end(), Index{0});

@@ -63,7 +63,7 @@ public:
             clock_->time(core::Part::preparation, [&] {
                 contacts_->evaluate(state);
                 contacts_->hold_reactions();
-                equilibrium_->linearise(state, false, 0.0);
+                equilibrium_->outline(state);
                 linear_->analyse(equilibrium_->system());
             });
             const Vector before_pass = state;

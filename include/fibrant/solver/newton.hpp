@@ -200,11 +200,10 @@ private:
     /// Factor that keeps the relative motion of every contact within its bound: beyond it fibres could change sides.
     double bounded(const Vector& step) const {
         const auto& elements = contacts_->elements();
-        double most = 0.0;
-        for (const auto& element : elements) {
-            if (contacts_->forced(element)) continue;  // its side is prescribed
-            most = std::max(most, std::abs(element.normal.dot(element.offset(step))));
-        }
+        const double most = core::largest(core::count(elements), 0.0, [&](Index k) {
+            const auto& element = elements[core::at(k)];
+            return contacts_->forced(element) ? 0.0 : std::abs(element.normal.dot(element.offset(step)));  // a forced side is prescribed
+        });
         const double bound = parameters_.largest_approach * radius_;
         return most > bound ? bound / most : 1.0;
     }

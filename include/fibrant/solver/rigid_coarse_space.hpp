@@ -241,6 +241,7 @@ private:
             const Body& body;
             std::vector<Part> parts;
             std::size_t used;
+            std::vector<Index> last{};
 
             void take(Index v, double weight, Index window) {
                 const Place& place = space.places_[core::at(v)];
@@ -291,6 +292,10 @@ private:
                 }
             }
             void point(const assembly::PointTerm& term) {
+                if constexpr (!Values) {  // the contacts of two elements couple the same stations
+                    if (std::equal(last.begin(), last.end(), term.vectors.begin(), term.vectors.end())) return;
+                    last.assign(term.vectors.begin(), term.vectors.end());
+                }
                 used = 0;
                 for (std::size_t k = 0; k < term.vectors.size(); ++k) {
                     const Place& place = space.places_[core::at(term.vectors[k])];
@@ -329,7 +334,7 @@ private:
         };
         const assembly::HeldProjector held(system.layout());
         Visitor visitor{*this, system.layout(), held, body, {}, 0};
-        system.visit(visitor);
+        assembly::visit_couplings(system, visitor);
     }
 
     template <class System>
