@@ -101,7 +101,8 @@ private:
         return false;
     }
 
-    static constexpr Index most_moves = 6;  ///< further than a search reaches; fibres that go on are lost
+    static constexpr Index most_moves = 2;  ///< further than a search reaches: what hardly anything holds goes on for ever, and more damping or
+                                           ///< a smaller increment costs less than to follow it
 
     /// Normal passes on one set of contact elements. @returns false if the search has to be repeated first.
     bool normal_passes(Newton<Equilibrium, Contacts, Linear>& newton, Vector& state, const Vector& accepted,
