@@ -31,7 +31,7 @@ public:
           contacts_{assembly, mesh_, parameters.contact, typename M::Proximity(parameters.proximity),
                     typename M::Normal(parameters.normal), typename M::Friction(parameters.friction)},
           equilibrium_{assembly, mesh_, beam_, contacts_, channels_}, linear_{parameters.solver},
-          state_{mesh_.rest_state()}, amplitudes_(channels_.names().size(), 0.0) {
+          state_{mesh_.start_state()}, amplitudes_(channels_.names().size(), 0.0) {
         if (mesh_.fibre_count() == 0) core::refuse("assembly.fibres", "none", "at least one fibre");
         if constexpr (HasTools<M>) {
             for (const scene::Tool& tool : assembly.tools()) tool_channels_.push_back(channels_.find(tool.channel));
@@ -310,7 +310,7 @@ private:
     /// What a checkpoint must agree with: fibres and channels, and stages but for what ends or relaxes them.
     std::uint64_t scene_identity() const {
         CheckpointWriter scene;
-        scene.put(mesh_.rest_state());
+        scene.put(mesh_.rest_state()), scene.put(mesh_.start_state());
         for (const beam::MeshFibre& fibre : mesh_.fibres()) {
             scene.put(fibre.first_vector), scene.put(fibre.group);
             scene.put(fibre.section.semi_axis_1), scene.put(fibre.section.semi_axis_2), scene.put(fibre.section.inertia_factor);
@@ -331,7 +331,7 @@ private:
 
     void write_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, const Report& report) const {
         CheckpointWriter file;
-        file.put(std::string("fibrant checkpoint 4"));
+        file.put(std::string("fibrant checkpoint 5"));
         file.put(scene_identity()), file.put(loading_identity(stages));
         file.put(state_);
         file.put(last_external_), file.put(last_damping_);
@@ -360,7 +360,7 @@ private:
 
     void read_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, Report& report) {
         CheckpointReader file(path);
-        file.expect(file.get_text() == "fibrant checkpoint 4", "the format");
+        file.expect(file.get_text() == "fibrant checkpoint 5", "the format");
         file.expect(file.get<std::uint64_t>() == scene_identity(), "the set of fibres and channels");
         file.expect(file.get<std::uint64_t>() == loading_identity(stages), "the loading");
         Vector state = file.get_vector();
