@@ -95,6 +95,9 @@
 #include <fibrant/simulation/snapshot_of.hpp>
 #include <fibrant/simulation/support_wrench.hpp>
 
+#include <fibrant/compositions/knot/overhand_knot.hpp>
+
+#include <fibrant/compositions/strand/bending.hpp>
 #include <fibrant/compositions/strand/strand.hpp>
 #include <fibrant/compositions/strand/strand_parameters.hpp>
 #include <fibrant/compositions/two_ply/two_ply.hpp>
