@@ -92,7 +92,7 @@ TEST_CASE("the pull of a loose overhand knot goes to that of the theory as the r
                     core::count(report.increments), report.wall_seconds);
         CHECK(report.contact.active > 10);  // or it has come undone
         CHECK(report.contact.greatest_penetration < 0.02 * r);
-        CHECK(state.imbalance < 0.02);  // exact but for the stretch, and for curvature by differences over two elements
+        CHECK(state.imbalance < 5e-3);  // exact, at whatever r / R, but for the rest of the damping and curvature by differences
         CHECK(std::abs(error) < 1.4 * root);
         if (last_root > 0.0) {
             const double limit = error - (last_error - error) / (last_root - root) * root;

@@ -121,7 +121,7 @@ struct KnotState {
     double force = 0.0;          ///< in the tails [force]
     double shortening = 0.0;     ///< length that the knot takes up, 2 pi times the radius of a loose loop [length]
     double contact_force = 0.0;  ///< sum over all contacts [force]
-    /// How far the middle half of the loop is from (force along the rod) + E I curvature^2 / 2 = force in the tails, which holds
+    /// How far the upper part of the loop, two fifths of it, is from (force along the rod) + E I curvature^2 / 2 = force in the tails, which holds
     /// exactly for an inextensible rod without friction, over that force [1].
     double imbalance = 0.0;
 };
@@ -136,7 +136,7 @@ KnotState measure(const simulation::Simulator<M>& simulator, const KnotParameter
     for (const contact::ContactResponse& response : simulator.contacts().responses()) state.contact_force += response.reaction;
     // The top of the loop is half way along the rod.
     const double h = mesh.fibre(0).element_length, middle = 0.5 * static_cast<double>(parameters.elements);
-    const double reach = 0.25 * state.shortening / h;
+    const double reach = 0.2 * state.shortening / h;
     const double area = mesh.fibre(0).section.area(), E = parameters.material.young_modulus, bending = 0.25 * E * area * parameters.radius * parameters.radius;
     for (Index e = static_cast<Index>(std::ceil(middle - reach)); static_cast<double>(e) < middle + reach - 1.0; ++e) {
         double along = 0.0;
@@ -147,6 +147,9 @@ KnotState measure(const simulation::Simulator<M>& simulator, const KnotParameter
         // Curvature by the tangents at the middles of the two neighbours: those of one element have kinks at its ends.
         const Vec3 before = mesh.derivative(now, 0, static_cast<double>(e) - 0.5), after = mesh.derivative(now, 0, static_cast<double>(e) + 1.5);
         const double curvature = std::atan2(before.cross(after).norm(), before.dot(after)) / (2.0 * h);
+        // Bending strains are a . g', so bending pulls along the rod with E I curvature^2 beside what the stretch does; it also
+        // presses the section, A S_11 = -E I curvature^2, which takes nu times that off again.
+        along += (1.0 - parameters.material.poisson_ratio) * bending * curvature * curvature;
         state.imbalance = std::max(state.imbalance, std::abs((along + 0.5 * bending * curvature * curvature) / state.force - 1.0));
     }
     return state;

@@ -18,7 +18,7 @@ inline Vec3 far_centre(double length, double angle) {
     return length / angle * Vec3(1.0 - std::cos(angle), 0.0, std::sin(angle));
 }
 
-/// Wires are held in the planes of both plates, and about themselves; along the strand all of them at the near plate, and the
+/// Wires are held in the planes of both plates, and their sections turn with them; along the strand all of them at the near plate, and the
 /// core alone at the far one: the others may slide through it. The far plate turns about y, and its centre goes where the end of
 /// an arc does whose length is that of the strand.
 inline scene::Assembly bent_strand(const StrandParameters& parameters) {
@@ -37,11 +37,11 @@ inline scene::Assembly bent_strand(const StrandParameters& parameters) {
             }
             assembly.hold(hold);
             hold.path = {};
-            // A director has no place: it only turns. Both off-axis components, as Assembly::hold_axial_rotation does.
+            // A director has no place: it only turns. Its own stretch is free, as in Assembly::clamp.
             hold.axes = scene::Axes::section;
-            hold.vector = scene::NodeVector::director_1, hold.directions = Vec3(0, 1, 0).asDiagonal();
+            hold.vector = scene::NodeVector::director_1, hold.directions = Vec3(0, 1, 1).asDiagonal();
             assembly.hold(hold);
-            hold.vector = scene::NodeVector::director_2, hold.directions = Vec3(1, 0, 0).asDiagonal();
+            hold.vector = scene::NodeVector::director_2, hold.directions = Vec3(1, 0, 1).asDiagonal();
             assembly.hold(hold);
         }
     return assembly;
