@@ -3,7 +3,7 @@
 /// @file Runs a loading on a scene with a model: steps that are cut, restored and grown again.
 
 #include <fibrant/observe/observer.hpp>
-#include <fibrant/simulation/checkpoint.hpp>
+#include <fibrant/simulation/increment_file.hpp>
 #include <fibrant/simulation/loading.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 
@@ -349,11 +349,7 @@ private:
         file.put(report.rejected_increments), file.put(report.counts), file.put(clock_.seconds());
         file.put(core::count(report.increments));
         for (const IncrementReport& increment : report.increments) {
-            IncrementReport plain = increment;
-            file.put(plain.stage);
-            file.put(plain.number), file.put(plain.stage_progress), file.put(plain.progress), file.put(plain.fraction);
-            file.put(plain.cuts), file.put(plain.counts), file.put(plain.residual), file.put(plain.displacement), file.put(plain.damping);
-            file.put(plain.contact), file.put(plain.energy), file.put(plain.seconds);
+            put_increment(file, increment);
         }
         file.write(path);
     }
@@ -386,14 +382,7 @@ private:
         clock_.seconds() = file.get<std::array<double, core::part_count>>();
         report.increments.resize(core::at(file.get<Index>()));
         for (IncrementReport& increment : report.increments) {
-            increment.stage = file.get_text();
-            increment.number = file.get<Index>(), increment.stage_progress = file.get<double>();
-            increment.progress = file.get<double>(), increment.fraction = file.get<double>();
-            increment.cuts = file.get<Index>(), increment.counts = file.get<solver::IterationCounts>();
-            increment.residual = file.get<double>(), increment.displacement = file.get<double>();
-            increment.damping = file.get<double>();
-            increment.contact = file.get<contact::ContactFigures>(), increment.energy = file.get<EnergyBalance>();
-            increment.seconds = file.get<double>();
+            get_increment(file, increment);
             report.wall_seconds += increment.seconds;
         }
     }
