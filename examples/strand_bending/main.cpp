@@ -8,7 +8,7 @@
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/two_level_pcg.hpp>
+#include <fibrant/solver/float_block_cholesky.hpp>
 
 using namespace fibrant;
 namespace strand = compositions::strand;
@@ -18,7 +18,7 @@ struct Strand {
     using Proximity = proximity::GridSearch;
     using Normal = law::RegularisedPenalty;
     using Friction = law::RegularisedCoulomb;
-    using Solver = solver::TwoLevelPcg;
+    using Solver = solver::DoubleBlockCholesky;
 };
 
 bool solve(example::TomlReader& file, const example::Output& output) {

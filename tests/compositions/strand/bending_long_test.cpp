@@ -5,7 +5,7 @@
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/two_level_pcg.hpp>
+#include <fibrant/solver/float_block_cholesky.hpp>
 
 #include <doctest/doctest.h>
 
@@ -22,7 +22,7 @@ struct Rough {
     using Proximity = proximity::GridSearch;
     using Normal = law::RegularisedPenalty;
     using Friction = law::RegularisedCoulomb;
-    using Solver = solver::TwoLevelPcg;
+    using Solver = solver::DoubleBlockCholesky;
 };
 
 struct Bent {
