@@ -2,7 +2,7 @@
 #pragma once
 /// @file The scene of a weave as a TOML file: what it may say, what it must say, and what is taken otherwise.
 
-#include "toml_reader.hpp"
+#include "../support/toml_reader.hpp"
 
 #include <fibrant/compositions/weave/fabric_parameters.hpp>
 #include <fibrant/scene/cross_section.hpp>
@@ -14,6 +14,9 @@
 #include <vector>
 
 namespace weave {
+
+using example::TomlReader;
+using fibrant::Index;
 
 namespace cloth = fibrant::compositions::weave;
 

@@ -38,6 +38,7 @@
 #include <fibrant/law/normal_law.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/law/smooth_coulomb.hpp>
 
 #include <fibrant/contact/contact_detection.hpp>
 #include <fibrant/contact/contact_element.hpp>
@@ -46,6 +47,7 @@
 #include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/normal_direction.hpp>
+#include <fibrant/contact/pair_rules.hpp>
 #include <fibrant/contact/side_index.hpp>
 #include <fibrant/contact/support.hpp>
 #include <fibrant/contact/tool_contacts.hpp>
@@ -86,11 +88,20 @@
 #include <fibrant/observe/vtk_writer.hpp>
 
 #include <fibrant/simulation/checkpoint.hpp>
+#include <fibrant/simulation/increment_file.hpp>
 #include <fibrant/simulation/loading.hpp>
 #include <fibrant/simulation/model.hpp>
 #include <fibrant/simulation/report.hpp>
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
+#include <fibrant/simulation/support_wrench.hpp>
+
+#include <fibrant/compositions/knot/overhand_knot.hpp>
+
+#include <fibrant/compositions/strand/bending.hpp>
+#include <fibrant/compositions/strand/strand.hpp>
+#include <fibrant/compositions/strand/strand_parameters.hpp>
+#include <fibrant/compositions/two_ply/two_ply.hpp>
 
 #include <fibrant/compositions/weave/audit.hpp>
 #include <fibrant/compositions/weave/fabric.hpp>

@@ -16,6 +16,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -233,6 +234,52 @@ TEST_CASE("friction answers a slide at a standing reaction by its own slope, stu
         CHECK(std::abs(sum.x() - 0.3 * reaction * std::min(slide, 1.0)) < 1e-12 * reaction);
         CHECK((contacts.figures(state).dissipated > 0.0) == (slide > 1.0));
     }
+}
+
+TEST_CASE("a rule for a pair of groups changes the friction and the penetration of that pair alone") {
+    // One fibre on two others, in the groups of a hierarchy: the rule is given for the outer group of one of them.
+    for (const bool ruled : {false, true}) {
+        scene::Assembly assembly;
+        const Index upper = assembly.add_group("upper"), outer = assembly.add_group("outer"), inner = assembly.add_group("inner", outer);
+        const Index other = assembly.add_group("other");
+        auto fibres = std::array{straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8), straight_fibre({-0.2, -0.4, 0}, {-0.2, 0.4, 0}, r, 6),
+                                 straight_fibre({0.2, -0.4, 0}, {0.2, 0.4, 0}, r, 6)};
+        fibres[0].group = upper, fibres[1].group = inner, fibres[2].group = other;
+        for (const scene::FibreSpecification& fibre : fibres) assembly.add(fibre);
+        if (ruled) {
+            scene::PairRule rule;
+            rule.first = outer, rule.second = upper, rule.friction_factor = 0.5, rule.penetration_factor = 4.0;
+            assembly.add(rule);
+        }
+        const Mesh mesh(assembly, Beam{});
+        auto contacts = contacts_of(assembly, mesh, coulomb);
+        const Vector rest = mesh.rest_state();
+        contacts.detect(rest, rest, 0.5 * r, false);
+        Vector slid = rest;
+        for (Index node = 0; node < mesh.node_count(0); ++node) slid[3 * mesh.node_vector(0, node)] += 0.1 * r;
+        contacts.evaluate(slid);
+        REQUIRE(contacts.elements().size() == 2);
+        const auto ratio = [&](Index k) { return contacts.frictions()[core::at(k)].force.norm() / contacts.responses()[core::at(k)].reaction; };
+        CHECK(ratio(0) == doctest::Approx(ruled ? 0.15 : 0.3));
+        CHECK(ratio(1) == doctest::Approx(0.3));
+        const double before = contacts.zones()[0].stiffness;
+        CHECK(before == contacts.zones()[1].stiffness);
+        // 0.1 r deep where 0.05 r is allowed: the stiffness rises, and for 0.2 r it falls, as the adaptation says.
+        contacts.accept(slid);
+        const contact::StiffnessAdaptation all = contact_parameters().stiffness;
+        contact::StiffnessAdaptation own = all;
+        own.allowed_penetration *= ruled ? 4.0 : 1.0;
+        for (const Index k : {0, 1}) {
+            const double depth = -contacts.responses()[core::at(k)].gap;
+            CHECK(contacts.zones()[core::at(k)].stiffness ==
+                  doctest::Approx((k == 0 ? own : all).adapted(before, contacts.zones()[core::at(k)].reference, depth, 0.005 * r)));
+        }
+        CHECK((contacts.zones()[0].stiffness == contacts.zones()[1].stiffness) == !ruled);
+    }
+    scene::Assembly assembly;
+    assembly.add_group("only");
+    CHECK_THROWS_WITH(assembly.add(scene::PairRule{0, 1}), "PairRule.group = 1, but it must be a group of this assembly");
+    CHECK_THROWS_WITH(assembly.add(scene::PairRule{0, 0, -0.5}), "PairRule.friction_factor = -0.5, but it must be finite and >= 0");
 }
 
 namespace {

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <numbers>
 #include <random>
 
@@ -196,14 +197,15 @@ TEST_CASE("a fibre pressed between two plates carries what the theory of its sec
 }
 
 TEST_CASE("a fibre pressed on a rough plate is dragged along with it, and slips at the friction of its pressure") {
-    const double mu = 0.3;
+    const double mu = 0.15, law = 0.3;  // by the tool's own factor
     scene::Assembly assembly;
     assembly.add(straight_fibre({0, 0, r}, {0.5, 0, r}, r, 6));
     scene::Tool table = plane(Vec3::Zero(), Vec3::UnitZ());
     table.channel = "table", table.displacement = {0, 0.02 * r, 0};  // a reversible displacement
+    table.friction_factor = mu / law;
     assembly.add(table);
     for (const double end : {0.0, 1.0}) assembly.clamp({0, end}, Vec3(0, 0, -0.01 * r), Vec3::Zero(), Vec3::Zero(), "press");
-    Simulator simulator(assembly, parameters(mu));
+    Simulator simulator(assembly, parameters(law));
     simulation::Report report = simulator.run(test::stage<Pressing>({{"press", 1.0}}, 4));
     REQUIRE_MESSAGE(report.converged, report.reason);
     const auto felt = [&] { return simulator.contacts().tools().reaction(0).force; };
@@ -266,6 +268,37 @@ TEST_CASE("a stuck fibre that turns with its tool feels nothing of it") {
     CHECK((after.force - turn * before.force).norm() < 1e-5 * before.force.norm());
     CHECK((after.moment - turn * before.moment).norm() < 1e-5 * before.moment.norm());
     CHECK(report.energy.dissipated == 0.0);
+}
+
+TEST_CASE("a run with tools that is interrupted goes on to the same bits") {
+    scene::Assembly assembly;
+    assembly.add(straight_fibre({0, 0, r}, {0.5, 0, r}, r, 6));
+    scene::Tool table = plane(Vec3::Zero(), Vec3::UnitZ());
+    table.channel = "table", table.displacement = {0, 0.1 * r, 0};
+    assembly.add(table);
+    for (const double end : {0.0, 1.0}) assembly.clamp({0, end}, Vec3(0, 0, -0.01 * r), Vec3::Zero(), Vec3::Zero(), "press");
+    simulation::Loading<Pressing> loading = test::stage<Pressing>({{"press", 1.0}, {"table", 1.0}}, 4);
+    auto all = parameters(0.3);
+    all.contact.stiffness.largest_change = 3.0;
+    Simulator whole(assembly, all);
+    const simulation::Report report = whole.run(loading);
+    REQUIRE(report.converged);
+    struct Stop {
+        void reported(const simulation::IncrementReport& increment) const {
+            if (increment.number == 3) throw 3;
+        }
+    } stop;
+    loading.checkpoint = (std::filesystem::temp_directory_path() / "fibrant_tool_contacts_test").string();
+    Simulator first(assembly, all), second(assembly, all);
+    CHECK_THROWS_AS(first.run(loading, stop), int);
+    loading.resume = true;
+    const simulation::Report resumed = second.run(loading);
+    std::filesystem::remove(loading.checkpoint);
+    REQUIRE(resumed.converged);
+    CHECK(second.state() == whole.state());
+    CHECK(resumed.energy.external == report.energy.external);
+    CHECK(resumed.energy.dissipated == report.energy.dissipated);
+    CHECK(second.contacts().tools().reaction(0).force == whole.contacts().tools().reaction(0).force);
 }
 
 TEST_CASE("a tool that is not one, and a scene whose model knows no tools, are refused by name") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/law/smooth_coulomb.hpp>
 
 #include <refusal.hpp>
 
@@ -238,4 +239,42 @@ TEST_CASE("parameters that cannot hold are refused with field, value and bound")
     CHECK(build(mu, 0.0) == "RegularisedCoulomb.reversible_displacement = 0, but it must be finite and > 0");
     CHECK(build(mu, core::unset) == "RegularisedCoulomb.reversible_displacement = nan, but it must be finite and > 0");
     CHECK(build(0.0, range).empty());
+}
+
+TEST_CASE("smooth friction owes what regularised friction owes, and its stiffness has no jump") {
+    const law::SmoothCoulomb smooth{{.friction_coefficient = mu, .reversible_displacement = range}};
+    using Memory = law::SmoothCoulomb::History;
+    const auto stored = [](double u) { return bound * (u * u / range - u * u * u / (3.0 * range * range)); };
+    std::mt19937 random(20261122);
+    std::normal_distribution<double> normal;
+    for (int n = 0; n < 400; ++n) {
+        const auto vector = [&](double size) { return Vec3(size * normal(random), size * normal(random), size * normal(random)); };
+        Memory history{.reversible = vector(0.5 * range)};
+        if (history.reversible.norm() > range) history.reversible *= range / history.reversible.norm();
+        const Vec3 slip = vector(n % 2 == 0 ? 0.3 * range : 3.0 * range);
+        const auto answer = smooth.response(slip, reaction, history);
+        CAPTURE(n);
+        CHECK(answer.force.norm() <= bound * (1.0 + 1e-14));
+        CHECK(answer.history.reversible.norm() <= range * (1.0 + 1e-14));
+        CHECK(answer.dissipated >= 0.0);
+        CHECK((answer.tangent - answer.tangent.transpose()).norm() <= 1e-14 * answer.tangent.norm());
+        const double step = 1e-6 * range;
+        Mat3 slope;
+        for (int k = 0; k < 3; ++k)
+            slope.col(k) = (smooth.response(slip + step * Vec3::Unit(k), reaction, history).force -
+                            smooth.response(slip - step * Vec3::Unit(k), reaction, history).force) / (2.0 * step);
+        // Everywhere, where sliding begins too: there the second derivative jumps by 2 bound / range^2.
+        CHECK((answer.tangent - slope).norm() <= 4e-6 * bound / range);
+        const Vec3 x = vector(1.0);
+        CHECK(x.dot(answer.tangent * x) >= -1e-14 * bound / range * x.squaredNorm());
+        CHECK(answer.dissipated + stored(answer.history.reversible.norm()) <=
+              answer.force.dot(slip) + stored(history.reversible.norm()) + 1e-12 * bound * range);
+    }
+    CHECK(smooth.response(Vec3(range, 0, 0), reaction, {}).force.x() == doctest::Approx(bound));
+    CHECK(smooth.response(Vec3(1e-6 * range, 0, 0), reaction, {}).force.x() == doctest::Approx(2e-6 * bound));
+    CHECK(smooth.response(Vec3(5.0 * range, 0, 0), reaction, {}).dissipated == doctest::Approx(4.0 * range * bound));
+    CHECK(smooth.response(Vec3(0.9 * range, 0, 0), reaction, {}).dissipated == 0.0);
+    CHECK(smooth.response(Vec3(range, 0, 0), 0.0, {}).force == Vec3::Zero());
+    CHECK(test::refusal([] { law::SmoothCoulomb{{.friction_coefficient = -1.0, .reversible_displacement = 1.0}}; }) ==
+          "SmoothCoulomb.friction_coefficient = -1, but it must be finite and >= 0");
 }

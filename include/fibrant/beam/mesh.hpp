@@ -66,8 +66,9 @@ public:
             fibres_.push_back({first, fibre.elements, length / static_cast<double>(fibre.elements), fibre.section,
                                fibre.material, fibre.group});
             layout_.chains.push_back({first, nodes, B::vectors_per_node, B::reach, fibre.group});
+            const std::vector<scene::NodeFrame> starts = fibre.start ? scene::reference_frames(fibre.start, nodes, fibre.director) : frames;
+            frames_.insert(frames_.end(), starts.begin(), starts.end());
             for (const scene::NodeFrame& frame : frames) {
-                frames_.push_back(frame);
                 const std::array<Vec3, static_cast<std::size_t>(B::vectors_per_node)> vectors =
                     nodal_vectors<B>(frame);
                 for (std::size_t v = 0; v < vectors.size(); ++v) {
@@ -80,6 +81,12 @@ public:
         }
         rest_state_.resize(3 * first);
         for (Index v = 0; v < first; ++v) rest_state_.segment<3>(3 * v) = layout_.value[core::at(v)];
+        start_state_.resize(3 * first);
+        for (Index node = 0; node < core::count(frames_); ++node) {
+            const auto vectors = nodal_vectors<B>(frames_[core::at(node)]);
+            for (Index v = 0; v < B::vectors_per_node; ++v)
+                start_state_.segment<3>(3 * (node * B::vectors_per_node + v)) = vectors[core::at(v)];
+        }
         first_element_.assign(1, 0);
         for (const MeshFibre& fibre : fibres_) first_element_.push_back(first_element_.back() + fibre.elements);
         rest_.resize(core::at(first_element_.back()));
@@ -106,7 +113,9 @@ public:
     Index node_vector(Index f, Index node, Index vector = 0) const noexcept {
         return fibre(f).first_vector + node * B::vectors_per_node + vector;
     }
-    /// Rest frame of a node.
+    /// Where a run begins: at rest, but for fibres that say otherwise.
+    const Vector& start_state() const noexcept { return start_state_; }
+    /// Frame of a node where a run begins.
     const scene::NodeFrame& frame(Index f, Index node) const noexcept {
         return frames_[core::at(fibre(f).first_vector / B::vectors_per_node + node)];
     }
@@ -154,7 +163,7 @@ private:
     std::vector<typename B::Rest> rest_;
     std::vector<scene::NodeFrame> frames_;
     scene::DofLayout layout_;
-    Vector rest_state_;
+    Vector rest_state_, start_state_;
 };
 
 }  // namespace fibrant::beam

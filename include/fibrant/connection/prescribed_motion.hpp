@@ -30,7 +30,7 @@ public:
             const Index node = station_node(mesh, hold.at);
             Item item{mesh.node_vector(hold.at.fibre, node, static_cast<Index>(hold.vector)), channels.find(hold.channel),
                       mesh.frame(hold.at.fibre, node).basis(), Vec3::Zero(), hold};
-            item.rest = mesh.rest_state().template segment<3>(3 * item.vector);
+            item.rest = mesh.start_state().template segment<3>(3 * item.vector);
             items_.push_back(item);
         }
         std::stable_sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) { return a.vector < b.vector; });

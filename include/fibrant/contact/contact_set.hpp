@@ -7,6 +7,7 @@
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>
+#include <fibrant/contact/pair_rules.hpp>
 #include <fibrant/contact/side_index.hpp>
 #include <fibrant/contact/support.hpp>
 
@@ -27,7 +28,7 @@ public:
 
     ContactSet(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const ContactParameters& parameters,
                Search search, Normal normal, Friction friction)
-        : mesh_{&mesh}, parameters_{core::validated(parameters)}, orders_{assembly, mesh}, search_{std::move(search)},
+        : mesh_{&mesh}, parameters_{core::validated(parameters)}, orders_{assembly, mesh}, rules_{assembly}, search_{std::move(search)},
           normal_{normal}, friction_{friction} {}
 
     Normal& normal_law() noexcept { return normal_; }
@@ -103,7 +104,8 @@ public:
             if constexpr (core::Active<Friction>) {
                 slip -= slip.dot(element.normal) * element.normal;
                 const double bound = element.friction.bound < 0.0 ? response.reaction : element.friction.bound;
-                frictions_[core::at(k)] = friction_.response(slip, bound, element.friction.history);
+                const double factor = zones_[core::at(element.zone)].friction_factor;
+                frictions_[core::at(k)] = friction_.response(slip, factor * bound, element.friction.history);
             }
         });
     }
@@ -214,7 +216,7 @@ public:
             double penetration = 0.0;
             for (Index k = zone.first; k < zone.last; ++k)
                 penetration = std::max(penetration, adapting_penetration(elements_[core::at(k)], responses_[core::at(k)]));
-            zone.stiffness = adapted_stiffness(parameters_.stiffness, normal_, zone.stiffness, zone.reference, penetration);
+            zone.stiffness = adapted_stiffness(parameters_.stiffness, normal_, zone.stiffness, zone.reference, penetration, zone.penetration_factor);
         }
         accepted_zones_ = zones_;
     }
@@ -236,6 +238,7 @@ public:
 
 private:
     void inherit(Zone& zone, const Vector& state) const {
+        rules_.apply(zone);
         const Zone* before = predecessor(zones_, zone.span);
         zone.stiffness = before ? before->stiffness : parameters_.stiffness.initial_fraction * zone.reference;
         if (zone.forced) return;
@@ -402,6 +405,7 @@ private:
     const beam::Mesh<B>* mesh_;
     ContactParameters parameters_;
     ForcedOrders orders_;
+    PairRules rules_;
     Search search_;
     Normal normal_;
     [[no_unique_address]] Friction friction_;

@@ -3,6 +3,7 @@
 /// @file Contact elements between fibres and rigid tools, with the laws and the histories of contact between fibres.
 
 #include <fibrant/contact/contact_tangent.hpp>
+#include <fibrant/contact/normal_direction.hpp>
 #include <fibrant/contact/support.hpp>
 #include <fibrant/contact/tool_element.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
@@ -101,21 +102,21 @@ public:
 
     /// Middle loop: normals and particles at the same stations. @returns the largest turn of a normal that carries force [radian]
     double refresh(const Vector& state, const Vector& accepted, const Normal& normal) {
-        std::vector<double> turned(elements_.size(), 0.0);
+        std::vector<double> angle(elements_.size(), 0.0);
         core::parallel_for(core::count(elements_), [&](Index k) {
             Element& element = elements_[core::at(k)];
             const Vec3 before = element.normal;
             place_particle(element, state, accepted, normal);
             if constexpr (core::Active<Friction>) {
                 Vec3& reversible = element.friction.history.reversible;
-                reversible = Eigen::Quaterniond::FromTwoVectors(before, element.normal) * reversible;
+                reversible = turned(reversible, before, element.normal);
                 reversible -= reversible.dot(element.normal) * element.normal;
             }
             if (k < core::count(responses_) && responses_[core::at(k)].reaction > 0.0)
-                turned[core::at(k)] = std::atan2(before.cross(element.normal).norm(), before.dot(element.normal));
+                angle[core::at(k)] = std::atan2(before.cross(element.normal).norm(), before.dot(element.normal));
         });
         hold_reactions();
-        return turned.empty() ? 0.0 : *std::max_element(turned.begin(), turned.end());
+        return angle.empty() ? 0.0 : *std::max_element(angle.begin(), angle.end());
     }
     /// The reactions of the last evaluation bound friction from now on.
     void hold_reactions() {

@@ -20,6 +20,8 @@ struct Zone {
     double reference = 0.0;    ///< elastic stiffness of a section over an element's length, k_el [force / length]
     bool crossing = false;     ///< carries one contact element
     bool forced = false;       ///< its normal is prescribed by a forced order
+    double friction_factor = 1.0;     ///< of its pair of groups, on the law's coefficient [1]
+    double penetration_factor = 1.0;  ///< of its pair of groups, on the allowed penetration [1]
     Index order = -1;          ///< forced order between the groups of its fibres, or -1
     Index first = 0, last = 0;  ///< its contact elements
 };
@@ -57,9 +59,11 @@ struct StiffnessAdaptation {
 
 /// Stiffness after an increment. Multipliers converge the faster the stiffer contact is, and take its penetration away: with
 /// them it is never lowered.
+/// @param factor  on the allowed penetration
 template <law::NormalLaw Normal>
-double adapted_stiffness(const StiffnessAdaptation& adaptation, const Normal& normal, double stiffness, double reference,
-                         double penetration) noexcept {
+double adapted_stiffness(StiffnessAdaptation adaptation, const Normal& normal, double stiffness, double reference,
+                         double penetration, double factor = 1.0) noexcept {
+    adaptation.allowed_penetration *= factor;
     const double adapted = adaptation.adapted(stiffness, reference, penetration, law::regularisation_depth(normal));
     return law::Augmenting<Normal> ? std::max(stiffness, adapted) : adapted;
 }

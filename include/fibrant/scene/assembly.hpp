@@ -21,6 +21,8 @@ struct FibreSpecification {
     Vec3 from = Vec3::Constant(core::unset);  ///< centre of the first section [length]
     Vec3 to = Vec3::Constant(core::unset);    ///< centre of the last section [length]
     Curve curve{};                            ///< rest shape of a curved fibre; takes the place of from and to
+    /// Where the fibre lies when a run begins, if not at rest: of the same length as its rest shape. Conditions count from there.
+    Curve start{};
     CrossSection section{};
     ElasticMaterial material{};
     Index elements = 0;                       ///< along the fibre, >= 1
@@ -164,6 +166,15 @@ public:
         orders_.push_back(order);
     }
 
+    /// Rules for pairs of groups; the last one given for a pair decides.
+    void add(const PairRule& rule) {
+        rule.validate();
+        for (const Index group : {rule.first, rule.second})
+            if (group < 0 || group >= core::count(groups_))
+                core::refuse("PairRule.group", std::to_string(group), "a group of this assembly");
+        rules_.push_back(rule);
+    }
+
     /// A rigid tool, for models that have a part `Tools`.
     /// @returns index of the tool, counted from 0
     Index add(Tool tool) {
@@ -180,6 +191,7 @@ public:
     const std::vector<DeadForce>& forces() const noexcept { return forces_; }
     const std::vector<Moment>& moments() const noexcept { return moments_; }
     const std::vector<ForcedOrder>& orders() const noexcept { return orders_; }
+    const std::vector<PairRule>& rules() const noexcept { return rules_; }
     const std::vector<Tool>& tools() const noexcept { return tools_; }
 
 private:
@@ -195,6 +207,7 @@ private:
     std::vector<DeadForce> forces_;
     std::vector<Moment> moments_;
     std::vector<ForcedOrder> orders_;
+    std::vector<PairRule> rules_;
     std::vector<Tool> tools_;
 };
 

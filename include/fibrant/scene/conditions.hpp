@@ -60,4 +60,17 @@ struct Moment {
     std::string channel = "load";
 };
 
+/// Contact between the fibres of two groups, or within one, where it is not that of the laws. A fibre that is in no rule counts
+/// as one of the groups that its group belongs to.
+struct PairRule {
+    Index first = -1, second = -1;    ///< groups, in any order; may be the same one
+    double friction_factor = 1.0;     ///< on the coefficient of the friction law [1], >= 0
+    double penetration_factor = 1.0;  ///< on the allowed penetration [1], > 0
+
+    void validate() const {
+        core::require_not_negative("PairRule.friction_factor", friction_factor);
+        core::require_positive("PairRule.penetration_factor", penetration_factor);
+    }
+};
+
 }  // namespace fibrant::scene

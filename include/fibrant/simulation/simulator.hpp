@@ -3,7 +3,7 @@
 /// @file Runs a loading on a scene with a model: steps that are cut, restored and grown again.
 
 #include <fibrant/observe/observer.hpp>
-#include <fibrant/simulation/checkpoint.hpp>
+#include <fibrant/simulation/increment_file.hpp>
 #include <fibrant/simulation/loading.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 
@@ -31,7 +31,7 @@ public:
           contacts_{assembly, mesh_, parameters.contact, typename M::Proximity(parameters.proximity),
                     typename M::Normal(parameters.normal), typename M::Friction(parameters.friction)},
           equilibrium_{assembly, mesh_, beam_, contacts_, channels_}, linear_{parameters.solver},
-          state_{mesh_.rest_state()}, amplitudes_(channels_.names().size(), 0.0) {
+          state_{mesh_.start_state()}, amplitudes_(channels_.names().size(), 0.0) {
         if (mesh_.fibre_count() == 0) core::refuse("assembly.fibres", "none", "at least one fibre");
         if constexpr (HasTools<M>) {
             for (const scene::Tool& tool : assembly.tools()) tool_channels_.push_back(channels_.find(tool.channel));
@@ -310,7 +310,7 @@ private:
     /// What a checkpoint must agree with: fibres and channels, and stages but for what ends or relaxes them.
     std::uint64_t scene_identity() const {
         CheckpointWriter scene;
-        scene.put(mesh_.rest_state());
+        scene.put(mesh_.rest_state()), scene.put(mesh_.start_state());
         for (const beam::MeshFibre& fibre : mesh_.fibres()) {
             scene.put(fibre.first_vector), scene.put(fibre.group);
             scene.put(fibre.section.semi_axis_1), scene.put(fibre.section.semi_axis_2), scene.put(fibre.section.inertia_factor);
@@ -331,7 +331,7 @@ private:
 
     void write_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, const Report& report) const {
         CheckpointWriter file;
-        file.put(std::string("fibrant checkpoint 4"));
+        file.put(std::string("fibrant checkpoint 5"));
         file.put(scene_identity()), file.put(loading_identity(stages));
         file.put(state_);
         file.put(last_external_), file.put(last_damping_);
@@ -349,18 +349,14 @@ private:
         file.put(report.rejected_increments), file.put(report.counts), file.put(clock_.seconds());
         file.put(core::count(report.increments));
         for (const IncrementReport& increment : report.increments) {
-            IncrementReport plain = increment;
-            file.put(plain.stage);
-            file.put(plain.number), file.put(plain.stage_progress), file.put(plain.progress), file.put(plain.fraction);
-            file.put(plain.cuts), file.put(plain.counts), file.put(plain.residual), file.put(plain.displacement), file.put(plain.damping);
-            file.put(plain.contact), file.put(plain.energy), file.put(plain.seconds);
+            put_increment(file, increment);
         }
         file.write(path);
     }
 
     void read_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, Report& report) {
         CheckpointReader file(path);
-        file.expect(file.get_text() == "fibrant checkpoint 4", "the format");
+        file.expect(file.get_text() == "fibrant checkpoint 5", "the format");
         file.expect(file.get<std::uint64_t>() == scene_identity(), "the set of fibres and channels");
         file.expect(file.get<std::uint64_t>() == loading_identity(stages), "the loading");
         Vector state = file.get_vector();
@@ -386,14 +382,7 @@ private:
         clock_.seconds() = file.get<std::array<double, core::part_count>>();
         report.increments.resize(core::at(file.get<Index>()));
         for (IncrementReport& increment : report.increments) {
-            increment.stage = file.get_text();
-            increment.number = file.get<Index>(), increment.stage_progress = file.get<double>();
-            increment.progress = file.get<double>(), increment.fraction = file.get<double>();
-            increment.cuts = file.get<Index>(), increment.counts = file.get<solver::IterationCounts>();
-            increment.residual = file.get<double>(), increment.displacement = file.get<double>();
-            increment.damping = file.get<double>();
-            increment.contact = file.get<contact::ContactFigures>(), increment.energy = file.get<EnergyBalance>();
-            increment.seconds = file.get<double>();
+            get_increment(file, increment);
             report.wall_seconds += increment.seconds;
         }
     }

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace weave {
+namespace example {
 
 using fibrant::Index;
 
@@ -194,4 +194,4 @@ private:
     std::vector<Key> asked_;  ///< in the order of reading, which is that of the documentation
 };
 
-}  // namespace weave
+}  // namespace example

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// A strand of 7 to 91 wires with friction is bent to an arc; prints the moment between its bounds, and the time.
+//   strand_bending SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--quiet]
+#include "../support/example.hpp"
+
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/compositions/strand/bending.hpp>
+#include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/solver/float_block_cholesky.hpp>
+
+using namespace fibrant;
+namespace strand = compositions::strand;
+
+struct Strand {
+    using Beam = beam::DirectorBeam<>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::RegularisedPenalty;
+    using Friction = law::RegularisedCoulomb;
+    using Solver = solver::DoubleBlockCholesky;
+};
+
+bool solve(example::TomlReader& file, const example::Output& output) {
+    Index wires = 7, elements = 20, increments = 30;
+    double radius = core::unset, lay = core::unset, length = core::unset, angle = 90.0, mu = 0.1, depth = 0.01, reversible = 0.02;
+    double young_modulus = core::unset, poisson_ratio = core::unset;
+    bool alternate = true;
+    file.require("strand", "wires", wires);
+    file.require("strand", "radius", radius);
+    file.require("strand", "lay_angle_deg", lay);
+    file.require("strand", "length", length);
+    file.read("strand", "alternate", alternate);
+    file.read("strand", "elements", elements);
+    file.require("material", "young_modulus", young_modulus);
+    file.require("material", "poisson_ratio", poisson_ratio);
+    file.read("contact", "friction_coefficient", mu);
+    file.read("contact", "reversible_displacement_over_radius", reversible);
+    file.read("contact", "allowed_penetration_over_radius", depth);
+    file.read("loading", "angle_deg", angle);
+    file.read("loading", "increments", increments);
+    file.refuse_unknown();
+    strand::StrandParameters parameters = strand::regular_strand(wires, radius, lay, alternate);
+    parameters.length = length, parameters.elements = elements, parameters.material = {young_modulus, poisson_ratio};
+
+    simulation::ModelParameters<Strand> model;
+    model.normal.regularisation_depth = 0.1 * depth * radius;
+    model.friction = {.friction_coefficient = mu, .reversible_displacement = reversible * radius};
+    model.contact.stiffness.allowed_penetration = depth * radius;
+    model.iteration.margin = 1.0, model.iteration.largest_margin = 4.0;  // ends swing far
+    simulation::Simulator<Strand> simulator(strand::bent_strand(parameters), model);
+    example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
+        const strand::BendingState state = strand::measure_bending(simulator, parameters);
+        return {{"angle_deg", state.angle * 180.0 / std::numbers::pi}, {"moment", state.moment}, {"tension", state.tension}};
+    });
+    simulation::Loading<Strand> loading;
+    loading.stages.resize(1);
+    const double full = angle * std::numbers::pi / 180.0;
+    loading.stages[0].ramps = {{strand::bend, full}};
+    loading.stages[0].increments = increments;
+    loading.stages[0].most_increments = 20 * increments;
+    const simulation::Report report = simulator.run(loading, recorder);
+    const strand::BendingState state = strand::measure_bending(simulator, parameters);
+    example::write_pictures(output, simulator.snapshot(), -90.0, 10.0);
+    example::write_summary(output, report, radius, {{"wires", static_cast<double>(wires)}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
+                           {"angle_deg", state.angle * 180.0 / std::numbers::pi}, {"moment", state.moment},
+                           {"moment_of_loose_wires", strand::loose_stiffness(parameters) * full / length},
+                           {"moment_of_a_solid", strand::solid_stiffness(parameters) * full / length},
+                           {"dissipated", report.energy.dissipated}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()}});
+    return report.converged;
+}
+
+int main(int argc, char** argv) {
+    return example::run(argc, argv, "strand_bending", "Bends a strand of helical wires with friction to an arc.", solve);
+}

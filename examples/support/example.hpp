@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What the examples that read a scene file have in common: the command line, progress, tables, pictures and a summary.
+
+#include "toml_reader.hpp"
+
+#include <fibrant/observe/csv_writer.hpp>
+#include <fibrant/observe/json.hpp>
+#include <fibrant/observe/svg_slice.hpp>
+#include <fibrant/observe/svg_view.hpp>
+#include <fibrant/observe/vtk_writer.hpp>
+#include <fibrant/simulation/report.hpp>
+
+#include <CLI/CLI.hpp>
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
+
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace example {
+
+namespace observe = fibrant::observe;
+
+/// Where results go, and whether to speak.
+struct Output {
+    std::filesystem::path folder;
+    bool quiet = false, paraview = true, pictures = true;
+    std::string unit = "mm";  ///< of lengths, for the pictures
+};
+
+/// Runs solve(reader, output) with the command line NAME SCENE.toml --output DIR [--set section.key=value]... [--threads N]
+/// [--quiet]. @returns 0 if it says so, 1 if not, 2 if the scene is refused
+template <class Solve>
+int run(int argc, char** argv, const char* name, const char* description, const Solve& solve) {
+    std::string scene, folder;
+    std::vector<std::string> set;
+    int threads = 0;
+    Output output;
+    CLI::App app{description};
+    app.set_version_flag("--version", FIBRANT_VERSION);
+    app.add_option("scene", scene, "scene file (TOML)")->required();
+    app.add_option("--output", folder, "folder for the results, made if need be")->required();
+    app.add_option("--set", set, "section.key=value, in the place of what the file says")->allow_extra_args(false);
+    app.add_option("--threads", threads, "0: as many as the machine has")->check(CLI::NonNegativeNumber);
+    app.add_flag("--quiet", output.quiet, "print nothing but errors");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        TomlReader reader(scene, set);
+        reader.read("output", "paraview", output.paraview);
+        reader.read("output", "pictures", output.pictures);
+        reader.read("output", "unit", output.unit);
+        output.folder = folder;
+        std::filesystem::create_directories(output.folder);
+#if defined(_OPENMP)
+        if (threads > 0) omp_set_num_threads(threads);
+#endif
+        return solve(reader, output) ? 0 : 1;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s: %s\n", name, error.what());
+        return 2;
+    }
+}
+
+/// The ParaView series, a row of increments.csv and a printed line after each increment. `more()` gives columns of its own.
+template <class More>
+class Recorder {
+public:
+    Recorder(const Output& output, double radius, const More& more)
+        : table_{output.folder / "increments.csv"}, radius_{radius}, quiet_{output.quiet}, more_{more} {
+        if (output.paraview) series_.emplace(output.folder / "paraview");
+    }
+    void reported(const fibrant::simulation::IncrementReport& increment) {
+        std::vector<observe::Column> columns{{"increment", increment.number}, {"stage", increment.stage}, {"progress", increment.progress}};
+        for (const observe::Column& column : more_()) columns.push_back(column);
+        for (const observe::Column& column : std::vector<observe::Column>{{"newton_iterations", increment.counts.newton},
+                                                                           {"contact_passes", increment.counts.contact_passes},
+                                                                           {"cuts", increment.cuts},
+                                                                           {"active_contacts", increment.contact.active},
+                                                                           {"greatest_penetration_over_radius", increment.contact.greatest_penetration / radius_},
+                                                                           {"residual", increment.residual},
+                                                                           {"seconds", increment.seconds}})
+            columns.push_back(column);
+        table_.row(columns);
+        if (quiet_) return;
+        for (const observe::Column& column : columns) std::printf("%s %s  ", column.name.c_str(), column.value.c_str());
+        std::printf("\n");
+        std::fflush(stdout);
+    }
+    void accepted(const observe::Snapshot& snapshot) {
+        if (series_) series_->accepted(snapshot);
+    }
+
+private:
+    observe::CsvWriter table_;
+    std::optional<observe::VtkWriter> series_;
+    double radius_;
+    bool quiet_;
+    More more_;
+};
+
+/// view.svg and, across an axis at a place, section.svg.
+inline void write_pictures(const Output& output, const observe::Snapshot& snapshot, double azimuth, double elevation,
+                           std::optional<std::pair<fibrant::Index, double>> cut = {}) {
+    if (!output.pictures) return;
+    observe::ViewParameters view;
+    view.azimuth = azimuth, view.elevation = elevation, view.unit = output.unit;
+    observe::write_file(output.folder / "view.svg", observe::svg_view(snapshot, view));
+    if (!cut) return;
+    observe::SliceParameters slice;
+    slice.axis = cut->first, slice.position = cut->second, slice.unit = output.unit;
+    observe::write_file(output.folder / "section.svg", observe::svg_slice(snapshot, slice));
+}
+
+/// summary.json: what every run says, and what `figures` adds.
+inline void write_summary(const Output& output, const fibrant::simulation::Report& report, double radius,
+                          const std::vector<std::pair<std::string, double>>& figures) {
+    observe::JsonObject json;
+    json.add("converged", report.converged).add("reason", report.reason);
+    for (const auto& [name, value] : figures) json.add(name, value);
+    json.add("increments", report.increments.empty() ? fibrant::Index{0} : report.increments.back().number)
+        .add("rejected_increments", report.rejected_increments)
+        .add("newton_iterations", report.counts.newton)
+        .add("linear_solves", report.counts.linear_solves)
+        .add("contact_elements", report.contact.elements)
+        .add("active_contacts", report.contact.active)
+        .add("greatest_penetration_over_radius", report.contact.greatest_penetration / radius)
+        .add("wall_seconds", report.wall_seconds)
+        .add("version", FIBRANT_VERSION);
+    observe::write_file(output.folder / "summary.json", json.text() + "\n");
+    if (!output.quiet) std::printf("%s\n", json.text().c_str());
+}
+
+}  // namespace example

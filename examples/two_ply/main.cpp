@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// Two straight rods side by side are pulled and wound around each other; prints the torque beside that of Kirchhoff's helices.
+//   two_ply SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--quiet]
+#include "../support/example.hpp"
+
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/compositions/two_ply/two_ply.hpp>
+#include <fibrant/law/augmented.hpp>
+#include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/solver/sparse_cholesky.hpp>
+
+using namespace fibrant;
+namespace two_ply = compositions::two_ply;
+
+struct TwoPly {
+    using Beam = beam::DirectorBeam<>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::Augmented<law::RegularisedPenalty>;
+    using Friction = law::RegularisedCoulomb;
+    using Solver = solver::SparseCholesky;
+};
+
+bool solve(example::TomlReader& file, const example::Output& output) {
+    two_ply::TwoPlyParameters parameters;
+    double turns = core::unset, mu = 0.0;
+    Index per_turn = 12;
+    file.require("rods", "radius", parameters.radius);
+    file.require("rods", "length", parameters.length);
+    file.read("rods", "elements", parameters.elements);
+    file.require("material", "young_modulus", parameters.material.young_modulus);
+    file.require("material", "poisson_ratio", parameters.material.poisson_ratio);
+    file.read("contact", "friction_coefficient", mu);
+    file.require("loading", "force", parameters.force);
+    file.require("loading", "turns", turns);
+    file.read("loading", "increments_per_turn", per_turn);
+    file.refuse_unknown();
+    parameters.validate();
+
+    const double radius = parameters.radius;
+    simulation::ModelParameters<TwoPly> model;
+    model.normal = {.law = {.regularisation_depth = 1e-3 * radius}, .largest_penetration = 1e-4 * radius};
+    model.friction = {.friction_coefficient = mu, .reversible_displacement = 0.02 * radius};
+    model.contact.stiffness.allowed_penetration = 1e-2 * radius;
+    model.iteration.contact_tolerance = 1e-3;
+    simulation::Simulator<TwoPly> simulator(two_ply::straight_rods(parameters), model);
+    const auto theory = [&](const two_ply::TwoPlyState& state) { return two_ply::HelixTheory(parameters, state.helix_angle, state.radius, state.twist); };
+    example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
+        const two_ply::TwoPlyState state = two_ply::measure(simulator, parameters);
+        return {{"turns", simulator.amplitude(two_ply::turn)}, {"helix_angle_deg", state.helix_angle * 180.0 / std::numbers::pi}, {"torque", state.torque},
+                {"torque_of_helices", theory(state).torque}, {"line_load", state.line_load}};
+    });
+    simulation::Loading<TwoPly> loading;
+    loading.stages.resize(2);
+    loading.stages[0].name = "pull", loading.stages[0].ramps = {{two_ply::pull, 1.0}}, loading.stages[0].increments = 2;
+    loading.stages[1].name = "turn", loading.stages[1].ramps = {{two_ply::turn, turns}};
+    loading.stages[1].increments = std::max<Index>(1, static_cast<Index>(std::ceil(std::abs(turns) * static_cast<double>(per_turn))));
+    loading.stages[1].most_increments = 10 * loading.stages[1].increments;
+    const simulation::Report report = simulator.run(loading, recorder);
+    const two_ply::TwoPlyState state = two_ply::measure(simulator, parameters);
+    example::write_pictures(output, simulator.snapshot(), -60.0, 15.0, std::pair{Index{2}, 0.5 * parameters.length});
+    example::write_summary(output, report, radius, {{"torque", state.torque}, {"torque_of_helices", theory(state).torque},
+                           {"helix_angle_deg", state.helix_angle * 180.0 / std::numbers::pi}, {"line_load", state.line_load},
+                           {"line_load_of_helices", theory(state).line_load}});
+    return report.converged;
+}
+
+int main(int argc, char** argv) {
+    return example::run(argc, argv, "two_ply", "Winds two rods around each other.", solve);
+}

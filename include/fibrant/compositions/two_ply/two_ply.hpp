@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Two straight rods side by side, wound around each other by carriers that turn: scene, measures and the theory.
+
+#include <fibrant/core/parameters.hpp>
+#include <fibrant/scene/assembly.hpp>
+#include <fibrant/simulation/support_wrench.hpp>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace fibrant::compositions::two_ply {
+
+/// Channels: the pull goes to its full size as `pull` goes to 1; the amplitude of `turn` is the turns of the far carrier
+/// against the near one.
+inline const std::string pull = "pull", turn = "turn";
+
+/// Two equal rods along z, touching, at rest.
+struct TwoPlyParameters {
+    double radius = core::unset;  ///< of a rod [length], > 0
+    double length = core::unset;  ///< [length], > 0
+    scene::ElasticMaterial material;
+    Index elements = 40;          ///< along each rod
+    double force = core::unset;   ///< that pulls both together, shared equally [force], >= 0
+    double bending_stiffness() const noexcept { return 0.25 * material.young_modulus * std::numbers::pi * radius * radius * radius * radius; }
+    double torsion_stiffness() const noexcept { return bending_stiffness() / (1.0 + material.poisson_ratio); }
+    void validate() const {
+        core::require_positive("TwoPlyParameters.radius", radius);
+        core::require_positive("TwoPlyParameters.length", length);
+        core::require_not_negative("TwoPlyParameters.force", force);
+        core::require_at_least("TwoPlyParameters.elements", elements, 2);
+        material.validate();
+    }
+};
+
+/// Ends are held to the direction of the axis and turn with the carriers, half of the way each; the far ones slide along the
+/// axis under the pull.
+inline scene::Assembly straight_rods(const TwoPlyParameters& parameters) {
+    parameters.validate();
+    scene::Assembly assembly;
+    for (const double side : {1.0, -1.0}) {
+        const Vec3 foot(side * parameters.radius, 0.0, 0.0);
+        scene::FibreSpecification rod{.from = foot, .to = foot + Vec3(0, 0, parameters.length), .section = scene::circular(parameters.radius),
+                                      .material = parameters.material, .elements = parameters.elements, .director = Vec3::UnitX()};
+        const Index fibre = assembly.add(rod);
+        for (const double end : {0.0, 1.0}) {
+            scene::Hold hold;
+            hold.at = {fibre, end}, hold.channel = turn;
+            hold.rotation = [end](double turns) { return Mat3(Eigen::AngleAxisd(2.0 * std::numbers::pi * (end - 0.5) * turns, Vec3::UnitZ())); };
+            if (end > 0.0) hold.directions = Vec3(1, 1, 0).asDiagonal();
+            assembly.hold(hold);
+            hold.axes = scene::Axes::section;
+            hold.vector = scene::NodeVector::director_1, hold.directions = Vec3(0, 1, 1).asDiagonal();
+            assembly.hold(hold);
+            hold.vector = scene::NodeVector::director_2, hold.directions = Vec3(1, 0, 1).asDiagonal();
+            assembly.hold(hold);
+        }
+        assembly.apply(scene::DeadForce{scene::last_end(fibre), scene::NodeVector::position, Vec3(0, 0, 0.5 * parameters.force), pull});
+    }
+    return assembly;
+}
+
+/// The ply at mid-length, and what its ends carry.
+struct TwoPlyState {
+    double torque = 0.0;        ///< of the pair about the axis [force * length]
+    double helix_angle = 0.0;   ///< of the rods to the axis [radian]
+    double radius = 0.0;        ///< of the helix [length]
+    double twist = 0.0;         ///< of the material, a length at rest [radian / length]
+    double line_load = 0.0;     ///< between the rods over the middle fifth, a length at rest [force / length]
+};
+
+template <simulation::Model M>
+TwoPlyState measure(const simulation::Simulator<M>& simulator, const TwoPlyParameters& parameters) {
+    TwoPlyState state;
+    state.torque = simulation::support_wrench(simulator, std::array{scene::last_end(0), scene::last_end(1)}).moment.z();
+    const auto& mesh = simulator.mesh();
+    const Vector& now = simulator.state();
+    for (const Index fibre : {Index{0}, Index{1}}) {
+        const double n = static_cast<double>(parameters.elements);
+        double samples = 0.0;  // means over the middle tenth
+        TwoPlyState sum;
+        for (Index e = static_cast<Index>(0.45 * n); static_cast<double>(e) < 0.55 * n; ++e, samples += 1.0) {
+            const double u = static_cast<double>(e) + 0.5;
+            const Vec3 tangent = mesh.derivative(now, fibre, u).normalized(), centre = mesh.position(now, fibre, u);
+            sum.helix_angle += std::acos(tangent.z());
+            sum.radius += centre.head<2>().norm();
+        }
+        state.helix_angle += 0.5 * sum.helix_angle / samples;
+        state.radius += 0.5 * sum.radius / samples;
+        // The ends are held along the axis: what they exert about it is the twisting moment, and that is the same all along.
+        Vec3 moment = Vec3::Zero();
+        for (const scene::NodeVector vector : {scene::NodeVector::director_1, scene::NodeVector::director_2})
+            moment += simulator.value(scene::last_end(fibre), vector).cross(simulator.reaction(scene::last_end(fibre), vector));
+        state.twist += 0.5 * moment.z() / parameters.torsion_stiffness();
+    }
+    for (std::size_t k = 0; k < simulator.contacts().elements().size(); ++k) {
+        const double u = simulator.contacts().elements()[k].u_i / static_cast<double>(parameters.elements);
+        if (u >= 0.4 && u < 0.6) state.line_load += simulator.contacts().responses()[k].reaction / (0.2 * parameters.length);
+    }
+    return state;
+}
+
+/// Torque and line load of two inextensible rods on helices, from Kirchhoff's equations (METHOD 9.2, C4).
+/// @param a      radius of the helices [length]
+/// @param twist  of the material; tan(angle) cos^2(angle) / a where the rods turn with their carriers [radian / length]
+struct HelixTheory {
+    double torque, line_load;
+    HelixTheory(const TwoPlyParameters& parameters, double angle, double a, double twist) {
+        const double bending = parameters.bending_stiffness(), torsion = parameters.torsion_stiffness();
+        const double s = std::sin(angle), c = std::cos(angle), curvature = s * s / a, tau = s * c / a;
+        const double shear = torsion * twist * curvature - bending * curvature * tau;
+        const double tension = (0.5 * parameters.force - shear * s) / c;
+        line_load = tension * curvature - tau * shear;
+        torque = 2.0 * (bending * curvature * s + torsion * twist * c + a * (tension * s - shear * c));
+    }
+};
+
+}  // namespace fibrant::compositions::two_ply
