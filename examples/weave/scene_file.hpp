@@ -131,6 +131,7 @@ inline Scene read_scene(const std::string& path, const std::vector<std::string>&
         file.read("settle", "softness", settle.softness);
         file.read("settle", "looseness", settle.looseness);
         file.read("settle", "rest_motion_over_radius", settle.rest_motion_over_radius);
+        file.read("settle", "rest_share", settle.rest_share);
         file.read("contact", "friction_coefficient", settle.friction_coefficient);
         file.read("contact", "allowed_penetration_over_radius", settle.allowed_penetration_over_radius);
 

@@ -120,6 +120,7 @@ private:
         Index stage = 0, in_stage = 0, accepted = 0, easy = 0;
         double progress = 0.0, fraction = 1.0, displacement = 0.0;
         double damping = 1.0;      ///< over that of the stage
+        double damping_floor = 0.0;  ///< that it does not fall below: what has failed is not tried again at once
         bool stage_over = false;
         std::vector<double> from;  ///< amplitudes at the start of the stage
     };
@@ -161,6 +162,7 @@ private:
         ++position_.stage;
         position_.in_stage = 0, position_.easy = 0, position_.progress = 0.0, position_.fraction = 1.0;
         position_.damping = 1.0;
+        if (position_.stage >= core::count(stages) || !stages[core::at(position_.stage)].damping_goes_on) position_.damping_floor = 0.0;
         if (position_.stage < core::count(stages)) {
             const Stage<M>& next = stages[core::at(position_.stage)];
             if (next.damping_goes_on && next.damping > 0.0) position_.damping = std::min(left / next.damping, 1.0);
@@ -227,6 +229,7 @@ private:
             const bool damped = stage.damping > 0.0 && position_.damping < 1.0 / least_damping;
             if (position_.progress < 1.0 || !damped) position_.fraction *= 0.5;
             position_.easy = 0;
+            position_.damping_floor = 2.0 * position_.damping;
             position_.damping = std::clamp(4.0 * position_.damping, least_damping, 1.0 / least_damping);
             if (position_.fraction < loading.smallest_fraction || report.rejected_increments > loading.most_rejected) {
                 report.counts += increment.counts;
@@ -250,10 +253,12 @@ private:
         // Damping is the inverse of a time step: what was solved with ease goes on faster, and what was hard more slowly.
         const double effort = attempt_newton / static_cast<double>(parameters_.iteration.newton_limit);
         if (increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= 0.6)
-            position_.damping *= position_.damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, position_.fraction);
+            position_.damping = std::max(position_.damping * (position_.damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, position_.fraction)),
+                                         std::min(position_.damping, position_.damping_floor));
         else if (stage.damping_decay < 1.0 && effort > 0.75)
             position_.damping = std::min(2.0 * position_.damping, 1.0 / least_damping);
         if (position_.damping < least_damping) position_.damping = 0.0;
+        position_.damping_floor *= 0.8;
         contacts_.accept(state_);
         increment.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         report.counts += increment.counts;
@@ -331,7 +336,7 @@ private:
 
     void write_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, const Report& report) const {
         CheckpointWriter file;
-        file.put(std::string("fibrant checkpoint 5"));
+        file.put(std::string("fibrant checkpoint 6"));
         file.put(scene_identity()), file.put(loading_identity(stages));
         file.put(state_);
         file.put(last_external_), file.put(last_damping_);
@@ -339,7 +344,7 @@ private:
         for (const double amplitude : amplitudes_) file.put(amplitude);
         file.put(position_.stage), file.put(position_.in_stage), file.put(position_.accepted), file.put(position_.easy);
         file.put(position_.progress), file.put(position_.fraction), file.put(position_.displacement);
-        file.put(position_.damping), file.put(position_.stage_over);
+        file.put(position_.damping), file.put(position_.damping_floor), file.put(position_.stage_over);
         for (const double amplitude : position_.from) file.put(amplitude);
         file.put(core::count(contacts_.accepted_memory().records()));
         for (const auto& record : contacts_.accepted_memory().records()) record.each([&](const auto& value) { file.put(value); });
@@ -356,7 +361,7 @@ private:
 
     void read_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, Report& report) {
         CheckpointReader file(path);
-        file.expect(file.get_text() == "fibrant checkpoint 5", "the format");
+        file.expect(file.get_text() == "fibrant checkpoint 6", "the format");
         file.expect(file.get<std::uint64_t>() == scene_identity(), "the set of fibres and channels");
         file.expect(file.get<std::uint64_t>() == loading_identity(stages), "the loading");
         Vector state = file.get_vector();
@@ -367,7 +372,7 @@ private:
         position_.stage = file.get<Index>(), position_.in_stage = file.get<Index>(), position_.accepted = file.get<Index>();
         position_.easy = file.get<Index>(), position_.progress = file.get<double>(), position_.fraction = file.get<double>();
         position_.displacement = file.get<double>();
-        position_.damping = file.get<double>(), position_.stage_over = file.get<bool>();
+        position_.damping = file.get<double>(), position_.damping_floor = file.get<double>(), position_.stage_over = file.get<bool>();
         for (double& amplitude : position_.from) amplitude = file.get<double>();
         std::vector<typename Contacts::Memory::Record> records(core::at(file.get<Index>()));
         for (auto& record : records) record.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });

@@ -129,7 +129,8 @@ struct SettleParameters {
     Index separation_increments = 250;              ///< at most, until no tows overlap, >= 1
     Index release_increments = 12;                  ///< in which the tension is lowered, >= 1
     Index rest_increments = 200;                    ///< at most, at either tension until nothing moves, >= 1
-    double rest_motion_over_radius = 1e-2;          ///< greatest nodal motion of an increment at rest [1], > 0
+    double rest_motion_over_radius = 1e-2;          ///< greatest nodal motion of an increment at rest [1], > 0, unless
+    double rest_share = 1e-4;  ///< damping holds no more than this part of the forces there [1], in (0, 0.01]
     double softness = 5.0;  ///< penetration allowed on the way over that at rest [1], in [1, 20]
     double looseness = 1000.0;  ///< on the tolerances of passes before rest: a path is only a means [1], in [1, 1000]
     double friction_coefficient = 0.15;             ///< from the handover on [1], >= 0; tows part without friction
@@ -147,6 +148,7 @@ struct SettleParameters {
         core::require_at_least(name + "release_increments", release_increments, 1);
         core::require_at_least(name + "rest_increments", rest_increments, 1);
         core::require_positive(name + "rest_motion_over_radius", rest_motion_over_radius);
+        core::require(rest_share > 0.0 && rest_share <= 0.01, name + "rest_share", rest_share, "> 0 and <= 0.01");
         core::require_between(name + "softness", softness, 1.0, 20.0);
         core::require_between(name + "looseness", looseness, 1.0, 1000.0);
         core::require_not_negative(name + "friction_coefficient", friction_coefficient);

@@ -39,7 +39,7 @@ template <simulation::Model M>
 simulation::Loading<M> settling(const FabricParameters& fabric, const SettleParameters& settle) {
     const double r = smallest_radius(fabric), allowed = settle.allowed_penetration_over_radius * r;
     const double soft = settle.softness * allowed, motion = 0.08 * settle.gap_limit_over_radius * r;
-    const double share_on_the_way = 1e-3, share_at_rest = 1e-4;  // of the forces, that damping may hold at a stage's end
+    const double share_at_rest = settle.rest_share, share_on_the_way = std::max(1e-3, share_at_rest);
     simulation::Loading<M> loading;
     simulation::Stage<M> tension;
     tension.name = "tension";
