@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A knot is tied in a straight rod, comes to rest and is drawn tight; prints the pull beside that of loose knots.
-//   knot SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--quiet]
+//   knot SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
 #include "../support/example.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
@@ -70,6 +70,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
         tighten.friction.emplace(model.friction);
         tighten.damping = 0.1 * settle.damping;  // what slides along itself without friction has nothing else to hold it
     }
+    loading.checkpoint = output.checkpoint(), loading.resume = output.resume;
     const simulation::Report report = simulator.run(loading, recorder);
     const knot::KnotState state = knot::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -90.0, 60.0);

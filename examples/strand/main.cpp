@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A strand of helical wires around a core is stretched and turned between two plates; prints force and torque.
-//   strand SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--quiet]
+//   strand SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
 #include "../support/example.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
@@ -63,6 +63,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     loading.stages.resize(1);
     loading.stages[0].ramps = {{strand::stretch, strain}, {strand::twist, rotation}};
     loading.stages[0].increments = increments;
+    loading.checkpoint = output.checkpoint(), loading.resume = output.resume;
     const simulation::Report report = simulator.run(loading, recorder);
     const strand::StrandState state = strand::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 20.0, std::pair{Index{2}, 0.5 * length});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A strand of 7 to 91 wires with friction is bent to an arc; prints the moment between its bounds, and the time.
-//   strand_bending SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--quiet]
+//   strand_bending SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
 #include "../support/example.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
@@ -59,6 +59,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     loading.stages[0].ramps = {{strand::bend, full}};
     loading.stages[0].increments = increments;
     loading.stages[0].most_increments = 20 * increments;
+    loading.checkpoint = output.checkpoint(), loading.resume = output.resume;
     const simulation::Report report = simulator.run(loading, recorder);
     const strand::BendingState state = strand::measure_bending(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -90.0, 10.0);

@@ -30,11 +30,14 @@ namespace observe = fibrant::observe;
 struct Output {
     std::filesystem::path folder;
     bool quiet = false, paraview = true, pictures = true;
+    bool resume = false;      ///< go on from the last accepted increment in the folder
+    observe::Start start() const noexcept { return resume ? observe::Start::resumed : observe::Start::anew; }
+    std::string checkpoint() const { return (folder / "checkpoint.bin").string(); }
     std::string unit = "mm";  ///< of lengths, for the pictures
 };
 
 /// Runs solve(reader, output) with the command line NAME SCENE.toml --output DIR [--set section.key=value]... [--threads N]
-/// [--quiet]. @returns 0 if it says so, 1 if not, 2 if the scene is refused
+/// [--resume] [--quiet]. @returns 0 if it says so, 1 if not, 2 if the scene is refused
 template <class Solve>
 int run(int argc, char** argv, const char* name, const char* description, const Solve& solve) {
     std::string scene, folder;
@@ -47,6 +50,7 @@ int run(int argc, char** argv, const char* name, const char* description, const 
     app.add_option("--output", folder, "folder for the results, made if need be")->required();
     app.add_option("--set", set, "section.key=value, in the place of what the file says")->allow_extra_args(false);
     app.add_option("--threads", threads, "0: as many as the machine has")->check(CLI::NonNegativeNumber);
+    app.add_flag("--resume", output.resume, "go on from the last accepted increment in the folder");
     app.add_flag("--quiet", output.quiet, "print nothing but errors");
     CLI11_PARSE(app, argc, argv);
     try {
@@ -71,8 +75,8 @@ template <class More>
 class Recorder {
 public:
     Recorder(const Output& output, double radius, const More& more)
-        : table_{output.folder / "increments.csv"}, radius_{radius}, quiet_{output.quiet}, more_{more} {
-        if (output.paraview) series_.emplace(output.folder / "paraview");
+        : table_{output.folder / "increments.csv", output.start()}, radius_{radius}, quiet_{output.quiet}, more_{more} {
+        if (output.paraview) series_.emplace(output.folder / "paraview", output.start());
     }
     void reported(const fibrant::simulation::IncrementReport& increment) {
         std::vector<observe::Column> columns{{"increment", increment.number}, {"stage", increment.stage}, {"progress", increment.progress}};

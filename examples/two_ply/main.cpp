@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Two straight rods side by side are pulled and wound around each other; prints the torque beside that of Kirchhoff's helices.
-//   two_ply SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--quiet]
+//   two_ply SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
 #include "../support/example.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
@@ -57,6 +57,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     loading.stages[1].name = "turn", loading.stages[1].ramps = {{two_ply::turn, turns}};
     loading.stages[1].increments = std::max<Index>(1, static_cast<Index>(std::ceil(std::abs(turns) * static_cast<double>(per_turn))));
     loading.stages[1].most_increments = 10 * loading.stages[1].increments;
+    loading.checkpoint = output.checkpoint(), loading.resume = output.resume;
     const simulation::Report report = simulator.run(loading, recorder);
     const two_ply::TwoPlyState state = two_ply::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 15.0, std::pair{Index{2}, 0.5 * parameters.length});
