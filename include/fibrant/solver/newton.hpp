@@ -203,7 +203,7 @@ private:
         double most = 0.0;
         for (const auto& element : elements) {
             if (contacts_->forced(element)) continue;  // its side is prescribed
-            most = std::max(most, std::abs(element.normal.dot(element.offset(step))));
+            most = std::max(most, std::abs(element.normal.dot(element.motion(step))));
         }
         const double bound = parameters_.largest_approach * radius_;
         return most > bound ? bound / most : 1.0;
