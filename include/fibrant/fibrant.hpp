@@ -4,6 +4,7 @@
 
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/core/parameters.hpp>
+#include <fibrant/core/rotation.hpp>
 #include <fibrant/core/stage_clock.hpp>
 #include <fibrant/core/types.hpp>
 
@@ -18,6 +19,8 @@
 #include <fibrant/beam/beam_element.hpp>
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/beam/mesh.hpp>
+#include <fibrant/beam/quaternion.hpp>
+#include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/beam/section_law.hpp>
 
 #include <fibrant/proximity/brute_search.hpp>

@@ -47,7 +47,7 @@ struct Scene {
         const beam::Mesh<Beam> mesh(assembly, beam);
         const connection::PrescribedMotion<Beam> motion(assembly, mesh, channels);
         const std::vector<double> amplitudes(channels.names().size(), amplitude);
-        motion.at(amplitudes, held, target);
+        motion.at(amplitudes, mesh.rest_state(), held, target);
     }
     /// Is it a symmetric projector of that rank?
     static bool projector(const Mat3& free, int rank) {
@@ -139,6 +139,20 @@ TEST_CASE("held vectors are sorted and appear once, however many holds there are
     REQUIRE(scene.held.size() == 6);
     for (std::size_t k = 1; k < scene.held.size(); ++k) CHECK(scene.held[k - 1].vector < scene.held[k].vector);
     CHECK(scene.held[2].vector == 6);  // the middle of five nodes, its position
+}
+
+TEST_CASE("what a slanting hold leaves of a whole one goes where the whole one asks, not along with it") {
+    // A clamp of an end that is stretched along a slanting fibre: its path across the fibre must not depend on the axes of space.
+    const Vec3 along = Vec3(3, 4, 0) / 5.0, across(-0.8, 0.6, 0.0);
+    Scene scene;
+    scene.hold(along, 0.7 * along);
+    scene.assembly.prescribe(scene::last_end(scene.fibre), Vec3(0, 0, 0.2));
+    scene.evaluate(1.0);
+    const Vec3 moved = scene.target[0] - Vec3(3, 0, 0);
+    CHECK(Scene::projector(scene.held[0].free, 0));
+    CHECK(moved.dot(along) == doctest::Approx(0.7).epsilon(rounding));
+    CHECK(std::abs(moved.dot(across)) < rounding);
+    CHECK(moved.z() == doctest::Approx(0.2).epsilon(rounding));
 }
 
 TEST_CASE("random holds give projectors, and targets that lie in the held directions") {

@@ -34,7 +34,7 @@ public:
     struct Point {
         std::int32_t first_i, first_j;  ///< first unknown of either element
         std::int32_t fibre_i, fibre_j;
-        beam::ElementWeights<B> weights_i, weights_j;
+        beam::Particle<B> weights_i, weights_j;
         Mat3 stiffness;
     };
 
@@ -116,6 +116,15 @@ public:
                             left * weights[core::at(b * B::vectors_per_node + w)] * stiffness;
             }
     }
+    /// The same of a particle whose section turns: J^T stiffness J with the derivatives J of its place.
+    void add_rank_one(Index fibre, Index first_unknown, const beam::Particle<B>& particle, const Mat3& stiffness)
+        requires beam::TurningSections<B>
+    {
+        const Index node = first_unknown / block - first_node_[core::at(fibre)];
+        each_pair(particle, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
+            row(fibre, node + a).template block<3, 3>(3 * v, (reach - (a - b)) * block + 3 * w) += product;
+        });
+    }
     /// Adds a stiffness of one nodal vector with itself.
     void add_diagonal(Index vector, const Mat3& stiffness) {
         const Index node = vector / B::vectors_per_node, v = vector % B::vectors_per_node;
@@ -168,8 +177,13 @@ public:
             for (Index d = 0; d <= std::min<Index>(a, reach); ++d)
                 blocks.block<block, block>(a * block, d * block) = row(fibre, a).template block<block, block>(0, (reach - d) * block);
         pairs_.add_own(pairs_.sides(first_node_[core::at(fibre)], first_node_[core::at(fibre + 1)]),
-                       [&](std::int32_t first, const beam::ElementWeights<B>& weights, const Mat3& stiffness) {
+                       [&](std::int32_t first, const beam::Particle<B>& weights, const Mat3& stiffness) {
             const Index node = (first - first_unknown(fibre)) / block;
+            if constexpr (beam::TurningSections<B>) {
+                each_pair(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
+                    blocks.block<3, 3>((node + a) * block + 3 * v, (a - b) * block + 3 * w) += product;
+                });
+            } else {
             for (Index a = 0; a < B::nodes; ++a)
                 for (Index b = 0; b <= a; ++b)
                     for (Index v = 0; v < B::vectors_per_node; ++v)
@@ -177,6 +191,7 @@ public:
                             const double scale = weights[core::at(a * B::vectors_per_node + v)] * weights[core::at(b * B::vectors_per_node + w)];
                             blocks.block<3, 3>((node + a) * block + 3 * v, (a - b) * block + 3 * w) += scale * stiffness;
                         }
+            }
         });
         project_band(fibre, blocks);
     }
@@ -210,17 +225,39 @@ public:
     template <class Terms>
     void visit_couplings(Terms& terms) const {
         std::array<Index, core::at(2 * vectors)> both{};
-        std::array<double, core::at(2 * vectors)> weights{};
+        [[maybe_unused]] std::array<double, core::at(2 * vectors)> weights{};
         for (const Point& point : points_) {
-            for (Index k = 0; k < vectors; ++k) {
-                both[core::at(k)] = point.first_i / 3 + k, both[core::at(vectors + k)] = point.first_j / 3 + k;
-                weights[core::at(k)] = -point.weights_i[core::at(k)], weights[core::at(vectors + k)] = point.weights_j[core::at(k)];
+            for (Index k = 0; k < vectors; ++k) both[core::at(k)] = point.first_i / 3 + k, both[core::at(vectors + k)] = point.first_j / 3 + k;
+            if constexpr (beam::TurningSections<B>) {
+                visit_turning(point, both, terms);
+            } else {
+                for (Index k = 0; k < vectors; ++k)
+                    weights[core::at(k)] = -point.weights_i[core::at(k)], weights[core::at(vectors + k)] = point.weights_j[core::at(k)];
+                terms.point(PointTerm{both, weights, point.stiffness});
             }
-            terms.point(PointTerm{both, weights, point.stiffness});
         }
     }
 
 private:
+    /// see(node, vector, node, vector, block) of J^T stiffness J, in the lower half.
+    template <class See>
+    static void each_pair(const beam::Particle<B>& particle, const Mat3& stiffness, const See& see) {
+        for (Index a = 0; a < B::nodes; ++a)
+            for (Index v = 0; v < B::vectors_per_node; ++v) {
+                const Mat3 left = particle.slope(a * B::vectors_per_node + v).transpose() * stiffness;
+                for (Index b = 0; b <= a; ++b)
+                    for (Index w = 0; w < B::vectors_per_node; ++w) see(a, v, b, w, Mat3(left * particle.slope(b * B::vectors_per_node + w)));
+            }
+    }
+    /// Particles that turn have no scalar weights: the whole matrix of the point.
+    template <class Terms>
+    static void visit_turning(const Point& point, const std::array<Index, core::at(2 * vectors)>& both, Terms& terms) {
+        Eigen::Matrix<double, 3, 6 * vectors> J;
+        for (Index k = 0; k < vectors; ++k)
+            J.template middleCols<3>(3 * k) = -point.weights_i.slope(k), J.template middleCols<3>(3 * (vectors + k)) = point.weights_j.slope(k);
+        const Matrix whole = J.transpose() * point.stiffness * J;
+        terms.dense(DenseTerm{both, whole});
+    }
     /// Sides of points on the fibres of a pack, and on one fibre.
     std::pair<Index, Index> sides(Index pack) const noexcept {
         const auto [first, last] = band_.chains(pack);
@@ -252,7 +289,7 @@ private:
     std::vector<Point> points_;
     std::vector<Skew> skews_;
     BandProduct<block, reach> band_;
-    PointProduct<vectors> pairs_;
+    PointProduct<vectors, beam::Particle<B>> pairs_;
     mutable Vector free_;  // scratch of a product: one system serves one thread at a time
 };
 

@@ -58,7 +58,7 @@ public:
         amplitudes_.assign(amplitudes.begin(), amplitudes.end());
         damping_ = damping;
         if (damping_ > 0.0) anchor_ = state;
-        motion_.at(amplitudes, system_.layout().held, targets_);
+        motion_.at(amplitudes, state, system_.layout().held, targets_);
         reset_stresses(state);
     }
 
@@ -122,7 +122,7 @@ public:
                 const typename B::Stresses geometric = tension_only ? B::without_compression(stress(f, e)) : stress(f, e);
                 system_.add(f, e, beam_.tangent_stiffness(mesh_->rest(f, e), mesh_->element(state, f, e), geometric));
             }
-            contacts_->section_stiffness_terms(f, state, [&](Index first, const beam::ElementWeights<B>& weights, const Mat3& stiffness) {
+            contacts_->section_stiffness_terms(f, state, [&](Index first, const auto& weights, const Mat3& stiffness) {
                 system_.add_rank_one(f, first, weights, stiffness);
             });
             if (shift + damping_ > 0.0) {

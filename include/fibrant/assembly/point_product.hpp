@@ -19,7 +19,8 @@ namespace fibrant::assembly {
 /// are at hand, and so are the forces that they pass on. Every element has its own sums, in a fixed order.
 ///
 /// @tparam Vectors  of an element
-template <int Vectors>
+/// @tparam Weights  scalars, or a particle whose section turns: then (J^T K J) with the derivatives J of its place
+template <int Vectors, class Weights = std::array<double, core::at(Vectors)>>
 class PointProduct {
 public:
     /// @param elements  number of places that a side may start at, `place` being below it
@@ -66,6 +67,11 @@ public:
             for (std::size_t a = 0; a < values.size(); ++a) values[a] << x.segment<3>(start + 3 * static_cast<Index>(a)).array(), 0.0;
             for (; s < range.second && sides_[core::at(s)].first == start; ++s) {
                 const Weights& weights = weights_[core::at(s)];
+                if constexpr (turning) {
+                    Vec3 motion = Vec3::Zero();
+                    for (std::size_t a = 0; a < values.size(); ++a) motion += weights.slope(static_cast<Index>(a)) * values[a].template head<3>().matrix();
+                    motion_[core::at(s)] << motion.array(), 0.0;
+                } else {
                 Padded even = Padded::Zero(), odd = Padded::Zero();  // two sums, neither of which waits for the other
                 for (std::size_t a = 0; a + 1 < values.size(); a += 2) {
                     even += weights[a] * values[a];
@@ -73,6 +79,7 @@ public:
                 }
                 if constexpr (Vectors % 2 == 1) even += weights.back() * values.back();
                 motion_[core::at(s)] = even + odd;
+                }
             }
         }
     }
@@ -90,7 +97,13 @@ public:
                 const double* k = side.stiffness.data();  // columns of three; what the fourth lane holds is not used
                 const Padded force = Unaligned(k) * apart[0] + Unaligned(k + 3) * apart[1] + Unaligned(k + 6) * apart[2];
                 const Weights& weights = weights_[core::at(s)];
-                for (std::size_t a = 0; a < forces.size(); ++a) forces[a] += weights[a] * force;
+                if constexpr (turning) {
+                    const Vec3 plain = force.template head<3>().matrix();
+                    for (std::size_t a = 0; a < forces.size(); ++a)
+                        forces[a].template head<3>() += (weights.slope(static_cast<Index>(a)).transpose() * plain).array();
+                } else {
+                    for (std::size_t a = 0; a < forces.size(); ++a) forces[a] += weights[a] * force;
+                }
             }
             for (std::size_t a = 0; a < forces.size(); ++a) y.segment<3>(start + 3 * static_cast<Index>(a)) += forces[a].template head<3>().matrix();
         }
@@ -114,7 +127,7 @@ private:
         __builtin_prefetch(address);
 #endif
     }
-    using Weights = std::array<double, core::at(Vectors)>;
+    static constexpr bool turning = requires(const Weights& weights) { weights.slope(Index{}); };
     struct Side {
         std::int32_t first;    // unknown of the element
         std::int32_t partner;  // slot of the other side

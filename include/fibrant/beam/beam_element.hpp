@@ -26,6 +26,31 @@ using ElementMatrix = Eigen::Matrix<double, B::nodes * B::dofs_per_node, B::node
 template <class B>
 using ElementWeights = std::array<double, static_cast<std::size_t>(B::nodes * B::vectors_per_node)>;
 
+/// A beam whose particles turn with rotations has a type for them: where they are in a state, and how they move.
+template <class B>
+concept TurningSections = requires(typename B::Particle particle, const ElementVector<B>& y) {
+    { particle.place(y) } -> std::same_as<Vec3>;  // of the particle in a state
+    particle.follow(y);                           // its derivatives are those of this state from now on
+    { particle.slope(Index{}) } -> std::same_as<Mat3>;  // derivative of the place by a nodal vector
+};
+namespace detail {
+template <class B>
+struct ParticleOf {
+    using Type = ElementWeights<B>;
+};
+template <TurningSections B>
+struct ParticleOf<B> {
+    using Type = typename B::Particle;
+};
+}  // namespace detail
+/// What places a particle of a section: weights of the nodal vectors, unless its sections turn.
+template <class B>
+using Particle = typename detail::ParticleOf<B>::Type;
+
+/// The beam knows its centreline only: contact takes the radius off between centrelines, and needs no director.
+template <class B>
+concept CentrelineOnly = requires { requires B::centreline_particles; };
+
 /// An element of a fibre: consecutive nodes, one shared by neighbours.
 ///
 /// `Rest` is what an element keeps of its rest shape, section and material; `Stresses` are the conjugates of all its
@@ -59,7 +84,7 @@ concept BeamElement = core::Policy<B> && requires {
     { B::shape_derivative(xi)[0] } -> std::convertible_to<double>;
     { B::centreline_weights(xi) } -> std::same_as<ElementWeights<B>>;
     { B::centreline_derivative_weights(xi) } -> std::same_as<ElementWeights<B>>;
-    { B::particle_weights(xi, xi, xi) } -> std::same_as<ElementWeights<B>>;
+    { B::particle_weights(xi, xi, xi) } -> std::same_as<Particle<B>>;
 };
 
 }  // namespace fibrant::beam

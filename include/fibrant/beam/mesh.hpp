@@ -4,25 +4,55 @@
 
 #include <fibrant/beam/beam_element.hpp>
 #include <fibrant/core/parallel.hpp>
+#include <fibrant/core/rotation.hpp>
 #include <fibrant/scene/assembly.hpp>
 #include <fibrant/scene/dof_layout.hpp>
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <vector>
 
 namespace fibrant::beam {
 
 /// Vectors of a node at rest: position and directors, unless the beam says what else its nodes carry.
 template <BeamElement B>
-std::array<Vec3, static_cast<std::size_t>(B::vectors_per_node)> nodal_vectors(const scene::NodeFrame& frame) {
-    if constexpr (requires { B::nodal_vectors(frame); }) {
+std::array<Vec3, static_cast<std::size_t>(B::vectors_per_node)> nodal_vectors(const scene::NodeFrame& frame,
+                                                                              [[maybe_unused]] double element_length) {
+    if constexpr (requires { B::nodal_vectors(frame, element_length); }) {
+        return B::nodal_vectors(frame, element_length);
+    } else if constexpr (requires { B::nodal_vectors(frame); }) {
         return B::nodal_vectors(frame);
     } else {
         static_assert(B::vectors_per_node == 3, "a beam whose nodes are not position and two directors gives nodal_vectors");
         return {frame.position, frame.director_1, frame.director_2};
     }
+}
+
+/// What makes a nodal vector a displacement of the surface: 1 for a position, the radius for a director, unless the beam
+/// says what else its nodes carry.
+template <BeamElement B>
+double vector_length(int vector, double radius, [[maybe_unused]] double element_length) {
+    if constexpr (requires { B::vector_length(vector, radius, element_length); }) {
+        return B::vector_length(vector, radius, element_length);
+    } else {
+        return B::kinds[core::at(vector)] == scene::VectorKind::position ? 1.0 : radius;
+    }
+}
+
+/// Adds to forces on the nodal vectors of an element what a force on a particle is to them.
+template <std::size_t Vectors>
+void spread(const std::array<double, Vectors>& weights, const Vec3& value, Index first_unknown, Vector& forces) noexcept {
+    for (std::size_t a = 0; a < weights.size(); ++a)
+        forces.segment<3>(first_unknown + 3 * static_cast<Index>(a)) += weights[a] * value;
+}
+template <class Turning>
+    requires requires(const Turning& particle) { particle.slope(Index{}); }
+void spread(const Turning& particle, const Vec3& value, Index first_unknown, Vector& forces) noexcept {
+    for (Index a = 0; a < Turning::vectors; ++a) forces.segment<3>(first_unknown + 3 * a) += particle.slope(a).transpose() * value;
 }
 
 /// Weights of director g_1 (which = 1) or g_2 (which = 2) at xi in [-1, 1].
@@ -70,10 +100,10 @@ public:
             frames_.insert(frames_.end(), starts.begin(), starts.end());
             for (const scene::NodeFrame& frame : frames) {
                 const std::array<Vec3, static_cast<std::size_t>(B::vectors_per_node)> vectors =
-                    nodal_vectors<B>(frame);
+                    nodal_vectors<B>(frame, fibres_.back().element_length);
                 for (std::size_t v = 0; v < vectors.size(); ++v) {
                     layout_.kind.push_back(B::kinds[v]);
-                    layout_.length.push_back(B::kinds[v] == scene::VectorKind::position ? 1.0 : fibre.section.radius());
+                    layout_.length.push_back(vector_length<B>(static_cast<int>(v), fibre.section.radius(), fibres_.back().element_length));
                     layout_.value.push_back(vectors[v]);
                 }
             }
@@ -123,6 +153,21 @@ public:
     Index first_unknown(Index f, Index e) const noexcept {
         return 3 * (fibre(f).first_vector + e * vectors_per_element_step);
     }
+    /// Takes rotation vectors to the shortest ones of their rotations, and forces on them with them. To be called between
+    /// increments; nothing for beams without rotations.
+    void rewind([[maybe_unused]] Vector& state, [[maybe_unused]] std::initializer_list<Vector*> forces) const {
+        if constexpr (TurningSections<B>) {
+            for (Index v = 0; v < layout_.vectors(); ++v) {
+                if (layout_.kind[core::at(v)] != scene::VectorKind::rotation) continue;
+                const Vec3 before = state.segment<3>(3 * v), after = core::nearest_rotation_vector(before, Vec3::Zero());
+                if (before == after) continue;
+                state.segment<3>(3 * v) = after;
+                const Mat3 change = core::spin_matrix(after).transpose() * core::spin_matrix(before).transpose().inverse();
+                for (Vector* force : forces)
+                    if (force->size() == state.size()) force->segment<3>(3 * v) = (change * force->segment<3>(3 * v)).eval();
+            }
+        }
+    }
     auto element(const Vector& state, Index f, Index e) const noexcept {
         return state.segment<element_unknowns>(first_unknown(f, e));
     }
@@ -140,6 +185,12 @@ public:
             sum += weights[a] * state.segment<3>(first_unknown + 3 * static_cast<Index>(a));
         return sum;
     }
+    /// Place of a particle whose section turns.
+    static Vec3 point(const Vector& state, Index first_unknown, const Particle<B>& particle) noexcept
+        requires TurningSections<B>
+    {
+        return particle.place(state.segment<element_unknowns>(first_unknown));
+    }
     Vec3 position(const Vector& state, Index f, double u) const noexcept {
         const auto [e, xi] = locate(f, u);
         return point(state, first_unknown(f, e), B::centreline_weights(xi));
@@ -149,12 +200,43 @@ public:
         const auto [e, xi] = locate(f, u);
         return 2.0 * point(state, first_unknown(f, e), B::centreline_derivative_weights(xi));
     }
-    /// Second derivative of the centreline by u [length], exact for centrelines up to degree two in an element.
+    /// Directors of the section at u; of a beam that has none, any two across the centreline.
+    std::pair<Vec3, Vec3> directors(const Vector& state, Index f, double u) const noexcept {
+        const auto [e, xi] = locate(f, u);
+        const Index first = first_unknown(f, e);
+        return element_directors(state, first, xi);
+    }
+    /// The same in the element with this first unknown.
+    static std::pair<Vec3, Vec3> element_directors(const Vector& state, Index first, double xi) noexcept {
+        if constexpr (CentrelineOnly<B>) {
+            const Vec3 tangent = point(state, first, B::centreline_derivative_weights(xi)).normalized(), across = tangent.unitOrthogonal();
+            return {across, tangent.cross(across)};
+        } else if constexpr (TurningSections<B>) {
+            const Vec3 centre = point(state, first, B::centreline_weights(xi));
+            return {point(state, first, B::particle_weights(xi, 1.0, 0.0)) - centre, point(state, first, B::particle_weights(xi, 0.0, 1.0)) - centre};
+        } else {
+            return {point(state, first, director_weights<B>(xi, 1)), point(state, first, director_weights<B>(xi, 2))};
+        }
+    }
+    /// Second derivative of the centreline by u [length]; the same all along an element unless the beam says otherwise.
     Vec3 second_derivative(const Vector& state, Index f, double u) const noexcept {
         const auto [e, xi] = locate(f, u);
         const Index first = first_unknown(f, e);
-        return 2.0 * (point(state, first, B::centreline_derivative_weights(1.0)) -
-                      point(state, first, B::centreline_derivative_weights(-1.0)));
+        if constexpr (requires { B::centreline_bend_weights(xi); }) {
+            return point(state, first, B::centreline_bend_weights(xi));
+        } else {
+            return 2.0 * (point(state, first, B::centreline_derivative_weights(1.0)) -
+                          point(state, first, B::centreline_derivative_weights(-1.0)));
+        }
+    }
+    /// Its greatest size in element e [length].
+    double greatest_bend(const Vector& state, Index f, Index e) const noexcept {
+        if constexpr (requires { B::centreline_bend_weights(0.0); }) {
+            const Index first = first_unknown(f, e);  // linear between the ends, so greatest at one of them
+            return std::max(point(state, first, B::centreline_bend_weights(-1.0)).norm(), point(state, first, B::centreline_bend_weights(1.0)).norm());
+        } else {
+            return second_derivative(state, f, static_cast<double>(e) + 0.5).norm();
+        }
     }
 
 private:

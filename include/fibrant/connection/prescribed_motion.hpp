@@ -4,6 +4,7 @@
 
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/connection/channels.hpp>
+#include <fibrant/core/rotation.hpp>
 
 #include <Eigen/Eigenvalues>
 
@@ -24,37 +25,70 @@ template <beam::BeamElement B>
 class PrescribedMotion {
 public:
     PrescribedMotion(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const Channels& channels) {
-        for (const scene::Hold& hold : assembly.holds()) {
+        for (scene::Hold hold : assembly.holds()) {
+            const Index node = station_node(mesh, hold.at);
+            if constexpr (requires { B::hold(hold, Mat3()); })
+                if (!B::hold(hold, mesh.frame(hold.at.fibre, node).basis())) continue;
             if (static_cast<Index>(hold.vector) >= B::vectors_per_node)
                 core::refuse("Hold.vector", std::to_string(static_cast<int>(hold.vector)), "a vector of the beam's nodes");
-            const Index node = station_node(mesh, hold.at);
             Item item{mesh.node_vector(hold.at.fibre, node, static_cast<Index>(hold.vector)), channels.find(hold.channel),
                       mesh.frame(hold.at.fibre, node).basis(), Vec3::Zero(), hold};
             item.rest = mesh.start_state().template segment<3>(3 * item.vector);
             items_.push_back(item);
         }
+        if constexpr (turning)  // what turns is held as a whole, or about axes that stay
+            for (Item& item : items_) {
+                if (item.hold.vector == scene::NodeVector::position) continue;
+                Mat3 held = Mat3::Zero();
+                for (const Item& other : items_)
+                    if (other.vector == item.vector) held = held.cwiseMax(other.hold.directions);
+                item.whole = held.trace() > 2.5;
+                if (!item.whole && item.hold.rotation)
+                    core::refuse("Hold.rotation", "of " + std::to_string(std::lround(held.trace())) + " axes", "of all three: rotations do not add up");
+            }
         std::stable_sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) { return a.vector < b.vector; });
     }
 
     /// Held vectors at the given amplitudes; target[k] is the held part of held[k]'s vector.
-    void at(std::span<const double> amplitudes, std::vector<scene::HeldVector>& held, std::vector<Vec3>& target) const {
+    /// @param state  from which the increment starts: of the vectors of one rotation the nearest is meant, and a section that is
+    ///               held about some axes only does not spin about them from there
+    void at(std::span<const double> amplitudes, [[maybe_unused]] const Vector& state, std::vector<scene::HeldVector>& held,
+            std::vector<Vec3>& target) const {
         held.clear(), target.clear();
         for (const Item& item : items_) {
             const double amplitude = amplitudes[core::at(item.channel)];
             const Mat3 turn = item.hold.rotation ? item.hold.rotation(amplitude) : Mat3(Mat3::Identity());
             const Mat3 axes = item.hold.axes == scene::Axes::section ? Mat3(turn * item.basis) : turn;
             const bool position = item.hold.vector == scene::NodeVector::position;
-            const Vec3 goal =
+            Mat3 directions_held = item.hold.directions;
+            Vec3 goal =
                 (position ? Vec3(item.hold.pivot + turn * (item.rest - item.hold.pivot)) : Vec3(turn * item.rest)) +
                 (item.hold.path ? item.hold.path(amplitude) : Vec3(amplitude * item.hold.displacement));
+            Mat3 axes_held = axes;
+            if constexpr (turning) {
+                if (!position) {
+                    const Vec3 now = state.segment<3>(3 * item.vector);
+                    goal = item.whole ? core::nearest_rotation_vector(core::rotation_vector(turn * item.basis), now) : now;
+                    axes_held = item.whole ? Mat3(Mat3::Identity()) : Mat3(core::spin_matrix(now).transpose() * axes);
+                    if (item.whole) directions_held = Mat3::Identity();
+                }
+            }
             if (held.empty() || held.back().vector != item.vector) {
                 held.push_back({item.vector, Mat3::Identity()});
                 target.push_back(Vec3::Zero());
             }
             Mat3& free = held.back().free;
-            const Eigen::SelfAdjointEigenSolver<Mat3> directions(axes * item.hold.directions * axes.transpose());
-            for (int k = 0; k < 3; ++k) {
-                if (directions.eigenvalues()[k] < 0.5) continue;
+            Mat3 wanted = axes_held * directions_held * axes_held.transpose();
+            double least = turning && !position ? 1e-3 : 0.5;
+            if (free != Mat3::Identity()) {  // first of all what no earlier hold has taken a part of
+                wanted = (wanted * free * wanted).eval();
+                least = 1e-12;
+            }
+            const Eigen::SelfAdjointEigenSolver<Mat3> directions(wanted);
+            const bool overlap = least < 1e-6;
+            for (int n = 0; n < 3; ++n) {
+                const int k = overlap ? 2 - n : n;
+                if (directions.eigenvalues()[k] < least) continue;
                 const Vec3 direction = directions.eigenvectors().col(k);
                 Vec3 fresh = free * direction;  // what earlier holds leave of it
                 if (fresh.norm() < 1e-8) continue;
@@ -66,11 +100,13 @@ public:
     }
 
 private:
+    static constexpr bool turning = beam::TurningSections<B>;
     struct Item {
         Index vector, channel;
         Mat3 basis;
         Vec3 rest;
         scene::Hold hold;
+        bool whole = false;  ///< of a rotation: all three axes are held
     };
     std::vector<Item> items_;
 };

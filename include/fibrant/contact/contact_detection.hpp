@@ -113,7 +113,7 @@ struct SampledCentrelines {
             if (!wanted(f)) continue;
             double bend = 0.0;  // greatest |x0 - 2 x1 + x2| of the fibre
             for (Index e = 0; e < mesh.fibre(f).elements; ++e)
-                bend = std::max(bend, 0.25 * mesh.second_derivative(state, f, static_cast<double>(e) + 0.5).norm());
+                bend = std::max(bend, 0.25 * mesh.greatest_bend(state, f, e));
             const double bound = detection.chord_bound * mesh.fibre(f).section.radius();
             const Index cut = std::clamp<Index>(static_cast<Index>(std::ceil(std::sqrt(0.5 * bend / bound))), 1, detection.finest_cut);
             pieces.push_back({f, cut, points_total, segments_total, bend});
@@ -130,7 +130,7 @@ struct SampledCentrelines {
                 points[core::at(piece.first_point + k)] = flat * mesh.position(state, piece.fibre, static_cast<double>(k) / n);
             for (Index k = 0; k < count; ++k)  // an element's chords deviate by |x''| / (2 n^2)
                 inflation[core::at(piece.first_segment + k)] =
-                    0.125 * mesh.second_derivative(state, piece.fibre, std::floor(static_cast<double>(k) / n) + 0.5).norm() / (n * n);
+                    0.125 * mesh.greatest_bend(state, piece.fibre, k / piece.cut) / (n * n);
         });
         for (const Piece& piece : pieces) {
             const beam::MeshFibre& fibre_data = mesh.fibre(piece.fibre);

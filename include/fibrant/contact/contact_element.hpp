@@ -34,7 +34,7 @@ template <beam::BeamElement B, law::FrictionLaw Friction>
     requires core::Active<Friction>
 struct FrictionState<B, Friction> {
     typename Friction::History history;        ///< of the last accepted state, turned with the fibres
-    beam::ElementWeights<B> weights_i{}, weights_j{};  ///< of the pair of particles whose slip is counted
+    beam::Particle<B> weights_i{}, weights_j{};  ///< of the pair of particles whose slip is counted
     double bound = -1.0;                       ///< R_N that bounds friction until normals are renewed; < 0: the present one [force]
     Vec3 accepted_offset = Vec3::Zero();  ///< particle j - particle i in the last accepted state, turned since with the pair
 };
@@ -43,7 +43,7 @@ struct FrictionState<B, Friction> {
 template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
 struct ContactElement {
     double u_i = 0.0, u_j = 0.0;           ///< abscissae, in elements
-    beam::ElementWeights<B> weights_i{}, weights_j{};  ///< of the nodal vectors of each side's element
+    beam::Particle<B> weights_i{}, weights_j{};  ///< of the nodal vectors of each side's element
     Vec3 normal = Vec3::Zero();
     double cap = 0.0;                      ///< radii of fibre ends in contact, taken off the gap [length]
     std::int32_t fibre_i = -1, fibre_j = -1;
@@ -56,6 +56,17 @@ struct ContactElement {
     /// Particle j - particle i [length].
     Vec3 offset(const Vector& state) const noexcept {
         return beam::Mesh<B>::point(state, first_j, weights_j) - beam::Mesh<B>::point(state, first_i, weights_i);
+    }
+    /// What a small step changes of it [length].
+    Vec3 motion(const Vector& step) const noexcept {
+        if constexpr (beam::TurningSections<B>) {
+            Vec3 sum = Vec3::Zero();
+            for (Index a = 0; a < B::nodes * B::vectors_per_node; ++a)
+                sum += weights_j.slope(a) * step.segment<3>(first_j + 3 * a) - weights_i.slope(a) * step.segment<3>(first_i + 3 * a);
+            return sum;
+        } else {
+            return offset(step);
+        }
     }
     /// True gap, < 0 in penetration [length] (Durville, eq. 9, with the normal from i to j).
     double gap(const Vector& state) const noexcept { return normal.dot(offset(state)) - cap; }

@@ -167,10 +167,7 @@ public:
                 const Element& element = elements_[core::at(k)];
                 const bool of_j = side % 2 == 1;
                 const Vec3 value = of_j ? force(k) : Vec3(-force(k));
-                const beam::ElementWeights<B>& weights = of_j ? element.weights_j : element.weights_i;
-                const Index first = of_j ? element.first_j : element.first_i;
-                for (std::size_t a = 0; a < weights.size(); ++a)
-                    residual.segment<3>(first + 3 * static_cast<Index>(a)) += weights[a] * value;
+                beam::spread(of_j ? element.weights_j : element.weights_i, value, of_j ? element.first_j : element.first_i, residual);
             }
         });
     }

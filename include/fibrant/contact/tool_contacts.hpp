@@ -157,9 +157,7 @@ public:
         core::parallel_for(mesh_->fibre_count(), [&](Index f) {
             for (Index k = first_[core::at(f)]; k < first_[core::at(f + 1)]; ++k) {
                 const Element& element = elements_[core::at(k)];
-                const Vec3 value = force(k);
-                for (std::size_t a = 0; a < element.weights.size(); ++a)
-                    residual.segment<3>(element.first + 3 * static_cast<Index>(a)) += element.weights[a] * value;
+                beam::spread(element.weights, force(k), element.first, residual);
             }
         });
     }

@@ -15,7 +15,7 @@ namespace fibrant::contact {
 template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
 struct ToolElement {
     double u = 0.0;                        ///< abscissa, in elements
-    beam::ElementWeights<B> weights{};     ///< of the nodal vectors of the fibre's element
+    beam::Particle<B> weights{};     ///< of the nodal vectors of the fibre's element
     Vec3 normal = Vec3::Zero();            ///< away from the tool
     Vec3 foot = Vec3::Zero();              ///< point of the tool that the particle is above [length]
     double cap = 0.0;                      ///< radius of a fibre's end, taken off the gap [length]

@@ -18,8 +18,8 @@ struct Chain {
     Index group = -1;            ///< innermost group of the scene; -1 where it names none
 };
 
-/// A rigid translation moves positions only.
-enum class VectorKind : std::uint8_t { position, direction };
+/// A rigid translation moves positions only; a rotation turns directions, and changes rotation vectors by its spin.
+enum class VectorKind : std::uint8_t { position, direction, rotation };
 
 /// The system is the identity outside `free`, a symmetric projector: prescribed components.
 struct HeldVector {

@@ -215,6 +215,7 @@ private:
             if (attempt.converged) {
                 account(trial, increment, contact_before, stage.forced_orders);
                 state_ = trial;
+                mesh_.rewind(state_, {&last_external_, &last_damping_});
                 amplitudes_ = amplitudes;
                 increment.residual = attempt.residual;
                 increment.displacement = attempt.displacement;

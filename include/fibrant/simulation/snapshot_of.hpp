@@ -27,9 +27,9 @@ observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const contact::Conta
             const Vec3 first = mesh.derivative(state, f, u), second = mesh.second_derivative(state, f, u);
             fibre.position.push_back(position);
             fibre.displacement.push_back(position - mesh.position(mesh.rest_state(), f, u));
-            const auto [element, xi] = mesh.locate(f, u);
-            fibre.director_1.push_back(Mesh::point(state, mesh.first_unknown(f, element), beam::director_weights<Beam>(xi, 1)));
-            fibre.director_2.push_back(Mesh::point(state, mesh.first_unknown(f, element), beam::director_weights<Beam>(xi, 2)));
+            const auto [director_1, director_2] = mesh.directors(state, f, u);
+            fibre.director_1.push_back(director_1);
+            fibre.director_2.push_back(director_2);
             fibre.curvature.push_back(first.cross(second).norm() / std::pow(first.norm(), 3));
         }
         shot.fibres.push_back(std::move(fibre));

@@ -202,7 +202,7 @@ private:
         const auto& elements = contacts_->elements();
         const double most = core::largest(core::count(elements), 0.0, [&](Index k) {
             const auto& element = elements[core::at(k)];
-            return contacts_->forced(element) ? 0.0 : std::abs(element.normal.dot(element.offset(step)));  // a forced side is prescribed
+            return contacts_->forced(element) ? 0.0 : std::abs(element.normal.dot(element.motion(step)));  // a forced side is prescribed
         });
         const double bound = parameters_.largest_approach * radius_;
         return most > bound ? bound / most : 1.0;

@@ -2,6 +2,7 @@
 #pragma once
 /// @file Coarse space of clusters of chains: rigid motions of their cross-sections, linear between stations along them.
 
+#include <fibrant/core/rotation.hpp>
 #include <fibrant/solver/block_cholesky.hpp>
 #include <fibrant/solver/chain_clusters.hpp>
 #include <fibrant/solver/linear_solver.hpp>
@@ -67,6 +68,12 @@ public:
     /// To be called before the chains are added: takes over the values of the layout.
     void begin(const scene::DofLayout& layout) {
         arm_ = layout.value;
+        turn_.clear();
+        if (std::ranges::find(layout.kind, scene::VectorKind::rotation) != layout.kind.end()) {
+            turn_.resize(layout.kind.size());
+            for (std::size_t v = 0; v < turn_.size(); ++v)
+                if (layout.kind[v] == scene::VectorKind::rotation) turn_[v] = core::spin_matrix(layout.value[v]).inverse();
+        }
         core::parallel_for(clusters(), [&](Index k) {
             Vec3 sum = Vec3::Zero();
             Index positions = 0;
@@ -176,11 +183,15 @@ private:
     /// Rows of F P of one vector for a station of weight 1.
     Mode mode(const scene::DofLayout& layout, const assembly::HeldProjector& held, Index v) const {
         Mode rows = Mode::Zero();
-        add_rotation(arm_[core::at(v)], rows);
+        if (turns(layout, v)) rows.rightCols<3>() = turn_[core::at(v)];
+        else add_rotation(arm_[core::at(v)], rows);
         if (layout.kind[core::at(v)] == scene::VectorKind::position) rows.leftCols<3>().setIdentity();
         if (const Mat3* free = held.free(v)) rows = (*free * rows).eval();
         return rows;
     }
+
+    /// v is a rotation vector: a spin changes it by turn_, whatever its arm.
+    bool turns(const scene::DofLayout& layout, Index v) const { return !turn_.empty() && layout.kind[core::at(v)] == scene::VectorKind::rotation; }
 
     static void add_to_chain(Chain& own, Index nodes_apart, const Hat& row, const Hat& column, const Block& block, bool diagonal) {
         const Index width = own.reach(nodes_apart) + 1;
@@ -257,7 +268,7 @@ private:
                 }
                 Part& part = parts[p];
                 part.low = std::min(part.low, place.node), part.high = std::max(part.high, place.node);
-                const bool free = held.free(v) == nullptr, position = layout.kind[core::at(v)] == scene::VectorKind::position;
+                const bool free = held.free(v) == nullptr && !space.turns(layout, v), position = layout.kind[core::at(v)] == scene::VectorKind::position;
                 for (int i = 0; i < 2; ++i) {
                     const double share = weight * place.hat.weight(i);
                     if (place.hat.weight(i) == 0.0) continue;
@@ -400,7 +411,8 @@ private:
                     for (Index v = first; v < first + chain.vectors_per_node; ++v) {
                         const Vec3 f = r.segment<3>(3 * v);
                         if (layout.kind[core::at(v)] == scene::VectorKind::position) force += f;
-                        moment += arm_[core::at(v)].cross(f);
+                        if (turns(layout, v)) moment += turn_[core::at(v)].transpose() * f;
+                        else moment += arm_[core::at(v)].cross(f);
                     }
                     const Hat& hat = places_[core::at(first)].hat;
                     if (hat.station != station) {
@@ -429,7 +441,7 @@ private:
                 if (hat.second > 0.0) motion += hat.second * station_values_.segment<6>(6 * hat.station + 6);
                 const Vec3 translation = motion.head<3>(), rotation = motion.tail<3>();
                 for (Index v = first; v < first + chain.vectors_per_node; ++v) {
-                    Vec3 move = rotation.cross(arm_[core::at(v)]);
+                    Vec3 move = turns(layout, v) ? Vec3(turn_[core::at(v)] * rotation) : Vec3(rotation.cross(arm_[core::at(v)]));
                     if (layout.kind[core::at(v)] == scene::VectorKind::position) move += translation;
                     z.segment<3>(3 * v) += move;
                 }
@@ -441,6 +453,7 @@ private:
     std::vector<Chain> chains_;
     std::vector<Place> places_;  // of each vector
     std::vector<Vec3> arm_;      // of each vector: a direction, or a position from the middle of its cluster
+    std::vector<Mat3> turn_;     // of each rotation vector by a spin; none where no chain has any
     int stations_ = 0;
     BlockCholesky<double> matrix_;
     Vector station_values_;  // forces and moments, then motions
