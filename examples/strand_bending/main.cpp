@@ -47,7 +47,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     model.normal.regularisation_depth = 0.1 * depth * radius;
     model.friction = {.friction_coefficient = mu, .reversible_displacement = reversible * radius};
     model.contact.stiffness.allowed_penetration = depth * radius;
-    model.iteration.margin = 1.0, model.iteration.largest_margin = 4.0;  // ends swing far
+    model.iteration.margin = 4.0, model.iteration.largest_margin = 8.0;  // ends swing far
     simulation::Simulator<Strand> simulator(strand::bent_strand(parameters), model);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const strand::BendingState state = strand::measure_bending(simulator, parameters);

@@ -42,7 +42,7 @@ Bent bend(Index wires, double mu, double angle) {
     model.normal.regularisation_depth = 1e-3 * r;
     model.friction = {.friction_coefficient = mu, .reversible_displacement = 0.02 * r};
     model.contact.stiffness.allowed_penetration = 1e-2 * r;
-    model.iteration.margin = 1.0, model.iteration.largest_margin = 4.0;  // ends swing far
+    model.iteration.margin = 4.0, model.iteration.largest_margin = 8.0;  // ends swing far
     simulation::Simulator<Rough> simulator(strand::bent_strand(bent.parameters), model);
     simulation::Stage<Rough> stage;
     stage.ramps = {{strand::bend, angle}};
