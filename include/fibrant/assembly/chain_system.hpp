@@ -68,15 +68,10 @@ public:
         free_.setZero(x.size());
         for (const Skew& skew : skews_) {
             const Point& point = points_[core::at(skew.point)];
-            Vec3 apart = Vec3::Zero();
-            for (Index a = 0; a < vectors; ++a)
-                apart += point.weights_j[core::at(a)] * x.segment<3>(point.first_j + 3 * a) -
-                         point.weights_i[core::at(a)] * x.segment<3>(point.first_i + 3 * a);
+            const Vec3 apart = beam::Mesh<B>::motion(x, point.first_j, point.weights_j) - beam::Mesh<B>::motion(x, point.first_i, point.weights_i);
             const Vec3 force = skew.row.dot(apart) * skew.column;
-            for (Index a = 0; a < vectors; ++a) {
-                free_.segment<3>(point.first_j + 3 * a) += point.weights_j[core::at(a)] * force;
-                free_.segment<3>(point.first_i + 3 * a) -= point.weights_i[core::at(a)] * force;
-            }
+            beam::spread(point.weights_j, force, point.first_j, free_);
+            beam::spread(point.weights_i, Vec3(-force), point.first_i, free_);
         }
         for (const scene::HeldVector& held : layout_.held)
             free_.segment<3>(3 * held.vector) = (held.free * free_.segment<3>(3 * held.vector)).eval();

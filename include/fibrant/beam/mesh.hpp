@@ -86,6 +86,7 @@ public:
 
     Mesh(const scene::Assembly& assembly, const B& beam) {
         Index first = 0;
+        std::vector<Vec3> start;
         for (const scene::FibreSpecification& fibre : assembly.fibres()) {
             const Index nodes = fibre.elements * (B::nodes - 1) + 1;
             const std::vector<scene::NodeFrame> frames =
@@ -98,6 +99,8 @@ public:
             layout_.chains.push_back({first, nodes, B::vectors_per_node, B::reach, fibre.group});
             const std::vector<scene::NodeFrame> starts = fibre.start ? scene::reference_frames(fibre.start, nodes, fibre.director) : frames;
             frames_.insert(frames_.end(), starts.begin(), starts.end());
+            for (const scene::NodeFrame& frame : starts)
+                for (const Vec3& vector : nodal_vectors<B>(frame, fibres_.back().element_length)) start.push_back(vector);
             for (const scene::NodeFrame& frame : frames) {
                 const std::array<Vec3, static_cast<std::size_t>(B::vectors_per_node)> vectors =
                     nodal_vectors<B>(frame, fibres_.back().element_length);
@@ -112,11 +115,7 @@ public:
         rest_state_.resize(3 * first);
         for (Index v = 0; v < first; ++v) rest_state_.segment<3>(3 * v) = layout_.value[core::at(v)];
         start_state_.resize(3 * first);
-        for (Index node = 0; node < core::count(frames_); ++node) {
-            const auto vectors = nodal_vectors<B>(frames_[core::at(node)]);
-            for (Index v = 0; v < B::vectors_per_node; ++v)
-                start_state_.segment<3>(3 * (node * B::vectors_per_node + v)) = vectors[core::at(v)];
-        }
+        for (Index v = 0; v < first; ++v) start_state_.segment<3>(3 * v) = start[core::at(v)];
         first_element_.assign(1, 0);
         for (const MeshFibre& fibre : fibres_) first_element_.push_back(first_element_.back() + fibre.elements);
         rest_.resize(core::at(first_element_.back()));
@@ -191,6 +190,16 @@ public:
     {
         return particle.place(state.segment<element_unknowns>(first_unknown));
     }
+    /// What a small step does to a particle's place [length].
+    static Vec3 motion(const Vector& step, Index first_unknown, const Particle<B>& particle) noexcept {
+        if constexpr (TurningSections<B>) {
+            Vec3 sum = Vec3::Zero();
+            for (Index a = 0; a < B::nodes * B::vectors_per_node; ++a) sum += particle.slope(a) * step.segment<3>(first_unknown + 3 * a);
+            return sum;
+        } else {
+            return point(step, first_unknown, particle);
+        }
+    }
     Vec3 position(const Vector& state, Index f, double u) const noexcept {
         const auto [e, xi] = locate(f, u);
         return point(state, first_unknown(f, e), B::centreline_weights(xi));
@@ -222,7 +231,7 @@ public:
     Vec3 second_derivative(const Vector& state, Index f, double u) const noexcept {
         const auto [e, xi] = locate(f, u);
         const Index first = first_unknown(f, e);
-        if constexpr (requires { B::centreline_bend_weights(xi); }) {
+        if constexpr (requires { B::centreline_bend_weights(0.0); }) {
             return point(state, first, B::centreline_bend_weights(xi));
         } else {
             return 2.0 * (point(state, first, B::centreline_derivative_weights(1.0)) -

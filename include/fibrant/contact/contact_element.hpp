@@ -59,14 +59,7 @@ struct ContactElement {
     }
     /// What a small step changes of it [length].
     Vec3 motion(const Vector& step) const noexcept {
-        if constexpr (beam::TurningSections<B>) {
-            Vec3 sum = Vec3::Zero();
-            for (Index a = 0; a < B::nodes * B::vectors_per_node; ++a)
-                sum += weights_j.slope(a) * step.segment<3>(first_j + 3 * a) - weights_i.slope(a) * step.segment<3>(first_i + 3 * a);
-            return sum;
-        } else {
-            return offset(step);
-        }
+        return beam::Mesh<B>::motion(step, first_j, weights_j) - beam::Mesh<B>::motion(step, first_i, weights_i);
     }
     /// True gap, < 0 in penetration [length] (Durville, eq. 9, with the normal from i to j).
     double gap(const Vector& state) const noexcept { return normal.dot(offset(state)) - cap; }
