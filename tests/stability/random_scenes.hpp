@@ -14,12 +14,10 @@ namespace fibrant::test {
 /// Uniform numbers of a counter (splitmix64), so that no library decides what a seed means.
 class Uniform {
 public:
-    explicit Uniform(std::uint64_t seed) : state_{seed * 0x9E3779B97F4A7C15ull + 1} {}
+    explicit Uniform(std::uint64_t seed) : state_{mixed(seed ^ 0x5DEECE66Dull)} {}  // mixed, or the next seed would be a shift of this one
     double operator()(double low, double high) {
         state_ += 0x9E3779B97F4A7C15ull;
-        std::uint64_t z = state_;
-        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull, z = (z ^ (z >> 27)) * 0x94D049BB133111EBull, z ^= z >> 31;
-        return low + (high - low) * static_cast<double>(z >> 11) * 0x1p-53;
+        return low + (high - low) * static_cast<double>(mixed(state_) >> 11) * 0x1p-53;
     }
     Vec3 vector(double size) {
         const double x = (*this)(-size, size), y = (*this)(-size, size), z = (*this)(-size, size);
@@ -27,8 +25,24 @@ public:
     }
 
 private:
+    static std::uint64_t mixed(std::uint64_t z) {
+        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull, z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+        return z ^ (z >> 31);
+    }
     std::uint64_t state_;
 };
+
+/// The centrelines less a radius at either end: ends are flat, and have no cap that could be in another fibre.
+inline double deepest_between_ends(const SmallScene& scene, const SmallResult& result) {
+    std::vector<std::vector<Vec3>> lines = result.centreline;
+    std::vector<double> radius;
+    for (std::size_t f = 0; f < lines.size(); ++f) {
+        radius.push_back(scene.fibres[f].radius);
+        const Vec3 first = lines[f].front(), last = lines[f].back();
+        std::erase_if(lines[f], [&](const Vec3& x) { return (x - first).norm() < radius[f] || (x - last).norm() < radius[f]; });
+    }
+    return deepest(lines, radius);
+}
 
 /// Two to five fibres of any direction in a small box, apart at the start; ends held in any way and moved by a few radii.
 inline SmallScene random_scene(std::uint64_t seed) {
@@ -79,7 +93,7 @@ inline void check_random_scenes(std::uint64_t first, std::uint64_t count) {
             continue;
         }
         ++converged, touching += result.report.contact.active > 0;
-        const double depth = deepest(scene, result);
+        const double depth = deepest_between_ends(scene, result);
         worst = std::max(worst, depth);
         CHECK(depth < 0.1);
         Vec3 sum = Vec3::Zero();
