@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a result must not depend on, degenerate geometries, and random small scenes: what is asserted is physics, measured without
-// the code of contact. More of the same, and sweeps, in stability_long_test.cpp.
+// the code of contact.
 #include <stability/small_scenes.hpp>
 #include <stability/random_scenes.hpp>
 
