@@ -18,6 +18,7 @@
 
 #include <fibrant/beam/beam_element.hpp>
 #include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/kirchhoff_cable.hpp>
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/beam/quaternion.hpp>
 #include <fibrant/beam/rigid_section_rod.hpp>
@@ -86,6 +87,7 @@
 #include <fibrant/observe/loading_curve.hpp>
 #include <fibrant/observe/observer.hpp>
 #include <fibrant/observe/snapshot.hpp>
+#include <fibrant/observe/svg_plot.hpp>
 #include <fibrant/observe/svg_slice.hpp>
 #include <fibrant/observe/svg_view.hpp>
 #include <fibrant/observe/vtk_writer.hpp>

@@ -16,7 +16,7 @@ using namespace fibrant;
 using Memory = contact::ContactMemory<law::RegularisedPenalty, law::RegularisedCoulomb>;
 using Record = Memory::Record;
 
-static_assert(sizeof(contact::ContactRecord<law::RegularisedPenalty, law::Frictionless>) + 2 * sizeof(double) == sizeof(Record),
+static_assert(sizeof(contact::ContactRecord<law::RegularisedPenalty, law::Frictionless>) + 3 * sizeof(double) == sizeof(Record),
               "a record without friction keeps nothing of it");
 
 namespace {

@@ -14,13 +14,15 @@
 
 namespace fibrant::contact {
 
-/// Reversible displacement by components on the fibre's tangent and across it, so that it turns with the fibres.
+/// Reversible displacement by components along a direction between the tangents of the fibres and across it, so that it turns by the
+/// mean of both turns, whichever of them comes first.
 template <law::FrictionLaw Friction>
 struct RecordedFriction {};
 template <law::FrictionLaw Friction>
     requires core::Active<Friction>
 struct RecordedFriction<Friction> {
     double along = 0.0, across = 0.0;  ///< [length]
+    double sign = 1.0;                 ///< of the second tangent in the direction between both, 1 or -1
 };
 
 /// Multiplier, for laws that have one; nothing otherwise.
@@ -60,11 +62,11 @@ private:
         see(self.fibre_i), see(self.fibre_j), see(self.u_i), see(self.u_j);
         see(self.normal.x()), see(self.normal.y()), see(self.normal.z());
         if constexpr (law::Augmenting<Normal>) see(self.multiplier.force);
-        if constexpr (core::Active<Friction>) see(self.friction.along), see(self.friction.across);
+        if constexpr (core::Active<Friction>) see(self.friction.along), see(self.friction.across), see(self.friction.sign);
     }
 };
 
-/// Unit vectors of the tangent plane: along fibre i, and across it.
+/// Unit vectors of the tangent plane: along a direction, and across it.
 struct TangentPlane {
     Vec3 along, across;
     TangentPlane(const Vec3& tangent, const Vec3& normal) {
@@ -117,10 +119,13 @@ public:
             if (signed_mean <= 0.0 && -signed_mean < left) left = -signed_mean, before = &record;
             if (signed_mean > 0.0 && signed_mean < right) right = signed_mean, after = &record;
         });
+        if (before && after && before->friction.sign != after->friction.sign) {  // not of one line of contact
+            (left <= right ? after : before) = nullptr;
+        }
         if (before && after) {
             const double t = left + right > 0.0 ? left / (left + right) : 0.0;
             return {(1.0 - t) * before->friction.along + t * after->friction.along,
-                    (1.0 - t) * before->friction.across + t * after->friction.across};
+                    (1.0 - t) * before->friction.across + t * after->friction.across, before->friction.sign};
         }
         if (before) return before->friction;
         if (after) return after->friction;

@@ -333,6 +333,16 @@ private:
         return contact_tangent(*mesh_, state, element.fibre_i, element.u_i).normalized();
     }
 
+    /// A direction between the tangents of both fibres. It turns by the mean of their turns, so that slips do not depend on which
+    /// fibre comes first; either sign will do as long as it is kept.
+    Vec3 heading(const Element& element, const Vector& state, double sign) const {
+        return tangent_of_i(element, state) + sign * contact_tangent(*mesh_, state, element.fibre_j, element.u_j).normalized();
+    }
+    double sign_of_j(const Element& element, const Vector& state) const {
+        const Vec3 other = contact_tangent(*mesh_, state, element.fibre_j, element.u_j);
+        return tangent_of_i(element, state).dot(other) < 0.0 ? -1.0 : 1.0;
+    }
+
     /// Weights of the particles that lie furthest along the normal in this state.
     void follow_support(Element& element, const Vector& state) const {
         element.cap = support_weights(*mesh_, state, element.fibre_i, element.u_i, element.first_i, element.normal,
@@ -356,7 +366,8 @@ private:
         const Vec3 offset = particle_offset(element, accepted);
         const Vec3 before = normal(element, accepted, element.normal);
         if (element.end_i || element.end_j) return turned(offset, before, element.normal);
-        const TangentPlane then(tangent_of_i(element, accepted), before), now(tangent_of_i(element, state), element.normal);
+        const double sign = sign_of_j(element, state);
+        const TangentPlane then(heading(element, accepted, sign), before), now(heading(element, state, sign), element.normal);
         return offset.dot(then.along) * now.along + offset.dot(then.across) * now.across + offset.dot(before) * element.normal;
     }
 
@@ -374,7 +385,7 @@ private:
         const double range = 1.5 / parameters_.spacing.points_per_element;
         const RecordedFriction<Friction> recorded =
             accepted_.friction(element.fibre_i, element.fibre_j, element.u_i, element.u_j, range);
-        const TangentPlane plane(tangent_of_i(element, state), element.normal);
+        const TangentPlane plane(heading(element, state, recorded.sign), element.normal);
         element.friction.history.reversible = recorded.along * plane.along + recorded.across * plane.across;
     }
 
@@ -390,9 +401,10 @@ private:
                 if (k < core::count(responses_)) record.multiplier.force = responses_[core::at(k)].reaction;
             if constexpr (core::Active<Friction>) {
                 if (k < core::count(frictions_) && responses_[core::at(k)].reaction > 0.0) {
-                    const TangentPlane plane(tangent_of_i(element, state), element.normal);
+                    const double sign = sign_of_j(element, state);
+                    const TangentPlane plane(heading(element, state, sign), element.normal);
                     const Vec3& kept = frictions_[core::at(k)].history.reversible;
-                    record.friction = {kept.dot(plane.along), kept.dot(plane.across)};
+                    record.friction = {kept.dot(plane.along), kept.dot(plane.across), sign};
                 }
             }
         });

@@ -337,7 +337,7 @@ private:
 
     void write_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, const Report& report) const {
         CheckpointWriter file;
-        file.put(std::string("fibrant checkpoint 6"));
+        file.put(std::string("fibrant checkpoint 7"));
         file.put(scene_identity()), file.put(loading_identity(stages));
         file.put(state_);
         file.put(last_external_), file.put(last_damping_);
@@ -362,7 +362,7 @@ private:
 
     void read_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, Report& report) {
         CheckpointReader file(path);
-        file.expect(file.get_text() == "fibrant checkpoint 6", "the format");
+        file.expect(file.get_text() == "fibrant checkpoint 7", "the format");
         file.expect(file.get<std::uint64_t>() == scene_identity(), "the set of fibres and channels");
         file.expect(file.get<std::uint64_t>() == loading_identity(stages), "the loading");
         Vector state = file.get_vector();

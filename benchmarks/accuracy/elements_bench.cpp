@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+// Which beam element reaches a given error soonest? Prints CSV, a line a mesh: the error in the figure that the reference gives, CPU time
+// of the whole run and unknowns; then the fitted orders, and what each element costs in one and the same scene of touching fibres. Writes a
+// log-log plot of each case.
+// usage: benchmark_accuracy_elements_bench [directory of the plots [repeats]]; default . and 5
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/kirchhoff_cable.hpp>
+#include <fibrant/beam/rigid_section_rod.hpp>
+#include <fibrant/law/frictionless.hpp>
+#include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/observe/svg_plot.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/simulation/simulator.hpp>
+#include <fibrant/solver/sparse_cholesky.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+using namespace fibrant;
+
+namespace {
+
+template <beam::BeamElement B, law::FrictionLaw Law = law::Frictionless>
+struct Policy {
+    using Beam = B;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::RegularisedPenalty;
+    using Friction = Law;
+    using Solver = solver::SparseCholesky;
+};
+
+const double r = 0.0201, young = 7300.0, area = std::numbers::pi * r * r, bending = 0.25 * young * area * r * r;
+
+/// A problem of one rod: the scene, the figures that are compared, and their size.
+struct Problem {
+    std::string name;
+    scene::Assembly (*assembly)(Index elements);
+    std::vector<std::vector<simulation::Ramp>> stages;
+    bool (*reaction)();                             ///< compare the force at mid-span, not the place of the tip
+    double size;                                    ///< errors are divided by [length or force]
+    std::map<std::string, Vec3> reference;          ///< by model
+};
+
+scene::FibreSpecification along_z(double length, Index elements) {
+    return {.from = Vec3::Zero(), .to = Vec3(0, 0, length), .section = scene::circular(r), .material = {young, 0.3}, .elements = elements, .director = Vec3::UnitX()};
+}
+template <int Slenderness>
+scene::Assembly cantilever(Index elements) {
+    const double length = Slenderness * r;
+    scene::Assembly assembly;
+    assembly.add(along_z(length, elements));
+    assembly.clamp(scene::first_end(0));
+    assembly.apply(scene::DeadForce{scene::last_end(0), scene::NodeVector::position, Vec3(5.0 * bending / (length * length), 0, 0), "load"});
+    return assembly;
+}
+template <int Slenderness, int Thousandths>
+scene::Assembly stretched(Index elements) {
+    const double length = Slenderness * r;
+    scene::Assembly assembly;
+    assembly.add(along_z(length, elements));
+    assembly.clamp(scene::first_end(0));
+    assembly.clamp(scene::last_end(0), Vec3(0, 0, 1e-3 * Thousandths * length), Vec3::Zero(), Vec3::Zero(), "stretch");
+    scene::Hold push;
+    push.at = {0, 0.5}, push.directions = Vec3(1, 0, 0).asDiagonal(), push.displacement = Vec3(2.0 * r, 0, 0), push.channel = "push";
+    assembly.hold(push);
+    return assembly;
+}
+scene::Assembly arc(Index elements) {
+    const double quarter = 0.25 * std::numbers::pi;
+    scene::FibreSpecification fibre;
+    fibre.curve = [=](double t) { return Vec3(100.0 * std::sin(t * quarter), 100.0 * (1.0 - std::cos(t * quarter)), 0.0); };
+    fibre.section = scene::circular(0.1 / std::sqrt(std::numbers::pi));
+    fibre.section.inertia_factor = std::numbers::pi / 3.0;
+    fibre.material = {1e7, 0.0}, fibre.elements = elements, fibre.director = Vec3::UnitY();
+    scene::Assembly assembly;
+    assembly.add(fibre);
+    assembly.clamp(scene::first_end(0));
+    assembly.apply(scene::DeadForce{scene::last_end(0), scene::NodeVector::position, Vec3(0, 0, 0.06), "load"});
+    return assembly;
+}
+bool yes() { return true; }
+bool no() { return false; }
+
+std::vector<Problem> problems() {
+    return {
+        {"cantilever_1000", cantilever<1000>, {{{"load", 1.0}}}, no, 20.1,
+         {{"kirchhoff", {14.347209624599, 0, 12.308669949439}}, {"reissner", {14.347246478717, 0, 12.308662682769}}, {"director", {14.347255281111, 0, 12.308643485742}}}},
+        {"arc45_slender", arc, {{{"load", 1.0}}}, no, 100.0,
+         {{"reissner", {47.151285842085, 15.685075385944, 53.468661045426}}, {"director", {47.151285842085, 15.685075385944, 53.468661045426}}}},
+        {"stretched_100_w2", stretched<100, 0>, {{{"stretch", 1.0}}, {{"push", 1.0}}}, yes, 0.0017,
+         {{"reissner", {0.0017101073583669, 0, 0}}, {"director", {0.00171357790723, 0, 0}}}},
+        {"stretched_1000_eps0.01", stretched<1000, 10>, {{{"stretch", 1.0}}, {{"push", 1.0}}}, yes, 0.00075,
+         {{"reissner", {0.00074918537055306, 0, 0}}, {"director", {0.000760462464506, 0, 0}}}},
+    };
+}
+
+template <simulation::Model M>
+simulation::ModelParameters<M> parameters() {
+    simulation::ModelParameters<M> all;
+    all.normal.regularisation_depth = 1e-3 * r;
+    all.contact.stiffness.allowed_penetration = 1e-2 * r;
+    all.iteration.step_tolerance = 1e-8, all.iteration.residual_tolerance = 1e-8, all.iteration.linear_tolerance = 1e-9;
+    all.iteration.newton_limit = 40;
+    if constexpr (core::Active<typename M::Friction>) all.friction = {.friction_coefficient = 0.15, .reversible_displacement = 0.02 * r};
+    return all;
+}
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+struct Sample {
+    double error = 0.0, seconds = 0.0;
+    Index unknowns = 0;
+    bool converged = false;
+};
+
+template <simulation::Model M>
+Sample measure(const Problem& problem, const Vec3& reference, Index elements, int repeats) {
+    Sample sample;
+    std::vector<double> times;
+    for (int k = 0; k < repeats; ++k) {
+        const double start = cpu_seconds();
+        simulation::Simulator<M> simulator(problem.assembly(elements), parameters<M>());
+        simulation::Loading<M> loading;
+        for (const auto& ramps : problem.stages) {
+            simulation::Stage<M> stage;
+            stage.ramps = ramps, stage.increments = 1;
+            loading.stages.push_back(stage);
+        }
+        sample.converged = simulator.run(loading).converged;
+        times.push_back(cpu_seconds() - start);
+        const Vec3 value = problem.reaction() ? Vec3(simulator.reaction({0, 0.5}).x(), 0, 0) : simulator.value(scene::last_end(0));
+        sample.error = (value - reference).norm() / problem.size;
+        sample.unknowns = simulator.state().size();
+    }
+    std::sort(times.begin(), times.end());
+    sample.seconds = times[times.size() / 2];
+    return sample;
+}
+
+using Plots = std::map<std::string, observe::LogLogPlot>;
+
+/// @param models  whose references the element is measured against: the first of them that a problem has
+template <simulation::Model M>
+void sweep(const char* policy, const std::vector<std::string>& models, int first, bool curved, int repeats, Plots& plots) {
+    for (const Problem& problem : problems()) {
+        if (problem.name.starts_with("arc") && !curved) continue;
+        const auto model = std::find_if(models.begin(), models.end(), [&](const std::string& m) { return problem.reference.contains(m); });
+        std::vector<std::pair<double, double>> by_time, by_unknowns;
+        for (Index elements = first; elements <= 64 * first; elements *= 2) {
+            const Sample sample = measure<M>(problem, problem.reference.at(*model), elements, repeats);
+            std::printf("%s,%s,%s,%ld,%ld,%.3e,%.3e,%d\n", problem.name.c_str(), policy, model->c_str(), static_cast<long>(elements), static_cast<long>(sample.unknowns),
+                        sample.error, sample.seconds, sample.converged ? 1 : 0);
+            if (!sample.converged) continue;
+            by_time.emplace_back(sample.seconds, sample.error);
+            by_unknowns.emplace_back(static_cast<double>(sample.unknowns), sample.error);
+        }
+        // The order of the range in which refinement helps: up to the least error.
+        const auto least = std::min_element(by_unknowns.begin(), by_unknowns.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+        const std::vector<std::pair<double, double>> falling(by_unknowns.begin(), least == by_unknowns.end() ? least : least + 1);
+        std::printf("# order,%s,%s,%.2f,least error %.1e\n", problem.name.c_str(), policy, -observe::fitted_order(falling), least == by_unknowns.end() ? NAN : least->second);
+        observe::LogLogPlot& plot = plots[problem.name];
+        plot.title = problem.name, plot.x_label = "CPU time [s]", plot.y_label = "error";
+        plot.lines.push_back({policy, by_time});
+    }
+}
+
+/// Two layers of eight fibres, each clamped at its ends, pressed into each other: 64 crossings.
+scene::Assembly layers() {
+    scene::Assembly assembly;
+    const double length = 1.2, pitch = 0.12;
+    for (const bool upper : {false, true})
+        for (int k = 0; k < 8; ++k) {
+            const double aside = (k - 3.5) * pitch, z = upper ? 2.0 * r : 0.0;
+            scene::FibreSpecification fibre = along_z(1.0, 20);
+            fibre.from = upper ? Vec3(-0.5 * length, aside, z) : Vec3(aside, -0.5 * length, z), fibre.to = upper ? Vec3(0.5 * length, aside, z) : Vec3(aside, 0.5 * length, z);
+            fibre.director = Vec3::UnitZ();
+            const Index f = assembly.add(fibre);
+            for (const double end : {0.0, 1.0}) assembly.clamp({f, end}, upper ? Vec3(0, 0, -r) : Vec3(Vec3::Zero()));
+        }
+    return assembly;
+}
+template <simulation::Model M>
+void cost(const char* policy, int repeats) {
+    using B = typename M::Beam;
+    using Element = contact::ContactElement<B, typename M::Normal, typename M::Friction>;
+    std::vector<double> times;
+    Index unknowns = 0, active = 0, newton = 0;
+    double force = 0.0;
+    bool converged = true;
+    for (int k = 0; k < repeats; ++k) {
+        const double start = cpu_seconds();
+        simulation::Simulator<M> simulator(layers(), parameters<M>());
+        const simulation::Report report = simulator.run({.increments = 4});
+        times.push_back(cpu_seconds() - start);
+        converged = converged && report.converged;
+        unknowns = simulator.state().size(), active = report.contact.active, newton = report.counts.newton, force = report.contact.reaction_sum;
+    }
+    std::sort(times.begin(), times.end());
+    std::printf("%s,%ld,%zu,%zu,%zu,%zu,%ld,%ld,%.6e,%.3f,%.3e,%d\n", policy, static_cast<long>(unknowns), sizeof(typename B::Rest) + sizeof(typename B::Stresses),
+                sizeof(typename assembly::ChainSystem<B>::Row), sizeof(Element), sizeof(typename assembly::ChainSystem<B>::Point), static_cast<long>(active),
+                static_cast<long>(newton), force, times[times.size() / 2], times[times.size() / 2] / static_cast<double>(newton), converged ? 1 : 0);
+}
+
+using Director = Policy<beam::DirectorBeam<3>>;
+using Director2 = Policy<beam::DirectorBeam<2>>;
+using Rod = Policy<beam::RigidSectionRod>;
+using Cable = Policy<beam::KirchhoffCable>;
+using Rough = Policy<beam::DirectorBeam<3>, law::RegularisedCoulomb>;
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::filesystem::path directory = argc > 1 ? argv[1] : ".";
+    const int repeats = argc > 2 ? std::max(1, std::atoi(argv[2])) : 5;
+    Plots plots;
+    std::printf("problem,policy,reference,elements,unknowns,error,seconds,converged\n");
+    sweep<Director>("director 3", {"director"}, 2, true, repeats, plots);
+    sweep<Director2>("director 2", {"director"}, 4, true, repeats, plots);
+    sweep<Rod>("rod", {"reissner"}, 4, true, repeats, plots);
+    sweep<Cable>("cable", {"kirchhoff", "reissner"}, 2, false, repeats, plots);
+    for (const auto& [name, plot] : plots) observe::write_file(directory / ("accuracy_" + name + ".svg"), observe::log_log_svg(plot));
+    std::printf("policy,unknowns,bytes an element,bytes a row,bytes a contact,bytes a point,active,newton,reactions,seconds,seconds an iteration,converged\n");
+    cost<Rough>("director with friction", repeats);
+    cost<Director>("director", repeats);
+    cost<Director2>("director with 2 nodes", repeats);
+    cost<Rod>("rod", repeats);
+    cost<Cable>("cable", repeats);
+    return 0;
+}

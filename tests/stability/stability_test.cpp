@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+// What a result must not depend on, degenerate geometries, and random small scenes: what is asserted is physics, measured without
+// the code of contact.
+#include <stability/small_scenes.hpp>
+#include <stability/random_scenes.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Geometry>
+
+#include <cstdio>
+
+using namespace fibrant;
+using namespace fibrant::test;
+
+namespace {
+
+const double r = 0.0201;
+
+/// Distance of two results whose fibres and stations correspond by `fibre` and `back`, after Q and shift, over the radius.
+double apart(const SmallResult& a, const SmallResult& b, const Mat3& Q, const Vec3& shift, double length = 1.0,
+             const std::vector<std::size_t>& order = {}, bool back = false) {
+    double most = 0.0;
+    for (std::size_t f = 0; f < b.centreline.size(); ++f) {
+        const auto& from = a.centreline[order.empty() ? f : order[f]];
+        const auto& to = b.centreline[f];
+        for (std::size_t k = 0; k < to.size(); ++k)
+            most = std::max(most, (length * (Q * from[back ? to.size() - 1 - k : k] + shift) - to[k]).norm() / (length * r));
+    }
+    return most;
+}
+const Mat3 same = Mat3::Identity();
+
+SmallScene tight_three() {
+    SmallScene scene = dragged_three();
+    scene.tight = true;
+    return scene;
+}
+/// Run once for all comparisons.
+const SmallResult& three() {
+    static const SmallResult result = run(tight_three());
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("three fibres that are pressed and dragged: converged, in balance, not in each other") {
+    const SmallScene scene = tight_three();
+    REQUIRE(three().report.converged);
+    CHECK(three().report.contact.active >= 2);
+    CHECK(three().report.energy.dissipated > 0.0);
+    CHECK((three().support[0] + three().support[1] + three().support[2]).norm() < 1e-9 * three().support[1].norm());
+    CHECK(deepest(scene, three()) < 2e-2);  // twice the allowed penetration, and what sections give way
+}
+
+TEST_CASE("the units of length and force change nothing: metres, micrometres, newtons, micronewtons") {
+    for (const auto& [length, force] : {std::pair(1e-3, 1.0), std::pair(1e3, 1e6), std::pair(1e3, 1.0)}) {
+        const SmallResult other = run(scaled(tight_three(), length, force));
+        REQUIRE(other.report.converged);
+        CHECK(apart(three(), other, same, Vec3::Zero(), length) < 1e-9);
+        CHECK((other.support[1] / force - three().support[1]).norm() < 1e-9 * three().support[1].norm());
+    }
+}
+
+TEST_CASE("a rigid motion of the whole scene, far from the origin too, moves the result with it") {
+    const Mat3 turn = Eigen::AngleAxisd(2.1, Vec3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
+    for (const Vec3& shift : {Vec3(Vec3::Zero()), Vec3(3.0, -2.0, 1.0), Vec3(300.0, -200.0, 100.0)}) {
+        const SmallResult other = run(moved(tight_three(), turn, shift));
+        REQUIRE(other.report.converged);
+        // Coordinates of the size |shift| keep 1e-16 |shift| of a strain over an element; bending turns it to 1e3 of that in radii.
+        const double tolerance = 1e-9 + 1e-9 * shift.norm();
+        CHECK(apart(three(), other, turn, shift) < tolerance);
+        CHECK((other.support[1] - turn * three().support[1]).norm() < tolerance * three().support[1].norm());
+    }
+}
+
+TEST_CASE("a mirror image of the scene is a mirror image of the result") {
+    const Mat3 mirror = Mat3::Identity() - 2.0 * Vec3(1, 2, -1).normalized() * Vec3(1, 2, -1).normalized().transpose();
+    const SmallResult other = run(moved(tight_three(), mirror, Vec3::Zero()));
+    REQUIRE(other.report.converged);
+    CHECK(apart(three(), other, mirror, Vec3::Zero()) < 1e-9);
+}
+
+TEST_CASE("neither the order of the fibres nor their directions matter") {
+    const std::vector<std::size_t> order{2, 0, 1};
+    const SmallResult renamed = run(permuted(tight_three(), order)), back = run(reversed(tight_three()));
+    REQUIRE(renamed.report.converged);
+    REQUIRE(back.report.converged);
+    CHECK(apart(three(), renamed, same, Vec3::Zero(), 1.0, order) < 1e-9);
+    CHECK(apart(three(), back, same, Vec3::Zero(), 1.0, {}, true) < 1e-9);
+}
+
+TEST_CASE("degenerate geometries converge without a fibre in another one, or say why not") {
+    struct Case {
+        const char* name;
+        SmallScene scene;
+        bool must = true;  ///< converge
+    };
+    const auto pair = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& press, const Vec3& push = Vec3::Zero()) {
+        SmallScene scene;
+        SmallFibre lower{a, b}, upper{c, d};
+        upper.move_from = upper.move_to = press, upper.push = push;
+        scene.fibres = {lower, upper};
+        return scene;
+    };
+    const double h = 2.0 * r, L = 0.4;
+    std::vector<Case> cases;
+    for (const double angle : {0.0, 1e-12, 1e-6, 1e-3, 0.05})
+        cases.push_back({"near-parallel", pair({-L, 0, 0}, {L, 0, 0}, {-L * std::cos(angle), -L * std::sin(angle), h}, {L * std::cos(angle), L * std::sin(angle), h}, Vec3::Zero(), {0, 0, -3e-3})});
+    cases.push_back({"exactly perpendicular", pair({-L, 0, 0}, {L, 0, 0}, {0, -L, h}, {0, L, h}, {0, 0, -r})});
+    cases.push_back({"end to end", pair({-L, 0, 0}, {-r, 0, 0}, {r, 0, 0}, {L, 0, 0}, {-0.02 * r, 0, 0})});
+    cases.back().scene.fibres[0].held_to = cases.back().scene.fibres[1].held_from = Held::free;
+    cases.push_back({"end against side", pair({-L, 0, 0}, {L, 0, 0}, {0, 0, h}, {0, 0, h + L}, {0, 0, -0.5 * r})});
+    cases.back().scene.fibres[1].held_from = Held::free;
+    cases.push_back({"very short fibre on a long one", pair({-L, 0, 0}, {L, 0, 0}, {-0.5 * r, 0, h}, {0.5 * r, 0, h}, {0, 0, -0.5 * r})});
+    cases.back().scene.fibres[1].elements = 1;
+    cases.push_back({"very short fibres", pair({-r, 0, 0}, {r, 0, 0}, {0, -r, h}, {0, r, h}, {0, 0, -0.02 * r})});
+    cases.back().scene.fibres[0].elements = cases.back().scene.fibres[1].elements = 1;
+    {
+        SmallScene star = pair({-L, 0, 0}, {L, 0, 0}, {0, -L, h}, {0, L, h}, {0, 0, -r});
+        SmallFibre third{Vec3(-0.7 * L, -0.7 * L, 2.0 * h), Vec3(0.7 * L, 0.7 * L, 2.0 * h)};
+        third.move_from = third.move_to = Vec3(0, 0, -2.0 * r);
+        star.fibres.push_back(third);
+        cases.push_back({"three stacked over one point", star});
+        for (SmallFibre& f : star.fibres) f.from.z() = f.to.z() = 0.0, f.move_from = f.move_to = Vec3::Zero();
+        cases.push_back({"three through one point", star, false});
+    }
+    cases.push_back({"coincident centrelines", pair({-L, 0, 0}, {L, 0, 0}, {-L, 0, 0}, {L, 0, 0}, {0, 0, 0}), false});
+    for (const Case& c : cases) {
+        CAPTURE(c.name);
+        const SmallResult result = run(c.scene);
+        std::printf("%s: %s, %ld of %ld contacts, deepest %.1e r %s\n", c.name, result.report.converged ? "converged" : "stopped", static_cast<long>(result.report.contact.active),
+                    static_cast<long>(result.report.contact.elements), deepest(c.scene, result), result.report.reason.c_str());
+        CHECK(result.finite());
+        if (c.must) REQUIRE(result.report.converged);
+        if (!result.report.converged) {
+            CHECK(!result.report.reason.empty());
+        } else if (c.must) {
+            CHECK(result.report.contact.active > 0);
+            CHECK(deepest(c.scene, result) < 0.05);
+        } else {
+            // Nothing can be asked of where fibres go from inside each other, but it must not go unsaid.
+            CHECK(result.report.contact.greatest_penetration > 0.9 * r * (deepest(c.scene, result) - 0.05));
+        }
+    }
+}
+
+TEST_CASE("random small scenes neither crash nor leave a fibre in another one without saying so") { check_random_scenes(1, 40); }
+
+TEST_CASE("slack fibres under a load they cannot carry yet find their shape, or the run says why") {
+    SmallScene scene;  // a fibre that is longer than its span, pushed aside, above a straight one
+    SmallFibre straight{Vec3(-0.5, 0, 0), Vec3(0.5, 0, 0)}, slack{Vec3(0.0, -0.5, 3.0 * r), Vec3(0.0, 0.5, 3.0 * r)};
+    slack.move_from = Vec3(0, 0.05, 0), slack.move_to = Vec3(0, -0.05, 0), slack.push = Vec3(1e-4, 0, -2e-3);
+    slack.elements = straight.elements = 12;
+    slack.held_from = slack.held_to = Held::pinned;
+    scene.fibres = {straight, slack};
+    scene.increments = 20;
+    scene.damping = 1e-3;  // over a node; the middle of a fibre has 0.18 a length
+    const SmallResult result = run(scene);
+    CAPTURE(result.report.reason);
+    REQUIRE(result.report.converged);  // the column buckles on its way, and comes down on the straight fibre
+    CHECK(result.report.contact.active > 0);
+    CHECK(deepest(scene, result) < 0.05);
+    double arc = 0.0;
+    for (std::size_t k = 1; k < result.centreline[1].size(); ++k) arc += (result.centreline[1][k] - result.centreline[1][k - 1]).norm();
+    CHECK(arc == doctest::Approx(1.0).epsilon(2e-3));  // it bends rather than being squeezed by a tenth
+}
+
+TEST_CASE("a fibre that goes there and back with friction closes its loop, and no work is lost") {
+    SmallScene scene = dragged_three();
+    scene.tight = true;
+    scene.fibres.pop_back();
+    scene.fibres[1].move_from = scene.fibres[1].move_to = Vec3(0, 0, -1.0 * r);
+    // pressed first, then dragged to and fro by the lower fibre
+    double dissipated = 0.0;
+    simulation::ModelParameters<StableModel> parameters = parameters_of(scene);
+    scene::Assembly assembly;
+    for (const bool upper : {false, true}) {
+        scene::FibreSpecification f{.from = scene.fibres[upper].from, .to = scene.fibres[upper].to, .section = scene::circular(r), .material = {7300.0, 0.3}, .elements = 8};
+        const Index fibre = assembly.add(f);
+        for (const double end : {0.0, 1.0})
+            assembly.clamp({fibre, end}, upper ? Vec3(0, 0, -r) : Vec3(0.6 * r, 0, 0), Vec3::Zero(), Vec3::Zero(), upper ? "press" : "drag");
+    }
+    std::vector<double> errors;
+    for (const Index increments : {10, 20, 40}) {
+        simulation::Simulator<StableModel> simulator(assembly, parameters);
+        const auto go = [&](const char* channel, double to, Index steps) {
+            simulation::Stage<StableModel> stage;
+            stage.ramps = {{channel, to, false}}, stage.increments = steps;
+            simulation::Loading<StableModel> loading;
+            loading.stages = {stage};
+            return simulator.run(loading);
+        };
+        REQUIRE(go("press", 1.0, 8).converged);
+        REQUIRE(go("drag", 1.0, increments).converged);
+        std::vector<Vec3> force;
+        double work = 0.0, lost = 0.0, first_error = 0.0, last_error = 0.0;
+        for (int cycle = 0; cycle < 2; ++cycle) {
+            for (const double to : {-1.0, 1.0}) {
+                const simulation::Report report = go("drag", to, 2 * increments);
+                REQUIRE(report.converged);
+                double before = -1.0;
+                for (const auto& increment : report.increments) {
+                    CHECK(increment.energy.dissipated >= before);  // never falls
+                    before = increment.energy.dissipated;
+                }
+                if (cycle == 0 && to > 0.0) first_error = report.energy.error(), work = report.energy.external, lost = report.energy.dissipated;
+                last_error = report.energy.error();
+                if (cycle == 1 && to > 0.0) {
+                    work = report.energy.external - work, lost = report.energy.dissipated - lost;
+                }
+            }
+            force.push_back(simulator.reaction(scene::first_end(0)) + simulator.reaction(scene::last_end(0)));
+        }
+        // The second cycle is the first one again: the loop is closed, and the work over it is what friction took.
+        CHECK((force[1] - force[0]).norm() < 1e-4 * force[0].norm());
+        errors.push_back(std::abs(last_error - first_error) / work);
+        std::printf("%ld increments a stroke: work of a cycle %.6e, dissipated %.6e, balance off by %.2e of it, loop by %.1e\n", static_cast<long>(2 * increments), work, lost, errors.back(),
+                    (force[1] - force[0]).norm() / force[0].norm());
+        dissipated = lost;
+    }
+    CHECK(dissipated > 0.0);
+    CHECK(errors.back() < 1e-3);
+}
