@@ -5,6 +5,7 @@
 #include <fibrant/solver/newton.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -46,6 +47,9 @@ public:
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
         Vector searched;                                          // state of the last search
         Index passes = 0, searches = 0, moves = 0, renewals = 0;
+        // Further than so many searches reach: what hardly anything holds goes on for ever, and where displacements have a bound,
+        // more damping or a smaller increment costs less than to follow it.
+        const Index most_moves = std::isfinite(furthest) ? 2 : 6;
         while (true) {
             if (passes >= parameters_.contact_limit || moves > most_moves) {
                 report.reason = "contact passes do not settle: last displacement " + core::text(change / radius_) + " radii";
@@ -100,9 +104,6 @@ private:
             return contacts_->misfit() > contacts_->normal_law().largest_penetration();
         return false;
     }
-
-    static constexpr Index most_moves = 2;  ///< further than a search reaches: what hardly anything holds goes on for ever, and more damping or
-                                           ///< a smaller increment costs less than to follow it
 
     /// Normal passes on one set of contact elements. @returns false if the search has to be repeated first.
     bool normal_passes(Newton<Equilibrium, Contacts, Linear>& newton, Vector& state, const Vector& accepted,

@@ -113,32 +113,6 @@ TEST_CASE("a strand of one core and six wires is as stiff as the reference says"
     }
 }
 
-TEST_CASE("two layers of opposite lay carry as much and turn each other less") {
-    const double r = 0.0201, strain = 0.001;
-    double torque = 0.0;
-    for (const bool alternate : {false, true}) {
-        strand::StrandParameters parameters = strand::regular_strand(19, r, 12.0, alternate);
-        parameters.material = {7300.0, 0.3};
-        parameters.length = 40.0 * r, parameters.elements = 16;
-        simulation::Simulator<Frictionless> simulator(strand::straight_strand(parameters), model(r));
-        const simulation::Report report = simulator.run(to(strain, 0.0, 2));
-        REQUIRE_MESSAGE(report.converged, report.reason);
-        const strand::StrandState state = strand::measure(simulator, parameters);
-        // E A cos^3 of each wire, less what the contraction of the layers below takes off: 1.6 % in one layer at 10 degrees.
-        double bound = parameters.core_radius * parameters.core_radius;
-        for (const strand::Layer& layer : parameters.layers)
-            bound += static_cast<double>(layer.wires) * layer.radius * layer.radius * std::pow(std::cos(layer.lay_angle_deg * std::numbers::pi / 180.0), 3);
-        bound *= 7300.0 * std::numbers::pi * strain;
-        std::printf("19 wires, %s: force %.6f, %.4f of the bound, torque %.3e, %td contacts, %.1f s\n", alternate ? "alternating" : "one way", state.force,
-                    state.force / bound, state.torque, report.contact.active, report.wall_seconds);
-        CHECK(state.force < bound);
-        CHECK(state.force > 0.94 * bound);
-        CHECK(report.contact.active > 200);
-        if (alternate) CHECK(std::abs(state.torque) < 0.7 * torque);
-        torque = state.torque;
-    }
-}
-
 TEST_CASE("a strand that has no room for its wires, or too few of them, is refused by name") {
     strand::StrandParameters parameters = strand_of(cases[3]);
     parameters.length = 1.0;
