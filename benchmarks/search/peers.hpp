@@ -14,7 +14,7 @@
 #include <boost/geometry/index/rtree.hpp>
 #endif
 #if defined(FIBRANT_BENCHMARK_CGAL)
-#include <CGAL/Box_intersection_d/Box_with_info_d.h>
+#include <CGAL/Box_intersection_d/Box_with_handle_d.h>
 #include <CGAL/box_intersection_d.h>
 #endif
 
@@ -95,20 +95,20 @@ inline Call boost_pairs(std::span<const proximity::Centreline> fibres, double re
 /// CGAL's hybrid of segment trees and scans, cutoff 500.
 inline Call cgal_pairs(std::span<const proximity::Centreline> fibres, double reach) {
     using namespace proximity::detail;
-    using Entry = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::int32_t>;
+    using Entry = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const SegmentRecord*>;
     const SegmentTable table(fibres, reach);
     const std::vector<SegmentRecord> records = table.records();
     std::vector<Entry> entries;
     for (const SegmentRecord& r : records) {
         auto [low, high] = detail::corners(r, reach);
-        entries.emplace_back(low.data(), high.data(), r.segment);
+        entries.emplace_back(low.data(), high.data(), &r);
     }
     Call call;
     std::vector<Candidate> candidates;
     CGAL::box_self_intersection_d(
         entries.begin(), entries.end(),
         [&](const Entry& a, const Entry& b) {
-            candidates.push_back({a.info(), b.info()});
+            candidates.push_back({a.handle()->segment, b.handle()->segment});
             if (candidates.size() < 4096) return;
             keep_close(table, records.data(), candidates, call.pairs);
             candidates.clear();

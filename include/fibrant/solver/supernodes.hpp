@@ -3,6 +3,9 @@
 /// @file Symbolic sparse Cholesky on a graph of blocks: an order with little fill, and the supernodes of the factor.
 
 #include <fibrant/solver/dissection.hpp>
+#if defined(FIBRANT_WITH_METIS)
+#include <fibrant/solver/metis_order.hpp>
+#endif
 
 #include <Eigen/OrderingMethods>
 
@@ -26,15 +29,20 @@ public:
     /// @param vertices  of the graph
     /// @param pairs     neighbours, in either order, each once or several times; loops may be there
     /// @param places    of the vertices in space, if they are known: an order by dissection is then tried too, which is
-    ///                  better the larger the graph
-    void analyse(int vertices, const std::vector<Pair>& pairs, std::span<const Vec3> places = {}) {
+    ///                  better the larger the graph; with FIBRANT_WITH_METIS its order is taken instead
+    void analyse(int vertices, const std::vector<Pair>& pairs, [[maybe_unused]] std::span<const Vec3> places = {}) {
         const SparseMatrix graph = matrix_of(vertices, pairs);
+#if defined(FIBRANT_WITH_METIS)
+        const std::vector<int> order = vertices > 1000 ? metis_order(graph) : std::vector<int>{};
+        eliminate(graph, order.empty() ? minimum_degree(graph) : order);
+#else
         eliminate(graph, minimum_degree(graph));
         if (!places.empty() && vertices > 1000) {
             Supernodes other;
             other.eliminate(graph, Dissection(graph, places).order());
             if (other.operations() < operations()) *this = std::move(other);
         }
+#endif
         merge_supernodes();
     }
 
