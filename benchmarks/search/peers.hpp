@@ -113,7 +113,7 @@ inline Call cgal_pairs(std::span<const proximity::Centreline> fibres, double rea
             keep_close(table, records.data(), candidates, call.pairs);
             candidates.clear();
         },
-        500);
+        std::ptrdiff_t{500});
     keep_close(table, records.data(), candidates, call.pairs);
     return call;
 }

@@ -90,7 +90,7 @@ public:
     const std::vector<Record>& records() const noexcept { return records_; }
     void assign(std::vector<Record> records) {
         records_ = std::move(records);
-        std::stable_sort(records_.begin(), records_.end());
+        if (!std::is_sorted(records_.begin(), records_.end())) std::stable_sort(records_.begin(), records_.end());
     }
 
     /// Nearest record of the pair within `range` on both fibres [elements], or null.

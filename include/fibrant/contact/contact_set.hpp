@@ -52,7 +52,7 @@ public:
     /// @param forced    keep forced orders
     void detect(const Vector& state, const Vector& accepted, double reach, bool forced) {
         std::vector<Zone> found = find_zones(*mesh_, state, search_, parameters_.detection, orders_, reach, forced);
-        for (Zone& zone : found) inherit(zone, state);
+        core::parallel_for(core::count(found), [&](Index z) { inherit(found[core::at(z)], state); });
         zones_.swap(found);
         regenerate(state, accepted);
     }
