@@ -4,7 +4,7 @@
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/simulation/simulator.hpp>
+#include <fibrant/simulation/programme.hpp>
 #include <fibrant/solver/float_block_cholesky.hpp>
 #include <refusal.hpp>
 
@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <numbers>
 #include <string>
+#include <vector>
 
 using namespace fibrant;
 
@@ -273,6 +274,24 @@ TEST_CASE("a scene that starts from the state of another one ties the means that
     // Without their own loads all bend as the mean, which is where it was.
     for (Index k = 0; k < 3; ++k) CHECK(simulator.value(scene::last_end(k)).y() == doctest::Approx(given).epsilon(1e-6));
     CHECK(simulator.equilibrium().ties().wrench(body).force.y() == doctest::Approx(3.0 * stiffness * given).epsilon(1e-3));
+}
+
+TEST_CASE("a programme of stages is a loading: ramps, cycles to and fro, halved increments") {
+    simulation::LoadProgramme programme;
+    programme.stages = {{.name = "tighten", .increments = 2, .ramps = {{"load", 0.5}}, .damping = 3.0},
+                        {.name = "cycle", .increments = 4, .ramps = {{"load", 1.0}}, .cycles = 2, .back = 0.25}};
+    programme.damping = 2.0, programme.halvings = 1;
+    const simulation::Loading<Tied> loading = simulation::loading_of<Tied>(programme);
+    REQUIRE(loading.stages.size() == 5);
+    std::vector<double> ends;
+    for (const auto& stage : loading.stages) ends.push_back(stage.ramps.at(0).to);
+    CHECK(ends == std::vector<double>{0.5, 1.0, 0.25, 1.0, 0.25});
+    CHECK(loading.stages[0].increments == 4);
+    CHECK(loading.stages[1].increments == 8);
+    CHECK(loading.stages[0].damping == 6.0);
+    loading.validate();
+    programme.stages[1].rest = true;
+    CHECK(test::refusal([&] { simulation::loading_of<Tied>(programme); }).find("LoadProgramme.rest_motion") != std::string::npos);
 }
 
 TEST_CASE("an end that is held cannot be tied, nor tied twice, and a body needs a model that knows it") {

@@ -4,6 +4,8 @@
 
 #include <fibrant/assembly/visited_system.hpp>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <random>
 #include <utility>

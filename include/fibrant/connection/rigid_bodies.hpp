@@ -118,7 +118,8 @@ public:
                 gap_[ties_[k].first + a] = gap(k, a);
             }
         }
-        layout.ties = ties_;
+        if (layout.ties.size() != ties_.size()) layout.ties = ties_;
+        for (std::size_t k = 0; k < ties_.size(); ++k) layout.ties[k].axes = ties_[k].axes;
         layout.motions.resize(groups_.size());
         for (std::size_t g = 0; g < groups_.size(); ++g) {
             layout.motions[g].scalars = groups_[g].scalars;
