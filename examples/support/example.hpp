@@ -28,7 +28,7 @@ namespace observe = fibrant::observe;
 
 /// Where results go, and whether to speak.
 struct Output {
-    std::filesystem::path folder;
+    std::filesystem::path folder, scene;  ///< of the results; the scene file
     bool quiet = false, paraview = true, pictures = true;
     bool resume = false;      ///< go on from the last accepted increment in the folder
     observe::Start start() const noexcept { return resume ? observe::Start::resumed : observe::Start::anew; }
@@ -58,7 +58,7 @@ int run(int argc, char** argv, const char* name, const char* description, const 
         reader.read("output", "paraview", output.paraview);
         reader.read("output", "pictures", output.pictures);
         reader.read("output", "unit", output.unit);
-        output.folder = folder;
+        output.folder = folder, output.scene = scene;
         std::filesystem::create_directories(output.folder);
 #if defined(_OPENMP)
         if (threads > 0) omp_set_num_threads(threads);
@@ -82,6 +82,7 @@ public:
         std::vector<observe::Column> columns{{"increment", increment.number}, {"stage", increment.stage}, {"progress", increment.progress}};
         for (const observe::Column& column : more_()) columns.push_back(column);
         for (const observe::Column& column : std::vector<observe::Column>{{"newton_iterations", increment.counts.newton},
+                                                                           {"linear_iterations", increment.counts.linear_iterations},
                                                                            {"contact_passes", increment.counts.contact_passes},
                                                                            {"cuts", increment.cuts},
                                                                            {"active_contacts", increment.contact.active},

@@ -14,6 +14,8 @@
 #include <fibrant/scene/dof_layout.hpp>
 #include <fibrant/scene/elastic_material.hpp>
 #include <fibrant/scene/reference_shape.hpp>
+#include <fibrant/scene/rigid_body.hpp>
+#include <fibrant/scene/tied_vectors.hpp>
 #include <fibrant/scene/tool.hpp>
 
 #include <fibrant/beam/beam_element.hpp>
@@ -59,8 +61,11 @@
 #include <fibrant/contact/zone_stiffness.hpp>
 
 #include <fibrant/connection/applied_load.hpp>
+#include <fibrant/connection/body_motion.hpp>
 #include <fibrant/connection/channels.hpp>
+#include <fibrant/connection/connections.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
+#include <fibrant/connection/rigid_bodies.hpp>
 
 #include <fibrant/assembly/chain_system.hpp>
 #include <fibrant/assembly/equilibrium.hpp>
@@ -87,6 +92,7 @@
 #include <fibrant/observe/loading_curve.hpp>
 #include <fibrant/observe/observer.hpp>
 #include <fibrant/observe/snapshot.hpp>
+#include <fibrant/observe/svg_curves.hpp>
 #include <fibrant/observe/svg_plot.hpp>
 #include <fibrant/observe/svg_slice.hpp>
 #include <fibrant/observe/svg_view.hpp>
@@ -96,9 +102,11 @@
 #include <fibrant/simulation/increment_file.hpp>
 #include <fibrant/simulation/loading.hpp>
 #include <fibrant/simulation/model.hpp>
+#include <fibrant/simulation/programme.hpp>
 #include <fibrant/simulation/report.hpp>
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
+#include <fibrant/simulation/state_file.hpp>
 #include <fibrant/simulation/support_wrench.hpp>
 
 #include <fibrant/compositions/knot/overhand_knot.hpp>
@@ -109,12 +117,16 @@
 #include <fibrant/compositions/two_ply/two_ply.hpp>
 
 #include <fibrant/compositions/weave/audit.hpp>
+#include <fibrant/compositions/weave/edges.hpp>
 #include <fibrant/compositions/weave/fabric.hpp>
 #include <fibrant/compositions/weave/fabric_parameters.hpp>
+#include <fibrant/compositions/weave/fibre_figures.hpp>
 #include <fibrant/compositions/weave/least_gap.hpp>
+#include <fibrant/compositions/weave/load_cases.hpp>
 #include <fibrant/compositions/weave/measures.hpp>
 #include <fibrant/compositions/weave/packing.hpp>
 #include <fibrant/compositions/weave/pattern.hpp>
+#include <fibrant/compositions/weave/periodic.hpp>
 #include <fibrant/compositions/weave/settle.hpp>
 #include <fibrant/compositions/weave/slices.hpp>
 #include <fibrant/compositions/weave/tow_section.hpp>

@@ -47,6 +47,8 @@ inline std::vector<SyntheticSystem> solvable_systems() {
                                                 {.nodes = 3, .vectors_per_node = 4, .reach = 2},
                                                 {.nodes = 1, .vectors_per_node = 3, .reach = 0}},
                                      .points = 60, .held = 5, .seed = 3}));
+    systems.push_back(random_system({.chains = std::vector<scene::Chain>(5, {.nodes = 7, .vectors_per_node = 3, .reach = 2, .group = 0}),
+                                     .points = 60, .held = 3, .ties = 3, .seed = 4}));
     return systems;
 }
 

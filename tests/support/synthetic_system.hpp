@@ -4,6 +4,8 @@
 
 #include <fibrant/assembly/visited_system.hpp>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <random>
 #include <utility>
@@ -78,6 +80,7 @@ struct RandomSystem {
     std::vector<scene::Chain> chains;  ///< first_vector is set here
     int points = 0;                    ///< contact elements, each between two nodes of any two chains
     int held = 0;                      ///< vectors held in none, one, two or three directions
+    int ties = 0;                      ///< of five vectors each, in one, two or three directions; the first two may move together
     double radius = 0.01;              ///< of directions
     double curvature = 1.0;            ///< of the dense terms; negative makes the system indefinite
     unsigned seed = 1;
@@ -139,6 +142,25 @@ inline SyntheticSystem random_system(const RandomSystem& options) {
         const Mat3 line = u * u.transpose();
         system.hold(vector, k % 3 == 0 ? Mat3::Zero() : k % 3 == 1 ? line : Mat3(Mat3::Identity() - line));
     }
+    for (int t = 0; t < options.ties; ++t) {
+        scene::Tie tie;
+        tie.count = 1 + t % 3;
+        tie.first = t == 0 ? 0 : system.description.ties.back().first + system.description.ties.back().count;
+        const auto taken = [&](Index vector) {
+            const auto in = [&](const scene::Tie& other) { return std::ranges::find(other.vectors, vector) != other.vectors.end(); };
+            return in(tie) || std::ranges::any_of(system.description.ties, in) || system.description.kind[core::at(vector)] != scene::VectorKind::position ||
+                   std::ranges::find(system.description.held, vector, &scene::HeldVector::vector) != system.description.held.end();
+        };
+        while (tie.vectors.size() < 5) {
+            const Index vector = below(system.description.vectors());
+            if (taken(vector)) continue;
+            tie.vectors.push_back(vector), tie.weights.push_back(1.0 / std::sqrt(5.0));
+        }
+        const Vec3 first = Vec3(uniform(generator), uniform(generator), uniform(generator)).normalized(), second = first.unitOrthogonal();
+        tie.axes.col(0) = first, tie.axes.col(1) = second, tie.axes.col(2) = first.cross(second);
+        system.description.ties.push_back(tie);
+    }
+    if (options.ties > 1) system.description.motions.push_back({{0, 1, 2}, Vec3(2.0, -1.0, 2.0) / 3.0, {}});
     system.finish();
     return system;
 }

@@ -75,6 +75,7 @@ public:
         }
         for (const scene::HeldVector& held : layout_.held)
             free_.segment<3>(3 * held.vector) = (held.free * free_.segment<3>(3 * held.vector)).eval();
+        scene::project_ties(layout_, free_);
         y += free_;
     }
 
@@ -132,6 +133,10 @@ public:
     void index_points() {
         band_.pack(layout_, [this](Index fibre, Index node) -> const Row& { return row(fibre, node); });
         pairs_.pack(points_, core::count(rows_), [](const Point& point, int side) { return (side == 0 ? point.first_i : point.first_j) / block; });
+        supports_.clear();
+        for (const scene::Tie& tie : layout_.ties)
+            for (const Index vector : tie.vectors) supports_.emplace_back(vector, tie.support * layout_.length[core::at(vector)] * layout_.length[core::at(vector)]);
+        std::sort(supports_.begin(), supports_.end());
     }
 
     /// y = A x, the identity outside the free directions of held vectors.
@@ -139,7 +144,15 @@ public:
         const auto is_free = [&](const scene::HeldVector& held) {
             return Vec3(held.free * x.segment<3>(3 * held.vector)) == x.segment<3>(3 * held.vector);
         };
-        if (std::all_of(layout_.held.begin(), layout_.held.end(), is_free)) {  // as directions of a solver are
+        if (!layout_.ties.empty()) {
+            free_ = x;
+            for (const scene::HeldVector& held : layout_.held)
+                free_.segment<3>(3 * held.vector) = held.free * x.segment<3>(3 * held.vector);
+            scene::project_ties(layout_, free_);
+            apply_unheld(free_, y);
+            scene::add_motion_stiffness(layout_, free_, y);
+            scene::complete_ties(layout_, x, y);
+        } else if (std::all_of(layout_.held.begin(), layout_.held.end(), is_free)) {  // as directions of a solver are
             apply_unheld(x, y);
         } else {
             free_ = x;
@@ -188,6 +201,12 @@ public:
                         }
             }
         });
+        const scene::Chain& chain = layout_.chains[core::at(fibre)];
+        for (auto held = std::lower_bound(supports_.begin(), supports_.end(), std::pair<Index, double>(chain.first_vector, 0.0));
+             held != supports_.end() && held->first < chain.first_vector + chain.nodes * chain.vectors_per_node; ++held) {
+            const Index row = 3 * (held->first - chain.first_vector);
+            blocks.block<3, 3>(row, row % block).diagonal().array() += held->second;
+        }
         project_band(fibre, blocks);
     }
 
@@ -213,6 +232,11 @@ public:
                 dense.rightCols(block).topRows(size - block) = dense.bottomRows(block).leftCols(size - block).transpose();
                 terms.dense(DenseTerm{std::span<const Index>(numbers.data(), core::at(size / 3)), dense});
             }
+        }
+        const double one = 1.0;
+        for (const auto& [vector, stiffness] : supports_) {
+            const Index alone = vector;
+            terms.point(PointTerm{std::span<const Index>(&alone, 1), std::span<const double>(&one, 1), Mat3(stiffness * Mat3::Identity())});
         }
         visit_couplings(terms);
     }
@@ -283,6 +307,7 @@ private:
     std::vector<Row> rows_;
     std::vector<Point> points_;
     std::vector<Skew> skews_;
+    std::vector<std::pair<Index, double>> supports_;  // of tied vectors, sorted
     BandProduct<block, reach> band_;
     PointProduct<vectors, beam::Particle<B>> pairs_;
     mutable Vector free_;  // scratch of a product: one system serves one thread at a time

@@ -4,6 +4,7 @@
 
 #include <fibrant/assembly/chain_system.hpp>
 #include <fibrant/connection/applied_load.hpp>
+#include <fibrant/connection/connections.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/contact/contact_set.hpp>
 
@@ -25,16 +26,18 @@ struct ResidualFigures {
 };
 
 /// The mechanical problem of one increment.
-template <beam::BeamElement B, class Contacts>
+template <beam::BeamElement B, class Contacts, class Connections = connection::NoConnections>
 class Equilibrium {
 public:
     using System = ChainSystem<B>;
+    using Ties = typename Connections::template Of<B>;
+    static_assert(connection::Connection<Ties, B>);
     static constexpr Index element_unknowns = beam::Mesh<B>::element_unknowns;
 
     Equilibrium(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const B& beam, Contacts& contacts,
                 const connection::Channels& channels)
         : mesh_{&mesh}, beam_{beam}, contacts_{&contacts}, motion_{assembly, mesh, channels},
-          load_{assembly, mesh, channels}, system_{mesh}, stresses_(core::at(mesh.element_count())) {
+          load_{assembly, mesh, channels}, ties_{assembly, mesh, channels}, system_{mesh}, stresses_(core::at(mesh.element_count())) {
         // Strains keep the digits of coordinates over an element's length, and E A of them is a force at each node.
         const double extent = mesh.rest_state().size() > 0 ? mesh.rest_state().cwiseAbs().maxCoeff() : 0.0;
         double sum = 0.0;
@@ -50,6 +53,8 @@ public:
     const System& system() const noexcept { return system_; }
     const std::vector<Vec3>& targets() const noexcept { return targets_; }
     const beam::Mesh<B>& mesh() const noexcept { return *mesh_; }
+    const Ties& ties() const noexcept { return ties_; }
+    Ties& ties() noexcept { return ties_; }
 
     /// Sets what is imposed, and the state from which the increment starts.
     /// @param damping  of a spring from every centre to its place in `state`, >= 0 [force / length]; directors count at the
@@ -59,6 +64,7 @@ public:
         damping_ = damping;
         if (damping_ > 0.0) anchor_ = state;
         motion_.at(amplitudes, state, system_.layout().held, targets_);
+        ties_.begin(amplitudes);
         reset_stresses(state);
     }
 
@@ -81,10 +87,12 @@ public:
             const Vec3 value = state.segment<3>(3 * held[k].vector);
             step.segment<3>(3 * held[k].vector) = targets_[k] - (value - held[k].free * value);
         }
+        ties_.add_closing(system_.layout(), step);
     }
 
     /// Residual of a state whose contacts have been evaluated.
     ResidualFigures residual(const Vector& state, Vector& residual) {
+        ties_.place(state, system_.layout());
         residual.setZero(state.size());
         contacts_->add_forces(residual);
         const double contact = norm(residual);
@@ -96,12 +104,17 @@ public:
         if (damping_ > 0.0) residual += damping_force(state);
         external_.setZero(state.size());
         load_.add_forces(amplitudes_, state, external_);
+        if constexpr (core::Active<Ties>) {
+            ties_.hold_forces(system_.layout(), residual - external_);
+            ties_.add_forces(system_.layout(), external_);
+        }
         residual -= external_;
         const double load = norm(external_);
         const double all = norm(residual);
         reaction_ = residual;
         for (const scene::HeldVector& held : system_.layout().held)
             residual.segment<3>(3 * held.vector) = held.free * residual.segment<3>(3 * held.vector);
+        scene::project_ties(system_.layout(), residual);
         reaction_ -= residual;
         ResidualFigures figures;
         figures.residual = norm(residual);
@@ -134,6 +147,7 @@ public:
             }
         });
         load_.add_stiffness(amplitudes_, state, [&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
+        ties_.stiffen(system_.layout(), !tension_only);
         gather_points();
         system_.index_points();
     }
@@ -215,6 +229,7 @@ private:
     Contacts* contacts_;
     connection::PrescribedMotion<B> motion_;
     connection::AppliedLoad<B> load_;
+    [[no_unique_address]] Ties ties_;
     System system_;
     std::vector<typename B::Stresses> stresses_;
     std::vector<double> amplitudes_;

@@ -4,6 +4,7 @@
 
 #include <fibrant/assembly/terms.hpp>
 #include <fibrant/scene/dof_layout.hpp>
+#include <fibrant/scene/tied_vectors.hpp>
 
 #include <cassert>
 #include <concepts>
@@ -21,6 +22,9 @@ namespace fibrant::assembly {
 ///   column node a - d) at row a m and column d m; zero where a < d. Contact elements within the chain included.
 /// - visit(visitor): visitor.point(PointTerm) or visitor.dense(DenseTerm) once for each term of K, in a fixed order,
 ///   not projected: the visitor applies F.
+/// Where the layout has ties, F leaves out what they tie as well, and K has the stiffness of their motions. node_blocks,
+/// chain_band and visit know nothing of that: they have the ties' supports in its place, so that no term couples all ends of a
+/// tie. What they give makes preconditioners, and only `apply` is A.
 /// `blocks` is resized by the system. node_blocks and chain_band may be called from several threads at once, for
 /// different chains. Every vector belongs to exactly one chain.
 template <class T>
@@ -60,18 +64,20 @@ public:
         return k < 0 ? nullptr : &layout_->held[core::at(k)].free;
     }
     /// x <- F x
-    void project(Vector& x) const noexcept {
+    void project(Vector& x) const {
         for (const scene::HeldVector& held : layout_->held) {
             const Vec3 v = x.segment<3>(3 * held.vector);
             x.segment<3>(3 * held.vector) = held.free * v;
         }
+        scene::project_ties(*layout_, x);
     }
     /// y <- F y + (I - F) x: makes A x of y = K F x.
-    void complete(const Vector& x, Vector& y) const noexcept {
+    void complete(const Vector& x, Vector& y) const {
         for (const scene::HeldVector& held : layout_->held) {
             const Vec3 difference = y.segment<3>(3 * held.vector) - x.segment<3>(3 * held.vector);
             y.segment<3>(3 * held.vector) = x.segment<3>(3 * held.vector) + held.free * difference;
         }
+        scene::complete_ties(*layout_, x, y);
     }
     /// block <- F_i block F_j, for a 3 x 3 block of K between the vectors i and j. I - F is left to the caller.
     void project(Index i, Index j, Mat3& block) const noexcept {

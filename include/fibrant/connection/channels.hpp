@@ -21,6 +21,14 @@ public:
         for (const scene::DeadForce& force : assembly.forces()) names_.push_back(force.channel);
         for (const scene::Moment& moment : assembly.moments()) names_.push_back(moment.channel);
         for (const scene::Tool& tool : assembly.tools()) names_.push_back(tool.channel);
+        const auto drive = [&](const scene::Coordinate& coordinate) {
+            if (coordinate.value != 0.0) names_.push_back(coordinate.channel);
+        };
+        for (const scene::RigidBody& body : assembly.bodies())
+            std::for_each(body.translation.begin(), body.translation.end(), drive), std::for_each(body.rotation.begin(), body.rotation.end(), drive);
+        for (const scene::AverageConnection& average : assembly.averages())
+            if (!average.displacement.isZero(0.0)) names_.push_back(average.channel);
+        for (const scene::PeriodicCell& cell : assembly.cells()) std::for_each(cell.gradient.begin(), cell.gradient.end(), drive);
         std::sort(names_.begin(), names_.end());
         names_.erase(std::unique(names_.begin(), names_.end()), names_.end());
     }

@@ -6,6 +6,7 @@
 #include <fibrant/scene/cross_section.hpp>
 #include <fibrant/scene/elastic_material.hpp>
 #include <fibrant/scene/reference_shape.hpp>
+#include <fibrant/scene/rigid_body.hpp>
 #include <fibrant/scene/tool.hpp>
 
 #include <Eigen/Geometry>
@@ -184,6 +185,46 @@ public:
         return core::count(tools_) - 1;
     }
 
+    /// A rigid body, for models that have a part `Connections`.
+    /// @returns index of the body, counted from 0
+    Index add(RigidBody body) {
+        if (body.parent < -1 || body.parent >= core::count(bodies_)) core::refuse("RigidBody.parent", std::to_string(body.parent), "-1 or an earlier body");
+        const double error = (body.frame.transpose() * body.frame - Mat3::Identity()).cwiseAbs().maxCoeff();
+        core::require(error < 1e-9 && body.frame.determinant() > 0.0, "RigidBody.frame", error, "orthonormal and right-handed");
+        for (const auto* coordinates : {&body.translation, &body.rotation})
+            for (const Coordinate& coordinate : *coordinates) core::require_finite("RigidBody.coordinate", coordinate.value);
+        bodies_.push_back(std::move(body));
+        return core::count(bodies_) - 1;
+    }
+
+    void connect(AverageConnection connection) {
+        if (connection.body < 0 || connection.body >= core::count(bodies_)) core::refuse("AverageConnection.body", std::to_string(connection.body), "a body of this assembly");
+        if (connection.ends.empty()) core::refuse("AverageConnection.ends", "none", "at least one");
+        for (const Station& at : connection.ends) check(at);
+        const double error = (connection.directions.transpose() * connection.directions - Mat3::Identity()).cwiseAbs().maxCoeff();
+        core::require(error < 1e-9, "AverageConnection.directions", error, "orthonormal");
+        averages_.push_back(std::move(connection));
+    }
+
+    /// Clamps a section to a body: position and rotation follow it, the section's stretches are free.
+    void clamp_to(Index body, Station at, const Mat3& section) {
+        connect({.ends = {at}, .body = body});
+        connect({.ends = {at}, .vector = NodeVector::director_1, .body = body, .directions = section, .tied = {false, true, true}});
+        connect({.ends = {at}, .vector = NodeVector::director_2, .body = body, .directions = section, .tied = {true, false, true}});
+    }
+
+    /// @returns index of the cell, counted from 0
+    Index add(PeriodicCell cell) {
+        core::require_positive("PeriodicCell.volume", cell.volume);
+        cells_.push_back(std::move(cell));
+        return core::count(cells_) - 1;
+    }
+    void connect(const PeriodicPair& pair) {
+        if (pair.cell < 0 || pair.cell >= core::count(cells_)) core::refuse("PeriodicPair.cell", std::to_string(pair.cell), "a cell of this assembly");
+        check(pair.first), check(pair.last);
+        pairs_.push_back(pair);
+    }
+
     // What stands in the scene, in the order in which it was added.
     const std::vector<FibreSpecification>& fibres() const noexcept { return fibres_; }
     const std::vector<Group>& groups() const noexcept { return groups_; }
@@ -193,6 +234,10 @@ public:
     const std::vector<ForcedOrder>& orders() const noexcept { return orders_; }
     const std::vector<PairRule>& rules() const noexcept { return rules_; }
     const std::vector<Tool>& tools() const noexcept { return tools_; }
+    const std::vector<RigidBody>& bodies() const noexcept { return bodies_; }
+    const std::vector<AverageConnection>& averages() const noexcept { return averages_; }
+    const std::vector<PeriodicCell>& cells() const noexcept { return cells_; }
+    const std::vector<PeriodicPair>& pairs() const noexcept { return pairs_; }
 
 private:
     void check(const Station& at) const {
@@ -209,6 +254,10 @@ private:
     std::vector<ForcedOrder> orders_;
     std::vector<PairRule> rules_;
     std::vector<Tool> tools_;
+    std::vector<RigidBody> bodies_;
+    std::vector<AverageConnection> averages_;
+    std::vector<PeriodicCell> cells_;
+    std::vector<PeriodicPair> pairs_;
 };
 
 }  // namespace fibrant::scene

@@ -27,6 +27,24 @@ struct HeldVector {
     Mat3 free = Mat3::Zero();
 };
 
+/// A combination sum w v of vectors that is tied in some directions: it is one scalar unknown for each of them. Ties share no
+/// vector with another one and none that is held.
+struct Tie {
+    std::vector<Index> vectors;
+    std::vector<double> weights;      ///< w, of squares that sum to 1 [1]
+    Mat3 axes = Mat3::Identity();     ///< orthonormal columns, of which the first `count` are tied
+    Index count = 3;
+    Index first = 0;                  ///< number of the first of its scalars among those of all ties
+    double support = 0.0;             ///< what a preconditioner holds each vector by in the place of the tie [force / length]
+};
+
+/// Ways in which tied scalars may move together, as the free motions of a rigid body move them.
+struct TiedMotion {
+    std::vector<Index> scalars;  ///< numbers of tied scalars
+    Matrix modes;                ///< a row a scalar, columns orthonormal
+    Matrix stiffness;            ///< symmetric, of the modes [force / length]; or empty
+};
+
 /// Layout of a system: unknown k is component k % 3 of vector k / 3.
 struct DofLayout {
     std::vector<Chain> chains;
@@ -34,6 +52,8 @@ struct DofLayout {
     std::vector<Vec3> value;       ///< of each vector: current position [length] or director [1]
     std::vector<double> length;    ///< makes a vector a displacement: 1 for a position, the radius for a director
     std::vector<HeldVector> held;  ///< sorted by vector, each vector at most once
+    std::vector<Tie> ties;         ///< none, but for averages and periodic cells
+    std::vector<TiedMotion> motions;  ///< of ties, that share no scalar
 
     Index vectors() const noexcept { return core::count(kind); }
     Index unknowns() const noexcept { return 3 * vectors(); }

@@ -4,6 +4,7 @@
 
 #include <fibrant/assembly/chain_system.hpp>
 #include <fibrant/beam/beam_element.hpp>
+#include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/contact/contact_set.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/law/friction_law.hpp>
@@ -26,9 +27,13 @@ concept HasFriction = requires { typename M::Friction; } && law::FrictionLaw<typ
 template <class M>
 concept HasSolver = requires { typename M::Solver; } && solver::LinearSolver<typename M::Solver, assembly::ChainSystem<typename M::Beam>>;
 
-/// A model whose scenes have rigid tools says so: `using Tools = contact::RigidTools;`. The only part that may be left out.
+/// A model whose scenes have rigid tools says so: `using Tools = contact::RigidTools;`. It may be left out, as the next.
 template <class M>
 concept HasTools = requires { typename M::Tools; } && core::Policy<typename M::Tools> && core::Active<typename M::Tools>;
+
+/// A model whose scenes tie fibre ends to rigid bodies or to periodic images says so: `using Connections = connection::RigidBodies;`.
+template <class M>
+concept HasConnections = requires { typename M::Connections; } && core::Policy<typename M::Connections> && core::Active<typename M::Connections>;
 
 /// A model names its Beam, Proximity, Normal, Friction and Solver, each of which satisfies its own contract.
 template <class M>
@@ -43,6 +48,15 @@ template <Model M>
     requires HasTools<M>
 struct ContactsOf<M> {
     using Type = contact::ContactsWithTools<typename M::Beam, typename M::Proximity, typename M::Normal, typename M::Friction>;
+};
+template <Model M>
+struct ConnectionsOf {
+    using Type = connection::NoConnections;
+};
+template <Model M>
+    requires HasConnections<M>
+struct ConnectionsOf<M> {
+    using Type = typename M::Connections;
 };
 }  // namespace detail
 

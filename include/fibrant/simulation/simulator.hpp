@@ -5,6 +5,7 @@
 #include <fibrant/observe/observer.hpp>
 #include <fibrant/simulation/increment_file.hpp>
 #include <fibrant/simulation/loading.hpp>
+#include <fibrant/simulation/state_file.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 
 #include <algorithm>
@@ -23,7 +24,7 @@ public:
     using Beam = typename M::Beam;
     using Mesh = beam::Mesh<Beam>;
     using Contacts = typename detail::ContactsOf<M>::Type;
-    using Equilibrium = assembly::Equilibrium<Beam, Contacts>;
+    using Equilibrium = assembly::Equilibrium<Beam, Contacts, typename detail::ConnectionsOf<M>::Type>;
 
     /// @throws std::invalid_argument naming the field that is wrong
     Simulator(const scene::Assembly& assembly, const ModelParameters<M>& parameters)
@@ -39,6 +40,8 @@ public:
         } else if (!assembly.tools().empty()) {
             core::refuse("assembly.tools", std::to_string(assembly.tools().size()), "none, for a model without a part Tools");
         }
+        if (const auto bodies = assembly.bodies().size() + assembly.cells().size(); !HasConnections<M> && bodies > 0)
+            core::refuse("assembly.bodies", std::to_string(bodies), "none, for a model without a part Connections");
         radius_ = mesh_.fibre(0).section.radius();
         for (const beam::MeshFibre& fibre : mesh_.fibres()) radius_ = std::min(radius_, fibre.section.radius());
     }
@@ -92,6 +95,16 @@ public:
         return report;
     }
 
+    /// Starts from the state that a run of another scene of the same fibres has left in a checkpoint, with what its contacts
+    /// remember. What is held, tied and applied is that of this scene: averages and periodic pairs count from there.
+    /// @throws std::runtime_error if the file cannot be read or has other fibres
+    void start_from(const std::string& checkpoint) {
+        CheckpointReader file(checkpoint);
+        read_state(file, false, 0);
+        if constexpr (HasConnections<M>) equilibrium_.ties().anchor(state_);
+    }
+
+    const Beam& beam() const noexcept { return beam_; }
     const Mesh& mesh() const noexcept { return mesh_; }
     const Vector& state() const noexcept { return state_; }
     const Contacts& contacts() const noexcept { return contacts_; }
@@ -215,6 +228,7 @@ private:
             if (attempt.converged) {
                 account(trial, increment, contact_before, stage.forced_orders);
                 state_ = trial;
+                equilibrium_.ties().accept();
                 mesh_.rewind(state_, {&last_external_, &last_damping_});
                 amplitudes_ = amplitudes;
                 increment.residual = attempt.residual;
@@ -313,45 +327,21 @@ private:
         report.wall_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
 
-    /// What a checkpoint must agree with: fibres and channels, and stages but for what ends or relaxes them.
-    std::uint64_t scene_identity() const {
-        CheckpointWriter scene;
-        scene.put(mesh_.rest_state()), scene.put(mesh_.start_state());
-        for (const beam::MeshFibre& fibre : mesh_.fibres()) {
-            scene.put(fibre.first_vector), scene.put(fibre.group);
-            scene.put(fibre.section.semi_axis_1), scene.put(fibre.section.semi_axis_2), scene.put(fibre.section.inertia_factor);
-            scene.put(fibre.material.young_modulus), scene.put(fibre.material.poisson_ratio);
-        }
-        for (const std::string& name : channels_.names()) scene.put(name);
-        return scene.identity();
-    }
-    static std::uint64_t loading_identity(const std::vector<Stage<M>>& stages) {
-        CheckpointWriter loading;
-        for (const Stage<M>& stage : stages) {
-            loading.put(stage.name), loading.put(stage.increments), loading.put(stage.forced_orders);
-            loading.put(stage.gap_limit.value_or(-1.0));
-            for (const Ramp& ramp : stage.ramps) loading.put(ramp.channel), loading.put(ramp.to), loading.put(ramp.geometric);
-        }
-        return loading.identity();
-    }
-
-    void write_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, const Report& report) const {
+    void write_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, const Report& report) {
         CheckpointWriter file;
-        file.put(std::string("fibrant checkpoint 7"));
-        file.put(scene_identity()), file.put(loading_identity(stages));
+        file.put(std::string(checkpoint_format));
+        file.put(outline_identity(mesh_)), file.put(fibre_identity(mesh_)), file.put(channel_identity(channels_)), file.put(loading_identity(stages));
         file.put(state_);
         file.put(last_external_), file.put(last_damping_);
         file.put(energy_), file.put(contacts_work_);
+        put_memory(file, contacts_);
         for (const double amplitude : amplitudes_) file.put(amplitude);
         file.put(position_.stage), file.put(position_.in_stage), file.put(position_.accepted), file.put(position_.easy);
         file.put(position_.progress), file.put(position_.fraction), file.put(position_.displacement);
         file.put(position_.damping), file.put(position_.damping_floor), file.put(position_.stage_over);
         for (const double amplitude : position_.from) file.put(amplitude);
-        file.put(core::count(contacts_.accepted_memory().records()));
-        for (const auto& record : contacts_.accepted_memory().records()) record.each([&](const auto& value) { file.put(value); });
-        file.put(core::count(contacts_.accepted_zones()));
-        for (const contact::Zone& zone : contacts_.accepted_zones()) file.put(zone);
         if constexpr (HasTools<M>) contacts_.tools().each_accepted([&](const auto& value) { file.put(value); });
+        if constexpr (HasConnections<M>) equilibrium_.ties().motion().each_accepted([&](const auto& value) { put_value(file, value); });
         file.put(report.rejected_increments), file.put(report.counts), file.put(clock_.seconds());
         file.put(core::count(report.increments));
         for (const IncrementReport& increment : report.increments) {
@@ -360,29 +350,36 @@ private:
         file.write(path);
     }
 
-    void read_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, Report& report) {
-        CheckpointReader file(path);
-        file.expect(file.get_text() == "fibrant checkpoint 7", "the format");
-        file.expect(file.get<std::uint64_t>() == scene_identity(), "the set of fibres and channels");
-        file.expect(file.get<std::uint64_t>() == loading_identity(stages), "the loading");
-        Vector state = file.get_vector();
-        state_ = std::move(state);
+    /// The part of a checkpoint that has to do with fibres and contacts alone.
+    /// @param whole  the scene and the loading have to agree too
+    void read_state(CheckpointReader& file, bool whole, std::uint64_t loading) {
+        file.expect(file.get_text() == checkpoint_format, "the format");
+        file.expect(file.get<std::uint64_t>() == outline_identity(mesh_), whole ? "the set of fibres and channels" : "the set of fibres");
+        const bool fibres = file.get<std::uint64_t>() == fibre_identity(mesh_), channels = file.get<std::uint64_t>() == channel_identity(channels_);
+        const bool stages = file.get<std::uint64_t>() == loading;
+        file.expect((fibres && channels) || !whole, "the set of fibres and channels"), file.expect(stages || !whole, "the loading");
+        state_ = file.get_vector();
         last_external_ = file.get_vector(), last_damping_ = file.get_vector();
         energy_ = file.get<EnergyBalance>(), contacts_work_ = file.get<double>();
+        get_memory(file, contacts_);
+    }
+
+    void read_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, Report& report) {
+        CheckpointReader file(path);
+        read_state(file, true, loading_identity(stages));
         for (double& amplitude : amplitudes_) amplitude = file.get<double>();
         position_.stage = file.get<Index>(), position_.in_stage = file.get<Index>(), position_.accepted = file.get<Index>();
         position_.easy = file.get<Index>(), position_.progress = file.get<double>(), position_.fraction = file.get<double>();
         position_.displacement = file.get<double>();
         position_.damping = file.get<double>(), position_.damping_floor = file.get<double>(), position_.stage_over = file.get<bool>();
         for (double& amplitude : position_.from) amplitude = file.get<double>();
-        std::vector<typename Contacts::Memory::Record> records(core::at(file.get<Index>()));
-        for (auto& record : records) record.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
-        std::vector<contact::Zone> zones(core::at(file.get<Index>()));
-        for (contact::Zone& zone : zones) zone = file.get<contact::Zone>();
-        contacts_.resume(std::move(records), std::move(zones));
+        move_tools(amplitudes_);
         if constexpr (HasTools<M>) {
-            move_tools(amplitudes_);
             contacts_.tools().resume([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
+        }
+        if constexpr (HasConnections<M>) {
+            equilibrium_.ties().motion().each_accepted([&](auto& value) { get_value(file, value); });
+            equilibrium_.ties().motion().restore();
         }
         report.rejected_increments = file.get<Index>(), report.counts = file.get<solver::IterationCounts>();
         clock_.seconds() = file.get<std::array<double, core::part_count>>();

@@ -11,11 +11,9 @@
 
 namespace fibrant::simulation {
 
-/// Fibres at their nodes, and contacts that have been evaluated at `state`.
-template <beam::BeamElement Beam, class Search, class Normal, class Friction>
-observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const contact::ContactSet<Beam, Search, Normal, Friction>& contacts,
-                              const Vector& state) {
-    using Mesh = beam::Mesh<Beam>;
+/// Fibres at their nodes.
+template <beam::BeamElement Beam>
+observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const Vector& state) {
     observe::Snapshot shot;
     for (Index f = 0; f < mesh.fibre_count(); ++f) {
         observe::FibreSnapshot fibre;
@@ -34,6 +32,15 @@ observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const contact::Conta
         }
         shot.fibres.push_back(std::move(fibre));
     }
+    return shot;
+}
+
+/// Fibres, and contacts that have been evaluated at `state`.
+template <beam::BeamElement Beam, class Search, class Normal, class Friction>
+observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const contact::ContactSet<Beam, Search, Normal, Friction>& contacts,
+                              const Vector& state) {
+    using Mesh = beam::Mesh<Beam>;
+    observe::Snapshot shot = snapshot_of(mesh, state);
     for (Index k = 0; k < core::count(contacts.elements()); ++k) {
         const auto& element = contacts.elements()[core::at(k)];
         observe::ContactSnapshot contact;

@@ -164,6 +164,7 @@ private:
                     right_ -= product_;
                     for (const scene::HeldVector& held : equilibrium.system().layout().held)
                         right_.template segment<3>(3 * held.vector) = held.free * right_.template segment<3>(3 * held.vector);
+                    scene::project_ties(equilibrium.system().layout(), right_);
                 }
             });
             const SolveStatus prepared = clock_->time(core::Part::preparation, [&] { return linear_->prepare(equilibrium.system()); });

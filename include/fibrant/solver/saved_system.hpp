@@ -269,6 +269,7 @@ static_assert(assembly::LinearSystem<SavedSystem>);
 /// Writes a system and its right-hand side to a file, which SavedSystem reads.
 template <assembly::LinearSystem System>
 void write_system(const std::filesystem::path& path, const System& system, const Vector& right_hand_side) {
+    if (!system.layout().ties.empty()) core::refuse("write_system.ties", std::to_string(system.layout().ties.size()), "none: a file has no place for them");
     SavedSystem(system, right_hand_side).write(path);
 }
 

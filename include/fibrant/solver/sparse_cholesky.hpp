@@ -3,7 +3,7 @@
 /// @file Direct solution with Eigen's sparse Cholesky: for tests and small scenes.
 
 #include <fibrant/assembly/term_assembly.hpp>
-#include <fibrant/solver/linear_solver.hpp>
+#include <fibrant/solver/conjugate_gradient.hpp>
 
 #include <Eigen/SparseCholesky>
 
@@ -63,6 +63,10 @@ public:
         const double norm = scaled_norm(system.layout(), b);
         if (norm == 0.0) return {SolveStatus::converged, 0, 0.0, work.curvature};
         SolveReport report{SolveStatus::iteration_limit, 0, 1.0, work.curvature};
+        if (!system.layout().ties.empty()) {  // the factor knows their supports only
+            const auto precondition = [&](const Vector& r, Vector& z) { descend(r, z); };
+            return conjugate_gradient(system, precondition, b, tolerance, tied_limit, work.vectors, x);
+        }
         if (work.status == SolveStatus::indefinite) {
             descend(b, x);
             report.iterations = 1;
@@ -89,8 +93,10 @@ public:
     }
 
 private:
+    static constexpr int tied_limit = 500;  ///< iterations where a system has ties
     struct Work {
         assembly::TermAssembly terms;
+        ConjugateGradientVectors vectors;
         SparseMatrix a;
         Eigen::SimplicialLDLT<SparseMatrix> factor;
         Vector pivots, residual;

@@ -5,24 +5,19 @@
 #include <fibrant/compositions/weave/fabric_parameters.hpp>
 #include <fibrant/scene/assembly.hpp>
 
+#include <array>
 #include <string>
+#include <vector>
 
 namespace fibrant::compositions::weave {
 
 /// Channel that scales the tension of all tows.
 inline constexpr const char* tension_channel = "tension";
 
-/// Scene of a fabric before it is settled (Durville, section 15.3.5): all tows straight in the plane z = 0.
-///
-/// The ends of a fibre keep their place across the fibre and are pulled along it by a dead force; its middle keeps its
-/// place along it. Ends are free to turn and to draw in, so nothing but the tension holds a fibre's length.
-/// @param tension_strain  pull of a fibre over its E A at amplitude 1 of the tension channel [1], > 0
-inline scene::Assembly flat_fabric(const FabricParameters& fabric, double tension_strain) {
-    fabric.validate();
-    core::require_positive("flat_fabric.tension_strain", tension_strain);
-    scene::Assembly assembly;
+/// Adds all fibres, straight in the plane z = 0, in groups by tow. @returns the groups of the warp and of the weft tows
+inline std::array<std::vector<Index>, 2> add_flat_fibres(scene::Assembly& assembly, const FabricParameters& fabric) {
     const Index cloth = assembly.add_group("fabric");
-    std::vector<Index> groups[2];
+    std::array<std::vector<Index>, 2> groups;
     for (const Family family : {Family::warp, Family::weft}) {
         const bool warp = family == Family::warp;
         const TowParameters& tow = fabric.tow(family);
@@ -30,7 +25,6 @@ inline scene::Assembly flat_fabric(const FabricParameters& fabric, double tensio
         const Vec3 along = warp ? Vec3::UnitX() : Vec3::UnitY();
         const Vec3 across = warp ? Vec3::UnitY() : Vec3::UnitX();
         const double half = 0.5 * fabric.fibre_length(family);
-        const double pull = tension_strain * tow.material.young_modulus * tow.section().area();
         for (Index t = 0; t < fabric.tows(family); ++t) {
             const Index group = assembly.add_group((warp ? "warp " : "weft ") + std::to_string(t), cloth);
             groups[warp ? 0 : 1].push_back(group);
@@ -43,24 +37,47 @@ inline scene::Assembly flat_fabric(const FabricParameters& fabric, double tensio
                 fibre.elements = fabric.elements;
                 fibre.director = Vec3::UnitZ();
                 fibre.group = group;
-                const Index f = assembly.add(fibre);
-                const Mat3 axial = along * along.transpose();
-                for (const scene::Station& end : {scene::first_end(f), scene::last_end(f)}) {
-                    assembly.hold_position(end, Mat3::Identity() - axial);
-                    assembly.apply(scene::DeadForce{end, scene::NodeVector::position,
-                                                    (end.fraction > 0.5 ? pull : -pull) * along, tension_channel});
-                }
-                assembly.hold_axial_rotation(scene::first_end(f));
-                assembly.hold_position({f, 0.5}, axial);
+                assembly.add(fibre);
             }
         }
     }
+    return groups;
+}
+
+/// The order that the pattern asks of crossing tows.
+inline void force_pattern(scene::Assembly& assembly, const FabricParameters& fabric, const std::array<std::vector<Index>, 2>& groups) {
     for (Index i = 0; i < fabric.warp_tows; ++i)
         for (Index j = 0; j < fabric.weft_tows; ++j) {
             const Index warp = groups[0][core::at(i)], weft = groups[1][core::at(j)];
             const bool over = fabric.pattern.over(i, j);
             assembly.force_order({over ? warp : weft, over ? weft : warp, Vec3::UnitZ()});
         }
+}
+
+/// Scene of a fabric before it is settled (Durville, section 15.3.5): all tows straight in the plane z = 0.
+///
+/// The ends of a fibre keep their place across the fibre and are pulled along it by a dead force; its middle keeps its
+/// place along it. Ends are free to turn and to draw in, so nothing but the tension holds a fibre's length.
+/// @param tension_strain  pull of a fibre over its E A at amplitude 1 of the tension channel [1], > 0
+inline scene::Assembly flat_fabric(const FabricParameters& fabric, double tension_strain) {
+    fabric.validate();
+    core::require_positive("flat_fabric.tension_strain", tension_strain);
+    scene::Assembly assembly;
+    const std::array<std::vector<Index>, 2> groups = add_flat_fibres(assembly, fabric);
+    for (Index f = 0; f < fabric.fibres(); ++f) {
+        const Family family = fabric.place(f).family;
+        const TowParameters& tow = fabric.tow(family);
+        const Vec3 along = family == Family::warp ? Vec3::UnitX() : Vec3::UnitY();
+        const double pull = tension_strain * tow.material.young_modulus * tow.section().area();
+        const Mat3 axial = along * along.transpose();
+        for (const scene::Station& end : {scene::first_end(f), scene::last_end(f)}) {
+            assembly.hold_position(end, Mat3::Identity() - axial);
+            assembly.apply(scene::DeadForce{end, scene::NodeVector::position, (end.fraction > 0.5 ? pull : -pull) * along, tension_channel});
+        }
+        assembly.hold_axial_rotation(scene::first_end(f));
+        assembly.hold_position({f, 0.5}, axial);
+    }
+    force_pattern(assembly, fabric, groups);
     return assembly;
 }
 

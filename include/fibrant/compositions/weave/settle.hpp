@@ -18,6 +18,17 @@ inline double smallest_radius(const FabricParameters& fabric) {
     return std::min(fabric.warp.fibre_radius, fabric.weft.fibre_radius);
 }
 
+/// Stiffness that the tension of a fibre gives each of its nodes against moving aside alone; the lesser of the two families'
+/// [force / length].
+inline double node_stiffness(const FabricParameters& fabric, double tension_strain) {
+    const auto of = [&](Family family) {
+        const TowParameters& tow = fabric.tow(family);
+        const double pull = tension_strain * tow.material.young_modulus * tow.section().area();
+        return 4.0 * pull * static_cast<double>(fabric.elements) / fabric.fibre_length(family);
+    };
+    return std::min(of(Family::warp), of(Family::weft));
+}
+
 /// Parameters of a model whose normal law is a limited, regularised penalty.
 template <simulation::Model M>
 simulation::ModelParameters<M> model_parameters(const FabricParameters& fabric, const SettleParameters& settle) {
@@ -93,12 +104,7 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     // makes of an element's length; an increment is a time, and half the time is twice the spring, so that the path is the
     // same when increments are halved. After the tension it falls, at first until it holds a thousandth of the forces, then,
     // contact being stiff, a ten-thousandth, which is what the balance of forces is solved to: rest is an equilibrium.
-    const auto node_stiffness = [&](Family family) {
-        const TowParameters& tow = fabric.tow(family);
-        const double pull = settle.tension_strain * tow.material.young_modulus * tow.section().area();
-        return 4.0 * pull * static_cast<double>(fabric.elements) / fabric.fibre_length(family);
-    };
-    const double damping = 0.1 / settle.gap_limit_over_radius * std::min(node_stiffness(Family::warp), node_stiffness(Family::weft));
+    const double damping = 0.1 / settle.gap_limit_over_radius * node_stiffness(fabric, settle.tension_strain);
     separation.damping = handover.damping = release.damping = relaxation.damping = damping;
     stiffening.damping = 4.0 * damping;
     rest.damping = stiffening.damping;

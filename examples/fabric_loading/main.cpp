@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// Load cases of a dry woven fabric, from the settled state that `weave` has written.
+//   fabric_loading CASE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
+#include "load_file.hpp"
+#include "output.hpp"
+
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/solver/any_solver.hpp>
+
+using namespace fibrant;
+namespace cloth = compositions::weave;
+
+struct LoadedWeave {
+    using Beam = beam::DirectorBeam<>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::LimitedGap<law::RegularisedPenalty>;
+    using Friction = law::RegularisedCoulomb;
+    using Solver = solver::AnySolver;
+    using Tools = contact::RigidTools;
+    using Connections = connection::RigidBodies;
+};
+
+bool solve(example::TomlReader& file, const example::Output& output) {
+    const fabric_loading::LoadFile load = fabric_loading::read_load_file(file, output.scene.parent_path());
+    const cloth::FabricParameters& fabric = load.scene.fabric;
+    const double radius = cloth::smallest_radius(fabric);
+
+    // The settled fabric, and bodies at its edges.
+    scene::Assembly fibres;
+    cloth::add_flat_fibres(fibres, fabric);
+    auto parameters = cloth::model_parameters<LoadedWeave>(fabric, load.scene.settle);
+    const beam::Mesh<LoadedWeave::Beam> mesh(fibres, LoadedWeave::Beam(parameters.beam));
+    const observe::Snapshot settled = simulation::snapshot_of(mesh, simulation::checkpoint_state(load.checkpoint, mesh));
+    const cloth::LoadCase scene = cloth::load_case(load.name, settled, fabric, load.free_across);
+    parameters.iteration = load.scene.iteration;
+    parameters.solver.strategy = load.scene.linear_solver;
+    if (load.points_per_element > 0) parameters.contact.spacing.points_per_element = static_cast<double>(load.points_per_element);
+    simulation::Simulator<LoadedWeave> simulator(scene.assembly, parameters);
+    simulator.start_from(load.checkpoint);
+    fabric_loading::write_state(output.folder / "before", settled, load.scene, output.pictures);
+
+    // The programme.
+    fabric_loading::Curve curve;
+    example::Recorder recorder(output, radius, [&] {
+        const std::vector<cloth::Figure> figures = cloth::load_figures(scene, simulator);
+        curve.add(figures);
+        return fabric_loading::columns(figures, simulator.snapshot(), fabric);
+    });
+    simulation::Loading<LoadedWeave> loading = simulation::loading_of<LoadedWeave>(load.programme);
+    loading.checkpoint = output.checkpoint(), loading.checkpoint_seconds = 20.0, loading.resume = output.resume;
+    const simulation::Report report = simulator.run(loading, recorder);
+
+    const observe::Snapshot snapshot = simulator.snapshot();
+    fabric_loading::write_state(output.folder / "after", snapshot, load.scene, output.pictures);
+    curve.write(output.folder / "curve.svg", load.name);
+    const cloth::CrimpMeasures before = cloth::crimp_measures(settled, fabric), after = cloth::crimp_measures(snapshot, fabric);
+    std::vector<std::pair<std::string, double>> figures{{"fibres", static_cast<double>(fabric.fibres())}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())}};
+    for (const auto& figure : cloth::load_figures(scene, simulator)) figures.push_back(figure);
+    for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"crimp_before", before.warp}, {"crimp_after", after.warp}, {"dissipated", report.energy.dissipated}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()}, {"linear_iterations", static_cast<double>(report.counts.linear_iterations)}})
+        figures.emplace_back(name, value);
+    example::write_summary(output, report, radius, figures);
+    return report.converged;
+}
+
+int main(int argc, char** argv) {
+    return example::run(argc, argv, "fabric_loading", "Loads a settled woven fabric through bodies at its edges.", solve);
+}

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What a load case writes: its curve, the fabric before and after, contact statistics and histograms.
+
+#include "../support/example.hpp"
+#include "../weave/output.hpp"
+
+#include <fibrant/compositions/weave/fibre_figures.hpp>
+#include <fibrant/compositions/weave/load_cases.hpp>
+#include <fibrant/observe/contact_statistics.hpp>
+#include <fibrant/observe/svg_curves.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace fabric_loading {
+
+namespace cloth = fibrant::compositions::weave;
+namespace observe = fibrant::observe;
+using fibrant::Index;
+
+/// Columns of the table of increments: the figures of the case, of tows and of the solution.
+inline std::vector<observe::Column> columns(const std::vector<cloth::Figure>& figures, const observe::Snapshot& snapshot, const cloth::FabricParameters& fabric) {
+    std::vector<observe::Column> row;
+    for (const auto& [name, value] : figures) row.push_back({name, value});
+    for (const cloth::Family family : {cloth::Family::warp, cloth::Family::weft}) {
+        const std::string name = family == cloth::Family::warp ? "warp" : "weft";
+        const cloth::TowFigures tows = cloth::tow_figures(snapshot, fabric, family);
+        row.push_back({name + "_width", tows.width}), row.push_back({name + "_thickness", tows.thickness});
+        row.push_back({name + "_fibre_volume_fraction", tows.fibre_volume_fraction}), row.push_back({name + "_gap", tows.gap});
+    }
+    return row;
+}
+
+/// A histogram of equal bins: from, to, number.
+inline void write_histogram(const std::filesystem::path& path, const std::vector<double>& values, Index bins = 40) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    std::vector<Index> counts(fibrant::core::at(bins), 0);
+    const double width = std::max((*high - *low) / static_cast<double>(bins), 1e-300);
+    for (const double value : values) ++counts[fibrant::core::at(std::clamp<Index>(static_cast<Index>((value - *low) / width), 0, bins - 1))];
+    observe::CsvWriter file(path);
+    for (Index k = 0; k < bins; ++k)
+        file.row({{"from", *low + static_cast<double>(k) * width}, {"to", *low + static_cast<double>(k + 1) * width}, {"elements", counts[fibrant::core::at(k)]}});
+}
+
+/// Pictures and measures of a state, in a folder of their own.
+inline void write_state(const std::filesystem::path& folder, const observe::Snapshot& snapshot, const weave::Scene& scene, bool pictures) {
+    std::filesystem::create_directories(folder);
+    weave::write_measures(folder, snapshot, scene.fabric, cloth::crimp_measures(snapshot, scene.fabric));
+    if (pictures) weave::write_pictures(folder, snapshot, scene.fabric, scene.unit);
+    const cloth::ElementFigures elements = cloth::element_figures(snapshot);
+    write_histogram(folder / "strain_histogram.csv", elements.strain);
+    write_histogram(folder / "curvature_histogram.csv", elements.curvature);
+    const observe::ContactStatistics contacts = observe::contact_statistics(snapshot);
+    observe::JsonObject json;
+    json.add("elements", contacts.elements).add("active", contacts.active).add("fibre_pairs", contacts.fibre_pairs)
+        .add("least_gap", contacts.least_gap).add("greatest_penetration_over_radius", contacts.greatest_penetration_over_radius)
+        .add("sum_of_reactions", contacts.sum_of_reactions).add("sum_of_friction", contacts.sum_of_friction);
+    observe::write_file(folder / "contacts.json", json.text() + "\n");
+}
+
+/// The curve of a case as its two first figures.
+struct Curve {
+    std::string x_name, y_name;
+    observe::PlotLine line;
+    void add(const std::vector<cloth::Figure>& figures) {
+        x_name = figures[0].first, y_name = figures[1].first;
+        line.points.emplace_back(figures[0].second, figures[1].second);
+    }
+    void write(const std::filesystem::path& path, const std::string& title) const {
+        if (line.points.empty()) return;
+        observe::write_file(path, observe::curves_svg({.title = title, .x_label = x_name, .y_label = y_name, .lines = {line}}));
+    }
+};
+
+}  // namespace fabric_loading

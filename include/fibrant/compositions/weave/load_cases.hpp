@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Load cases of a dry fabric: extension, shear, bending, compaction, a tow that is pulled out (Durville, section 15.4.2).
+
+#include <fibrant/compositions/weave/edges.hpp>
+#include <fibrant/compositions/weave/measures.hpp>
+#include <fibrant/core/rotation.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fibrant::compositions::weave {
+
+/// Channels of the load cases; their amplitudes have no units.
+inline constexpr const char* strain_channel = "strain";  ///< change of the distance of two edges over it
+inline constexpr const char* shear_channel = "shear";    ///< displacement of the north edge over the height, or the angle of a frame [radian]
+inline constexpr const char* bend_channel = "bend";      ///< rotation of the west edge, and of the east edge against it [radian]
+inline constexpr const char* plate_channel = "plates";   ///< approach of the plates over the thickness between them
+inline constexpr const char* pull_channel = "pull";      ///< displacement of a tow's end over the spacing of the tows that it crosses
+// tension_channel: tension of a tow over its E A, where an edge is free
+
+inline const std::vector<std::string>& load_case_names() {
+    static const std::vector<std::string> names{"release", "equibiaxial", "uniaxial", "shear", "frame", "bending", "compaction", "pull_out"};
+    return names;
+}
+
+/// A scene with its bodies, and which of its figures make the curve.
+struct LoadCase {
+    std::string name;
+    scene::Assembly assembly;
+    EdgeBodies bodies;
+    Index puller = -1;               ///< body of the tow that is pulled
+    std::array<Index, 2> plates{-1, -1};  ///< below and above
+    double width = 0.0, height = 0.0;     ///< between the edges along x and along y at the start [length]
+    double plate_distance = 0.0;          ///< at the start [length]
+};
+
+/// @param name      one of load_case_names()
+/// @param snapshot  the settled fabric
+/// @throws std::invalid_argument naming the field that is wrong
+inline LoadCase load_case(const std::string& name, const observe::Snapshot& snapshot, const FabricParameters& fabric, bool free_across = false) {
+    using scene::Coordinate;
+    const auto& names = load_case_names();
+    if (std::find(names.begin(), names.end(), name) == names.end()) core::refuse("load_case.name", name, "a load case");
+    fabric.validate();
+    LoadCase load;
+    load.name = name;
+    add_flat_fibres(load.assembly, fabric);
+    std::array<Vec3, 4> middle;
+    for (const Edge edge : all_edges) {
+        const Index tows = fabric.tows(family_of(edge));
+        Vec3& sum = middle[static_cast<std::size_t>(edge)] = Vec3::Zero();
+        for (Index tow = 0; tow < tows; ++tow) sum += tow_end_middle(snapshot, fabric, edge, tow) / static_cast<double>(tows);
+    }
+    load.width = middle[1].x() - middle[0].x(), load.height = middle[3].y() - middle[2].y();
+    const std::array<double, 2> pull{static_cast<double>(fabric.warp_tows) * fabric.warp.axial_stiffness(),
+                                     static_cast<double>(fabric.weft_tows) * fabric.weft.axial_stiffness()};
+    std::array<EdgeParameters, 4> edges;
+    EdgeParameters &west = edges[0], &east = edges[1], &south = edges[2], &north = edges[3];
+    const auto stretch = [](EdgeParameters& low, EdgeParameters& high, std::size_t axis, double size) {
+        low.translation[axis] = Coordinate::held_at(-0.5 * size, strain_channel), high.translation[axis] = Coordinate::held_at(0.5 * size, strain_channel);
+    };
+    const auto draw = [](EdgeParameters& low, EdgeParameters& high, std::size_t axis, double force) {
+        low.translation[axis] = Coordinate::under(-force, tension_channel), high.translation[axis] = Coordinate::under(force, tension_channel);
+    };
+    if (name == "release") {
+        // Fibre ends were held one by one: edges that give way under the tension let them rearrange without being pressed.
+        draw(west, east, 0, pull[0]), draw(south, north, 1, pull[1]);
+    } else if (name == "equibiaxial" || name == "uniaxial") {
+        stretch(west, east, 0, load.width);
+        if (name == "equibiaxial") stretch(south, north, 1, load.height);
+        else draw(south, north, 1, pull[1]);
+        if (free_across)
+            for (const Edge edge : all_edges) edges[static_cast<std::size_t>(edge)].tow_translation[core::at(1 - axis_of(family_of(edge)))] = Coordinate::loose();
+    } else if (name == "shear") {
+        north.translation[0] = Coordinate::held_at(load.height, shear_channel);
+        north.translation[1] = Coordinate::under(pull[1], tension_channel);
+        draw(west, east, 0, pull[0]);
+        for (EdgeParameters* edge : {&west, &east}) edge->translation[1] = Coordinate::loose(), edge->rotation[2] = Coordinate::loose();
+    } else if (name == "frame") {
+        // Hinged at its corners; the north side hangs on the west side and turns back against it.
+        const Vec3 south_west(middle[0].x(), middle[2].y(), 0), south_east(middle[1].x(), middle[2].y(), 0), north_west(middle[0].x(), middle[3].y(), 0);
+        west.pivot = south_west, east.pivot = south_east, north.pivot = north_west;
+        west.rotation[2] = east.rotation[2] = Coordinate::held_at(-1.0, shear_channel);
+        north.parent = Edge::west, north.rotation[2] = Coordinate::held_at(1.0, shear_channel);
+    } else if (name == "bending") {
+        west.rotation[1] = Coordinate::held_at(1.0, bend_channel), east.rotation[1] = Coordinate::held_at(-1.0, bend_channel);
+        west.turning = east.turning = true;
+        east.translation[0] = Coordinate::under(pull[0], tension_channel), east.translation[2] = Coordinate::loose();
+        south.loose = north.loose = fabric.weft.axial_stiffness();
+    } else if (name == "compaction") {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (const observe::FibreSnapshot& fibre : snapshot.fibres)
+            for (const Vec3& node : fibre.position) low = std::min(low, node.z() - fibre.section.radius()), high = std::max(high, node.z() + fibre.section.radius());
+        load.plate_distance = high - low;
+        for (const bool above : {false, true}) {
+            scene::Tool plate;
+            plate.name = above ? "upper plate" : "lower plate";
+            plate.origin = Vec3(0, 0, above ? high : low), plate.axis = Vec3(0, 0, above ? -1.0 : 1.0);
+            plate.displacement = Vec3(0, 0, (above ? -0.5 : 0.5) * load.plate_distance);
+            plate.channel = plate_channel;
+            load.plates[above ? 1 : 0] = load.assembly.add(plate);
+        }
+    } else {  // pull_out
+        const Index tow = fabric.warp_tows / 2;
+        west.left_out = east.left_out = {tow};
+        scene::RigidBody puller;
+        puller.name = "puller", puller.position = tow_end_middle(snapshot, fabric, Edge::east, tow);
+        puller.translation[0] = Coordinate::held_at(fabric.weft_spacing, pull_channel);
+        load.bodies = add_edges(load.assembly, snapshot, fabric, edges);
+        load.puller = load.assembly.add(puller);
+        connect_tow_end(load.assembly, fabric, Edge::east, tow, load.puller, {.spin = true});
+        return load;
+    }
+    load.bodies = add_edges(load.assembly, snapshot, fabric, edges);
+    return load;
+}
+
+/// A named figure of a load case.
+using Figure = std::pair<std::string, double>;
+
+/// Figures of a load case after an increment: the two of its curve first (with their names), then places, turns and reactions of
+/// all edges. Forces are those that bodies exert on the sample.
+template <class Simulator>
+std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulator) {
+    const auto& ties = simulator.equilibrium().ties();
+    const auto force = [&](Edge edge) { return load.bodies.of(edge) < 0 ? Vec3(Vec3::Zero()) : ties.wrench(load.bodies.of(edge)).force; };
+    const auto place = [&](Edge edge) { return load.bodies.of(edge) < 0 ? Vec3(Vec3::Zero()) : ties.motion().position(load.bodies.of(edge)); };
+    constexpr double degree = 180.0 / 3.14159265358979323846;
+    std::vector<Figure> figures;
+    if (load.name == "release" || load.name == "equibiaxial" || load.name == "uniaxial") {
+        figures = {{"strain", (place(Edge::east) - place(Edge::west)).x() / load.width - 1.0}, {"force", 0.5 * (force(Edge::east) - force(Edge::west)).x()}};
+    } else if (load.name == "shear") {
+        const Vec3 side = place(Edge::north) - place(Edge::south);
+        figures = {{"angle_deg", degree * std::atan2(side.x(), side.y())}, {"force", force(Edge::north).x()}};
+    } else if (load.name == "frame") {
+        // Virtual work of the frame: a moment about each of the two corners that it turns about.
+        const auto& motion = ties.motion();
+        const Mat3 frame = motion.frame(load.bodies.of(Edge::west));
+        const double angle = std::atan2(frame(0, 1), frame(1, 1)), height = (motion.position(load.bodies.of(Edge::north)) - motion.position(load.bodies.of(Edge::west))).norm();
+        const double work = -ties.wrench(load.bodies.of(Edge::west)).moment.z() - ties.wrench(load.bodies.of(Edge::east)).moment.z() +
+                            ties.wrench(load.bodies.of(Edge::north)).moment.z();
+        figures = {{"angle_deg", degree * angle}, {"force", work / height}};
+    } else if (load.name == "bending") {
+        const Mat3 frame = ties.motion().frame(load.bodies.of(Edge::west)), other = ties.motion().frame(load.bodies.of(Edge::east));
+        const double turn = std::atan2(frame(0, 2), frame(2, 2)) - std::atan2(other(0, 2), other(2, 2));
+        figures = {{"curvature", turn / load.width}, {"moment", 0.5 * (ties.wrench(load.bodies.of(Edge::west)).moment.y() - ties.wrench(load.bodies.of(Edge::east)).moment.y())}};
+    } else if (load.name == "compaction") {
+        const auto& tools = simulator.contacts().tools();
+        figures = {{"thickness", load.plate_distance * (1.0 - simulator.amplitude(plate_channel))},
+                   {"force", 0.5 * std::abs((tools.reaction(load.plates[1]).force - tools.reaction(load.plates[0]).force).z())}};
+    } else {
+        figures = {{"displacement", ties.motion().position(load.puller).x()}, {"force", ties.wrench(load.puller).force.x()}};
+    }
+    Vec3 sum = load.puller >= 0 ? ties.wrench(load.puller).force : Vec3(Vec3::Zero());
+    for (const Edge edge : all_edges) {
+        const Index body = load.bodies.of(edge);
+        if (body < 0) continue;
+        const auto wrench = ties.wrench(body);
+        sum += wrench.force;
+        const Vec3 at = ties.motion().position(body), turn = core::rotation_vector(ties.motion().frame(body));
+        const char* axes[] = {"_x", "_y", "_z"};
+        for (int k = 0; k < 3; ++k) figures.push_back({edge_name(edge) + std::string(axes[k]), at[k]});
+        for (int k = 0; k < 3; ++k) figures.push_back({edge_name(edge) + std::string("_turn") + axes[k], turn[k]});
+        for (int k = 0; k < 3; ++k) figures.push_back({edge_name(edge) + std::string("_force") + axes[k], wrench.force[k]});
+        for (int k = 0; k < 3; ++k) figures.push_back({edge_name(edge) + std::string("_moment") + axes[k], wrench.moment[k]});
+    }
+    figures.push_back({"unbalanced_force", sum.norm()});
+    figures.push_back({"connection_misfit", ties.misfit()});
+    figures.push_back({"frame_error", ties.motion().orthonormality_error()});
+    return figures;
+}
+
+}  // namespace fibrant::compositions::weave

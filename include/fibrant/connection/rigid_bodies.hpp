@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Averages of fibre ends tied to rigid bodies, and ends tied to their periodic images (Durville, section 15.3.4).
+
+#include <fibrant/connection/body_motion.hpp>
+#include <fibrant/connection/connections.hpp>
+#include <fibrant/connection/prescribed_motion.hpp>
+#include <fibrant/scene/tied_vectors.hpp>
+
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace fibrant::connection {
+
+/// Force and moment.
+struct Wrench {
+    Vec3 force = Vec3::Zero();   ///< [force]
+    Vec3 moment = Vec3::Zero();  ///< about the place that is asked for [force * length]
+};
+
+/// The average connections and periodic pairs of a scene.
+///
+/// A condition is d.(c - sqrt(n) x_M) = d.offset sqrt(n) in each tied direction d of its body, c = sum x_k / sqrt(n): linear in the
+/// tied vectors, so a body whose coordinates are prescribed is reached in one step. Free coordinates q are those that the tied
+/// vectors fit best; with D their derivative and U an orthonormal basis of its columns, a step of the vectors is free in
+/// U and blocked across it, and a force on q is U Sigma^-1 V^T of it on them. Neither the averages nor the bodies are unknowns
+/// of the system.
+template <beam::BeamElement B>
+class BodyTies {
+public:
+    BodyTies(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const Channels& channels) : motion_{assembly, channels} {
+        std::vector<char> taken(core::at(mesh.layout().vectors()), 0);
+        for (const scene::Hold& hold : assembly.holds())
+            taken[core::at(mesh.node_vector(hold.at.fibre, station_node(mesh, hold.at), static_cast<Index>(hold.vector)))] = 1;
+        const auto take = [&](Index vector) {
+            if (taken[core::at(vector)] != 0) core::refuse("connection", "vector " + std::to_string(vector), "of a nodal vector that is neither held nor tied twice");
+            taken[core::at(vector)] = 1;
+        };
+        const auto finish = [&](scene::Tie& tie, const Condition& condition, Index fibre) {
+            const beam::MeshFibre& of = mesh.fibre(fibre);
+            tie.first = scalars_, scalars_ += tie.count;
+            tie.support = of.material.young_modulus * of.section.area() / of.length();
+            ties_.push_back(tie), conditions_.push_back(condition);
+        };
+        for (const scene::AverageConnection& average : assembly.averages()) {
+            if (beam::TurningSections<B> && average.vector != scene::NodeVector::position)
+                core::refuse("AverageConnection.vector", "a director", "the position, for a beam whose sections turn");
+            if (static_cast<Index>(average.vector) >= B::vectors_per_node) core::refuse("AverageConnection.vector", "a director", "a vector of the beam's nodes");
+            scene::Tie tie;
+            Condition condition;
+            condition.owner = average.body, condition.director = average.vector != scene::NodeVector::position;
+            condition.root = std::sqrt(static_cast<double>(average.ends.size()));
+            tie.count = 0;
+            for (int k = 0; k < 3; ++k) {
+                if (!average.tied[core::at(k)]) continue;
+                condition.axes.col(tie.count) = motion_.frame(average.body).transpose() * average.directions.col(k);
+                condition.displacement[tie.count++] = average.displacement[k];
+            }
+            if (!average.displacement.isZero(0.0)) condition.channel = channels.find(average.channel);
+            for (const scene::Station& at : average.ends) {
+                tie.vectors.push_back(mesh.node_vector(at.fibre, station_node(mesh, at), static_cast<Index>(average.vector)));
+                tie.weights.push_back(1.0 / condition.root);
+                take(tie.vectors.back());
+            }
+            finish(tie, condition, average.ends.front().fibre);
+        }
+        for (const scene::PeriodicPair& pair : assembly.pairs())
+            for (Index v = 0; v < B::vectors_per_node; ++v) {
+                scene::Tie tie;
+                Condition condition;
+                condition.periodic = true, condition.owner = pair.cell, condition.director = v > 0;
+                condition.root = std::sqrt(2.0), condition.period = pair.period;
+                tie.vectors = {mesh.node_vector(pair.first.fibre, station_node(mesh, pair.first), v), mesh.node_vector(pair.last.fibre, station_node(mesh, pair.last), v)};
+                tie.weights = {-1.0 / condition.root, 1.0 / condition.root};
+                for (const Index vector : tie.vectors) take(vector);
+                finish(tie, condition, pair.first.fibre);
+            }
+        find_groups();
+        anchor(mesh.start_state());
+    }
+
+    /// Conditions count from this state from now on, with the bodies where they were at the start.
+    void anchor(const Vector& state) {
+        extent_ = state.size() > 0 ? state.cwiseAbs().maxCoeff() : 0.0;
+        for (std::size_t k = 0; k < conditions_.size(); ++k) {
+            Condition& condition = conditions_[k];
+            const Vec3 sum = combination(ties_[k], state);
+            if (condition.periodic) condition.offset = sum;
+            else condition.offset = motion_.frame(condition.owner).transpose() * (condition.director ? sum : Vec3(sum - condition.root * motion_.position(condition.owner)));
+        }
+    }
+
+    void begin(std::span<const double> amplitudes) {
+        motion_.begin(amplitudes);
+        for (Condition& condition : conditions_) condition.amplitude = condition.channel < 0 ? 0.0 : amplitudes[core::at(condition.channel)];
+    }
+
+    void place(const Vector& state, scene::DofLayout& layout) {
+        if (ties_.empty()) return;
+        sums_.resize(conditions_.size());
+        for (std::size_t k = 0; k < conditions_.size(); ++k) sums_[k] = combination(ties_[k], state);
+        Vector change = Vector::Zero(motion_.free_coordinates());
+        for (int iteration = 0; iteration < 25; ++iteration) {
+            change.setZero();
+            double most = 0.0;
+            for (Group& group : groups_) most = std::max(most, fit(group, change));
+            if (most <= 1e-14 * extent_) break;
+            motion_.move(change);
+        }
+        gap_.resize(scalars_);
+        for (std::size_t k = 0; k < conditions_.size(); ++k) {
+            for (Index a = 0; a < ties_[k].count; ++a) {
+                ties_[k].axes.col(a) = direction(conditions_[k], a);
+                gap_[ties_[k].first + a] = gap(k, a);
+            }
+        }
+        if (layout.ties.size() != ties_.size()) layout.ties = ties_;
+        for (std::size_t k = 0; k < ties_.size(); ++k) layout.ties[k].axes = ties_[k].axes;
+        layout.motions.resize(groups_.size());
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+            layout.motions[g].scalars = groups_[g].scalars;
+            layout.motions[g].modes = groups_[g].modes;
+            layout.motions[g].stiffness.resize(0, 0);
+        }
+        scene::remove_motions(layout, gap_);
+    }
+
+    void add_closing(const scene::DofLayout& layout, Vector& step) const {
+        if (!ties_.empty()) scene::add_tied(layout, Vector(-gap_), step);
+    }
+    /// How far the conditions miss, over all of them [length, or 1 of directors].
+    double misfit() const {
+        double most = 0.0;
+        for (std::size_t k = 0; k < conditions_.size(); ++k)
+            for (Index a = 0; a < ties_[k].count; ++a) most = std::max(most, std::abs(gap_[ties_[k].first + a]) / conditions_[k].root);
+        return most;
+    }
+
+    void add_forces(const scene::DofLayout& layout, Vector& external) const {
+        if (groups_.empty()) return;
+        Vector scalars = Vector::Zero(scalars_);
+        for (const Group& group : groups_) {
+            Vector force(core::count(group.coordinates));
+            for (Index j = 0; j < force.size(); ++j) force[j] = motion_.free(group.coordinates[core::at(j)]).force;
+            const Vector own = group.modes * (group.pull.transpose() * force);
+            for (Index k = 0; k < own.size(); ++k) scalars[group.scalars[core::at(k)]] += own[k];
+        }
+        scene::add_tied(layout, scalars, external);
+    }
+
+    /// Keeps what fibres and contacts exert on the tied vectors: at equilibrium the force of the ties on them.
+    void hold_forces(const scene::DofLayout& layout, const Vector& internal) {
+        if (!ties_.empty()) forces_ = scene::tied_part(layout, internal);
+    }
+
+    /// Stiffness of the free coordinates from the forces that turn with them. @param whole  else none
+    void stiffen(scene::DofLayout& layout, bool whole) const {
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+            const Group& group = groups_[g];
+            Matrix& stiffness = layout.motions[g].stiffness;
+            stiffness.resize(0, 0);
+            if (!whole || group.modes.cols() == 0 || forces_.size() == 0) continue;
+            const Index n = core::count(group.coordinates);
+            Matrix of_coordinates = Matrix::Zero(n, n);
+            for (const Index c : group.conditions) {
+                const Condition& condition = conditions_[core::at(c)];
+                if (condition.periodic) continue;
+                const Vec3 force = condition.director ? force_of(c) : Vec3(condition.root * force_of(c)), &sum = sums_[core::at(c)];
+                for (Index i = 0; i < n; ++i)
+                    for (Index j = 0; j < n; ++j) {
+                        const Index upper = group.coordinates[core::at(i)], lower = group.coordinates[core::at(j)];
+                        if (!motion_.moves(upper, condition.owner) || !motion_.moves(lower, condition.owner) || !motion_.above(upper, lower)) continue;
+                        const bool same = motion_.above(lower, upper);
+                        if (motion_.free(upper).component < 3 || (same && motion_.free(lower).component < 3)) continue;
+                        const Vec3 moved = condition.director ? motion_.spin(lower, sum) : motion_.velocity(lower, Vec3(sum / condition.root));
+                        const double value = force.dot(motion_.spin(upper, moved));
+                        of_coordinates(i, j) += same ? 0.5 * value : value;
+                        of_coordinates(j, i) += same ? 0.5 * value : value;
+                    }
+            }
+            if (!of_coordinates.isZero(0.0)) stiffness = group.pull.transpose() * of_coordinates * group.pull;
+        }
+    }
+
+    void accept() { motion_.accept(); }
+    const BodyMotion& motion() const noexcept { return motion_; }
+    BodyMotion& motion() noexcept { return motion_; }
+
+    /// What a body, and those that hang on it, exert on fibres, about a place.
+    Wrench wrench(Index body, const Vec3& about) const {
+        Wrench sum;
+        for (std::size_t k = 0; k < conditions_.size() && forces_.size() > 0; ++k) {
+            const Condition& condition = conditions_[k];
+            bool below = false;
+            for (Index b = condition.periodic ? -1 : condition.owner; b >= 0; b = motion_.parent(b)) below = below || b == body;
+            if (!below) continue;
+            const Vec3 force = force_of(static_cast<Index>(k));
+            if (condition.director) {
+                sum.moment += sums_[k].cross(force);
+            } else {
+                sum.force += condition.root * force;
+                sum.moment += (sums_[k] / condition.root - about).cross(Vec3(condition.root * force));
+            }
+        }
+        return sum;
+    }
+    Wrench wrench(Index body) const { return wrench(body, motion_.position(body)); }
+
+    /// Work of the ties of a cell for each component of its gradient: volume times nominal stress [force * length].
+    Mat3 cell_force(Index cell) const {
+        Mat3 sum = Mat3::Zero();
+        for (std::size_t k = 0; k < conditions_.size() && forces_.size() > 0; ++k)
+            if (conditions_[k].periodic && conditions_[k].owner == cell && !conditions_[k].director)
+                sum += force_of(static_cast<Index>(k)) * conditions_[k].period.transpose() / conditions_[k].root;
+        return sum;
+    }
+
+private:
+    struct Condition {
+        Index owner = -1, channel = -1;
+        bool periodic = false, director = false;
+        double root = 1.0, amplitude = 0.0;                   // 1 / weight
+        Mat3 axes = Mat3::Identity();                         // in the body's frame
+        Vec3 offset = Vec3::Zero();                           // in the body's frame, times the root
+        Vec3 displacement = Vec3::Zero(), period = Vec3::Zero();
+    };
+    /// Free coordinates that share conditions, and these.
+    struct Group {
+        std::vector<Index> coordinates, conditions, scalars;
+        Matrix modes, pull;  // change of coordinates = pull modes^T change of scalars
+    };
+
+    static Vec3 combination(const scene::Tie& tie, const Vector& state) noexcept {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t k = 0; k < tie.vectors.size(); ++k) sum += tie.weights[k] * state.segment<3>(3 * tie.vectors[k]);
+        return sum;
+    }
+    Vec3 direction(const Condition& condition, Index a) const noexcept {
+        return condition.periodic ? Vec3(Vec3::Unit(a)) : Vec3(motion_.frame(condition.owner) * condition.axes.col(a));
+    }
+    double gap(std::size_t k, Index a) const noexcept {
+        const Condition& condition = conditions_[k];
+        if (condition.periodic) {
+            const double moved = condition.director ? 0.0 : motion_.gradient(condition.owner).row(a).dot(condition.period) / condition.root;
+            return sums_[k][a] - condition.offset[a] - moved;
+        }
+        const double offset = condition.axes.col(a).dot(condition.offset) + condition.root * condition.amplitude * condition.displacement[a];
+        const Vec3 from = condition.director ? sums_[k] : Vec3(sums_[k] - condition.root * motion_.position(condition.owner));
+        return direction(condition, a).dot(from) - offset;
+    }
+    /// The combination, where the conditions hold: a lever that should be nothing is nothing.
+    Vec3 closed(std::size_t k) const noexcept {
+        Vec3 sum = sums_[k];
+        for (Index a = 0; a < ties_[k].count; ++a) sum -= gap(k, a) * direction(conditions_[k], a);
+        return sum;
+    }
+    /// Force on the combination in the tied directions.
+    Vec3 force_of(Index k) const noexcept {
+        Vec3 force = Vec3::Zero();
+        const scene::Tie& tie = ties_[core::at(k)];
+        for (Index a = 0; a < tie.count; ++a) force += forces_[tie.first + a] * tie.axes.col(a);
+        return force;
+    }
+    bool depends(const Condition& condition, Index coordinate) const noexcept {
+        if (!condition.periodic) return motion_.moves(coordinate, condition.owner);
+        const FreeCoordinate& free = motion_.free(coordinate);
+        return free.of_cell && free.owner == condition.owner && !condition.director;
+    }
+
+    /// Change of a group's coordinates that brings the tied vectors and them together as far as it can; what scalars change by.
+    double fit(Group& group, Vector& change) {
+        const Index rows = core::count(group.scalars), columns = core::count(group.coordinates);
+        Matrix slope = Matrix::Zero(rows, columns);
+        Vector gaps(rows), size = Vector::Ones(columns);
+        Index row = 0;
+        for (const Index c : group.conditions) {
+            const Condition& condition = conditions_[core::at(c)];
+            const Vec3 sum = closed(core::at(c));
+            for (Index a = 0; a < ties_[core::at(c)].count; ++a, ++row) {
+                gaps[row] = gap(core::at(c), a);
+                for (Index j = 0; j < columns; ++j) {
+                    const Index k = group.coordinates[core::at(j)];
+                    if (!depends(condition, k)) continue;
+                    if (condition.periodic) {
+                        const int component = motion_.free(k).component;
+                        if (component % 3 == a) slope(row, j) = condition.period[component / 3] / condition.root;
+                    } else {
+                        const Vec3 moved = condition.director ? motion_.spin(k, sum) : Vec3(condition.root * motion_.velocity(k, Vec3(sum / condition.root)));
+                        slope(row, j) = direction(condition, a).dot(moved);
+                    }
+                }
+            }
+        }
+        for (Index j = 0; j < columns; ++j) {  // angles and displacements alike
+            const double norm = slope.col(j).norm();
+            const FreeCoordinate& free = motion_.free(group.coordinates[core::at(j)]);
+            if (norm > 1e-7 * (!free.of_cell && free.component < 3 ? 1.0 : extent_)) size[j] = 1.0 / norm;
+            slope.col(j) *= size[j];
+        }
+        const Eigen::JacobiSVD<Matrix> svd(slope, Eigen::ComputeThinU | Eigen::ComputeThinV);
+        Index rank = 0;
+        while (rank < svd.singularValues().size() && svd.singularValues()[rank] > 1e-8) ++rank;
+        group.modes = svd.matrixU().leftCols(rank);
+        group.pull = size.asDiagonal() * (svd.matrixV().leftCols(rank) * svd.singularValues().head(rank).cwiseInverse().asDiagonal());
+        const Vector along = group.modes.transpose() * gaps;
+        const Vector own = group.pull * along;
+        for (Index j = 0; j < columns; ++j) change[group.coordinates[core::at(j)]] = own[j];
+        return along.size() > 0 ? along.cwiseAbs().maxCoeff() : 0.0;
+    }
+
+    void find_groups() {
+        std::vector<Index> root(core::at(motion_.free_coordinates()));
+        std::iota(root.begin(), root.end(), Index{0});
+        const auto find = [&](Index k) {
+            while (root[core::at(k)] != k) k = root[core::at(k)];
+            return k;
+        };
+        const auto first_of = [&](const Condition& condition) {
+            Index first = -1;
+            for (Index k = 0; k < motion_.free_coordinates(); ++k) {
+                if (!depends(condition, k)) continue;
+                if (first < 0) first = find(k);
+                else root[core::at(std::max(first, find(k)))] = std::min(first, find(k)), first = std::min(first, find(k));
+            }
+            return first;
+        };
+        for (const Condition& condition : conditions_) first_of(condition);
+        std::vector<Index> number(root.size(), -1);
+        for (std::size_t c = 0; c < conditions_.size(); ++c) {
+            const Index first = first_of(conditions_[c]);
+            if (first < 0) continue;
+            Index& group = number[core::at(first)];
+            if (group < 0) {
+                group = core::count(groups_);
+                groups_.emplace_back();
+                for (Index k = 0; k < motion_.free_coordinates(); ++k)
+                    if (find(k) == first) groups_.back().coordinates.push_back(k);
+            }
+            groups_[core::at(group)].conditions.push_back(static_cast<Index>(c));
+            for (Index a = 0; a < ties_[c].count; ++a) groups_[core::at(group)].scalars.push_back(ties_[c].first + a);
+        }
+    }
+
+    BodyMotion motion_;
+    std::vector<scene::Tie> ties_;
+    std::vector<Condition> conditions_;
+    std::vector<Group> groups_;
+    std::vector<Vec3> sums_;
+    Vector gap_, forces_;
+    Index scalars_ = 0;
+    double extent_ = 0.0;
+};
+
+/// The part `Connections` of a model whose scenes have rigid bodies or periodic cells.
+struct RigidBodies {
+    using Parameters = core::NoParameters;
+    explicit RigidBodies(const Parameters& = {}) {}
+    template <beam::BeamElement B>
+    using Of = BodyTies<B>;
+};
+
+}  // namespace fibrant::connection

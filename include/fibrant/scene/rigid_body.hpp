@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Rigid bodies that hold sets of fibre ends on the average, and periodic cells, as data.
+
+#include <fibrant/scene/conditions.hpp>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace fibrant::scene {
+
+/// One way in which a body can move: held at a value, or free under a force.
+struct Coordinate {
+    bool free = false;
+    /// At amplitude 1: displacement [length] or angle [radian] if held; force [force] or moment [force * length] if free.
+    double value = 0.0;
+    std::string channel = "motion";
+
+    static Coordinate held_at(double value, std::string channel) { return {false, value, std::move(channel)}; }
+    static Coordinate under(double force, std::string channel) { return {true, force, std::move(channel)}; }
+    static Coordinate loose() { return {true, 0.0, "motion"}; }
+};
+
+/// A body of four nodes: a master and the tips of an orthonormal frame about it (Durville, eq. 12). The frame is kept as a
+/// rotation, so it is orthonormal to rounding whatever the load.
+///
+/// Bodies form trees: coordinates count from the parent's frame, along and about its axes as they now stand, or from space.
+/// Held rotations make one rotation vector; free ones come after it. Of two free rotations the third axis is held to first
+/// order in an increment's turn.
+struct RigidBody {
+    std::string name{};
+    Vec3 position = Vec3::Zero();   ///< of the master node at the start [length]
+    Mat3 frame = Mat3::Identity();  ///< columns: from the master to the other three nodes at the start, orthonormal
+    Index parent = -1;              ///< an earlier body, or -1 for space
+    std::array<Coordinate, 3> translation{}, rotation{};
+};
+
+/// Ties the mean of nodal vectors to a body, in up to three directions that turn with it (Durville, eq. 13): single ends
+/// move as they like. One end alone is hinged; one end whose directors are tied too is clamped.
+struct AverageConnection {
+    std::vector<Station> ends{};
+    NodeVector vector = NodeVector::position;
+    Index body = -1;
+    Mat3 directions = Mat3::Identity();               ///< columns at the start, orthonormal; they turn with the body
+    std::array<bool, 3> tied{true, true, true};       ///< which of them
+    Vec3 displacement = Vec3::Zero();                 ///< of the mean along the directions at amplitude 1 [length]
+    std::string channel = "motion";
+};
+
+/// Displacement gradient of a repeating cell: what one period more in direction j moves in direction i.
+struct PeriodicCell {
+    std::string name{};
+    double volume = 1.0;                     ///< a force of a free component is its stress times this [length^3], > 0
+    std::array<Coordinate, 9> gradient{};    ///< component (i, j) at i + 3 j [1]; free ones under a stress
+
+    Coordinate& component(int i, int j) noexcept { return gradient[static_cast<std::size_t>(i + 3 * j)]; }
+    const Coordinate& component(int i, int j) const noexcept { return gradient[static_cast<std::size_t>(i + 3 * j)]; }
+};
+
+/// The section `last` is the image of the section `first`: vectors keep the difference that they start with, and positions move
+/// apart by the cell's gradient times the period.
+struct PeriodicPair {
+    Station first{}, last{};
+    Vec3 period = Vec3::Zero();  ///< from first to last at the start [length]
+    Index cell = -1;
+};
+
+}  // namespace fibrant::scene

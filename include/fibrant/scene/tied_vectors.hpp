@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What ties leave of a vector of unknowns: products with a few sparse rows, never a part of a matrix.
+
+#include <fibrant/scene/dof_layout.hpp>
+
+#include <Eigen/Core>
+
+namespace fibrant::scene {
+
+/// Number of tied scalars.
+inline Index tied_scalars(const DofLayout& layout) noexcept {
+    return layout.ties.empty() ? 0 : layout.ties.back().first + layout.ties.back().count;
+}
+
+/// B x: the tied scalars of a vector.
+inline Vector tied_part(const DofLayout& layout, const Vector& x) {
+    Vector scalars(tied_scalars(layout));
+    for (const Tie& tie : layout.ties) {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t k = 0; k < tie.vectors.size(); ++k) sum += tie.weights[k] * x.segment<3>(3 * tie.vectors[k]);
+        for (Index a = 0; a < tie.count; ++a) scalars[tie.first + a] = tie.axes.col(a).dot(sum);
+    }
+    return scalars;
+}
+
+/// x += B^T scalars
+inline void add_tied(const DofLayout& layout, const Vector& scalars, Vector& x) {
+    for (const Tie& tie : layout.ties) {
+        Vec3 sum = Vec3::Zero();
+        for (Index a = 0; a < tie.count; ++a) sum += scalars[tie.first + a] * tie.axes.col(a);
+        for (std::size_t k = 0; k < tie.vectors.size(); ++k) x.segment<3>(3 * tie.vectors[k]) += tie.weights[k] * sum;
+    }
+}
+
+/// Leaves of tied scalars what cannot move: s <- (I - U U^T) s.
+inline void remove_motions(const DofLayout& layout, Vector& scalars) {
+    for (const TiedMotion& motion : layout.motions) {
+        const Index n = core::count(motion.scalars);
+        Vector own(n);
+        for (Index k = 0; k < n; ++k) own[k] = scalars[motion.scalars[core::at(k)]];
+        const Vector along = motion.modes.transpose() * own;
+        own -= motion.modes * along;
+        for (Index k = 0; k < n; ++k) scalars[motion.scalars[core::at(k)]] = own[k];
+    }
+}
+
+/// x <- x - B^T (I - U U^T) B x: the orthogonal projector of what ties leave free.
+inline void project_ties(const DofLayout& layout, Vector& x) {
+    if (layout.ties.empty()) return;
+    Vector scalars = tied_part(layout, x);
+    remove_motions(layout, scalars);
+    add_tied(layout, Vector(-scalars), x);
+}
+
+/// y <- F y + (I - F) x for the projector F of project_ties.
+inline void complete_ties(const DofLayout& layout, const Vector& x, Vector& y) {
+    if (layout.ties.empty()) return;
+    Vector scalars = tied_part(layout, x) - tied_part(layout, y);
+    remove_motions(layout, scalars);
+    add_tied(layout, scalars, y);
+}
+
+/// y += B^T U S U^T B x: stiffness of what moves together.
+inline void add_motion_stiffness(const DofLayout& layout, const Vector& x, Vector& y) {
+    bool any = false;
+    for (const TiedMotion& motion : layout.motions) any = any || motion.stiffness.size() > 0;
+    if (!any) return;
+    const Vector scalars = tied_part(layout, x);
+    Vector force = Vector::Zero(scalars.size());
+    for (const TiedMotion& motion : layout.motions) {
+        if (motion.stiffness.size() == 0) continue;
+        const Index n = core::count(motion.scalars);
+        Vector own(n);
+        for (Index k = 0; k < n; ++k) own[k] = scalars[motion.scalars[core::at(k)]];
+        const Vector along = motion.modes.transpose() * own;
+        own.noalias() = motion.modes * (motion.stiffness * along);
+        for (Index k = 0; k < n; ++k) force[motion.scalars[core::at(k)]] += own[k];
+    }
+    add_tied(layout, force, y);
+}
+
+}  // namespace fibrant::scene

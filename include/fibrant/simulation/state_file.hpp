@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What of a checkpoint belongs to fibres and contacts, and what tells one scene from another.
+
+#include <fibrant/simulation/checkpoint.hpp>
+#include <fibrant/simulation/loading.hpp>
+
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace fibrant::simulation {
+
+inline constexpr const char* checkpoint_format = "fibrant checkpoint 8";
+
+/// Tells how fibres are cut and grouped: the same in programs whose compilers round differently.
+template <beam::BeamElement B>
+std::uint64_t outline_identity(const beam::Mesh<B>& mesh) {
+    CheckpointWriter scene;
+    for (const beam::MeshFibre& fibre : mesh.fibres()) scene.put(fibre.first_vector), scene.put(fibre.elements), scene.put(fibre.group);
+    return scene.identity();
+}
+/// Tells the fibres of a scene from others, to the bit.
+template <beam::BeamElement B>
+std::uint64_t fibre_identity(const beam::Mesh<B>& mesh) {
+    CheckpointWriter scene;
+    scene.put(mesh.rest_state()), scene.put(mesh.start_state());
+    for (const beam::MeshFibre& fibre : mesh.fibres()) {
+        scene.put(fibre.first_vector), scene.put(fibre.group);
+        scene.put(fibre.section.semi_axis_1), scene.put(fibre.section.semi_axis_2), scene.put(fibre.section.inertia_factor);
+        scene.put(fibre.material.young_modulus), scene.put(fibre.material.poisson_ratio);
+    }
+    return scene.identity();
+}
+inline std::uint64_t channel_identity(const connection::Channels& channels) {
+    CheckpointWriter scene;
+    for (const std::string& name : channels.names()) scene.put(name);
+    return scene.identity();
+}
+/// Stages, but for what ends or relaxes them.
+template <Model M>
+std::uint64_t loading_identity(const std::vector<Stage<M>>& stages) {
+    CheckpointWriter loading;
+    for (const Stage<M>& stage : stages) {
+        loading.put(stage.name), loading.put(stage.increments), loading.put(stage.forced_orders);
+        loading.put(stage.gap_limit.value_or(-1.0));
+        for (const Ramp& ramp : stage.ramps) loading.put(ramp.channel), loading.put(ramp.to), loading.put(ramp.geometric);
+    }
+    return loading.identity();
+}
+
+/// The state that a checkpoint holds, of fibres that are cut and grouped alike.
+/// @throws std::runtime_error if the file cannot be read or has other fibres
+template <beam::BeamElement B>
+Vector checkpoint_state(const std::string& path, const beam::Mesh<B>& mesh) {
+    CheckpointReader file(path);
+    file.expect(file.get_text() == checkpoint_format, "the format");
+    file.expect(file.get<std::uint64_t>() == outline_identity(mesh), "the set of fibres");
+    for (int k = 0; k < 3; ++k) file.get<std::uint64_t>();  // of the scene and the loading
+    return file.get_vector();
+}
+
+/// What contacts remember.
+template <class Contacts>
+void put_memory(CheckpointWriter& file, const Contacts& contacts) {
+    file.put(core::count(contacts.accepted_memory().records()));
+    for (const auto& record : contacts.accepted_memory().records()) record.each([&](const auto& value) { file.put(value); });
+    file.put(core::count(contacts.accepted_zones()));
+    for (const contact::Zone& zone : contacts.accepted_zones()) file.put(zone);
+}
+template <class Contacts>
+void get_memory(CheckpointReader& file, Contacts& contacts) {
+    std::vector<typename Contacts::Memory::Record> records(core::at(file.get<Index>()));
+    for (auto& record : records) record.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
+    std::vector<contact::Zone> zones(core::at(file.get<Index>()));
+    for (contact::Zone& zone : zones) zone = file.get<contact::Zone>();
+    contacts.resume(std::move(records), std::move(zones));
+}
+
+/// Small fixed matrices, number by number.
+template <class Fixed>
+void put_value(CheckpointWriter& file, const Fixed& value) {
+    for (Index k = 0; k < value.size(); ++k) file.put(value.data()[k]);
+}
+template <class Fixed>
+void get_value(CheckpointReader& file, Fixed& value) {
+    for (Index k = 0; k < value.size(); ++k) value.data()[k] = file.get<double>();
+}
+
+}  // namespace fibrant::simulation

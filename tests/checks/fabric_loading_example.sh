@@ -1,0 +1,38 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Settles a small fabric with the example `weave` beside the program, releases its edges, and stretches it by a little.
+# usage: fabric_loading_example.sh <the program> <scene file, not used> <scratch folder>
+loading=$1
+scenes=$(cd "$(dirname "$0")/../../examples" && pwd)
+out=$3
+weave=$(dirname "$loading")/weave
+rm -rf "$out"
+mkdir -p "$out" || exit 1
+fail() {
+  echo "fabric_loading_example: $*"
+  exit 1
+}
+[ -x "$weave" ] || { echo "fabric_loading_example: left out, for there is no weave beside the program"; exit 0; }
+small="fabric.warp_tows=2 fabric.weft_tows=2 fabric.elements=20 warp.fibres=3 warp.real_fibres=60 warp.aspect=1"
+list=""
+set --
+for value in $small; do
+  set -- "$@" --set "$value"
+  list="$list${list:+, }\"$value\""
+done
+"$weave" "$scenes/weave/plain.toml" --output "$out/settled" "$@" --set output.paraview=false --set output.pictures=false --quiet || fail "the small scene did not settle"
+"$loading" "$scenes/fabric_loading/release.toml" --output "$out/released" --set "settled.set=[$list]" \
+  --set settled.checkpoint="$out/settled/checkpoint.bin" --quiet || fail "edges were not released"
+"$loading" "$scenes/fabric_loading/equibiaxial.toml" --output "$out/stretched" --set "settled.set=[$list]" --set stretch.increments=2 \
+  --set 'stretch.ramps=["strain = 0.001"]' --set settled.checkpoint="$out/released/checkpoint.bin" --set output.paraview=false --quiet || fail "the fabric was not stretched"
+for file in summary.json increments.csv curve.svg before/view.svg after/slice_warp_0.svg after/sections.csv after/contacts.json after/strain_histogram.csv; do
+  [ -s "$out/stretched/$file" ] || fail "there is no $file"
+done
+grep -q '"converged": true' "$out/stretched/summary.json" || fail "summary.json does not say that it converged"
+text=$("$loading" "$scenes/fabric_loading/equibiaxial.toml" --output "$out/refused" --set loading.case=tickle --set settled.checkpoint="$out/released/checkpoint.bin" --set "settled.set=[$list]" 2>&1)
+[ $? -eq 2 ] || fail "a case that is not known was not refused"
+case $text in
+  *tickle*) ;;
+  *) fail "the refusal does not name the case: $text" ;;
+esac
+exit 0

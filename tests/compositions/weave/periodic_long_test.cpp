@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// A repeating cell of plain weave, settled and stretched along both families: its stress found in two ways, and its stiffness.
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/compositions/weave/periodic.hpp>
+#include <fibrant/compositions/weave/measures.hpp>
+#include <fibrant/compositions/weave/settle.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/simulation/programme.hpp>
+#include <fibrant/solver/float_block_cholesky.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+using namespace fibrant;
+using namespace fibrant::compositions::weave;
+
+namespace {
+
+struct Cell {
+    using Beam = beam::DirectorBeam<3>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::LimitedGap<law::RegularisedPenalty>;
+    using Friction = law::RegularisedCoulomb;
+    using Solver = solver::FloatBlockCholesky;
+    using Connections = connection::RigidBodies;
+};
+
+FabricParameters cell_fabric() {
+    FabricParameters fabric;
+    const scene::CrossSection macro = scene::macro_fibre(380.0, 0.018, 7.0);
+    fabric.warp_tows = fabric.weft_tows = 2;
+    fabric.warp = {7, macro.semi_axis_1, macro.inertia_factor, {7300.0, 0.3}};
+    fabric.weft = fabric.warp;
+    fabric.warp_spacing = fabric.weft_spacing = 0.88;
+    fabric.overhang = 0.44;
+    fabric.elements = 8;
+    return fabric;
+}
+
+}  // namespace
+
+TEST_CASE("the stress of a stretched cell is the same from the ties of its seams and from the forces in fibres and contacts") {
+    const FabricParameters fabric = cell_fabric();
+    const SettleParameters settle;
+    const double r = smallest_radius(fabric);
+    const std::string file = "periodic_long_test_checkpoint.bin";
+    double crimp_before = 0.0;
+    {
+        simulation::Simulator<Cell> simulator(periodic_fabric(fabric, CellDrive::tension, settle.tension_strain), model_parameters<Cell>(fabric, settle));
+        auto loading = settling<Cell>(fabric, settle);
+        loading.checkpoint = file;
+        const simulation::Report report = simulator.run(loading);
+        crimp_before = crimp_measures(simulator.snapshot(), fabric).warp;
+        const Mat3 gradient = simulator.equilibrium().ties().motion().gradient(0);
+        std::printf("settled: %td increments, %td iterations, %.1f s, crimp %.5f, the cell drew in by %.5f and %.5f %s\n", core::count(report.increments),
+                    report.counts.newton, report.wall_seconds, crimp_before, -gradient(0, 0), -gradient(1, 1), report.reason.c_str());
+        REQUIRE(report.converged);
+        CHECK(report.contact.greatest_penetration < 0.02 * r);
+    }
+    auto parameters = model_parameters<Cell>(fabric, settle);
+    parameters.iteration.residual_tolerance = 1e-8, parameters.iteration.step_tolerance = 1e-6, parameters.iteration.linear_tolerance = 1e-8;
+    simulation::Simulator<Cell> simulator(periodic_fabric(fabric, CellDrive::strain, settle.tension_strain), parameters);
+    simulator.start_from(file);
+    std::remove(file.c_str());
+    simulation::LoadProgramme programme;
+    programme.stages = {{.name = "stretch", .increments = 10, .ramps = {{"strain_x", 0.01}, {"strain_y", 0.01}}, .friction = settle.friction_coefficient, .looseness = 1.0}};
+    programme.reversible_displacement = 0.02 * r;
+    struct Curve {
+        const simulation::Simulator<Cell>& simulator;
+        const FabricParameters& fabric;
+        std::vector<std::pair<double, double>> points{};
+        void reported(const simulation::IncrementReport& increment) {
+            const auto& ties = simulator.equilibrium().ties();
+            const double strain = ties.motion().gradient(0)(0, 0), force = ties.cell_force(0)(0, 0) / fabric.fibre_length(Family::warp) / 2.0;
+            points.emplace_back(strain, force);
+            std::printf("strain %.5f force per tow %.5f, of E A strain %.4f; %td iterations, residual %.1e\n", strain, force,
+                        force / (fabric.warp.axial_stiffness() * strain), increment.counts.newton, increment.residual);
+        }
+    } curve{simulator, fabric};
+    const simulation::Report report = simulator.run(simulation::loading_of<Cell>(programme), curve);
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    const Mat3 seams = simulator.equilibrium().ties().cell_force(0), inside = virial(simulator);
+    std::printf("stress from seams and from inside differ by %.1e; crimp %.5f\n", (seams - inside).norm() / seams.norm(), crimp_measures(simulator.snapshot(), fabric).warp);
+    // The residual that is left, 1e-8 of the forces, times the number of nodes in the worst case.
+    CHECK((seams - inside).topLeftCorner<2, 2>().norm() < 1e-6 * seams.norm());
+    CHECK(seams(0, 0) == doctest::Approx(seams(1, 1)).epsilon(0.1));  // warp and weft are alike but for their fibres' places
+    CHECK(crimp_measures(simulator.snapshot(), fabric).warp < crimp_before);
+    const double bound = fabric.warp.axial_stiffness();
+    for (std::size_t k = 1; k < curve.points.size(); ++k) {
+        const double slope = (curve.points[k].second - curve.points[k - 1].second) / (curve.points[k].first - curve.points[k - 1].first);
+        CHECK(slope > 0.0);
+        CHECK(slope < bound);
+    }
+}

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: MIT
+// Rigid bodies that hold fibre ends on the average, and periodic cells, against closed forms of cantilevers and bars.
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/law/frictionless.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/simulation/programme.hpp>
+#include <fibrant/solver/float_block_cholesky.hpp>
+#include <refusal.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+#include <vector>
+
+using namespace fibrant;
+
+namespace {
+
+struct Tied {
+    using Beam = beam::DirectorBeam<3>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::RegularisedPenalty;
+    using Friction = law::Frictionless;
+    using Solver = solver::DoubleBlockCholesky;
+    using Connections = connection::RigidBodies;
+};
+static_assert(simulation::Model<Tied> && simulation::HasConnections<Tied>);
+static_assert(std::is_empty_v<connection::NoConnections::Of<beam::DirectorBeam<3>>>, "a scene without bodies has no trace of them");
+
+constexpr double radius = 0.02, length = 2.0, young = 7300.0, apart = 0.1;
+
+double inertia() { return std::numbers::pi * std::pow(radius, 4) / 4.0; }
+double area() { return std::numbers::pi * radius * radius; }
+
+/// Fibres along z, side by side in x, that do not touch; their first ends are clamped to body 0.
+struct Bundle {
+    scene::Assembly assembly;
+    Index fibres;
+    Mat3 section;  // g_1, g_2, tangent
+
+    explicit Bundle(Index count, scene::RigidBody base = {}) : fibres{count} {
+        section.col(0) = Vec3::UnitX(), section.col(1) = Vec3::UnitY(), section.col(2) = Vec3::UnitZ();
+        assembly.add(std::move(base));
+        for (Index k = 0; k < count; ++k) {
+            const double x = apart * (static_cast<double>(k) - 0.5 * static_cast<double>(count - 1));
+            const Index f = assembly.add({.from = {x, 0, 0}, .to = {x, 0, length}, .section = scene::circular(radius),
+                                          .material = {young, 0.3}, .elements = 8, .director = Vec3::UnitX()});
+            assembly.clamp_to(0, scene::first_end(f), section);
+        }
+    }
+    std::vector<scene::Station> last_ends() const {
+        std::vector<scene::Station> ends;
+        for (Index k = 0; k < fibres; ++k) ends.push_back(scene::last_end(k));
+        return ends;
+    }
+};
+
+simulation::ModelParameters<Tied> parameters() {
+    simulation::ModelParameters<Tied> model;
+    model.normal.regularisation_depth = 1e-3 * radius;
+    model.contact.stiffness.allowed_penetration = 1e-2 * radius;
+    model.iteration.step_tolerance = 1e-9, model.iteration.residual_tolerance = 1e-10, model.iteration.linear_tolerance = 1e-11;
+    model.iteration.newton_limit = 40;
+    return model;
+}
+
+}  // namespace
+
+TEST_CASE("the mean of fibre ends follows its body exactly while single ends give way to their own loads") {
+    // Cantilevers with dead forces f_k at their ends and a mean that is prescribed: w_k = (f_k + c) L^3 / 3 E I.
+    const double stiffness = 3.0 * young * inertia() / std::pow(length, 3), given = 1e-3;
+    Bundle bundle(7);
+    scene::RigidBody mover;
+    mover.position = {0, 0, length};
+    mover.translation[1] = scene::Coordinate::held_at(given, "push");
+    const Index body = bundle.assembly.add(mover);
+    bundle.assembly.connect({.ends = bundle.last_ends(), .body = body, .tied = {true, true, false}});
+    double loads = 0.0;
+    for (Index k = 0; k < 7; ++k) {
+        const double force = stiffness * given * (k % 2 == 0 ? 1.0 : -0.5) * static_cast<double>(k);
+        loads += force;
+        bundle.assembly.apply(scene::DeadForce{scene::last_end(k), scene::NodeVector::position, Vec3(0, force, 0), "push"});
+    }
+    simulation::Simulator<Tied> simulator(bundle.assembly, parameters());
+    const simulation::Report report = simulator.run({.increments = 1});
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    const double share = stiffness * given - loads / 7.0;
+    double mean = 0.0;
+    for (Index k = 0; k < 7; ++k) {
+        const double deflection = simulator.value(scene::last_end(k)).y();
+        mean += deflection / 7.0;
+        const double force = stiffness * given * (k % 2 == 0 ? 1.0 : -0.5) * static_cast<double>(k);
+        // Shear and large deflection: (r/L)^2 and (w/L)^2, below 2e-4.
+        CHECK(deflection == doctest::Approx((force + share) / stiffness).epsilon(1e-3).scale(given));
+    }
+    CHECK(std::abs(mean - given) < 1e-12);
+    CHECK(simulator.equilibrium().ties().misfit() < 1e-12);
+    const auto& ties = simulator.equilibrium().ties();
+    CHECK(ties.wrench(1).force.y() == doctest::Approx(7.0 * share).epsilon(1e-3));
+    // All of the sample: bodies and loads balance, in force and in moment about the origin.
+    Vec3 force = ties.wrench(0).force + ties.wrench(1).force, moment = ties.wrench(0, Vec3::Zero()).moment + ties.wrench(1, Vec3::Zero()).moment;
+    for (const scene::DeadForce& load : bundle.assembly.forces()) force += load.force, moment += simulator.value(load.at).cross(load.force);
+    // Fibres this slender leave E A times the rounding of strains in every force.
+    const double rounding = 3e-13 * young * area();
+    CHECK(force.norm() < 1e-8 * std::abs(loads) + rounding);
+    CHECK(moment.norm() < (1e-8 * std::abs(loads) + rounding) * length);
+}
+
+TEST_CASE("a rigid motion of all bodies strains nothing") {
+    scene::RigidBody base;
+    base.rotation[0] = scene::Coordinate::held_at(0.7, "turn"), base.rotation[2] = scene::Coordinate::held_at(-0.4, "turn");
+    base.translation[1] = scene::Coordinate::held_at(0.5, "turn");
+    Bundle bundle(3, base);
+    scene::RigidBody far;
+    far.position = {0.3, 0.1, length}, far.parent = 0;
+    far.frame = core::rotation(Vec3(0.2, 0.5, -1.0));
+    const Index body = bundle.assembly.add(far);
+    bundle.assembly.connect({.ends = bundle.last_ends(), .body = body});
+    simulation::Simulator<Tied> simulator(bundle.assembly, parameters());
+    const simulation::Report report = simulator.run({.increments = 8});
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    const Mat3 turn = core::rotation(Vec3(0.7, 0.0, -0.4));
+    CHECK((simulator.value({1, 0.5}) - (turn * Vec3(0, 0, 0.5 * length) + Vec3(0, 0.5, 0))).norm() < 1e-9);
+    // An energy of strains of rounding: E A L eps^2 with eps = 1e-10 or so.
+    CHECK(std::abs(report.energy.elastic) < 1e-15);
+    CHECK(simulator.equilibrium().ties().wrench(body).force.norm() < 1e-8);
+    CHECK(simulator.equilibrium().ties().motion().orthonormality_error() < 1e-14);
+}
+
+TEST_CASE("ends tied to a body that hangs on another do what ends tied to the other do") {
+    Vector states[2];
+    for (const bool direct : {true, false}) {
+        Bundle bundle(4);
+        scene::RigidBody edge;
+        edge.position = {0.5, 0.2, length};
+        edge.rotation[0] = scene::Coordinate::held_at(0.3, "turn"), edge.rotation[1] = scene::Coordinate::held_at(0.2, "turn");
+        edge.translation[2] = scene::Coordinate::loose();
+        Index body = bundle.assembly.add(edge);
+        if (!direct) {
+            scene::RigidBody end;
+            end.position = {0, 0, length}, end.parent = body, end.frame = core::rotation(Vec3(0.4, 0.0, 0.3));
+            end.rotation[1] = scene::Coordinate::loose();  // nothing asks for it: it stays
+            body = bundle.assembly.add(end);
+        }
+        bundle.assembly.connect({.ends = bundle.last_ends(), .body = body});
+        simulation::Simulator<Tied> simulator(bundle.assembly, parameters());
+        const simulation::Report report = simulator.run({.increments = 4});
+        CAPTURE(report.reason);
+        REQUIRE(report.converged);
+        states[direct ? 0 : 1] = simulator.state();
+    }
+    CHECK((states[0] - states[1]).cwiseAbs().maxCoeff() < 1e-8);
+}
+
+TEST_CASE("a body that is free under a force and a moment moves as a beam's end would") {
+    const double bending = young * inertia();
+    // Large deflection: a dead force on a free body at the end of one fibre is a dead force on the fibre.
+    Vec3 tips[2];
+    for (const bool by_body : {true, false}) {
+        Bundle bundle(1);
+        const double force = 2.0 * bending / (length * length);
+        if (by_body) {
+            scene::RigidBody end;
+            end.position = {0, 0.3, length};  // not at the end itself, but nothing holds its rotation
+            for (auto& coordinate : end.translation) coordinate = scene::Coordinate::loose();
+            end.translation[1] = scene::Coordinate::under(force, "load");
+            const Index body = bundle.assembly.add(end);
+            bundle.assembly.connect({.ends = {scene::last_end(0)}, .body = body});
+        } else {
+            bundle.assembly.apply(scene::DeadForce{scene::last_end(0), scene::NodeVector::position, Vec3(0, force, 0), "load"});
+        }
+        simulation::Simulator<Tied> simulator(bundle.assembly, parameters());
+        const simulation::Report report = simulator.run({.increments = 4});
+        CAPTURE(report.reason);
+        REQUIRE(report.converged);
+        tips[by_body ? 0 : 1] = simulator.value(scene::last_end(0));
+    }
+    CHECK(tips[1].y() > 0.2 * length);
+    CHECK((tips[0] - tips[1]).norm() < 1e-8 * length);
+
+    // A moment on a body to which the end is clamped makes an arc of the angle M L / E I.
+    for (const double turns : {1e-3, 1.2}) {
+        Bundle bundle(1);
+        scene::RigidBody end;
+        end.position = {0, 0, length};
+        for (auto& coordinate : end.translation) coordinate = scene::Coordinate::loose();
+        end.rotation[0] = scene::Coordinate::under(-turns * bending / length, "load");
+        const Index body = bundle.assembly.add(end);
+        bundle.assembly.clamp_to(body, scene::last_end(0), bundle.section);
+        simulation::Simulator<Tied> simulator(bundle.assembly, parameters());
+        const simulation::Report report = simulator.run({.increments = turns > 0.1 ? 6 : 1});
+        CAPTURE(report.reason);
+        REQUIRE(report.converged);
+        const Mat3 frame = simulator.equilibrium().ties().motion().frame(body);
+        // Mesh of 8 elements: 1e-5 (METHOD 1.4); radius over that of the arc: 1e-4.
+        CHECK(std::atan2(frame(1, 2), frame(2, 2)) == doctest::Approx(turns).epsilon(3e-4));
+        const Vec3 tip = simulator.value(scene::last_end(0));
+        CHECK(tip.y() == doctest::Approx(length * (1.0 - std::cos(turns)) / turns).epsilon(5e-4));
+        CHECK((simulator.equilibrium().ties().motion().position(body) - tip).norm() < 1e-10);
+    }
+
+    // Two fibres clamped to one body are flanges: M = theta (2 E I + E A d^2 / 2) / L for a distance d.
+    Bundle bundle(2);
+    scene::RigidBody end;
+    end.position = {0, 0, length};
+    for (auto& coordinate : end.translation) coordinate = scene::Coordinate::loose();
+    const double flanges = (2.0 * bending + 0.5 * young * area() * apart * apart) / length, angle = 1e-4;
+    end.rotation[1] = scene::Coordinate::under(flanges * angle, "load");
+    const Index body = bundle.assembly.add(end);
+    for (Index k = 0; k < 2; ++k) bundle.assembly.clamp_to(body, scene::last_end(k), bundle.section);
+    simulation::Simulator<Tied> simulator(bundle.assembly, parameters());
+    REQUIRE(simulator.run({.increments = 1}).converged);
+    const Mat3 frame = simulator.equilibrium().ties().motion().frame(body);
+    CHECK(std::atan2(frame(0, 2), frame(2, 2)) == doctest::Approx(angle).epsilon(1e-3));  // St Venant-Kirchhoff: 1.5 eps
+}
+
+TEST_CASE("a periodic fibre stretches under a mean stress as a bar, and carries what a prescribed strain asks for") {
+    const double strain = 0.01, stretch = 1.0 + strain;
+    const double force = young * area() * 0.5 * (stretch * stretch - 1.0) * stretch;  // St Venant-Kirchhoff, nominal
+    for (const bool prescribed : {true, false}) {
+        scene::Assembly assembly;
+        const Index f = assembly.add({.from = {0, 0, 0}, .to = {0, 0, length}, .section = scene::circular(radius),
+                                      .material = {young, 0.3}, .elements = 8, .director = Vec3::UnitX()});
+        assembly.hold_position({f, 0.5});
+        assembly.hold_axial_rotation({f, 0.5});
+        // The other rotations of a straight periodic fibre are held by its period.
+        scene::PeriodicCell cell;
+        cell.volume = 3.0;
+        cell.component(2, 2) = prescribed ? scene::Coordinate::held_at(strain, "strain") : scene::Coordinate::under(force * length / cell.volume, "strain");
+        assembly.add(cell);
+        assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), Vec3(0, 0, length), 0});
+        simulation::Simulator<Tied> simulator(assembly, parameters());
+        const simulation::Report report = simulator.run({.increments = 2});
+        CAPTURE(report.reason);
+        REQUIRE(report.converged);
+        const auto& ties = simulator.equilibrium().ties();
+        CHECK(ties.motion().gradient(0)(2, 2) == doctest::Approx(strain).epsilon(1e-8));
+        CHECK(ties.cell_force(0)(2, 2) == doctest::Approx(force * length).epsilon(1e-8));
+        const Vec3 apart_now = simulator.value(scene::last_end(f)) - simulator.value(scene::first_end(f));
+        CHECK((apart_now - Vec3(0, 0, stretch * length)).norm() < 1e-9);
+        const Vec3 g = simulator.value(scene::last_end(f), scene::NodeVector::director_1) - simulator.value(scene::first_end(f), scene::NodeVector::director_1);
+        CHECK(g.norm() < 1e-10);
+    }
+}
+
+TEST_CASE("a scene that starts from the state of another one ties the means that it finds there") {
+    const double stiffness = 3.0 * young * inertia() / std::pow(length, 3), given = 1e-3;
+    const std::string file = "rigid_bodies_test_checkpoint.bin";
+    Bundle loaded(3), tied(3);
+    for (Index k = 0; k < 3; ++k)
+        loaded.assembly.apply(scene::DeadForce{scene::last_end(k), scene::NodeVector::position, Vec3(0, stiffness * given * static_cast<double>(k), 0), "load"});
+    {
+        simulation::Simulator<Tied> simulator(loaded.assembly, parameters());
+        simulation::Loading<Tied> loading{.increments = 1};
+        loading.checkpoint = file;
+        REQUIRE(simulator.run(loading).converged);
+        CHECK(simulator.value(scene::last_end(2)).y() == doctest::Approx(2.0 * given).epsilon(1e-3));
+    }
+    scene::RigidBody mean;
+    mean.position = {0, 0.3, length};  // anywhere
+    const Index body = tied.assembly.add(mean);
+    tied.assembly.connect({.ends = tied.last_ends(), .body = body, .tied = {false, true, false}});
+    simulation::Simulator<Tied> simulator(tied.assembly, parameters());
+    simulator.start_from(file);
+    std::remove(file.c_str());
+    CHECK(simulator.value(scene::last_end(2)).y() == doctest::Approx(2.0 * given).epsilon(1e-3));
+    REQUIRE(simulator.run({.increments = 1}).converged);
+    // Without their own loads all bend as the mean, which is where it was.
+    for (Index k = 0; k < 3; ++k) CHECK(simulator.value(scene::last_end(k)).y() == doctest::Approx(given).epsilon(1e-6));
+    CHECK(simulator.equilibrium().ties().wrench(body).force.y() == doctest::Approx(3.0 * stiffness * given).epsilon(1e-3));
+}
+
+TEST_CASE("a programme of stages is a loading: ramps, cycles to and fro, halved increments") {
+    simulation::LoadProgramme programme;
+    programme.stages = {{.name = "tighten", .increments = 2, .ramps = {{"load", 0.5}}, .damping = 3.0},
+                        {.name = "cycle", .increments = 4, .ramps = {{"load", 1.0}}, .cycles = 2, .back = 0.25}};
+    programme.damping = 2.0, programme.halvings = 1;
+    const simulation::Loading<Tied> loading = simulation::loading_of<Tied>(programme);
+    REQUIRE(loading.stages.size() == 5);
+    std::vector<double> ends;
+    for (const auto& stage : loading.stages) ends.push_back(stage.ramps.at(0).to);
+    CHECK(ends == std::vector<double>{0.5, 1.0, 0.25, 1.0, 0.25});
+    CHECK(loading.stages[0].increments == 4);
+    CHECK(loading.stages[1].increments == 8);
+    CHECK(loading.stages[0].damping == 6.0);
+    loading.validate();
+    programme.stages[1].rest = true;
+    CHECK(test::refusal([&] { simulation::loading_of<Tied>(programme); }).find("LoadProgramme.rest_motion") != std::string::npos);
+}
+
+TEST_CASE("an end that is held cannot be tied, nor tied twice, and a body needs a model that knows it") {
+    Bundle bundle(1);
+    bundle.assembly.hold_position(scene::last_end(0));
+    bundle.assembly.connect({.ends = {scene::last_end(0)}, .body = 0});
+    CHECK(test::refusal([&] { simulation::Simulator<Tied>(bundle.assembly, parameters()); }).find("neither held nor tied twice") != std::string::npos);
+    scene::RigidBody skew;
+    skew.frame(0, 0) = 2.0;
+    CHECK(test::refusal([&] { bundle.assembly.add(skew); }).find("RigidBody.frame") != std::string::npos);
+    CHECK(test::refusal([&] { bundle.assembly.connect(scene::AverageConnection{.ends = {scene::last_end(0)}, .body = 7}); }).find("AverageConnection.body = 7") != std::string::npos);
+}
