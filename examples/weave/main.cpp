@@ -52,7 +52,7 @@ bool settle(const weave::Scene& scene, const Options& options, Index threads) {
     weave::Series series(folder / "paraview", start, scene.paraview ? scene.paraview_every : 0);
     auto loading = weave::cloth::settling<M>(scene.fabric, scene.settle);
     loading.checkpoint = (folder / "checkpoint.bin").string();
-    loading.checkpoint_seconds = 5.0;
+    loading.checkpoint_seconds = 15.0;
     loading.resume = options.resume;
     const simulation::Report report = simulator.run(loading, progress, table, series);
 

@@ -243,9 +243,14 @@ public:
     /// The points alone: a beam's stiffness couples nothing beyond its chain's band.
     template <class Terms>
     void visit_couplings(Terms& terms) const {
+        visit_couplings(terms, 0, couplings());
+    }
+    /// Points [first, last) of them; from several threads at once.
+    template <class Terms>
+    void visit_couplings(Terms& terms, Index first, Index last) const {
         std::array<Index, core::at(2 * vectors)> both{};
         [[maybe_unused]] std::array<double, core::at(2 * vectors)> weights{};
-        for (const Point& point : points_) {
+        for (const Point& point : std::span<const Point>(points_).subspan(core::at(first), core::at(last - first))) {
             for (Index k = 0; k < vectors; ++k) both[core::at(k)] = point.first_i / 3 + k, both[core::at(vectors + k)] = point.first_j / 3 + k;
             if constexpr (beam::TurningSections<B>) {
                 visit_turning(point, both, terms);

@@ -45,6 +45,13 @@ void visit_couplings(const T& system, Visitor& visitor) {
     else system.visit(visitor);
 }
 
+/// A system whose couplings are numbered, so that parts of them are visited, from several threads at once.
+template <class T>
+concept DivisibleCouplings = requires(const T system, IgnoredTerms& terms, Index k) {
+    { system.couplings() } -> std::same_as<Index>;
+    system.visit_couplings(terms, k, k);
+};
+
 /// A system that forms its matrix: all of A, both triangles, F included. The pattern depends on the terms' vectors only.
 template <class T>
 concept AssembledSystem = LinearSystem<T> && requires(const T system, SparseMatrix& a) { system.assemble(a); };

@@ -2,6 +2,7 @@
 #pragma once
 /// @file Sparse Cholesky factor of a symmetric matrix of small blocks, multifrontal: all work is on dense matrices.
 
+#include <fibrant/core/parallel.hpp>
 #include <fibrant/solver/supernodes.hpp>
 
 #include <Eigen/Dense>
@@ -85,19 +86,37 @@ public:
     }
 
     /// Sets the matrix to zero.
-    void clear() { value_.assign(core::at(entry_.back()), 0.0); }
+    ///
+    /// @param lanes  sums that may be added to at the same time, until they are joined; > 0
+    void clear(Index lanes = 1) {
+        value_.assign(core::at(entry_.back()), 0.0);
+        lane_.resize(core::at(lanes - 1));
+        for (std::vector<double>& values : lane_) values.assign(value_.size(), 0.0);
+    }
+    /// The matrix is the sum of all lanes, in their order.
+    void join_lanes() {
+        constexpr Index block = 4096;
+        const Index all = core::count(value_);
+        if (!lane_.empty())
+            core::parallel_for((all + block - 1) / block, [&](Index b) {
+                for (Index k = b * block; k < std::min(all, (b + 1) * block); ++k)
+                    for (const std::vector<double>& values : lane_) value_[core::at(k)] += values[core::at(k)];
+            });
+        lane_.clear();
+    }
 
-    /// Adds `block` at (i, j) and, off the diagonal, its transpose at (j, i).
+    /// Adds `block` at (i, j) and, off the diagonal, its transpose at (j, i). For different lanes from several threads at once.
     /// @return whether the pattern has the block
     template <class Derived>
-    bool add(int i, int j, const Eigen::MatrixBase<Derived>& block) {
+    bool add(int i, int j, const Eigen::MatrixBase<Derived>& block, Index lane = 0) {
+        std::vector<double>& values = lane == 0 ? value_ : lane_[core::at(lane - 1)];
         const int row = supernodes_.place(i), column = supernodes_.place(j);
         if (row < column) {
-            double* entry = find(column, row);
+            double* entry = find(values, column, row);
             if (entry != nullptr) Eigen::Map<Matrix>(entry, size(column), size(row)) += block.transpose();
             return entry != nullptr;
         }
-        double* entry = find(row, column);
+        double* entry = find(values, row, column);
         if (entry != nullptr) Eigen::Map<Matrix>(entry, size(row), size(column)) += block;
         return entry != nullptr;
     }
@@ -120,7 +139,7 @@ public:
     };
     Entry entry(int i, int j) {
         const int row = supernodes_.place(i), column = supernodes_.place(j);
-        return {find(std::max(row, column), std::min(row, column)), size(std::max(row, column)), row < column};
+        return {find(value_, std::max(row, column), std::min(row, column)), size(std::max(row, column)), row < column};
     }
 
     /// Factor of the present matrix.
@@ -197,8 +216,8 @@ private:
         const auto& supernode = supernodes_.list()[core::at(s)];
         return offset_[core::at(supernode.last)] - offset_[core::at(supernode.first)];
     }
-    double* find(int row, int column) {
-        double* entry = value_.data() + entry_[core::at(column)];
+    double* find(std::vector<double>& values, int row, int column) const {
+        double* entry = values.data() + entry_[core::at(column)];
         if (row == column) return entry;
         const std::span<const int> later = supernodes_.later(column);
         const auto found = std::lower_bound(later.begin(), later.end(), row);
@@ -297,6 +316,7 @@ private:
     std::vector<Index> input_;   // first unknown of each block as it was given
     std::vector<Index> entry_;   // of each place: its diagonal block in `value_`, then those below it
     std::vector<double> value_;
+    std::vector<std::vector<double>> lane_;  // further sums
     std::vector<Index> rows_;    // below the columns of each supernode
     std::vector<std::vector<int>> children_;
     std::vector<RealMatrix> panel_;

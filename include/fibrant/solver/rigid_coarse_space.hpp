@@ -5,6 +5,7 @@
 #include <fibrant/core/rotation.hpp>
 #include <fibrant/solver/block_cholesky.hpp>
 #include <fibrant/solver/chain_clusters.hpp>
+#include <fibrant/solver/coarse_couplings.hpp>
 #include <fibrant/solver/linear_solver.hpp>
 
 #include <Eigen/Geometry>
@@ -50,12 +51,12 @@ public:
             }
             stations_ += static_cast<int>(intervals) + 1;
         }
-        places_.resize(layout.kind.size());
+        modes_.places.resize(layout.kind.size());
         for (Index c = 0; c < core::count(layout.chains); ++c) {
             const scene::Chain& chain = layout.chains[core::at(c)];
             for (Index k = 0; k < chain.nodes * chain.vectors_per_node; ++k) {
                 const Index node = k / chain.vectors_per_node;
-                places_[core::at(chain.first_vector + k)] = {static_cast<int>(c), static_cast<int>(node), hat(chains_[core::at(c)], node)};
+                modes_.places[core::at(chain.first_vector + k)] = {static_cast<int>(c), static_cast<int>(node), hat(chains_[core::at(c)], node)};
             }
         }
         find_pattern(system);
@@ -67,19 +68,19 @@ public:
 
     /// To be called before the chains are added: takes over the values of the layout.
     void begin(const scene::DofLayout& layout) {
-        arm_ = layout.value;
-        turn_.clear();
+        modes_.arm = layout.value;
+        modes_.turn.clear();
         if (std::ranges::find(layout.kind, scene::VectorKind::rotation) != layout.kind.end()) {
-            turn_.resize(layout.kind.size());
-            for (std::size_t v = 0; v < turn_.size(); ++v)
-                if (layout.kind[v] == scene::VectorKind::rotation) turn_[v] = core::spin_matrix(layout.value[v]).inverse();
+            modes_.turn.resize(layout.kind.size());
+            for (std::size_t v = 0; v < modes_.turn.size(); ++v)
+                if (layout.kind[v] == scene::VectorKind::rotation) modes_.turn[v] = core::spin_matrix(layout.value[v]).inverse();
         }
         core::parallel_for(clusters(), [&](Index k) {
             Vec3 sum = Vec3::Zero();
             Index positions = 0;
             for_positions(layout, k, [&](Index v) { sum += layout.value[core::at(v)], ++positions; });
             const Vec3 middle = sum / static_cast<double>(std::max<Index>(positions, 1));
-            for_positions(layout, k, [&](Index v) { arm_[core::at(v)] -= middle; });
+            for_positions(layout, k, [&](Index v) { modes_.arm[core::at(v)] -= middle; });
         }, grain(layout, clusters()));
     }
 
@@ -92,7 +93,7 @@ public:
         std::vector<Modes> modes(core::at(chain.nodes), Modes(m, 6));
         for (Index a = 0; a < chain.nodes; ++a) {
             for (Index v = 0; v < chain.vectors_per_node; ++v) {
-                modes[core::at(a)].middleRows<3>(3 * v) = mode(layout, held, chain.first_vector + a * chain.vectors_per_node + v);
+                modes[core::at(a)].middleRows<3>(3 * v) = modes_.mode(layout, held, chain.first_vector + a * chain.vectors_per_node + v);
             }
         }
         Modes product(m, 6);
@@ -130,17 +131,11 @@ public:
     }
 
 private:
-    using Block = Eigen::Matrix<double, 6, 6>;
-    using Mode = Eigen::Matrix<double, 3, 6>;
+    using Block = CoarseModes::Block;
+    using Hat = CoarseModes::Hat;
     using Modes = Eigen::Matrix<double, Eigen::Dynamic, 6>;
     using Motion = Eigen::Matrix<double, 6, 1>;
 
-    /// Two stations of the cluster and the share of each in a node's motion; the second may lie beyond the last if its share is 0.
-    struct Hat {
-        int station = 0;
-        double second = 0.0;
-        double weight(int k) const noexcept { return k == 0 ? 1.0 - second : second; }
-    };
     struct Chain {
         int first_station = 0;
         Index intervals = 0, nodes = 1;
@@ -151,11 +146,6 @@ private:
             return intervals == 0 ? 0 : std::min(intervals, nodes_apart * intervals / (nodes - 1) + 2);
         }
     };
-    struct Place {
-        int chain = 0, node = 0;
-        Hat hat;  // station counted over all clusters
-    };
-
     static Hat hat(const Chain& chain, Index node) noexcept {
         if (chain.intervals == 0) return {chain.first_station, 0.0};
         const Index share = (chain.reversed ? chain.nodes - 1 - node : node) * chain.intervals;  // over nodes - 1
@@ -174,25 +164,6 @@ private:
         }
     }
 
-    /// The columns of a rotation: what it does to `arm`.
-    static void add_rotation(const Vec3& arm, Mode& rows) {
-        rows(0, 4) += arm.z(), rows(0, 5) -= arm.y();
-        rows(1, 3) -= arm.z(), rows(1, 5) += arm.x();
-        rows(2, 3) += arm.y(), rows(2, 4) -= arm.x();
-    }
-    /// Rows of F P of one vector for a station of weight 1.
-    Mode mode(const scene::DofLayout& layout, const assembly::HeldProjector& held, Index v) const {
-        Mode rows = Mode::Zero();
-        if (turns(layout, v)) rows.rightCols<3>() = turn_[core::at(v)];
-        else add_rotation(arm_[core::at(v)], rows);
-        if (layout.kind[core::at(v)] == scene::VectorKind::position) rows.leftCols<3>().setIdentity();
-        if (const Mat3* free = held.free(v)) rows = (*free * rows).eval();
-        return rows;
-    }
-
-    /// v is a rotation vector: a spin changes it by turn_, whatever its arm.
-    bool turns(const scene::DofLayout& layout, Index v) const { return !turn_.empty() && layout.kind[core::at(v)] == scene::VectorKind::rotation; }
-
     static void add_to_chain(Chain& own, Index nodes_apart, const Hat& row, const Hat& column, const Block& block, bool diagonal) {
         const Index width = own.reach(nodes_apart) + 1;
         for (int i = 0; i < 2; ++i)
@@ -210,187 +181,83 @@ private:
             }
     }
 
-    // What the terms couple beyond the bands. A term is taken apart into parts that lie within the reach of one chain;
-    // what couples a part with itself is in the band.
-    struct StationShare {
-        int station = 0;
-        double translation = 0.0;       // sum of w and of w arm over vectors that are free,
-        Vec3 arm = Vec3::Zero();
-        Mode rows = Mode::Zero();       // and of w times the rows of those that are held
-    };
-    struct Part {
-        int chain = 0, low = 0, high = 0;
-        std::size_t used = 0;
-        std::vector<StationShare> stations;
-        std::span<const StationShare> shares() const { return {stations.data(), used}; }
-        StationShare& at(int station) {
-            for (std::size_t k = 0; k < used; ++k) {
-                if (stations[k].station == station) return stations[k];
-            }
-            if (++used > stations.size()) stations.emplace_back();
-            stations[used - 1] = {};
-            stations[used - 1].station = station;
-            return stations[used - 1];
-        }
-        /// Completes the rows.
-        void gather() {
-            for (std::size_t k = 0; k < used; ++k) {
-                stations[k].rows.leftCols<3>().diagonal().array() += stations[k].translation;
-                add_rotation(stations[k].arm, stations[k].rows);
-            }
-        }
-    };
-
-    /// Calls body(station i, station j, block) for each coupling beyond the bands; both orders are meant. With `Values` false the
-    /// blocks are not computed.
-    template <bool Values, class System, class Body>
-    void couple(const System& system, const Body& body) const {
-        struct Visitor {
-            const RigidCoarseSpace& space;
-            const scene::DofLayout& layout;
-            const assembly::HeldProjector& held;
-            const Body& body;
-            std::vector<Part> parts;
-            std::size_t used;
-            std::vector<Index> last{};
-
-            void take(Index v, double weight, Index window) {
-                const Place& place = space.places_[core::at(v)];
-                std::size_t p = 0;
-                for (; p < used; ++p) {
-                    const Part& part = parts[p];
-                    if (part.chain == place.chain && std::max(part.high, place.node) - std::min(part.low, place.node) <= window) break;
-                }
-                if (p == used) {
-                    if (++used > parts.size()) parts.emplace_back();
-                    parts[p].chain = place.chain, parts[p].low = parts[p].high = place.node;
-                    parts[p].used = 0;
-                }
-                Part& part = parts[p];
-                part.low = std::min(part.low, place.node), part.high = std::max(part.high, place.node);
-                const bool free = held.free(v) == nullptr && !space.turns(layout, v), position = layout.kind[core::at(v)] == scene::VectorKind::position;
-                for (int i = 0; i < 2; ++i) {
-                    const double share = weight * place.hat.weight(i);
-                    if (place.hat.weight(i) == 0.0) continue;
-                    StationShare& station = part.at(place.hat.station + i);
-                    if (!free) {
-                        station.rows += share * space.mode(layout, held, v);
-                        continue;
-                    }
-                    if (position) station.translation += share;
-                    station.arm += share * space.arm_[core::at(v)];
-                }
-            }
-            bool in_band(const Part& a, const Part& b) const {
-                return a.chain == b.chain && std::max(a.low, b.low) - std::min(a.high, b.high) <= layout.chains[core::at(a.chain)].reach;
-            }
-            bool overlap() const {
-                for (std::size_t p = 0; p < used; ++p)
-                    for (std::size_t q = p + 1; q < used; ++q) {
-                        if (in_band(parts[p], parts[q])) return true;
-                    }
-                return false;
-            }
-            void emit(const Part& a, const Part& b, const Mat3& stiffness) const {
-                for (const StationShare& column : b.shares()) {
-                    Mode product = Mode::Zero();
-                    if constexpr (Values) product = stiffness * column.rows;
-                    for (const StationShare& row : a.shares()) {
-                        Block block = Block::Zero();
-                        if constexpr (Values) block = row.rows.transpose() * product;
-                        body(row.station, column.station, block);
-                    }
-                }
-            }
-            void point(const assembly::PointTerm& term) {
-                if constexpr (!Values) {  // the contacts of two elements couple the same stations
-                    if (std::equal(last.begin(), last.end(), term.vectors.begin(), term.vectors.end())) return;
-                    last.assign(term.vectors.begin(), term.vectors.end());
-                }
-                used = 0;
-                for (std::size_t k = 0; k < term.vectors.size(); ++k) {
-                    const Place& place = space.places_[core::at(term.vectors[k])];
-                    take(term.vectors[k], term.weights[k], layout.chains[core::at(place.chain)].reach);
-                }
-                if (overlap()) {  // some pairs of nodes of two parts are in a band, others not
-                    used = 0;
-                    for (std::size_t k = 0; k < term.vectors.size(); ++k) take(term.vectors[k], term.weights[k], 0);
-                }
-                for (std::size_t q = 0; q < used; ++q) {
-                    if constexpr (Values) parts[q].gather();
-                    for (std::size_t p = 0; p < q; ++p) {
-                        if (!in_band(parts[p], parts[q])) emit(parts[p], parts[q], term.stiffness);
-                    }
-                }
-            }
-            void dense(const assembly::DenseTerm& term) {
-                const Place& first = space.places_[core::at(term.vectors.front())];
-                int low = first.node, high = first.node;
-                bool one = true;
-                for (const Index v : term.vectors) {
-                    const Place& place = space.places_[core::at(v)];
-                    one = one && place.chain == first.chain;
-                    low = std::min(low, place.node), high = std::max(high, place.node);
-                }
-                if (one && high - low <= layout.chains[core::at(first.chain)].reach) return;
-                for (std::size_t i = 0; i < term.vectors.size(); ++i)
-                    for (std::size_t j = 0; j < i; ++j) {
-                        used = 0;
-                        take(term.vectors[i], 1.0, -1), take(term.vectors[j], 1.0, -1);
-                        if (in_band(parts[0], parts[1])) continue;
-                        parts[0].gather(), parts[1].gather();
-                        emit(parts[0], parts[1], term.stiffness.block<3, 3>(3 * static_cast<Index>(i), 3 * static_cast<Index>(j)));
-                    }
-            }
-        };
-        const assembly::HeldProjector held(system.layout());
-        Visitor visitor{*this, system.layout(), held, body, {}, 0};
-        assembly::visit_couplings(system, visitor);
-    }
-
     template <class System>
     void find_pattern(const System& system) {
         const scene::DofLayout& layout = system.layout();
-        if (arm_.size() != layout.kind.size()) arm_ = layout.value;
-        std::vector<std::vector<int>> columns(core::at(stations_));  // of each row, left of the diagonal, rising
-        const auto insert = [&](int i, int j, const Block&) {
+        if (modes_.arm.size() != layout.kind.size()) modes_.arm = layout.value;
+        using Columns = std::vector<std::vector<int>>;  // of each row, left of the diagonal, rising
+        const auto insert = [](Columns& columns, int i, int j) {
             if (i == j) return;
             std::vector<int>& row = columns[core::at(std::max(i, j))];
             const auto place = std::lower_bound(row.begin(), row.end(), std::min(i, j));
             if (place == row.end() || *place != std::min(i, j)) row.insert(place, std::min(i, j));
         };
+        std::vector<Columns> lane(core::at(lanes(system)), Columns(core::at(stations_)));
+        Columns& columns = lane[0];
         for (Index c = 0; c < core::count(chains_); ++c) {
             const Chain& own = chains_[core::at(c)];
             for (int k = 0; k <= static_cast<int>(own.intervals); ++k) {
                 const int reach = static_cast<int>(own.reach(layout.chains[core::at(c)].reach));
-                for (int d = 1; d <= std::min(k, reach); ++d) insert(own.first_station + k, own.first_station + k - d, Block::Zero());
+                for (int d = 1; d <= std::min(k, reach); ++d) insert(columns, own.first_station + k, own.first_station + k - d);
             }
         }
-        couple<false>(system, insert);
+        couple<false>(system, [&](Index l, int i, int j, const Block&) { insert(lane[core::at(l)], i, j); });
+        for (std::size_t l = 1; l < lane.size(); ++l)
+            for (int k = 0; k < stations_; ++k)
+                for (const int column : lane[l][core::at(k)]) insert(columns, k, column);
         std::vector<Supernodes::Pair> pairs;
         for (int k = 0; k < stations_; ++k)
             for (const int column : columns[core::at(k)]) pairs.emplace_back(k, column);
         matrix_.analyse(std::vector<int>(core::at(stations_), 6), pairs);
     }
 
+    /// Parts that the couplings are taken in at once, each with a sum of its own: their number depends on the system alone, and
+    /// so do the bits.
+    template <class System>
+    static Index lanes(const System& system) {
+        if constexpr (assembly::DivisibleCouplings<System>) return system.couplings() < 4096 ? 1 : 4;
+        else return 1;
+    }
+    /// Calls body(lane, station i, station j, block) for each coupling beyond the bands, from several threads for different lanes.
+    template <bool Values, class System, class Body>
+    void couple(const System& system, const Body& body) const {
+        const assembly::HeldProjector held(system.layout());
+        const Index all = lanes(system);
+        core::parallel_for(all, [&](Index lane) {
+            const auto add = [&](int i, int j, const Block& block) { body(lane, i, j, block); };
+            CoarseCouplings<Values, decltype(add)> visitor(modes_, system.layout(), held, add);
+            if constexpr (assembly::DivisibleCouplings<System>) {
+                const Index count = system.couplings();
+                system.visit_couplings(visitor, count * lane / all, count * (lane + 1) / all);
+            } else {
+                assembly::visit_couplings(system, visitor);
+            }
+        });
+    }
+
     /// Sums the matrix; false if the pattern lacks a block.
     template <class System>
     bool sum(const System& system) {
-        bool complete = true;
-        matrix_.clear();
-        for (Index c = 0; c < core::count(chains_); ++c) {
-            const Chain& own = chains_[core::at(c)];
-            const Index width = own.reach(system.layout().chains[core::at(c)].reach) + 1;
-            for (Index k = 0; k <= own.intervals; ++k)
-                for (Index d = 0; d <= std::min(k, width - 1); ++d) {
-                    const int row = own.first_station + static_cast<int>(k);
-                    complete = matrix_.add(row, row - static_cast<int>(d), own.blocks[core::at(k * width + d)]) && complete;
-                }
-        }
-        couple<true>(system, [&](int i, int j, const Block& block) {
-            complete = matrix_.add(i, j, i == j ? Block(block + block.transpose()) : block) && complete;
+        const Index all = lanes(system);
+        std::vector<char> complete(core::at(all), 1);
+        matrix_.clear(all);
+        core::parallel_for(all, [&](Index lane) {
+            const Index count = core::count(chains_);
+            for (Index c = count * lane / all; c < count * (lane + 1) / all; ++c) {
+                const Chain& own = chains_[core::at(c)];
+                const Index width = own.reach(system.layout().chains[core::at(c)].reach) + 1;
+                for (Index k = 0; k <= own.intervals; ++k)
+                    for (Index d = 0; d <= std::min(k, width - 1); ++d) {
+                        const int row = own.first_station + static_cast<int>(k);
+                        if (!matrix_.add(row, row - static_cast<int>(d), own.blocks[core::at(k * width + d)], lane)) complete[core::at(lane)] = 0;
+                    }
+            }
         });
-        return complete;
+        couple<true>(system, [&](Index lane, int i, int j, const Block& block) {
+            if (!matrix_.add(i, j, i == j ? Block(block + block.transpose()) : block, lane)) complete[core::at(lane)] = 0;
+        });
+        matrix_.join_lanes();
+        return std::ranges::find(complete, 0) == complete.end();
     }
 
     /// station values = P^T r
@@ -400,7 +267,7 @@ private:
             for (const Index c : clusters_[core::at(cluster)].chains) {
                 const scene::Chain& chain = layout.chains[core::at(c)];
                 Motion near = Motion::Zero(), far = Motion::Zero();  // of the two stations that nodes are between
-                int station = places_[core::at(chain.first_vector)].hat.station;
+                int station = modes_.places[core::at(chain.first_vector)].hat.station;
                 const auto store = [&] {
                     station_values_.segment<6>(6 * station) += near;
                     if (!far.isZero(0.0)) station_values_.segment<6>(6 * station + 6) += far;
@@ -411,10 +278,10 @@ private:
                     for (Index v = first; v < first + chain.vectors_per_node; ++v) {
                         const Vec3 f = r.segment<3>(3 * v);
                         if (layout.kind[core::at(v)] == scene::VectorKind::position) force += f;
-                        if (turns(layout, v)) moment += turn_[core::at(v)].transpose() * f;
-                        else moment += arm_[core::at(v)].cross(f);
+                        if (modes_.turns(layout, v)) moment += modes_.turn[core::at(v)].transpose() * f;
+                        else moment += modes_.arm[core::at(v)].cross(f);
                     }
-                    const Hat& hat = places_[core::at(first)].hat;
+                    const Hat& hat = modes_.places[core::at(first)].hat;
                     if (hat.station != station) {
                         store();
                         near.setZero(), far.setZero();
@@ -436,12 +303,12 @@ private:
             const scene::Chain& chain = layout.chains[core::at(c)];
             for (Index a = 0; a < chain.nodes; ++a) {
                 const Index first = chain.first_vector + a * chain.vectors_per_node;
-                const Hat& hat = places_[core::at(first)].hat;
+                const Hat& hat = modes_.places[core::at(first)].hat;
                 Motion motion = hat.weight(0) * station_values_.segment<6>(6 * hat.station);
                 if (hat.second > 0.0) motion += hat.second * station_values_.segment<6>(6 * hat.station + 6);
                 const Vec3 translation = motion.head<3>(), rotation = motion.tail<3>();
                 for (Index v = first; v < first + chain.vectors_per_node; ++v) {
-                    Vec3 move = turns(layout, v) ? Vec3(turn_[core::at(v)] * rotation) : Vec3(rotation.cross(arm_[core::at(v)]));
+                    Vec3 move = modes_.turns(layout, v) ? Vec3(modes_.turn[core::at(v)] * rotation) : Vec3(rotation.cross(modes_.arm[core::at(v)]));
                     if (layout.kind[core::at(v)] == scene::VectorKind::position) move += translation;
                     z.segment<3>(3 * v) += move;
                 }
@@ -451,9 +318,7 @@ private:
 
     std::vector<ChainCluster> clusters_;
     std::vector<Chain> chains_;
-    std::vector<Place> places_;  // of each vector
-    std::vector<Vec3> arm_;      // of each vector: a direction, or a position from the middle of its cluster
-    std::vector<Mat3> turn_;     // of each rotation vector by a spin; none where no chain has any
+    CoarseModes modes_;
     int stations_ = 0;
     BlockCholesky<double> matrix_;
     Vector station_values_;  // forces and moments, then motions
