@@ -276,37 +276,49 @@ private:
             }
     }
 
-    /// Cholesky of the columns of a front, the upper part of `panel`, and what it makes of the rows below.
+    /// Cholesky of the columns of a front, the upper part of `panel`, and what it makes of the rows below: wide steps, so that
+    /// large fronts are not read and written once every few columns, made of narrow ones.
     void eliminate(RealMatrix& panel, const RealVector& scale, Pivots& pivots) const {
-        constexpr Index step = 48;
+        constexpr Index wide = 240, narrow = 48;
         const Index m = panel.cols(), n = panel.rows();
-        for (Index first = 0; first < m; first += step) {
-            const Index width = std::min(step, m - first), rest = n - first - width;
-            auto diagonal = panel.block(first, first, width, width);
-            for (Index j = 0; j < width; ++j) {
-                const Real original = scale[first + j];
-                Real pivot = diagonal(j, j) - diagonal.row(j).head(j).squaredNorm();
-                if (!std::isfinite(pivot)) pivots.finite = false;
-                if (!(pivot > static_cast<Real>(least_pivot) * original)) {
-                    ++pivots.dropped;
-                    if (pivot < -static_cast<Real>(100 * least_pivot) * std::abs(original) || original < 0) ++pivots.negative;
-                    pivot = small_ == SmallPivot::infinite
-                                ? static_cast<Real>(1e16) * std::max(std::abs(original), Real(1e-10))
-                                : std::max({std::abs(pivot), static_cast<Real>(least_pivot) * std::abs(original), Real(1e-30)});
-                }
-                const Real root = std::sqrt(pivot);
-                diagonal(j, j) = root;
-                const Index below = width - j - 1;
-                if (below > 0) {
-                    diagonal.col(j).tail(below).noalias() -= diagonal.bottomLeftCorner(below, j) * diagonal.row(j).head(j).transpose();
-                    diagonal.col(j).tail(below) /= root;
-                }
+        for (Index first = 0; first < m; first += wide) {
+            const Index last = std::min(first + wide, m);
+            for (Index k = first; k < last; k += narrow) {
+                const Index width = std::min(narrow, last - k), next = k + width;
+                eliminate_diagonal(panel, k, width, scale, pivots);
+                if (next == n) continue;
+                auto below = panel.block(next, k, n - next, width);
+                panel.block(k, k, width, width).template triangularView<Eigen::Lower>().transpose().template solveInPlace<Eigen::OnTheRight>(below);
+                if (next < last)
+                    panel.block(next, next, n - next, last - next).noalias() -= below * below.topRows(last - next).transpose();
             }
-            if (rest == 0) continue;
-            auto below = panel.block(first + width, first, rest, width);
-            diagonal.template triangularView<Eigen::Lower>().transpose().template solveInPlace<Eigen::OnTheRight>(below);
-            const Index columns = m - first - width;
-            if (columns > 0) panel.block(first + width, first + width, rest, columns).noalias() -= below * below.topRows(columns).transpose();
+            for (Index column = last; column < m; column += wide) {  // the lower part alone
+                const Index width = std::min(wide, m - column);
+                panel.block(column, column, n - column, width).noalias() -=
+                    panel.block(column, first, n - column, last - first) * panel.block(column, first, width, last - first).transpose();
+            }
+        }
+    }
+    void eliminate_diagonal(RealMatrix& panel, Index first, Index width, const RealVector& scale, Pivots& pivots) const {
+        auto diagonal = panel.block(first, first, width, width);
+        for (Index j = 0; j < width; ++j) {
+            const Real original = scale[first + j];
+            Real pivot = diagonal(j, j) - diagonal.row(j).head(j).squaredNorm();
+            if (!std::isfinite(pivot)) pivots.finite = false;
+            if (!(pivot > static_cast<Real>(least_pivot) * original)) {
+                ++pivots.dropped;
+                if (pivot < -static_cast<Real>(100 * least_pivot) * std::abs(original) || original < 0) ++pivots.negative;
+                pivot = small_ == SmallPivot::infinite
+                            ? static_cast<Real>(1e16) * std::max(std::abs(original), Real(1e-10))
+                            : std::max({std::abs(pivot), static_cast<Real>(least_pivot) * std::abs(original), Real(1e-30)});
+            }
+            const Real root = std::sqrt(pivot);
+            diagonal(j, j) = root;
+            const Index below = width - j - 1;
+            if (below > 0) {
+                diagonal.col(j).tail(below).noalias() -= diagonal.bottomLeftCorner(below, j) * diagonal.row(j).head(j).transpose();
+                diagonal.col(j).tail(below) /= root;
+            }
         }
     }
 
