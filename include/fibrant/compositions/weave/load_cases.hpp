@@ -35,6 +35,7 @@ struct LoadCase {
     scene::Assembly assembly;
     EdgeBodies bodies;
     Index puller = -1;               ///< body of the tow that is pulled
+    double pulled_from = 0.0;        ///< where it was along x [length]
     std::array<Index, 2> plates{-1, -1};  ///< below and above
     double width = 0.0, height = 0.0;     ///< between the edges along x and along y at the start [length]
     double plate_distance = 0.0;          ///< at the start [length]
@@ -113,7 +114,7 @@ inline LoadCase load_case(const std::string& name, const observe::Snapshot& snap
         puller.name = "puller", puller.position = tow_end_middle(snapshot, fabric, Edge::east, tow);
         puller.translation[0] = Coordinate::held_at(fabric.weft_spacing, pull_channel);
         load.bodies = add_edges(load.assembly, snapshot, fabric, edges);
-        load.puller = load.assembly.add(puller);
+        load.puller = load.assembly.add(puller), load.pulled_from = puller.position.x();
         connect_tow_end(load.assembly, fabric, Edge::east, tow, load.puller, {.spin = true});
         return load;
     }
@@ -155,7 +156,7 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
         figures = {{"thickness", load.plate_distance * (1.0 - simulator.amplitude(plate_channel))},
                    {"force", 0.5 * std::abs((tools.reaction(load.plates[1]).force - tools.reaction(load.plates[0]).force).z())}};
     } else {
-        figures = {{"displacement", ties.motion().position(load.puller).x()}, {"force", ties.wrench(load.puller).force.x()}};
+        figures = {{"displacement", ties.motion().position(load.puller).x() - load.pulled_from}, {"force", ties.wrench(load.puller).force.x()}};
     }
     Vec3 sum = load.puller >= 0 ? ties.wrench(load.puller).force : Vec3(Vec3::Zero());
     for (const Edge edge : all_edges) {
