@@ -16,6 +16,7 @@
 #include <fibrant/scene/reference_shape.hpp>
 #include <fibrant/scene/rigid_body.hpp>
 #include <fibrant/scene/tied_vectors.hpp>
+#include <fibrant/scene/solid.hpp>
 #include <fibrant/scene/tool.hpp>
 
 #include <fibrant/beam/beam_element.hpp>
@@ -25,6 +26,11 @@
 #include <fibrant/beam/quaternion.hpp>
 #include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/beam/section_law.hpp>
+
+#include <fibrant/solid/cell_search.hpp>
+#include <fibrant/solid/hexahedron.hpp>
+#include <fibrant/solid/hexahedron_map.hpp>
+#include <fibrant/solid/solid_law.hpp>
 
 #include <fibrant/proximity/brute_search.hpp>
 #include <fibrant/proximity/bvh_search.hpp>
