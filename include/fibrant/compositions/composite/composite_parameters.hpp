@@ -13,7 +13,7 @@ namespace fibrant::compositions::composite {
 struct MatrixParameters {
     scene::ElasticMaterial material{};
     double cover = core::unset;                    ///< of the outer faces beyond the outermost fibre [length], > 0
-    double penetration_depth_over_radius = 1.0;    ///< of the inner faces below the fibres' surface [1], >= 0
+    double penetration_depth_over_radius = 1.5;    ///< of the inner faces below the fibres' surface [1], >= 0
     double clearance_over_radius = 0.5;            ///< between the inner faces [1], > 0
     double least_thickness_over_cover = 0.2;       ///< of a layer [1], in (0, 1]
     Index cells_along = 0, cells_across = 0;       ///< along the warp and along the weft, >= 1
