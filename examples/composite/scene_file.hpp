@@ -54,6 +54,7 @@ inline Scene read_scene(const std::string& path, const std::vector<std::string>&
     file.read("load", "strain", load.strain);
     file.read("load", "angle_deg", load.angle_deg);
     file.read("load", "increments", load.increments);
+    file.read("load", "looseness", load.looseness);
     file.read("load", "damping_over_stiffness", load.damping_over_stiffness);
     file.read("load", "settled", scene.settled);
     file.read("solver", "carried", scene.carried);

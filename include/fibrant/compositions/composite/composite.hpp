@@ -189,6 +189,7 @@ simulation::Loading<M> loading_of(const FabricParameters& fabric, const LoadPara
     stage.name = "load";
     stage.increments = load.increments, stage.most_increments = 50 * load.increments;
     stage.ramps = {{load_channel, 1.0}};
+    stage.looseness = load.looseness;
     const auto& tow = fabric.warp;
     stage.damping = load.damping_over_stiffness * tow.material.young_modulus * tow.section().area() * static_cast<double>(fabric.elements) / fabric.fibre_length(Family::warp);
     return loading;

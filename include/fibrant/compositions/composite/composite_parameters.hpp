@@ -55,12 +55,14 @@ struct LoadParameters {
     double strain = 0.01;             ///< of tension, or angle of shear [1]
     double angle_deg = 90.0;          ///< between the edges in bending and twisting [degree]
     Index increments = 20;            ///< >= 1
+    double looseness = 5.0;           ///< on the tolerances of passes, as where a fabric comes to rest: paths are a means [1], in [1, 1000]
     double damping_over_stiffness = 1e-6;  ///< of a spring from every node to where it was, over E A / l of an element [1], >= 0
 
     void validate() const {
         core::require_finite("LoadParameters.strain", strain);
         core::require_between("LoadParameters.angle_deg", angle_deg, -180.0, 180.0);
         core::require_at_least("LoadParameters.increments", increments, 1);
+        core::require_between("LoadParameters.looseness", looseness, 1.0, 1000.0);
         core::require_not_negative("LoadParameters.damping_over_stiffness", damping_over_stiffness);
     }
 };
