@@ -18,7 +18,7 @@ struct Scene {
     weave::Scene weave;
     parts::MatrixParameters matrix;
     parts::LoadParameters load;
-    bool carried = true;  ///< of solver::SolidPcg
+    bool carried = false;  ///< of solver::SolidPcg: pays where bonds are much stiffer than the sheet is in bending
     std::string settled;  ///< checkpoint of the weave's settled state; empty: settled.bin in the folder of results
 };
 
