@@ -76,11 +76,9 @@ inline void read_tow(TomlReader& file, const std::string& section, bool required
 
 }  // namespace detail
 
-/// Reads and checks a scene, before any work.
-/// @param overrides  "section.key=value"
+/// Reads and checks what a file says of a fabric, before any work; the rest of the file is left.
 /// Throws std::invalid_argument, "file: section.key = value, but it must be bound".
-inline Scene read_scene(const std::string& path, const std::vector<std::string>& overrides = {}) {
-    TomlReader file(path, overrides);
+inline Scene read_fabric(TomlReader& file, const std::string& path, bool all) {
     const std::vector<std::pair<std::string, std::string>> names{
         {"FabricParameters.warp.fibre_radius", "warp.radius"},
         {"FabricParameters.weft.fibre_radius", "weft.radius"},
@@ -153,7 +151,7 @@ inline Scene read_scene(const std::string& path, const std::vector<std::string>&
         file.read("output", "pictures", scene.pictures);
         file.read("output", "unit", scene.unit);
 
-        file.refuse_unknown();
+        if (all) file.refuse_unknown();
         fabric.validate();
         settle.validate();
         iteration.validate();
@@ -165,6 +163,14 @@ inline Scene read_scene(const std::string& path, const std::vector<std::string>&
         file.rethrow(error, names);
     }
     return scene;
+}
+
+/// Reads and checks a scene, before any work.
+/// @param overrides  "section.key=value"
+/// Throws std::invalid_argument, "file: section.key = value, but it must be bound".
+inline Scene read_scene(const std::string& path, const std::vector<std::string>& overrides = {}) {
+    TomlReader file(path, overrides);
+    return read_fabric(file, path, true);
 }
 
 }  // namespace weave

@@ -16,6 +16,7 @@
 #include <fibrant/scene/reference_shape.hpp>
 #include <fibrant/scene/rigid_body.hpp>
 #include <fibrant/scene/tied_vectors.hpp>
+#include <fibrant/scene/solid.hpp>
 #include <fibrant/scene/tool.hpp>
 
 #include <fibrant/beam/beam_element.hpp>
@@ -25,6 +26,14 @@
 #include <fibrant/beam/quaternion.hpp>
 #include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/beam/section_law.hpp>
+
+#include <fibrant/solid/cell_search.hpp>
+#include <fibrant/solid/fibre_surface.hpp>
+#include <fibrant/solid/hexahedron.hpp>
+#include <fibrant/solid/hexahedron_map.hpp>
+#include <fibrant/solid/layer_mesher.hpp>
+#include <fibrant/solid/no_solid.hpp>
+#include <fibrant/solid/solid_law.hpp>
 
 #include <fibrant/proximity/brute_search.hpp>
 #include <fibrant/proximity/bvh_search.hpp>
@@ -62,6 +71,9 @@
 
 #include <fibrant/connection/applied_load.hpp>
 #include <fibrant/connection/body_motion.hpp>
+#include <fibrant/connection/bonded_solid.hpp>
+#include <fibrant/connection/bonding.hpp>
+#include <fibrant/connection/carriers.hpp>
 #include <fibrant/connection/channels.hpp>
 #include <fibrant/connection/connections.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
@@ -70,6 +82,7 @@
 #include <fibrant/assembly/chain_system.hpp>
 #include <fibrant/assembly/equilibrium.hpp>
 #include <fibrant/assembly/linear_system.hpp>
+#include <fibrant/assembly/solid_system.hpp>
 #include <fibrant/assembly/term_assembly.hpp>
 #include <fibrant/assembly/terms.hpp>
 #include <fibrant/assembly/visited_system.hpp>
@@ -83,6 +96,7 @@
 #include <fibrant/solver/newton.hpp>
 #include <fibrant/solver/recording_solver.hpp>
 #include <fibrant/solver/saved_system.hpp>
+#include <fibrant/solver/solid_pcg.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
 
@@ -93,8 +107,10 @@
 #include <fibrant/observe/observer.hpp>
 #include <fibrant/observe/snapshot.hpp>
 #include <fibrant/observe/svg_curves.hpp>
+#include <fibrant/observe/solid_writer.hpp>
 #include <fibrant/observe/svg_plot.hpp>
 #include <fibrant/observe/svg_slice.hpp>
+#include <fibrant/observe/svg_solid.hpp>
 #include <fibrant/observe/svg_view.hpp>
 #include <fibrant/observe/vtk_writer.hpp>
 
@@ -103,11 +119,15 @@
 #include <fibrant/simulation/loading.hpp>
 #include <fibrant/simulation/model.hpp>
 #include <fibrant/simulation/programme.hpp>
+#include <fibrant/simulation/position.hpp>
 #include <fibrant/simulation/report.hpp>
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 #include <fibrant/simulation/state_file.hpp>
 #include <fibrant/simulation/support_wrench.hpp>
+
+#include <fibrant/compositions/composite/composite.hpp>
+#include <fibrant/compositions/composite/composite_parameters.hpp>
 
 #include <fibrant/compositions/knot/overhand_knot.hpp>
 

@@ -2,7 +2,7 @@
 #pragma once
 /// @file Equilibrium of a mesh with its contacts, loads and prescribed motion: residual, tangent, energies.
 
-#include <fibrant/assembly/chain_system.hpp>
+#include <fibrant/assembly/solid_system.hpp>
 #include <fibrant/connection/applied_load.hpp>
 #include <fibrant/connection/connections.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 namespace fibrant::assembly {
@@ -26,18 +27,23 @@ struct ResidualFigures {
 };
 
 /// The mechanical problem of one increment.
-template <beam::BeamElement B, class Contacts, class Connections = connection::NoConnections>
+/// @tparam Connections  of ends of fibres to rigid bodies
+/// @tparam Solid        that the fibres are bonded to; its unknowns come after theirs
+template <beam::BeamElement B, class Contacts, class Connections = connection::NoConnections, class Solid = solid::NoSolid>
 class Equilibrium {
 public:
-    using System = ChainSystem<B>;
+    using System = typename SystemOf<B, Solid>::Type;
     using Ties = typename Connections::template Of<B>;
+    static constexpr bool has_solid = core::Active<Solid>;
     static_assert(connection::Connection<Ties, B>);
+    static_assert(!has_solid || std::is_same_v<Connections, connection::NoConnections>, "a model with a Solid has no Connections yet: its edges are driven");
     static constexpr Index element_unknowns = beam::Mesh<B>::element_unknowns;
 
     Equilibrium(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const B& beam, Contacts& contacts,
-                const connection::Channels& channels)
+                const connection::Channels& channels, const Solid& solid = Solid())
         : mesh_{&mesh}, beam_{beam}, contacts_{&contacts}, motion_{assembly, mesh, channels},
-          load_{assembly, mesh, channels}, ties_{assembly, mesh, channels}, system_{mesh}, stresses_(core::at(mesh.element_count())) {
+          load_{assembly, mesh, channels}, ties_{assembly, mesh, channels}, solid_{taken(solid, assembly, mesh, channels)},
+          system_{system(mesh, solid_)}, stresses_(core::at(mesh.element_count())) {
         // Strains keep the digits of coordinates over an element's length, and E A of them is a force at each node.
         const double extent = mesh.rest_state().size() > 0 ? mesh.rest_state().cwiseAbs().maxCoeff() : 0.0;
         double sum = 0.0;
@@ -47,6 +53,7 @@ public:
             const double force = fibre.material.young_modulus * fibre.section.area() * digits;
             sum += static_cast<double>(mesh.node_count(f)) * force * force;
         }
+        if constexpr (has_solid) sum += std::pow(solid_.rounding_scale(extent), 2);
         rounding_ = 8.0 * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
     }
 
@@ -55,6 +62,8 @@ public:
     const beam::Mesh<B>& mesh() const noexcept { return *mesh_; }
     const Ties& ties() const noexcept { return ties_; }
     Ties& ties() noexcept { return ties_; }
+    const Solid& solid() const noexcept { return solid_; }
+    Solid& solid() noexcept { return solid_; }
 
     /// Sets what is imposed, and the state from which the increment starts.
     /// @param damping  of a spring from every centre to its place in `state`, >= 0 [force / length]; directors count at the
@@ -65,6 +74,10 @@ public:
         if (damping_ > 0.0) anchor_ = state;
         motion_.at(amplitudes, state, system_.layout().held, targets_);
         ties_.begin(amplitudes);
+        if constexpr (has_solid) {
+            solid_.hold(amplitudes, system_.layout().held, targets_);
+            system_.share_held();
+        }
         reset_stresses(state);
     }
 
@@ -101,6 +114,7 @@ public:
                 residual.template segment<element_unknowns>(mesh_->first_unknown(f, e)) +=
                     beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e));
         });
+        if constexpr (has_solid) solid_.add_forces(state, residual);
         if (damping_ > 0.0) residual += damping_force(state);
         external_.setZero(state.size());
         load_.add_forces(amplitudes_, state, external_);
@@ -148,6 +162,10 @@ public:
         });
         load_.add_stiffness(amplitudes_, state, [&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
         ties_.stiffen(system_.layout(), !tension_only);
+        if constexpr (has_solid) {
+            solid_.add_to_fibres([&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
+            solid_.linearise(state, tension_only, shift + damping_);
+        }
         gather_points();
         system_.index_points();
     }
@@ -167,6 +185,7 @@ public:
         });
         double sum = 0.0;
         for (const double value : part) sum += value;
+        if constexpr (has_solid) sum += solid_.energy(state);
         return sum;
     }
     /// Force of the damping on the fibres' supports in a state: what it takes is work of this force [force].
@@ -201,6 +220,15 @@ public:
     }
 
 private:
+    static Solid taken(Solid solid, [[maybe_unused]] const scene::Assembly& assembly, [[maybe_unused]] const beam::Mesh<B>& mesh,
+                       [[maybe_unused]] const connection::Channels& channels) {
+        if constexpr (has_solid) solid.take(assembly, mesh, channels);
+        return solid;
+    }
+    static System system(const beam::Mesh<B>& mesh, [[maybe_unused]] const Solid& solid) {
+        if constexpr (has_solid) return System(mesh, solid);
+        else return System(mesh);
+    }
     void gather_points() {
         auto& points = system_.points();
         points.clear();
@@ -230,6 +258,7 @@ private:
     connection::PrescribedMotion<B> motion_;
     connection::AppliedLoad<B> load_;
     [[no_unique_address]] Ties ties_;
+    [[no_unique_address]] Solid solid_;
     System system_;
     std::vector<typename B::Stresses> stresses_;
     std::vector<double> amplitudes_;

@@ -116,6 +116,7 @@ public:
         for (Index v = 0; v < first; ++v) rest_state_.segment<3>(3 * v) = layout_.value[core::at(v)];
         start_state_.resize(3 * first);
         for (Index v = 0; v < first; ++v) start_state_.segment<3>(3 * v) = start[core::at(v)];
+        if (assembly.start().size() > 0) begin_at(assembly.start());
         first_element_.assign(1, 0);
         for (const MeshFibre& fibre : fibres_) first_element_.push_back(first_element_.back() + fibre.elements);
         rest_.resize(core::at(first_element_.back()));
@@ -249,6 +250,24 @@ public:
     }
 
 private:
+    /// Starts where an earlier run ended.
+    void begin_at(const Vector& state) {
+        if (state.size() != start_state_.size())
+            core::refuse("Assembly.start", std::to_string(state.size()) + " numbers", std::to_string(start_state_.size()) + ", as the fibres' nodes have");
+        core::require(state.allFinite(), "Assembly.start", core::unset, "finite");
+        start_state_ = state;
+        for (Index f = 0; f < fibre_count(); ++f)
+            for (Index a = 0; a < node_count(f); ++a) {
+                const double u = static_cast<double>(a) / static_cast<double>(B::nodes - 1);
+                scene::NodeFrame& frame = frames_[core::at(fibre(f).first_vector / B::vectors_per_node + a)];
+                frame.position = position(state, f, u);
+                frame.tangent = derivative(state, f, u).normalized();
+                const Vec3 director = directors(state, f, u).first;
+                frame.director_1 = (director - director.dot(frame.tangent) * frame.tangent).normalized();
+                frame.director_2 = frame.tangent.cross(frame.director_1);
+            }
+    }
+
     std::vector<MeshFibre> fibres_;
     std::vector<Index> first_element_;
     std::vector<typename B::Rest> rest_;

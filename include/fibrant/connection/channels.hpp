@@ -29,6 +29,7 @@ public:
         for (const scene::AverageConnection& average : assembly.averages())
             if (!average.displacement.isZero(0.0)) names_.push_back(average.channel);
         for (const scene::PeriodicCell& cell : assembly.cells()) std::for_each(cell.gradient.begin(), cell.gradient.end(), drive);
+        for (const scene::SolidHold& hold : assembly.solid_holds()) names_.push_back(hold.channel);
         std::sort(names_.begin(), names_.end());
         names_.erase(std::unique(names_.begin(), names_.end()), names_.end());
     }

@@ -5,6 +5,7 @@
 #include <fibrant/core/types.hpp>
 #include <fibrant/scene/cross_section.hpp>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,21 @@ struct ContactSnapshot {
     bool crossing = false;                  ///< one element for the whole zone
 };
 
+/// A bonding element.
+struct BondSnapshot {
+    Vec3 position = Vec3::Zero();  ///< of the fibre's node [length]
+    Vec3 force = Vec3::Zero();     ///< on the solid [force]
+    bool holds = true;
+};
+
+/// All solids; empty where there is none.
+struct SolidSnapshot {
+    std::vector<Vec3> position, displacement;  ///< of the nodes [length]
+    std::vector<std::array<Index, 8>> cells;   ///< nodes of each cell
+    std::vector<Mat3> strain, stress;          ///< means over a cell: Green-Lagrange [1], Cauchy [force / length^2]
+    std::vector<BondSnapshot> bonds;
+};
+
 /// State after an accepted increment.
 struct Snapshot {
     Index increment = 0;      ///< accepted increments so far
@@ -41,6 +57,7 @@ struct Snapshot {
     double progress = 0;      ///< of the whole loading, in [0, 1]
     std::vector<FibreSnapshot> fibres;
     std::vector<ContactSnapshot> contacts;  ///< active ones and candidates, sorted by fibres and abscissa
+    SolidSnapshot solid;
 };
 
 }  // namespace fibrant::observe

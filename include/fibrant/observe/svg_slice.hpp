@@ -5,6 +5,7 @@
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/observe/snapshot.hpp>
 #include <fibrant/observe/svg.hpp>
+#include <fibrant/observe/svg_solid.hpp>
 
 #include <Eigen/Geometry>
 
@@ -137,6 +138,9 @@ inline std::string svg_slice(const Snapshot& snapshot, const SliceParameters& pa
             high = high.cwiseMax(corner);
         }
     }
+    const std::vector<std::vector<Eigen::Vector2d>> cuts = solid_cuts(snapshot.solid, parameters.axis, parameters.position);
+    for (const auto& cut : cuts)
+        for (const Eigen::Vector2d& corner : cut) low = low.cwiseMin(corner), high = high.cwiseMax(corner);
     if (shapes.empty()) return detail::svg_page(parameters.width, 200.0, "", "", parameters.title + " (no fibre)");
     constexpr double margin = 60.0;
     const double scale = std::min((parameters.width - 2.0 * margin) / (high.x() - low.x()),
@@ -144,6 +148,13 @@ inline std::string svg_slice(const Snapshot& snapshot, const SliceParameters& pa
     const double height = scale * (high.y() - low.y()) + 2.0 * margin + 40.0;
     const double left = 0.5 * (parameters.width - scale * (high.x() - low.x()));
     std::string body;
+    for (const auto& cut : cuts) {
+        body += "<path fill=\"#e9e4d4\" stroke=\"#b5ad97\" d=\"M";
+        for (const Eigen::Vector2d& corner : cut)
+            body += (&corner == cut.data() ? "" : "L") +
+                    detail::point_text({left + scale * (corner.x() - low.x()), margin + scale * (high.y() - corner.y())}, 2);
+        body += "z\"/>\n";
+    }
     for (const SliceShape& shape : shapes) {
         const Colour colour = parameters.palette.of(shape.fibre, snapshot.fibres[core::at(shape.fibre)].group)
                                   .toned(shape.along ? 1.5 : 1.0);

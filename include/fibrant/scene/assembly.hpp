@@ -7,6 +7,7 @@
 #include <fibrant/scene/elastic_material.hpp>
 #include <fibrant/scene/reference_shape.hpp>
 #include <fibrant/scene/rigid_body.hpp>
+#include <fibrant/scene/solid.hpp>
 #include <fibrant/scene/tool.hpp>
 
 #include <Eigen/Geometry>
@@ -224,6 +225,27 @@ public:
         check(pair.first), check(pair.last);
         pairs_.push_back(pair);
     }
+    /// A solid, for models that have a part `Solid`.
+    /// @returns index of the solid, counted from 0
+    Index add(Solid solid) {
+        solid.validate();
+        solids_.push_back(std::move(solid));
+        return core::count(solids_) - 1;
+    }
+    /// Holds components of nodes of a solid on a path.
+    void hold(const SolidHold& condition) {
+        if (condition.solid < 0 || condition.solid >= core::count(solids_))
+            core::refuse("SolidHold.solid", std::to_string(condition.solid), "a solid of this assembly");
+        for (const Index node : condition.nodes)
+            if (node < 0 || node >= core::count(solids_[core::at(condition.solid)].nodes))
+                core::refuse("SolidHold.nodes", std::to_string(node), "a node of the solid");
+        solid_holds_.push_back(condition);
+    }
+
+    /// All nodal vectors of the fibres where a run begins, as an earlier run of the same fibres left them. Takes the place of
+    /// the fibres' own start; their rest shapes stay. Conditions count from there.
+    void begin_at(Vector state) { start_ = std::move(state); }
+    const Vector& start() const noexcept { return start_; }
 
     // What stands in the scene, in the order in which it was added.
     const std::vector<FibreSpecification>& fibres() const noexcept { return fibres_; }
@@ -238,6 +260,8 @@ public:
     const std::vector<AverageConnection>& averages() const noexcept { return averages_; }
     const std::vector<PeriodicCell>& cells() const noexcept { return cells_; }
     const std::vector<PeriodicPair>& pairs() const noexcept { return pairs_; }
+    const std::vector<Solid>& solids() const noexcept { return solids_; }
+    const std::vector<SolidHold>& solid_holds() const noexcept { return solid_holds_; }
 
 private:
     void check(const Station& at) const {
@@ -258,6 +282,9 @@ private:
     std::vector<AverageConnection> averages_;
     std::vector<PeriodicCell> cells_;
     std::vector<PeriodicPair> pairs_;
+    std::vector<Solid> solids_;
+    std::vector<SolidHold> solid_holds_;
+    Vector start_;
 };
 
 }  // namespace fibrant::scene

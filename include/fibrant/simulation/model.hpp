@@ -2,7 +2,7 @@
 #pragma once
 /// @file What a model names: every part, nothing defaulted.
 
-#include <fibrant/assembly/chain_system.hpp>
+#include <fibrant/assembly/solid_system.hpp>
 #include <fibrant/beam/beam_element.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/contact/contact_set.hpp>
@@ -24,8 +24,23 @@ template <class M>
 concept HasNormal = requires { typename M::Normal; } && law::NormalLaw<typename M::Normal>;
 template <class M>
 concept HasFriction = requires { typename M::Friction; } && law::FrictionLaw<typename M::Friction>;
+/// A model whose fibres are bonded to solids says so: `using Solid = connection::BondedSolid<...>;`. May be left out too.
 template <class M>
-concept HasSolver = requires { typename M::Solver; } && solver::LinearSolver<typename M::Solver, assembly::ChainSystem<typename M::Beam>>;
+concept HasSolid = requires { typename M::Solid; } && core::Policy<typename M::Solid> && core::Active<typename M::Solid>;
+
+namespace detail {
+template <class M>
+struct SolidOf {
+    using Type = solid::NoSolid;
+};
+template <HasSolid M>
+struct SolidOf<M> {
+    using Type = typename M::Solid;
+};
+}  // namespace detail
+
+template <class M>
+concept HasSolver = requires { typename M::Solver; } && solver::LinearSolver<typename M::Solver, typename assembly::SystemOf<typename M::Beam, typename detail::SolidOf<M>::Type>::Type>;
 
 /// A model whose scenes have rigid tools says so: `using Tools = contact::RigidTools;`. It may be left out, as the next.
 template <class M>
@@ -68,6 +83,7 @@ struct ModelParameters {
     typename M::Normal::Parameters normal{};
     typename M::Friction::Parameters friction{};
     typename M::Solver::Parameters solver{};
+    [[no_unique_address]] typename detail::SolidOf<M>::Type::Parameters solid{};
     contact::ContactParameters contact{};
     solver::IterationParameters iteration{};
 };

@@ -4,7 +4,7 @@
 
 #include <fibrant/observe/observer.hpp>
 #include <fibrant/simulation/increment_file.hpp>
-#include <fibrant/simulation/loading.hpp>
+#include <fibrant/simulation/position.hpp>
 #include <fibrant/simulation/state_file.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 
@@ -24,14 +24,15 @@ public:
     using Beam = typename M::Beam;
     using Mesh = beam::Mesh<Beam>;
     using Contacts = typename detail::ContactsOf<M>::Type;
-    using Equilibrium = assembly::Equilibrium<Beam, Contacts, typename detail::ConnectionsOf<M>::Type>;
+    using Solid = typename detail::SolidOf<M>::Type;
+    using Equilibrium = assembly::Equilibrium<Beam, Contacts, typename detail::ConnectionsOf<M>::Type, Solid>;
 
     /// @throws std::invalid_argument naming the field that is wrong
     Simulator(const scene::Assembly& assembly, const ModelParameters<M>& parameters)
         : parameters_{checked(parameters)}, beam_{parameters.beam}, mesh_{assembly, beam_}, channels_{assembly},
           contacts_{assembly, mesh_, parameters.contact, typename M::Proximity(parameters.proximity),
                     typename M::Normal(parameters.normal), typename M::Friction(parameters.friction)},
-          equilibrium_{assembly, mesh_, beam_, contacts_, channels_}, linear_{parameters.solver},
+          equilibrium_{assembly, mesh_, beam_, contacts_, channels_, Solid(parameters.solid)}, linear_{parameters.solver},
           state_{mesh_.start_state()}, amplitudes_(channels_.names().size(), 0.0) {
         if (mesh_.fibre_count() == 0) core::refuse("assembly.fibres", "none", "at least one fibre");
         if constexpr (HasTools<M>) {
@@ -42,6 +43,8 @@ public:
         }
         if (const auto bodies = assembly.bodies().size() + assembly.cells().size(); !HasConnections<M> && bodies > 0)
             core::refuse("assembly.bodies", std::to_string(bodies), "none, for a model without a part Connections");
+        if constexpr (HasSolid<M>) state_ = equilibrium_.solid().with_rest(state_);
+        else if (!assembly.solids().empty()) core::refuse("assembly.solids", std::to_string(assembly.solids().size()), "none, for a model without a part Solid");
         radius_ = mesh_.fibre(0).section.radius();
         for (const beam::MeshFibre& fibre : mesh_.fibres()) radius_ = std::min(radius_, fibre.section.radius());
     }
@@ -61,7 +64,7 @@ public:
             stages.back().most_increments = std::max(loading.increments, stages.back().most_increments);
             for (const std::string& name : channels_.names()) stages.back().ramps.push_back({name, 1.0, false});
         }
-        check_ramps(stages);
+        check_ramps(stages, channels_, amplitudes_);
         Report report;
         position_ = {};
         position_.from = amplitudes_;
@@ -123,38 +126,33 @@ public:
     }
 
     /// The present state as plain data.
-    observe::Snapshot snapshot() const { return snapshot_of(mesh_, contacts_, state_); }
+    observe::Snapshot snapshot() const {
+        observe::Snapshot shot = snapshot_of(mesh_, contacts_, state_);
+        if constexpr (HasSolid<M>) add_solid(shot, equilibrium_.solid(), state_);
+        return shot;
+    }
+
+    /// Takes over contacts and what they remember from a run of the same fibres, whose state the assembly begins at. What is
+    /// stored at the start counts as work done before.
+    /// @throws std::invalid_argument if the fibres are not where that run left them
+    template <Model Other>
+    void go_on_from(const Simulator<Other>& other) {
+        const Vector& before = other.state();
+        if (before.size() > state_.size() || before != state_.head(before.size()))
+            core::refuse("Simulator.state", "another", "that of the run to go on from: use Assembly::begin_at");
+        contacts_.resume(other.contacts().accepted_memory().records(), other.contacts().accepted_zones());
+        contacts_work_ = energy_.contact = other.contacts().figures(before).work;
+        energy_.elastic = equilibrium_.elastic_energy(state_);
+        energy_.external = energy_.elastic + energy_.contact;
+    }
 
 private:
     static constexpr double least_damping = 1e-3;  ///< over that of the stage: below, none
-
-    /// Where a run stands between two increments.
-    struct Position {
-        Index stage = 0, in_stage = 0, accepted = 0, easy = 0;
-        double progress = 0.0, fraction = 1.0, displacement = 0.0;
-        double damping = 1.0;      ///< over that of the stage
-        double damping_floor = 0.0;  ///< that it does not fall below: what has failed is not tried again at once
-        bool stage_over = false;
-        std::vector<double> from;  ///< amplitudes at the start of the stage
-    };
 
     static const ModelParameters<M>& checked(const ModelParameters<M>& parameters) {
         parameters.contact.validate();
         parameters.iteration.validate();
         return parameters;
-    }
-
-    void check_ramps(const std::vector<Stage<M>>& stages) const {
-        std::vector<double> reached = amplitudes_;
-        for (const Stage<M>& stage : stages) {
-            const std::vector<double> from = reached;
-            for (const Ramp& ramp : stage.ramps) {
-                const std::size_t c = core::at(channels_.find(ramp.channel));
-                if (ramp.geometric && !(from[c] > 0.0 && ramp.to > 0.0))
-                    core::refuse("Ramp.to", core::text(ramp.to), "> 0, from an amplitude > 0, for a geometric ramp");
-                reached[c] = ramp.to;
-            }
-        }
     }
 
     void move_tools([[maybe_unused]] const std::vector<double>& amplitudes) {
@@ -275,6 +273,7 @@ private:
         if (position_.damping < least_damping) position_.damping = 0.0;
         position_.damping_floor *= 0.8;
         contacts_.accept(state_);
+        if constexpr (HasSolid<M>) energy_.released += accept_solid();
         increment.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         report.counts += increment.counts;
         report.increments.push_back(increment);
@@ -303,6 +302,15 @@ private:
         energy_.elastic = equilibrium_.elastic_energy(trial);
         if (forced) energy_.released += energy_.error() - error_before;  // a leap has no balance to check
         increment.energy = energy_;
+    }
+
+    /// Breaks bonds that have had too much. @returns the energy that they held
+    double accept_solid() {
+        if constexpr (HasSolid<M>) {
+            const double before = energy_.elastic;
+            if (equilibrium_.solid().accept(state_) > 0) return before - (energy_.elastic = equilibrium_.elastic_energy(state_));
+        }
+        return 0.0;
     }
 
     template <class Observer>
@@ -336,12 +344,10 @@ private:
         file.put(energy_), file.put(contacts_work_);
         put_memory(file, contacts_);
         for (const double amplitude : amplitudes_) file.put(amplitude);
-        file.put(position_.stage), file.put(position_.in_stage), file.put(position_.accepted), file.put(position_.easy);
-        file.put(position_.progress), file.put(position_.fraction), file.put(position_.displacement);
-        file.put(position_.damping), file.put(position_.damping_floor), file.put(position_.stage_over);
-        for (const double amplitude : position_.from) file.put(amplitude);
+        position_.each([&](const auto& value) { file.put(value); });
         if constexpr (HasTools<M>) contacts_.tools().each_accepted([&](const auto& value) { file.put(value); });
         if constexpr (HasConnections<M>) equilibrium_.ties().motion().each_accepted([&](const auto& value) { put_value(file, value); });
+        if constexpr (HasSolid<M>) put_solid(file, equilibrium_.solid());
         file.put(report.rejected_increments), file.put(report.counts), file.put(clock_.seconds());
         file.put(core::count(report.increments));
         for (const IncrementReport& increment : report.increments) {
@@ -368,11 +374,7 @@ private:
         CheckpointReader file(path);
         read_state(file, true, loading_identity(stages));
         for (double& amplitude : amplitudes_) amplitude = file.get<double>();
-        position_.stage = file.get<Index>(), position_.in_stage = file.get<Index>(), position_.accepted = file.get<Index>();
-        position_.easy = file.get<Index>(), position_.progress = file.get<double>(), position_.fraction = file.get<double>();
-        position_.displacement = file.get<double>();
-        position_.damping = file.get<double>(), position_.damping_floor = file.get<double>(), position_.stage_over = file.get<bool>();
-        for (double& amplitude : position_.from) amplitude = file.get<double>();
+        position_.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
         move_tools(amplitudes_);
         if constexpr (HasTools<M>) {
             contacts_.tools().resume([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
@@ -381,6 +383,7 @@ private:
             equilibrium_.ties().motion().each_accepted([&](auto& value) { get_value(file, value); });
             equilibrium_.ties().motion().restore();
         }
+        if constexpr (HasSolid<M>) get_solid(file, equilibrium_.solid());
         report.rejected_increments = file.get<Index>(), report.counts = file.get<solver::IterationCounts>();
         clock_.seconds() = file.get<std::array<double, core::part_count>>();
         report.increments.resize(core::at(file.get<Index>()));

@@ -60,4 +60,21 @@ observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const contact::Conta
     return shot;
 }
 
+/// Solids and bonds as plain data.
+template <class Solid>
+void add_solid(observe::Snapshot& shot, const Solid& solid, const Vector& state) {
+    observe::SolidSnapshot& out = shot.solid;
+    for (Index n = 0; n < solid.nodes(); ++n) {
+        out.position.push_back(state.segment<3>(3 * (solid.first_vector() + n)));
+        out.displacement.push_back(out.position.back() - solid.start(n));
+    }
+    for (Index c = 0; c < solid.cells(); ++c) {
+        out.cells.push_back(solid.cell(c));
+        const auto mean = solid.mean_state(state, c);
+        out.strain.push_back(mean.strain), out.stress.push_back(mean.stress);
+    }
+    for (std::size_t b = 0; b < solid.bonds().size(); ++b)
+        out.bonds.push_back({state.segment<3>(3 * solid.bonds()[b].vector), solid.holds(b) ? solid.bond_force(state, b) : Vec3(Vec3::Zero()), solid.holds(b)});
+}
+
 }  // namespace fibrant::simulation

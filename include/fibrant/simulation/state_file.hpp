@@ -78,6 +78,25 @@ void get_memory(CheckpointReader& file, Contacts& contacts) {
     contacts.resume(std::move(records), std::move(zones));
 }
 
+/// Which solids they are, and which of their bonds are broken.
+template <class Solid>
+void put_solid(CheckpointWriter& file, const Solid& solid) {
+    CheckpointWriter rest;
+    rest.put(solid.with_rest(Vector()));
+    file.put(rest.identity());
+    for (const bool broken : solid.broken()) file.put(broken);
+}
+/// @throws std::runtime_error if the file has other solids
+template <class Solid>
+void get_solid(CheckpointReader& file, Solid& solid) {
+    CheckpointWriter rest;
+    rest.put(solid.with_rest(Vector()));
+    file.expect(file.get<std::uint64_t>() == rest.identity(), "the set of solids");
+    std::vector<bool> broken(solid.broken().size());
+    for (std::size_t b = 0; b < broken.size(); ++b) broken[b] = file.get<bool>();
+    solid.set_broken(std::move(broken));
+}
+
 /// Small fixed matrices, number by number.
 template <class Fixed>
 void put_value(CheckpointWriter& file, const Fixed& value) {

@@ -77,6 +77,13 @@ public:
         return conjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.vectors, x, renewed);
     }
 
+    /// z = M^-1 r with the coarser space, for strategies that have more parts than this.
+    template <assembly::LinearSystem System>
+    void precondition(const System& system, const Vector& r, Vector& z) {
+        work_->factors.apply(system.layout(), r, z);
+        work_->coarse.add_correction(system.layout(), r, z);
+    }
+
     /// Clusters of the last analysis.
     Index clusters() const { return work_->coarse.clusters(); }
     /// Unknowns of the coarse space.

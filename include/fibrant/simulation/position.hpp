@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Where a run stands in its loading.
+
+#include <fibrant/connection/channels.hpp>
+#include <fibrant/simulation/loading.hpp>
+
+#include <vector>
+
+namespace fibrant::simulation {
+
+/// Where a run stands between two increments.
+struct Position {
+    Index stage = 0, in_stage = 0, accepted = 0, easy = 0;
+    double progress = 0.0, fraction = 1.0, displacement = 0.0;
+    double damping = 1.0;        ///< over that of the stage
+    double damping_floor = 0.0;  ///< that it does not fall below: what has failed is not tried again at once
+    bool stage_over = false;
+    std::vector<double> from;    ///< amplitudes at the start of the stage
+
+    template <class Body>
+    void each(const Body& body) { each_of(*this, body); }
+    template <class Body>
+    void each(const Body& body) const { each_of(*this, body); }
+
+private:
+    template <class Self, class Body>
+    static void each_of(Self& self, const Body& body) {
+        body(self.stage), body(self.in_stage), body(self.accepted), body(self.easy);
+        body(self.progress), body(self.fraction), body(self.displacement);
+        body(self.damping), body(self.damping_floor), body(self.stage_over);
+        for (auto& amplitude : self.from) body(amplitude);
+    }
+};
+
+/// Throws std::invalid_argument unless the ramps of all stages are of channels, and geometric ones between numbers > 0.
+template <Model M>
+void check_ramps(const std::vector<Stage<M>>& stages, const connection::Channels& channels, const std::vector<double>& amplitudes) {
+    std::vector<double> reached = amplitudes;
+    for (const Stage<M>& stage : stages) {
+        const std::vector<double> from = reached;
+        for (const Ramp& ramp : stage.ramps) {
+            const std::size_t c = core::at(channels.find(ramp.channel));
+            if (ramp.geometric && !(from[c] > 0.0 && ramp.to > 0.0))
+                core::refuse("Ramp.to", core::text(ramp.to), "> 0, from an amplitude > 0, for a geometric ramp");
+            reached[c] = ramp.to;
+        }
+    }
+}
+
+}  // namespace fibrant::simulation
