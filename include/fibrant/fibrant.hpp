@@ -110,7 +110,8 @@
 #include <fibrant/simulation/support_wrench.hpp>
 
 #include <fibrant/compositions/knot/overhand_knot.hpp>
-
+#include <fibrant/compositions/mat/compaction.hpp>
+#include <fibrant/compositions/mat/random_mat.hpp>
 #include <fibrant/compositions/strand/bending.hpp>
 #include <fibrant/compositions/strand/strand.hpp>
 #include <fibrant/compositions/strand/strand_parameters.hpp>
