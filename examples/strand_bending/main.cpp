@@ -18,12 +18,12 @@ struct Strand {
     using Proximity = proximity::GridSearch;
     using Normal = law::RegularisedPenalty;
     using Friction = law::RegularisedCoulomb;
-    using Solver = solver::DoubleBlockCholesky;
+    using Solver = solver::FloatBlockCholesky;
 };
 
 bool solve(example::TomlReader& file, const example::Output& output) {
     Index wires = 7, elements = 20, increments = 30;
-    double radius = core::unset, lay = core::unset, length = core::unset, angle = 90.0, mu = 0.1, depth = 0.01, reversible = 0.02;
+    double radius = core::unset, lay = core::unset, length = core::unset, angle = 90.0, mu = 0.1, depth = 0.02, reversible = 0.1;
     double young_modulus = core::unset, poisson_ratio = core::unset;
     bool alternate = true;
     file.require("strand", "wires", wires);
@@ -44,9 +44,10 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     parameters.length = length, parameters.elements = elements, parameters.material = {young_modulus, poisson_ratio};
 
     simulation::ModelParameters<Strand> model;
-    model.normal.regularisation_depth = 0.1 * depth * radius;
+    model.normal.regularisation_depth = 0.5 * depth * radius;
     model.friction = {.friction_coefficient = mu, .reversible_displacement = reversible * radius};
     model.contact.stiffness.allowed_penetration = depth * radius;
+    model.iteration.newton_limit = 30;
     model.iteration.margin = 4.0, model.iteration.largest_margin = 8.0;  // ends swing far
     simulation::Simulator<Strand> simulator(strand::bent_strand(parameters), model);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// An overhand knot in a straight, frictionless rod, against the theory of loose knots (overhand_knot.json): the pull F and the
-// length e that the knot takes up obey F e^2 / (E I) = 2 pi^2, but for terms of the order of (r / R)^1/2.
+// An overhand knot in a straight rod, against the theory of loose knots (overhand_knot.json) with its next term: F R^2 / (E I) =
+// 1/2 + (3 sigma / pi) (r / R)^1/2, R the length that the knot takes up over 2 pi; and what friction adds to the pull.
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/compositions/knot/overhand_knot.hpp>
-#include <fibrant/law/frictionless.hpp>
+#include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
@@ -20,11 +20,11 @@ namespace knot = compositions::knot;
 
 namespace {
 
-struct Frictionless {
+struct Knotted {
     using Beam = beam::DirectorBeam<3>;
     using Proximity = proximity::GridSearch;
     using Normal = law::RegularisedPenalty;
-    using Friction = law::Frictionless;
+    using Friction = law::RegularisedCoulomb;
     using Solver = solver::SparseCholesky;
 };
 const double r = 0.0201;
@@ -34,9 +34,10 @@ knot::KnotParameters tied(double slenderness, Index elements, int crossings = 3)
     return {.radius = r, .loop_radius = R, .tail = 3.0 * R, .crossings = crossings, .material = {7300.0, 0.3}, .elements = elements};
 }
 
-simulation::ModelParameters<Frictionless> model(const knot::KnotParameters& parameters) {
-    simulation::ModelParameters<Frictionless> all;
+simulation::ModelParameters<Knotted> model(const knot::KnotParameters& parameters) {
+    simulation::ModelParameters<Knotted> all;
     all.normal = {.regularisation_depth = 1e-3 * r};
+    all.friction = {.friction_coefficient = 0.0, .reversible_displacement = 0.02 * r};  // none, but where a stage sets it
     all.contact.stiffness.allowed_penetration = 1e-2 * r;
     all.contact.stiffness.initial_fraction = knot::initial_stiffness_fraction(parameters);
     all.contact.stiffness.floor_fraction = 1e-6;
@@ -46,18 +47,36 @@ simulation::ModelParameters<Frictionless> model(const knot::KnotParameters& para
 }
 
 /// A spring of about a hundredth of the loop's own stiffness in all, taken away as it comes to rest.
-simulation::Loading<Frictionless> settling(const knot::KnotParameters& parameters) {
-    simulation::Stage<Frictionless> stage;
+simulation::Loading<Knotted> settling(const knot::KnotParameters& parameters) {
+    simulation::Stage<Knotted> stage;
     stage.name = "settle";
     stage.increments = 2;
     stage.damping = 10.0 * 0.25 * 7300.0 * std::numbers::pi * r * r * r * r / std::pow(parameters.loop_radius, 3) / static_cast<double>(parameters.elements);
     stage.damping_decay = 0.5, stage.damping_share = 1e-3;
     stage.until = simulation::until_settled(0.05 * r, 0.02 * r);
     stage.most_increments = 80;
-    simulation::Loading<Frictionless> loading;
+    simulation::Loading<Knotted> loading;
     loading.stages = {stage};
     return loading;
 }
+
+struct Knot {
+    knot::KnotParameters parameters;
+    simulation::Simulator<Knotted> simulator;
+    explicit Knot(const knot::KnotParameters& p) : parameters{p}, simulator{knot::tied_rod(p), model(p)} {}
+    knot::KnotState run(const simulation::Loading<Knotted>& loading) {
+        const simulation::Report report = simulator.run(loading);
+        REQUIRE_MESSAGE(report.converged, report.reason);
+        CHECK(report.contact.active > 10);  // or it has come undone
+        CHECK(report.contact.greatest_penetration < 0.02 * r);
+        const knot::KnotState state = knot::measure(simulator, parameters);
+        const double bending = 0.25 * 7300.0 * std::numbers::pi * r * r * r * r, R = state.shortening / (2.0 * std::numbers::pi);
+        std::printf("r/R %.5f: F R^2 / EI %.5f (theory %.5f), contact force %.4f (0.4923 in the limit), virial %.1e, imbalance %.1e, %td contacts, %td increments, %.1f s\n", r / R,
+                    state.force * R * R / bending, knot::loose_force(3, r / R), state.contact_force * std::sqrt(r) * std::pow(R, 1.5) / bending, state.virial, state.imbalance, report.contact.active,
+                    core::count(report.increments), report.wall_seconds);
+        return state;
+    }
+};
 
 }  // namespace
 
@@ -77,29 +96,48 @@ TEST_CASE("a rod is tied without being stretched, and nothing of it is nearer th
     CHECK(test::refusal([&] { parameters.validate(); }).find("KnotParameters.loop_radius = 0.201, but it must be > 20 radii") == 0);
 }
 
-TEST_CASE("the pull of a loose overhand knot goes to that of the theory as the rod gets thinner") {
-    double last_error = 0.0, last_root = 0.0;
+TEST_CASE("a loose overhand knot pulls and presses as the theory says, the better the thinner the rod") {
+    double last_error = 0.0, last_sigma = 0.0, last_root = 0.0;
     for (const double slenderness : {0.01, 0.005}) {
-        const knot::KnotParameters parameters = tied(slenderness, slenderness > 0.007 ? 240 : 320);
-        simulation::Simulator<Frictionless> simulator(knot::tied_rod(parameters), model(parameters));
-        const simulation::Report report = simulator.run(settling(parameters));
-        REQUIRE_MESSAGE(report.converged, report.reason);
-        const knot::KnotState state = knot::measure(simulator, parameters);
-        const double bending = 0.25 * 7300.0 * std::numbers::pi * r * r * r * r, R = state.shortening / (2.0 * std::numbers::pi);
-        const double error = 2.0 * state.force * R * R / bending - 1.0, root = std::sqrt(r / R);
-        std::printf("r/R %.5f: F R^2 / EI %.5f, %+.1f %%, contact force %.4f (0.4923 in the limit), imbalance %.1e, %td contacts, %td increments, %.1f s\n", r / R,
-                    0.5 * (1.0 + error), 100.0 * error, state.contact_force * std::sqrt(r) * std::pow(R, 1.5) / bending, state.imbalance, report.contact.active,
-                    core::count(report.increments), report.wall_seconds);
-        CHECK(report.contact.active > 10);  // or it has come undone
-        CHECK(report.contact.greatest_penetration < 0.02 * r);
-        CHECK(state.imbalance < 5e-3);  // exact, at whatever r / R, but for the rest of the damping and curvature by differences
-        CHECK(std::abs(error) < 1.4 * root);
+        Knot tied_knot(tied(slenderness, slenderness > 0.007 ? 240 : 320));
+        const knot::KnotState state = tied_knot.run(settling(tied_knot.parameters));
+        const double bending = 0.25 * 7300.0 * std::numbers::pi * r * r * r * r, R = state.shortening / (2.0 * std::numbers::pi), root = std::sqrt(r / R);
+        // What is left is of the order of (r / R): 2.4 of it at either radius. The knot is not known any better in closed form.
+        const double error = state.force * R * R / bending / knot::loose_force(3, r / R) - 1.0;
+        CHECK(std::abs(error) < 3.0 * r / R);
+        // Exact, at whatever r / R, but for damping that is left, flattened sections, and curvature by differences.
+        CHECK(std::abs(state.virial) < 3e-3);
+        CHECK(state.imbalance < 5e-3);
+        // Contact forces have the next term in the root, too: a line through both knots meets the theory where the root is 0.
+        const double sigma = state.contact_force * std::sqrt(r) * std::pow(R, 1.5) / bending;
         if (last_root > 0.0) {
-            const double limit = error - (last_error - error) / (last_root - root) * root;
-            std::printf("in the limit %+.1f %%\n", 100.0 * limit);
-            CHECK(std::abs(error) < 0.75 * std::abs(last_error));  // as the root, or faster
-            CHECK(std::abs(limit) < 0.05);
+            const double limit = sigma - (last_sigma - sigma) / (last_root - root) * root;
+            std::printf("contact force in the limit %.4f\n", limit);
+            CHECK(std::abs(limit / 0.4923009124 - 1.0) < 0.1);  // what is of the second order in the root bends that line
+            CHECK(std::abs(error) < 0.6 * std::abs(last_error));  // with r / R, or faster
         }
-        last_error = error, last_root = root;
+        last_error = error, last_sigma = sigma, last_root = root;
     }
+}
+
+TEST_CASE("friction adds mu times the contact force to the pull that tightens a knot, and takes it off the one that loosens it") {
+    Knot rough(tied(0.01, 240));
+    const knot::KnotState smooth = rough.run(settling(rough.parameters));
+    const double mu = 0.05;
+    const auto drawn = [&](double to, Index increments) {
+        simulation::Stage<Knotted> stage;
+        stage.friction.emplace(law::RegularisedCoulomb::Parameters{mu, 0.02 * r});
+        stage.ramps = {{knot::draw, to}}, stage.increments = increments, stage.most_increments = 60;
+        stage.damping = 1e-3 * settling(rough.parameters).stages[0].damping;
+        simulation::Loading<Knotted> loading;
+        loading.stages = {stage};
+        return rough.run(loading);
+    };
+    // Every contact has to slide, which the loop's own give delays by about a radius; the knot hardly changes by that.
+    const knot::KnotState tight = drawn(1.0 * r, 10), loosened = drawn(-1.0 * r, 16);
+    const double added = 0.5 * (tight.force - loosened.force), expected = 0.5 * mu * (tight.contact_force + loosened.contact_force);
+    std::printf("friction: pull %.6f, %.6f, %.6f; half of the difference over mu P %.4f\n", loosened.force, smooth.force, tight.force, added / expected);
+    // Strands slide along each other by what is drawn out, less what goes into the braid's turning: of the order of (r / R)^1/2 mu.
+    CHECK(std::abs(added / expected - 1.0) < 0.03);
+    CHECK(std::abs(0.5 * (tight.force + loosened.force) / smooth.force - 1.0) < 0.06);  // friction moves the contacts a little
 }

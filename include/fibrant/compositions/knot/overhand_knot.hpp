@@ -116,11 +116,27 @@ inline double initial_stiffness_fraction(const KnotParameters& parameters) {
     return force / (0.02 * r) / contact::section_stiffness(parameters.material, 0.5 * element);
 }
 
+/// F R^2 / (E I) of a loose knot, R its shortening over 2 pi: (1/2) + (3 sigma / pi) (r / R)^1/2, within terms of the order of r / R.
+///
+/// The first term is the circle's (Audoly, Clauvelin, Neukirch 2007), whose contact forces add up to sigma E I / (r^1/2 R^3/2). The second
+/// follows from them: contacts are 2 r apart, so the energy W(e, r) of a knot without friction grows by 2 P with r, P the sum of the
+/// contact forces; hence W = pi E I / R + 4 sigma E I r^1/2 / R^3/2, and F = -dW/de at e = 2 pi R.
+/// @param crossings  3 or 5, for which sigma is known
+inline double loose_force(int crossings, double r_over_R) {
+    if (crossings != 3 && crossings != 5) core::refuse("loose_force.crossings", std::to_string(crossings), "3 or 5");
+    const double sigma = crossings == 3 ? 0.4923009124 : 1.466842245;
+    return 0.5 + 3.0 * sigma / std::numbers::pi * std::sqrt(r_over_R);
+}
+
 /// A knot as it is.
 struct KnotState {
     double force = 0.0;          ///< in the tails [force]
     double shortening = 0.0;     ///< length that the knot takes up, 2 pi times the radius of a loose loop [length]
-    double contact_force = 0.0;  ///< sum over all contacts [force]
+    double contact_force = 0.0;  ///< P, sum over all contacts [force]
+    double energy = 0.0;         ///< W of the rod [force * length]
+    /// (W + 2 r P) / (F e) - 1, e the shortening: 0 for any inextensible rod without friction, loose or tight, since W(e, r) is E I / e
+    /// times a function of r / e [1].
+    double virial = 0.0;
     /// How far the upper part of the loop, two fifths of it, is from (force along the rod) + E I curvature^2 / 2 = force in the tails, which holds
     /// exactly for an inextensible rod without friction, over that force [1].
     double imbalance = 0.0;
@@ -134,6 +150,8 @@ KnotState measure(const simulation::Simulator<M>& simulator, const KnotParameter
     state.force = simulator.reaction(scene::last_end(0)).x();
     state.shortening = mesh.fibre(0).length() - (simulator.value(scene::last_end(0)) - simulator.value(scene::first_end(0))).x();
     for (const contact::ContactResponse& response : simulator.contacts().responses()) state.contact_force += response.reaction;
+    state.energy = simulator.equilibrium().elastic_energy(now);
+    state.virial = (state.energy + 2.0 * parameters.radius * state.contact_force) / (state.force * state.shortening) - 1.0;
     // The top of the loop is half way along the rod.
     const double h = mesh.fibre(0).element_length, middle = 0.5 * static_cast<double>(parameters.elements);
     const double reach = 0.2 * state.shortening / h;

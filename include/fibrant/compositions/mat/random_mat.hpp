@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Random fibres in a box, straight or bent, apart from each other: as a user describes them, and where they lie.
+
+#include <fibrant/core/parameters.hpp>
+#include <fibrant/core/types.hpp>
+#include <fibrant/proximity/segment_distance.hpp>
+#include <fibrant/scene/elastic_material.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace fibrant::compositions::mat {
+
+/// Uniform numbers of a counter (splitmix64): the same on every machine, and nothing but its seed.
+class Draws {
+public:
+    explicit Draws(std::uint64_t seed) : state_{mixed(seed + 0x9E3779B97F4A7C15ull)} {}
+    double operator()(double low, double high) {
+        state_ += 0x9E3779B97F4A7C15ull;
+        return low + (high - low) * static_cast<double>(mixed(state_) >> 11) * 0x1p-53;
+    }
+
+private:
+    static std::uint64_t mixed(std::uint64_t z) noexcept {
+        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull, z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+        return z ^ (z >> 31);
+    }
+    std::uint64_t state_;
+};
+
+/// Fibres in a box of width x width x height whose corner is the origin; all of each fibre is inside.
+struct MatParameters {
+    double radius = core::unset;  ///< of a fibre [length], > 0
+    double length = core::unset;  ///< of a fibre [length], > 0
+    double width = core::unset;   ///< of the box along x and y [length], > 0
+    double height = core::unset;  ///< of the box along z [length], > 0
+    Index fibres = 0;             ///< >= 1
+    double bend_deg = 0.0;        ///< by which each fibre turns from one end to the other, a circle's arc at rest [degree], in [0, 180]
+    double tilt_deg = 90.0;       ///< greatest angle to the plane of x and y; 90: all directions alike [degree], in [0, 90]
+    double clearance = 0.02;      ///< least gap between two fibres [radius]; -2 or less: they may lie in each other
+    scene::ElasticMaterial material{};
+    Index elements = 8;           ///< along each fibre
+    std::uint64_t seed = 1;
+    Index draws = 2'000'000;      ///< of fibres in all, after which a box counts as full, >= fibres
+
+    double diameter() const noexcept { return 2.0 * radius; }
+    /// Part of the box that is fibre, at a height [1].
+    double volume_fraction(double at_height) const noexcept {
+        return static_cast<double>(fibres) * std::numbers::pi * radius * radius * length / (width * width * at_height);
+    }
+    void validate() const {
+        core::require_positive("MatParameters.radius", radius);
+        core::require_positive("MatParameters.length", length);
+        core::require_positive("MatParameters.width", width);
+        core::require_positive("MatParameters.height", height);
+        core::require_at_least("MatParameters.fibres", fibres, 1);
+        core::require_between("MatParameters.bend_deg", bend_deg, 0.0, 180.0);
+        core::require_between("MatParameters.tilt_deg", tilt_deg, 0.0, 90.0);
+        core::require_finite("MatParameters.clearance", clearance);
+        core::require_at_least("MatParameters.elements", elements, 1);
+        core::require_at_least("MatParameters.draws", draws, fibres);
+        core::require(2.0 * radius < height && 2.0 * radius < width, "MatParameters.radius", radius, "< half of height and width");
+        material.validate();
+    }
+};
+
+/// Centreline of one fibre: an arc, or a straight line.
+struct MatFibre {
+    Vec3 middle = Vec3::Zero();
+    Vec3 along = Vec3::UnitX(), side = Vec3::UnitY();  ///< unit, at the middle; it bends to `side`
+    double length = 0.0, turn = 0.0;                   ///< [length], [radian]
+    /// @param t  in [0, 1]
+    Vec3 operator()(double t) const {
+        const double s = (t - 0.5) * length;
+        if (turn < 1e-9) return middle + s * along;
+        const double R = length / turn, angle = s / R;
+        return middle + R * std::sin(angle) * along + R * (1.0 - std::cos(angle)) * side;
+    }
+};
+
+/// A fibre of any place in the box, and of any direction within the tilt: equal parts of the sphere are equally likely.
+inline MatFibre drawn_fibre(const MatParameters& parameters, Draws& draw) {
+    MatFibre fibre;
+    const double x = draw(0.0, parameters.width), y = draw(0.0, parameters.width), z = draw(0.0, parameters.height);
+    fibre.middle = {x, y, z};
+    const double up = std::sin(parameters.tilt_deg * std::numbers::pi / 180.0), sine = draw(-up, up), azimuth = draw(0.0, 2.0 * std::numbers::pi);
+    const double cosine = std::sqrt(std::max(0.0, 1.0 - sine * sine));
+    fibre.along = {cosine * std::cos(azimuth), cosine * std::sin(azimuth), sine};
+    // Bends as little out of the plane as its direction does.
+    const Vec3 flat(-std::sin(azimuth), std::cos(azimuth), 0.0), other = fibre.along.cross(flat);
+    const double roll = draw(0.0, 2.0 * std::numbers::pi);
+    const Vec3 side = std::cos(roll) * flat + up * std::sin(roll) * other;
+    fibre.side = side.norm() > 1e-9 ? Vec3(side.normalized()) : flat;
+    fibre.length = parameters.length, fibre.turn = parameters.bend_deg * std::numbers::pi / 180.0;
+    return fibre;
+}
+
+namespace detail {
+
+/// Pieces of fibres by the cells of a grid that their middles are in.
+class PieceGrid {
+public:
+    PieceGrid(const MatParameters& p, double reach) : reach_{reach}, piece_{std::min(p.length, std::max(4.0 * p.radius, p.length / 64.0))} {
+        cell_ = reach_ + piece_;
+        across_ = static_cast<Index>(p.width / cell_) + 1, up_ = static_cast<Index>(p.height / cell_) + 1;
+        cells_.resize(core::at(across_ * across_ * up_));
+    }
+    std::vector<Vec3> pieces(const MatFibre& fibre) const {
+        const auto n = static_cast<Index>(std::ceil(fibre.length / piece_));
+        std::vector<Vec3> points;
+        for (Index k = 0; k <= n; ++k) points.push_back(fibre(static_cast<double>(k) / static_cast<double>(n)));
+        return points;
+    }
+    bool free(const std::vector<Vec3>& points) const {
+        for (std::size_t k = 1; k < points.size(); ++k) {
+            const Vec3 middle = 0.5 * (points[k - 1] + points[k]);
+            const Index a = index(middle.x(), across_), b = index(middle.y(), across_), c = index(middle.z(), up_);
+            for (Index i = std::max<Index>(a - 1, 0); i <= std::min(a + 1, across_ - 1); ++i)
+                for (Index j = std::max<Index>(b - 1, 0); j <= std::min(b + 1, across_ - 1); ++j)
+                    for (Index l = std::max<Index>(c - 1, 0); l <= std::min(c + 1, up_ - 1); ++l)
+                        for (const Piece& piece : cells_[core::at((l * across_ + j) * across_ + i)])
+                            if (proximity::segment_distance(points[k - 1], points[k] - points[k - 1], piece.from, piece.to - piece.from).squared < reach_ * reach_) return false;
+        }
+        return true;
+    }
+    void add(const std::vector<Vec3>& points) {
+        for (std::size_t k = 1; k < points.size(); ++k) {
+            const Vec3 middle = 0.5 * (points[k - 1] + points[k]);
+            const Index cell = (index(middle.z(), up_) * across_ + index(middle.y(), across_)) * across_ + index(middle.x(), across_);
+            cells_[core::at(cell)].push_back({points[k - 1], points[k]});
+        }
+    }
+
+private:
+    struct Piece {
+        Vec3 from, to;
+    };
+    Index index(double x, Index count) const { return std::clamp<Index>(static_cast<Index>(x / cell_), 0, count - 1); }
+    double reach_, piece_, cell_ = 0.0;
+    Index across_ = 1, up_ = 1;
+    std::vector<std::vector<Piece>> cells_;
+};
+
+}  // namespace detail
+
+/// Fibres one by one (random sequential addition): one that leaves the box or is too close to an earlier one is drawn anew.
+/// @throws std::invalid_argument if the box is full before all have found a place
+inline std::vector<MatFibre> random_fibres(const MatParameters& parameters) {
+    parameters.validate();
+    Draws draw(parameters.seed);
+    std::vector<MatFibre> fibres;
+    const double reach = (2.0 + parameters.clearance) * parameters.radius, r = parameters.radius;
+    detail::PieceGrid grid(parameters, std::max(reach, 0.0));
+    for (Index tries = 0; core::count(fibres) < parameters.fibres; ++tries) {
+        if (tries >= parameters.draws)
+            core::refuse("MatParameters.fibres", std::to_string(parameters.fibres), "at most " + std::to_string(fibres.size()) + ", which are all that " + std::to_string(tries) + " draws found a place for");
+        const MatFibre fibre = drawn_fibre(parameters, draw);
+        const std::vector<Vec3> points = grid.pieces(fibre);
+        const bool inside = std::all_of(points.begin(), points.end(), [&](const Vec3& x) {
+            return x.minCoeff() >= r && x.head<2>().maxCoeff() <= parameters.width - r && x.z() <= parameters.height - r;
+        });
+        if (!inside || (reach > 0.0 && !grid.free(points))) continue;
+        grid.add(points);
+        fibres.push_back(fibre);
+    }
+    return fibres;
+}
+
+/// Expected number of pairs, among n straight fibres without bulk, that are nearer than `distance` in a periodic box (Onsager's
+/// excluded volume): n (n - 1) / 2 (2 L^2 d <sin> + 2 pi L d^2 + 4 pi d^3 / 3) / V.
+/// @param sine  mean of |sin| of the angle of two fibres: pi / 4 if all directions are alike, 2 / pi in a plane
+inline double expected_pairs(double n, double length, double distance, double sine, double volume) {
+    const double excluded = 2.0 * length * length * distance * sine + 2.0 * std::numbers::pi * length * distance * distance +
+                            4.0 / 3.0 * std::numbers::pi * distance * distance * distance;
+    return 0.5 * n * (n - 1.0) * excluded / volume;
+}
+
+}  // namespace fibrant::compositions::mat
