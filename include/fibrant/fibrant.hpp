@@ -130,7 +130,6 @@
 #include <fibrant/compositions/composite/composite_parameters.hpp>
 
 #include <fibrant/compositions/knot/overhand_knot.hpp>
-#include <fibrant/compositions/mat/compaction.hpp>
 #include <fibrant/compositions/mat/random_mat.hpp>
 #include <fibrant/compositions/strand/bending.hpp>
 #include <fibrant/compositions/strand/strand.hpp>

@@ -88,7 +88,9 @@ inline SmallScene reversed(SmallScene scene) {
 struct SmallResult {
     simulation::Report report;
     std::vector<std::vector<Vec3>> centreline;  ///< of each fibre, at eighths of its elements [length]
+    std::vector<std::vector<std::pair<Vec3, Vec3>>> directors;  ///< at the same places
     std::vector<Vec3> support;                  ///< what holds each fibre at its two ends [force]
+    double reactions = 0.0;                     ///< sum of the sizes of all reactions at ends [force]
     Vector state;
     bool finite() const { return state.allFinite(); }
 };
@@ -144,27 +146,38 @@ inline SmallResult run(const SmallScene& small) {
     result.state = simulator.state();
     for (Index f = 0; f < core::count(small.fibres); ++f) {
         std::vector<Vec3> line;
-        for (Index k = 0; k <= 8 * simulator.mesh().fibre(f).elements; ++k) line.push_back(simulator.mesh().position(simulator.state(), f, 0.125 * static_cast<double>(k)));
-        result.centreline.push_back(line);
+        std::vector<std::pair<Vec3, Vec3>> directors;
+        for (Index k = 0; k <= 8 * simulator.mesh().fibre(f).elements; ++k) {
+            line.push_back(simulator.mesh().position(simulator.state(), f, 0.125 * static_cast<double>(k)));
+            directors.push_back(simulator.mesh().directors(simulator.state(), f, 0.125 * static_cast<double>(k)));
+        }
+        result.centreline.push_back(line), result.directors.push_back(directors);
+        result.reactions += simulator.reaction(scene::first_end(f)).norm() + simulator.reaction(scene::last_end(f)).norm();
         result.support.push_back(simulator.reaction(scene::first_end(f)) + simulator.reaction(scene::last_end(f)));
     }
     return result;
 }
 
-/// Distance of two segments, by the closed form for lines and the four ends.
-inline double distance_of_segments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    const auto to_segment = [](const Vec3& p, const Vec3& q, const Vec3& x) {
-        const Vec3 e = q - p;
-        const double s = std::clamp((x - p).dot(e) / std::max(e.squaredNorm(), 1e-300), 0.0, 1.0);
-        return (p + s * e - x).norm();
-    };
-    double least = std::min({to_segment(c, d, a), to_segment(c, d, b), to_segment(a, b, c), to_segment(a, b, d)});
+/// Closest points of two segments, a + s (b - a) and c + t (d - c).
+struct ClosestPoints {
+    double distance = 1e300, s = 0.0, t = 0.0;
+};
+
+/// By the closed form for lines, and the four ends.
+inline ClosestPoints closest_points(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    ClosestPoints best;
     const Vec3 u = b - a, v = d - c, w = a - c, n = u.cross(v);
+    const auto see = [&](double s, double t) {
+        const double distance = (w + s * u - t * v).norm();
+        if (distance < best.distance) best = {distance, s, t};
+    };
+    const auto on = [](const Vec3& from, const Vec3& along, const Vec3& x) { return std::clamp((x - from).dot(along) / std::max(along.squaredNorm(), 1e-300), 0.0, 1.0); };
+    see(0.0, on(c, v, a)), see(1.0, on(c, v, b)), see(on(a, u, c), 0.0), see(on(a, u, d), 1.0);
     if (n.squaredNorm() > 1e-20 * u.squaredNorm() * v.squaredNorm()) {
         const double s = v.cross(w).dot(n) / n.squaredNorm(), t = u.cross(w).dot(n) / n.squaredNorm();
-        if (s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0) least = std::min(least, (a + s * u - c - t * v).norm());
+        if (s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0) see(s, t);
     }
-    return least;
+    return best;
 }
 
 /// Greatest depth of two fibres in each other, over the smaller radius, < 0 if all are apart; by brute force.
@@ -175,7 +188,7 @@ inline double deepest(const std::vector<std::vector<Vec3>>& lines, const std::ve
             double least = 1e300;
             for (std::size_t a = 1; a < lines[i].size(); ++a)
                 for (std::size_t b = 1; b < lines[j].size(); ++b)
-                    least = std::min(least, distance_of_segments(lines[i][a - 1], lines[i][a], lines[j][b - 1], lines[j][b]));
+                    least = std::min(least, closest_points(lines[i][a - 1], lines[i][a], lines[j][b - 1], lines[j][b]).distance);
             deepest = std::max(deepest, (radius[i] + radius[j] - least) / std::min(radius[i], radius[j]));
         }
     return deepest;
