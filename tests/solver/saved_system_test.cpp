@@ -36,6 +36,10 @@ TEST_CASE("a system that was written is read as the same system, whatever its ch
     const TemporaryFolder folder;
     for (const test::SyntheticSystem& system : test::solvable_systems()) {
         const Vector b = test::random_load(system.layout(), 1);
+        if (!system.layout().ties.empty()) {  // averages are no term of a file: said, and not left out
+            CHECK_THROWS_WITH(solver::write_system(folder.path / "a.bin", system, b), doctest::Contains("write_system.ties = 3"));
+            continue;
+        }
         solver::write_system(folder.path / "a.bin", system, b);
         const solver::SavedSystem read(folder.path / "a.bin");
         CHECK(read.right_hand_side() == b);
