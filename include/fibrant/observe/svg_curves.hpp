@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fibrant::observe {
@@ -32,60 +33,37 @@ inline std::string tick_text(double value, double step) {
     const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9);
     return rounded(std::abs(value) < 1e-9 * step ? 0.0 : value, digits);
 }
+/// An axis with round ends and steps over a range; it holds zero where that costs less than half of it.
+inline PlotAxis round_axis(double low, double high) {
+    const double range = high - low;
+    if (low > 0.0 && low < range) low = 0.0;
+    if (high < 0.0 && -high < range) high = 0.0;
+    if (!(high > low)) high = low + std::max(1e-12, std::abs(low)), low -= std::max(1e-12, std::abs(low));
+    const double step = round_step(high - low);
+    PlotAxis axis{step * std::floor(low / step + 1e-9), step * std::ceil(high / step - 1e-9), {}};
+    for (double k = std::round(axis.low / step); k * step <= axis.high + 0.01 * step; k += 1.0) axis.ticks.emplace_back(k * step, tick_text(k * step, step));
+    return axis;
+}
 }  // namespace detail
 
 /// The plot as a whole SVG file. Axes hold zero where that costs less than half of the range.
 /// @throws std::invalid_argument if no point can be shown
 inline std::string curves_svg(const CurvePlot& plot) {
     std::array<double, 2> low{1e300, 1e300}, high{-1e300, -1e300};
-    const auto shown = [](double x, double y) { return std::isfinite(x) && std::isfinite(y); };
-    for (const PlotLine& line : plot.lines)
+    std::vector<PlotLine> lines;
+    for (const PlotLine& line : plot.lines) {
+        lines.push_back({line.name, {}});
         for (const auto& [x, y] : line.points) {
-            if (!shown(x, y)) continue;
+            if (!(std::isfinite(x) && std::isfinite(y))) continue;
             low = {std::min(low[0], x), std::min(low[1], y)}, high = {std::max(high[0], x), std::max(high[1], y)};
+            lines.back().points.emplace_back(x, y);
         }
+    }
     if (low[0] > high[0]) core::refuse("CurvePlot.lines", "no point", "a point with finite numbers");
-    std::array<double, 2> step{};
-    for (std::size_t a = 0; a < 2; ++a) {
-        const double range = high[a] - low[a];
-        if (low[a] > 0.0 && low[a] < range) low[a] = 0.0;
-        if (high[a] < 0.0 && -high[a] < range) high[a] = 0.0;
-        if (!(high[a] > low[a])) high[a] = low[a] + std::max(1e-12, std::abs(low[a])), low[a] -= std::max(1e-12, std::abs(low[a]));
-        step[a] = detail::round_step(high[a] - low[a]);
-        low[a] = step[a] * std::floor(low[a] / step[a] + 1e-9), high[a] = step[a] * std::ceil(high[a] / step[a] - 1e-9);
-    }
-    const double left = 84.0, right = plot.width - (plot.lines.size() > 1 ? 190.0 : 30.0), top = 46.0, bottom = plot.height - 56.0;
-    const auto place = [&](double x, double y) {
-        return Eigen::Vector2d(left + (x - low[0]) / (high[0] - low[0]) * (right - left), bottom - (y - low[1]) / (high[1] - low[1]) * (bottom - top));
-    };
-    std::string body;
-    for (double k = std::round(low[0] / step[0]); k * step[0] <= high[0] + 0.01 * step[0]; k += 1.0) {
-        const double x = place(k * step[0], 0.0).x();
-        body += "<path class=\"g\" d=\"M" + rounded(x, 1) + " " + rounded(top, 1) + "V" + rounded(bottom, 1) + "\"/>\n" + detail::svg_text(x, bottom + 18.0, detail::tick_text(k * step[0], step[0]), " class=\"t\" text-anchor=\"middle\"");
-    }
-    for (double k = std::round(low[1] / step[1]); k * step[1] <= high[1] + 0.01 * step[1]; k += 1.0) {
-        const double y = place(0.0, k * step[1]).y();
-        body += "<path class=\"g\" d=\"M" + rounded(left, 1) + " " + rounded(y, 1) + "H" + rounded(right, 1) + "\"/>\n" + detail::svg_text(left - 6.0, y + 4.0, detail::tick_text(k * step[1], step[1]), " class=\"t\" text-anchor=\"end\"");
-    }
-    const Palette palette;
-    for (std::size_t l = 0; l < plot.lines.size(); ++l) {
-        const std::string colour = palette.of(0, static_cast<Index>(l)).text();
-        std::string path, marks;
-        for (const auto& [x, y] : plot.lines[l].points) {
-            if (!shown(x, y)) continue;
-            const Eigen::Vector2d p = place(x, y);
-            path += (path.empty() ? "M" : "L") + detail::point_text(p);
-            if (plot.marks) marks += "<circle cx=\"" + rounded(p.x(), 1) + "\" cy=\"" + rounded(p.y(), 1) + "\" r=\"2.5\" fill=\"" + colour + "\"/>\n";
-        }
-        if (path.empty()) continue;
-        body += "<path class=\"l\" d=\"" + path + "\" stroke=\"" + colour + "\"/>\n" + marks;
-        if (plot.lines.size() < 2) continue;
-        const double y = top + 10.0 + 20.0 * static_cast<double>(l);
-        body += "<path class=\"l\" d=\"M" + rounded(right + 12.0, 1) + " " + rounded(y - 5.0, 1) + "h18\" stroke=\"" + colour + "\"/>\n" + detail::svg_text(right + 36.0, y, plot.lines[l].name, " class=\"t\"");
-    }
-    body += detail::svg_text(0.5 * (left + right), plot.height - 14.0, plot.x_label, " class=\"t\" text-anchor=\"middle\"");
-    body += detail::svg_text(18.0, 0.5 * (top + bottom), plot.y_label, " class=\"t\" text-anchor=\"middle\" transform=\"rotate(-90 18 " + rounded(0.5 * (top + bottom), 1) + ")\"");
-    return detail::svg_page(plot.width, plot.height, ".t{font-size:13px}.g{stroke:#ddd}.l{fill:none;stroke-width:2}\n", body, plot.title);
+    const bool names = plot.lines.size() > 1;
+    return detail::plot_svg({plot.title, plot.x_label, plot.y_label, plot.width, plot.height, 84.0, names ? 190.0 : 30.0,
+                             detail::round_axis(low[0], high[0]), detail::round_axis(low[1], high[1]), std::move(lines),
+                             plot.marks ? 2.5 : 0.0, names});
 }
 
 }  // namespace fibrant::observe

@@ -5,6 +5,7 @@
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/observe/svg.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -19,7 +20,7 @@ struct PlotLine {
     std::vector<std::pair<double, double>> points;
 };
 
-/// What a plot shows.
+/// What a plot on logarithmic axes shows.
 struct LogLogPlot {
     std::string title, x_label, y_label;
     std::vector<PlotLine> lines;
@@ -38,51 +39,83 @@ inline double fitted_order(const std::vector<std::pair<double, double>>& points)
     return n >= 2.0 && spread > 0.0 ? (n * xy - x * y) / spread : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The plot as a whole SVG file. Axes go by decades, and are as wide as the points ask for.
-/// @throws std::invalid_argument if no point can be shown
-inline std::string log_log_svg(const LogLogPlot& plot) {
-    double low_x = 1e300, high_x = -1e300, low_y = 1e300, high_y = -1e300;
-    for (const PlotLine& line : plot.lines)
-        for (const auto& [x, y] : line.points) {
-            if (!(x > 0.0 && y > 0.0 && std::isfinite(x) && std::isfinite(y))) continue;
-            low_x = std::min(low_x, std::log10(x)), high_x = std::max(high_x, std::log10(x));
-            low_y = std::min(low_y, std::log10(y)), high_y = std::max(high_y, std::log10(y));
-        }
-    if (low_x > high_x) core::refuse("LogLogPlot.lines", "no point", "a point with both numbers > 0");
-    low_x = std::floor(low_x), high_x = std::max(std::ceil(high_x), low_x + 1.0);
-    low_y = std::floor(low_y), high_y = std::max(std::ceil(high_y), low_y + 1.0);
-    const double left = 78.0, right = plot.width - 170.0, top = 46.0, bottom = plot.height - 56.0;
-    const auto place = [&](double x, double y) {
-        return Eigen::Vector2d(left + (std::log10(x) - low_x) / (high_x - low_x) * (right - left), bottom - (std::log10(y) - low_y) / (high_y - low_y) * (bottom - top));
-    };
-    const auto power = [](double k) { return "1e" + rounded(k, 0); };
+namespace detail {
+
+/// An axis of a plot: its ends, and where it is marked with what.
+struct PlotAxis {
+    double low = 0.0, high = 1.0;
+    std::vector<std::pair<double, std::string>> ticks;
+    double share(double value) const noexcept { return (value - low) / (high - low); }
+};
+
+/// Lines between two axes that are there already; a plot of either kind is this once its numbers are those of its axes.
+struct PlotFrame {
+    std::string title, x_label, y_label;
+    double width, height, left, right_margin;  ///< [pixel]
+    PlotAxis x, y;
+    std::vector<PlotLine> lines;
+    double dot_radius;  ///< [pixel]; 0: no dots
+    bool names;         ///< of the lines, beside the plot
+};
+
+inline std::string plot_svg(const PlotFrame& plot) {
+    const double left = plot.left, right = plot.width - plot.right_margin, top = 46.0, bottom = plot.height - 56.0;
+    const auto place_x = [&](double x) { return left + plot.x.share(x) * (right - left); };
+    const auto place_y = [&](double y) { return bottom - plot.y.share(y) * (bottom - top); };
     std::string body;
-    for (double k = low_x; k <= high_x; k += 1.0) {
-        const double x = place(std::pow(10.0, k), 1.0).x();
-        body += "<path class=\"g\" d=\"M" + rounded(x, 1) + " " + rounded(top, 1) + "V" + rounded(bottom, 1) + "\"/>\n" + detail::svg_text(x, bottom + 18.0, power(k), " class=\"t\" text-anchor=\"middle\"");
+    for (const auto& [value, text] : plot.x.ticks) {
+        const double x = place_x(value);
+        body += "<path class=\"g\" d=\"M" + rounded(x, 1) + " " + rounded(top, 1) + "V" + rounded(bottom, 1) + "\"/>\n" + svg_text(x, bottom + 18.0, text, " class=\"t\" text-anchor=\"middle\"");
     }
-    for (double k = low_y; k <= high_y; k += 1.0) {
-        const double y = place(1.0, std::pow(10.0, k)).y();
-        body += "<path class=\"g\" d=\"M" + rounded(left, 1) + " " + rounded(y, 1) + "H" + rounded(right, 1) + "\"/>\n" + detail::svg_text(left - 6.0, y + 4.0, power(k), " class=\"t\" text-anchor=\"end\"");
+    for (const auto& [value, text] : plot.y.ticks) {
+        const double y = place_y(value);
+        body += "<path class=\"g\" d=\"M" + rounded(left, 1) + " " + rounded(y, 1) + "H" + rounded(right, 1) + "\"/>\n" + svg_text(left - 6.0, y + 4.0, text, " class=\"t\" text-anchor=\"end\"");
     }
     const Palette palette;
     for (std::size_t l = 0; l < plot.lines.size(); ++l) {
         const std::string colour = palette.of(0, static_cast<Index>(l)).text();
         std::string path, marks;
         for (const auto& [x, y] : plot.lines[l].points) {
-            if (!(x > 0.0 && y > 0.0 && std::isfinite(x) && std::isfinite(y))) continue;
-            const Eigen::Vector2d p = place(x, y);
-            path += (path.empty() ? "M" : "L") + detail::point_text(p);
-            marks += "<circle cx=\"" + rounded(p.x(), 1) + "\" cy=\"" + rounded(p.y(), 1) + "\" r=\"3.5\" fill=\"" + colour + "\"/>\n";
+            const Eigen::Vector2d p(place_x(x), place_y(y));
+            path += (path.empty() ? "M" : "L") + point_text(p);
+            if (plot.dot_radius > 0.0) marks += "<circle cx=\"" + rounded(p.x(), 1) + "\" cy=\"" + rounded(p.y(), 1) + "\" r=\"" + rounded(plot.dot_radius, 1) + "\" fill=\"" + colour + "\"/>\n";
         }
         if (path.empty()) continue;
         body += "<path class=\"l\" d=\"" + path + "\" stroke=\"" + colour + "\"/>\n" + marks;
+        if (!plot.names) continue;
         const double y = top + 10.0 + 20.0 * static_cast<double>(l);
-        body += "<path class=\"l\" d=\"M" + rounded(right + 12.0, 1) + " " + rounded(y - 5.0, 1) + "h18\" stroke=\"" + colour + "\"/>\n" + detail::svg_text(right + 36.0, y, plot.lines[l].name, " class=\"t\"");
+        body += "<path class=\"l\" d=\"M" + rounded(right + 12.0, 1) + " " + rounded(y - 5.0, 1) + "h18\" stroke=\"" + colour + "\"/>\n" + svg_text(right + 36.0, y, plot.lines[l].name, " class=\"t\"");
     }
-    body += detail::svg_text(0.5 * (left + right), plot.height - 14.0, plot.x_label, " class=\"t\" text-anchor=\"middle\"");
-    body += detail::svg_text(18.0, 0.5 * (top + bottom), plot.y_label, " class=\"t\" text-anchor=\"middle\" transform=\"rotate(-90 18 " + rounded(0.5 * (top + bottom), 1) + ")\"");
-    return detail::svg_page(plot.width, plot.height, ".t{font-size:13px}.g{stroke:#ddd}.l{fill:none;stroke-width:2}\n", body, plot.title);
+    body += svg_text(0.5 * (left + right), plot.height - 14.0, plot.x_label, " class=\"t\" text-anchor=\"middle\"");
+    body += svg_text(18.0, 0.5 * (top + bottom), plot.y_label, " class=\"t\" text-anchor=\"middle\" transform=\"rotate(-90 18 " + rounded(0.5 * (top + bottom), 1) + ")\"");
+    return svg_page(plot.width, plot.height, ".t{font-size:13px}.g{stroke:#ddd}.l{fill:none;stroke-width:2}\n", body, plot.title);
+}
+
+}  // namespace detail
+
+/// The plot as a whole SVG file. Axes go by decades, and are as wide as the points ask for.
+/// @throws std::invalid_argument if no point can be shown
+inline std::string log_log_svg(const LogLogPlot& plot) {
+    double low_x = 1e300, high_x = -1e300, low_y = 1e300, high_y = -1e300;
+    std::vector<PlotLine> lines;
+    for (const PlotLine& line : plot.lines) {
+        lines.push_back({line.name, {}});
+        for (const auto& [x, y] : line.points) {
+            if (!(x > 0.0 && y > 0.0 && std::isfinite(x) && std::isfinite(y))) continue;
+            const double u = std::log10(x), v = std::log10(y);
+            low_x = std::min(low_x, u), high_x = std::max(high_x, u);
+            low_y = std::min(low_y, v), high_y = std::max(high_y, v);
+            lines.back().points.emplace_back(u, v);
+        }
+    }
+    if (low_x > high_x) core::refuse("LogLogPlot.lines", "no point", "a point with both numbers > 0");
+    const auto decades = [](double low, double high) {
+        detail::PlotAxis axis{std::floor(low), std::max(std::ceil(high), std::floor(low) + 1.0), {}};
+        for (double k = axis.low; k <= axis.high; k += 1.0) axis.ticks.emplace_back(k, "1e" + rounded(k, 0));
+        return axis;
+    };
+    return detail::plot_svg({plot.title, plot.x_label, plot.y_label, plot.width, plot.height, 78.0, 170.0, decades(low_x, high_x),
+                             decades(low_y, high_y), std::move(lines), 3.5, true});
 }
 
 }  // namespace fibrant::observe
