@@ -135,6 +135,15 @@ public:
         }
     }
 
+    /// Writes <stem of the collection>_<increment, four digits>.EXTENSION beside the collection, and adds it.
+    void write(Index increment, const std::string& extension, const std::string& text) {
+        std::string number = std::to_string(increment);
+        if (number.size() < 4) number.insert(0, 4 - number.size(), '0');
+        const std::string file = path_.stem().string() + "_" + number + "." + extension;
+        write_file(path_.parent_path() / file, text);
+        add(static_cast<double>(increment), file);
+    }
+
     /// Adds a file (its name within the folder of the collection) and drops entries that are not earlier: they are
     /// from increments that a resumed run repeats.
     void add(double time, const std::string& file) {

@@ -86,26 +86,17 @@ inline PolyData bond_data(const SolidSnapshot& solid) {
 /// Writes solid_NNNN.vtu and bonds_NNNN.vtp after each increment, and the series solid.pvd and bonds.pvd.
 class SolidWriter {
 public:
-    explicit SolidWriter(std::filesystem::path folder, Start start = Start::anew)
-        : folder_{made(std::move(folder))}, solid_{folder_ / "solid.pvd", start}, bonds_{folder_ / "bonds.pvd", start} {}
+    explicit SolidWriter(const std::filesystem::path& folder, Start start = Start::anew)
+        : solid_{made_folder(folder) / "solid.pvd", start}, bonds_{folder / "bonds.pvd", start} {}
 
     /// Throws std::runtime_error if a file cannot be written.
     void accepted(const Snapshot& snapshot) {
         if (snapshot.solid.cells.empty()) return;
-        std::string number = std::to_string(snapshot.increment);
-        if (number.size() < 4) number.insert(0, 4 - number.size(), '0');
-        write_file(folder_ / ("solid_" + number + ".vtu"), solid_data(snapshot.solid));
-        solid_.add(static_cast<double>(snapshot.increment), "solid_" + number + ".vtu");
-        write_file(folder_ / ("bonds_" + number + ".vtp"), bond_data(snapshot.solid).text());
-        bonds_.add(static_cast<double>(snapshot.increment), "bonds_" + number + ".vtp");
+        solid_.write(snapshot.increment, "vtu", solid_data(snapshot.solid));
+        bonds_.write(snapshot.increment, "vtp", bond_data(snapshot.solid).text());
     }
 
 private:
-    static std::filesystem::path made(std::filesystem::path folder) {
-        std::filesystem::create_directories(folder);
-        return folder;
-    }
-    std::filesystem::path folder_;
     FileSeries solid_, bonds_;
 };
 static_assert(Observer<SolidWriter>);

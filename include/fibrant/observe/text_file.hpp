@@ -35,6 +35,12 @@ inline std::string rounded(double value, int decimals) {
     return text == "-0" ? "0" : text;
 }
 
+/// The folder itself, made if need be.
+inline const std::filesystem::path& made_folder(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    return folder;
+}
+
 /// Text with the characters that XML reserves written as entities.
 inline std::string xml_escaped(std::string_view text) {
     std::string answer;

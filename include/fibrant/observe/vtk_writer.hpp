@@ -79,29 +79,16 @@ class VtkWriter {
 public:
     /// @param folder  is made if need be
     /// @param start   resumed, the series keep the entries of earlier increments
-    explicit VtkWriter(std::filesystem::path folder, Start start = Start::anew)
-        : folder_{made(std::move(folder))},
-          fibres_{folder_ / "fibres.pvd", start},
-          contacts_{folder_ / "contacts.pvd", start} {}
+    explicit VtkWriter(const std::filesystem::path& folder, Start start = Start::anew)
+        : fibres_{made_folder(folder) / "fibres.pvd", start}, contacts_{folder / "contacts.pvd", start} {}
 
     /// Throws std::runtime_error if a file cannot be written.
     void accepted(const Snapshot& snapshot) {
-        std::string number = std::to_string(snapshot.increment);
-        if (number.size() < 4) number.insert(0, 4 - number.size(), '0');
-        const auto time = static_cast<double>(snapshot.increment);
-        write_file(folder_ / ("fibres_" + number + ".vtp"), fibre_data(snapshot).text());
-        fibres_.add(time, "fibres_" + number + ".vtp");
-        write_file(folder_ / ("contacts_" + number + ".vtp"), contact_data(snapshot).text());
-        contacts_.add(time, "contacts_" + number + ".vtp");
+        fibres_.write(snapshot.increment, "vtp", fibre_data(snapshot).text());
+        contacts_.write(snapshot.increment, "vtp", contact_data(snapshot).text());
     }
 
 private:
-    static std::filesystem::path made(std::filesystem::path folder) {
-        std::filesystem::create_directories(folder);
-        return folder;
-    }
-
-    std::filesystem::path folder_;
     FileSeries fibres_, contacts_;
 };
 static_assert(Observer<VtkWriter>);
