@@ -73,9 +73,7 @@ public:
             beam::spread(point.weights_j, force, point.first_j, free_);
             beam::spread(point.weights_i, Vec3(-force), point.first_i, free_);
         }
-        for (const scene::HeldVector& held : layout_.held)
-            free_.segment<3>(3 * held.vector) = (held.free * free_.segment<3>(3 * held.vector)).eval();
-        scene::project_ties(layout_, free_);
+        scene::project_free(layout_, free_);
         y += free_;
     }
 
@@ -144,21 +142,14 @@ public:
         const auto is_free = [&](const scene::HeldVector& held) {
             return Vec3(held.free * x.segment<3>(3 * held.vector)) == x.segment<3>(3 * held.vector);
         };
-        if (!layout_.ties.empty()) {
-            free_ = x;
-            for (const scene::HeldVector& held : layout_.held)
-                free_.segment<3>(3 * held.vector) = held.free * x.segment<3>(3 * held.vector);
-            scene::project_ties(layout_, free_);
-            apply_unheld(free_, y);
-            scene::add_motion_stiffness(layout_, free_, y);
-            scene::complete_ties(layout_, x, y);
-        } else if (std::all_of(layout_.held.begin(), layout_.held.end(), is_free)) {  // as directions of a solver are
+        if (layout_.ties.empty() && std::all_of(layout_.held.begin(), layout_.held.end(), is_free)) {  // as directions of a solver are
             apply_unheld(x, y);
         } else {
             free_ = x;
-            for (const scene::HeldVector& held : layout_.held)
-                free_.segment<3>(3 * held.vector) = held.free * x.segment<3>(3 * held.vector);
+            scene::project_free(layout_, free_);
             apply_unheld(free_, y);
+            scene::add_motion_stiffness(layout_, free_, y);
+            scene::complete_ties(layout_, x, y);
         }
         for (const scene::HeldVector& held : layout_.held) {
             const Vec3 whole = x.segment<3>(3 * held.vector);

@@ -126,9 +126,7 @@ public:
         const double load = norm(external_);
         const double all = norm(residual);
         reaction_ = residual;
-        for (const scene::HeldVector& held : system_.layout().held)
-            residual.segment<3>(3 * held.vector) = held.free * residual.segment<3>(3 * held.vector);
-        scene::project_ties(system_.layout(), residual);
+        scene::project_free(system_.layout(), residual);
         reaction_ -= residual;
         ResidualFigures figures;
         figures.residual = norm(residual);

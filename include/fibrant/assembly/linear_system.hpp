@@ -71,13 +71,7 @@ public:
         return k < 0 ? nullptr : &layout_->held[core::at(k)].free;
     }
     /// x <- F x
-    void project(Vector& x) const {
-        for (const scene::HeldVector& held : layout_->held) {
-            const Vec3 v = x.segment<3>(3 * held.vector);
-            x.segment<3>(3 * held.vector) = held.free * v;
-        }
-        scene::project_ties(*layout_, x);
-    }
+    void project(Vector& x) const { scene::project_free(*layout_, x); }
     /// y <- F y + (I - F) x: makes A x of y = K F x.
     void complete(const Vector& x, Vector& y) const {
         for (const scene::HeldVector& held : layout_->held) {

@@ -67,7 +67,7 @@ public:
             apply_unheld(x, y);
         } else {
             free_ = x;
-            for (const scene::HeldVector& held : layout_.held) free_.segment<3>(3 * held.vector) = held.free * x.segment<3>(3 * held.vector);
+            scene::project_free(layout_, free_);
             apply_unheld(free_, y);
         }
         for (const scene::HeldVector& held : layout_.held) {

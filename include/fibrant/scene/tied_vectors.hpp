@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file What ties leave of a vector of unknowns: products with a few sparse rows, never a part of a matrix.
+/// @file What held vectors and ties leave of a vector of unknowns: products with a few sparse rows, never a part of a matrix.
 
 #include <fibrant/scene/dof_layout.hpp>
 
@@ -59,6 +59,15 @@ inline void complete_ties(const DofLayout& layout, const Vector& x, Vector& y) {
     Vector scalars = tied_part(layout, x) - tied_part(layout, y);
     remove_motions(layout, scalars);
     add_tied(layout, scalars, y);
+}
+
+/// x <- F x: what held vectors and ties leave free of a vector of unknowns.
+inline void project_free(const DofLayout& layout, Vector& x) {
+    for (const HeldVector& held : layout.held) {
+        const Vec3 v = x.segment<3>(3 * held.vector);
+        x.segment<3>(3 * held.vector) = held.free * v;
+    }
+    project_ties(layout, x);
 }
 
 /// y += B^T U S U^T B x: stiffness of what moves together.

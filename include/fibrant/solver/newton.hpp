@@ -162,9 +162,7 @@ private:
                     product_.resize(state.size());
                     equilibrium.system().apply_unheld(prescribed_, product_);
                     right_ -= product_;
-                    for (const scene::HeldVector& held : equilibrium.system().layout().held)
-                        right_.template segment<3>(3 * held.vector) = held.free * right_.template segment<3>(3 * held.vector);
-                    scene::project_ties(equilibrium.system().layout(), right_);
+                    scene::project_free(equilibrium.system().layout(), right_);
                 }
             });
             const SolveStatus prepared = clock_->time(core::Part::preparation, [&] { return linear_->prepare(equilibrium.system()); });
