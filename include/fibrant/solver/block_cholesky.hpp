@@ -8,10 +8,12 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -75,6 +77,7 @@ public:
             if (list[s].parent >= 0) children_[core::at(list[s].parent)].push_back(static_cast<int>(s));
         }
         panel_.resize(list.size());
+        stack_updates();
     }
 
     Index unknowns() const noexcept { return offset_.empty() ? 0 : offset_.back(); }
@@ -146,7 +149,13 @@ public:
     Pivots factor() {
         Pivots pivots;
         const auto& list = supernodes_.list();
-        std::vector<RealMatrix> update(list.size());
+        // What fronts leave to their parents lies on two stacks that levels of the tree take by turns: children lie on top of one
+        // when their parent puts its own part on the other. One allocation, where each would get its pages cleared.
+        std::array<std::unique_ptr<Real[]>, 2> stack;
+        for (std::size_t k : {0, 1}) stack[k] = std::make_unique_for_overwrite<Real[]>(core::at(stack_size_[k]));
+        const auto update_of = [&](std::size_t s) {
+            return Eigen::Map<RealMatrix>(stack[core::at(update_[s].stack)].get() + update_[s].first, rows_[s], rows_[s]);
+        };
         std::vector<int> local(core::at(supernodes_.vertices()), -1);  // first row of a block in the front
         for (std::size_t s = 0; s < list.size(); ++s) {
             const Index m = columns(static_cast<int>(s)), n = m + rows_[s];
@@ -155,7 +164,8 @@ public:
             for (const int k : list[s].rows) local[core::at(k)] = row, row += size(k);
             RealMatrix& panel = panel_[s];
             panel.setZero(n, m);
-            update[s].setZero(n - m, n - m);
+            auto update = update_of(s);
+            for (Index k = 0; k < n - m; ++k) update.col(k).tail(n - m - k).setZero();  // the upper part is not used
             for (int k = list[s].first; k < list[s].last; ++k) {
                 const double* entry = value_.data() + entry_[core::at(k)];
                 const auto take = [&](int other) {
@@ -166,13 +176,10 @@ public:
                 take(k);
                 for (const int other : supernodes_.later(k)) take(other);
             }
-            for (const int c : children_[s]) {
-                extend(c, update[core::at(c)], local, panel, update[s]);
-                update[core::at(c)].resize(0, 0);
-            }
+            for (const int c : children_[s]) extend(c, update_of(core::at(c)), local, panel, update);
             eliminate(panel, pivot_scale(list[s]), pivots);
             if (n > m) {
-                update[s].template selfadjointView<Eigen::Lower>().rankUpdate(panel.bottomRows(n - m), Real(-1));
+                update.template selfadjointView<Eigen::Lower>().rankUpdate(panel.bottomRows(n - m), Real(-1));
             }
         }
         return pivots;
@@ -230,6 +237,24 @@ private:
         return entry + rows * size(column);
     }
 
+    /// Finds room for what each front leaves to its parent. Children come right before their parents in the list.
+    void stack_updates() {
+        const auto& list = supernodes_.list();
+        update_.assign(list.size(), {});
+        for (std::size_t s = list.size(); s-- > 0;)
+            if (list[s].parent >= 0) update_[s].stack = 1 - update_[core::at(list[s].parent)].stack;
+        std::array<Index, 2> top{};
+        stack_size_ = {};
+        for (std::size_t s = 0; s < list.size(); ++s) {
+            Update& own = update_[s];
+            const std::size_t k = core::at(own.stack);
+            own.first = top[k];
+            top[k] += rows_[s] * rows_[s];
+            stack_size_[k] = std::max(stack_size_[k], top[k]);
+            if (!children_[s].empty()) top[1 - k] = update_[core::at(children_[s].front())].first;
+        }
+    }
+
     /// What pivots are compared with: the diagonal, and of a vector that is nearly nothing in one direction the others'.
     RealVector pivot_scale(const Supernodes::Supernode& supernode) const {
         RealVector scale(offset_[core::at(supernode.last)] - offset_[core::at(supernode.first)]);
@@ -246,7 +271,7 @@ private:
     }
 
     /// Adds the update matrix of a child to the panel and the update matrix of its parent.
-    void extend(int child, const RealMatrix& from, const std::vector<int>& local, RealMatrix& panel, RealMatrix& update) const {
+    void extend(int child, const Eigen::Map<RealMatrix>& from, const std::vector<int>& local, RealMatrix& panel, Eigen::Map<RealMatrix>& update) const {
         struct Run {
             Index from, to, length;
         };
@@ -331,6 +356,12 @@ private:
     std::vector<std::vector<double>> lane_;  // further sums
     std::vector<Index> rows_;    // below the columns of each supernode
     std::vector<std::vector<int>> children_;
+    struct Update {
+        int stack = 0;
+        Index first = 0;
+    };
+    std::vector<Update> update_;  // of each supernode: the place of what it leaves to its parent
+    std::array<Index, 2> stack_size_{};
     std::vector<RealMatrix> panel_;
     RealVector work_, gathered_;
     bool uniform_ = true;  // all blocks have the same size
