@@ -24,7 +24,10 @@ namespace fibrant::solver {
 /// A node between two stations moves with their motions, weighted linearly; a rotation moves positions about the middle of
 /// the cluster and turns directions. This is the bending of many fibres at once, which factors of single chains do not
 /// see. P^T A P is summed from the bands of the chains, which are at hand when chains are factored, and from
-/// what the terms couple beyond them; A itself is never formed.
+/// what the terms couple beyond them; A itself is never formed. The sum is in double.
+///
+/// @tparam Real  float or double, of the factor of P^T A P: as a preconditioner float is as good, and half the bytes
+template <class Real = float>
 class RigidCoarseSpace {
 public:
     /// Clusters of about `cluster_size` chains, and a station every `elements_per_station` elements; both > 0.
@@ -64,7 +67,7 @@ public:
 
     Index clusters() const noexcept { return core::count(clusters_); }
     Index stations() const noexcept { return stations_; }
-    const BlockCholesky<double>& matrix() const noexcept { return matrix_; }
+    const BlockCholesky<Real>& matrix() const noexcept { return matrix_; }
 
     /// To be called before the chains are added: takes over the values of the layout.
     void begin(const scene::DofLayout& layout) {
@@ -116,7 +119,7 @@ public:
             [[maybe_unused]] const bool complete = sum(system);
             assert(complete);
         }
-        const BlockCholesky<double>::Pivots pivots = matrix_.factor();
+        const auto pivots = matrix_.factor();
         if (!pivots.finite) return SolveStatus::not_finite;
         return pivots.negative > 0 ? SolveStatus::indefinite : SolveStatus::converged;
     }
@@ -320,7 +323,7 @@ private:
     std::vector<Chain> chains_;
     CoarseModes modes_;
     int stations_ = 0;
-    BlockCholesky<double> matrix_;
+    BlockCholesky<Real> matrix_;
     Vector station_values_;  // forces and moments, then motions
 };
 

@@ -61,7 +61,7 @@ public:
             x.setZero(b.size());
             return {};
         }
-        RigidCoarseSpace* space = &work.coarse;
+        RigidCoarseSpace<>* space = &work.coarse;
         const auto precondition = [&](const Vector& r, Vector& z) {
             work.factors.apply(system.layout(), r, z);
             space->add_correction(system.layout(), r, z);
@@ -95,7 +95,7 @@ private:
     enum class Fine : std::uint8_t { none, ready, useless };
     struct Work {
         ChainFactors factors;
-        RigidCoarseSpace coarse, finer;
+        RigidCoarseSpace<> coarse, finer;
         Fine fine = Fine::none;
         ConjugateGradientVectors vectors;
         BiconjugateVectors biconjugate;
