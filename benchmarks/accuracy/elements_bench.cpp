@@ -3,42 +3,25 @@
 // of the whole run and unknowns; then the fitted orders, and what each element costs in one and the same scene of touching fibres. Writes a
 // log-log plot of each case.
 // usage: benchmark_accuracy_elements_bench [directory of the plots [repeats]]; default . and 5
-#include <fibrant/beam/director_beam.hpp>
+#include "rods.hpp"
+
 #include <fibrant/beam/kirchhoff_cable.hpp>
 #include <fibrant/beam/rigid_section_rod.hpp>
-#include <fibrant/law/frictionless.hpp>
-#include <fibrant/law/regularised_coulomb.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/observe/svg_plot.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/simulation/simulator.hpp>
-#include <fibrant/solver/sparse_cholesky.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <map>
-#include <numbers>
 #include <string>
 #include <vector>
 
 using namespace fibrant;
+using namespace benchmarks;
 
 namespace {
-
-template <beam::BeamElement B, law::FrictionLaw Law = law::Frictionless>
-struct Policy {
-    using Beam = B;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = Law;
-    using Solver = solver::SparseCholesky;
-};
-
-const double r = 0.0201, young = 7300.0, area = std::numbers::pi * r * r, bending = 0.25 * young * area * r * r;
 
 /// A problem of one rod: the scene, the figures that are compared, and their size.
 struct Problem {
@@ -50,18 +33,8 @@ struct Problem {
     std::map<std::string, Vec3> reference;          ///< by model
 };
 
-scene::FibreSpecification along_z(double length, Index elements) {
-    return {.from = Vec3::Zero(), .to = Vec3(0, 0, length), .section = scene::circular(r), .material = {young, 0.3}, .elements = elements, .director = Vec3::UnitX()};
-}
 template <int Slenderness>
-scene::Assembly cantilever(Index elements) {
-    const double length = Slenderness * r;
-    scene::Assembly assembly;
-    assembly.add(along_z(length, elements));
-    assembly.clamp(scene::first_end(0));
-    assembly.apply(scene::DeadForce{scene::last_end(0), scene::NodeVector::position, Vec3(5.0 * bending / (length * length), 0, 0), "load"});
-    return assembly;
-}
+scene::Assembly cantilever_of(Index elements) { return cantilever(Slenderness, elements); }
 template <int Slenderness, int Thousandths>
 scene::Assembly stretched(Index elements) {
     const double length = Slenderness * r;
@@ -92,7 +65,7 @@ bool no() { return false; }
 
 std::vector<Problem> problems() {
     return {
-        {"cantilever_1000", cantilever<1000>, {{{"load", 1.0}}}, no, 20.1,
+        {"cantilever_1000", cantilever_of<1000>, {{{"load", 1.0}}}, no, 20.1,
          {{"kirchhoff", {14.347209624599, 0, 12.308669949439}}, {"reissner", {14.347246478717, 0, 12.308662682769}}, {"director", {14.347255281111, 0, 12.308643485742}}}},
         {"arc45_slender", arc, {{{"load", 1.0}}}, no, 100.0,
          {{"reissner", {47.151285842085, 15.685075385944, 53.468661045426}}, {"director", {47.151285842085, 15.685075385944, 53.468661045426}}}},
@@ -102,19 +75,6 @@ std::vector<Problem> problems() {
          {{"reissner", {0.00074918537055306, 0, 0}}, {"director", {0.000760462464506, 0, 0}}}},
     };
 }
-
-template <simulation::Model M>
-simulation::ModelParameters<M> parameters() {
-    simulation::ModelParameters<M> all;
-    all.normal.regularisation_depth = 1e-3 * r;
-    all.contact.stiffness.allowed_penetration = 1e-2 * r;
-    all.iteration.step_tolerance = 1e-8, all.iteration.residual_tolerance = 1e-8, all.iteration.linear_tolerance = 1e-9;
-    all.iteration.newton_limit = 40;
-    if constexpr (core::Active<typename M::Friction>) all.friction = {.friction_coefficient = 0.15, .reversible_displacement = 0.02 * r};
-    return all;
-}
-
-double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Sample {
     double error = 0.0, seconds = 0.0;

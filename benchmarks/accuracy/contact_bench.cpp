@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// Which element and which normal law reach a given error in a contact force soonest? Two scenes with a known answer: two fibres clamped
+// at both ends that cross and are pressed together by two radii, and a strand of a core and six wires that is stretched. Each is
+// run at smaller and smaller penetrations, with a penalty alone and with multipliers; the crossing also on finer and finer meshes, with
+// multipliers. Prints CSV, a line a run, and writes log-log plots.
+// usage: benchmark_accuracy_contact_bench [directory of the plots [repeats]]; default . and 3
+#include "rods.hpp"
+
+#include <fibrant/beam/kirchhoff_cable.hpp>
+#include <fibrant/beam/rigid_section_rod.hpp>
+#include <fibrant/compositions/strand/strand.hpp>
+#include <fibrant/law/augmented.hpp>
+#include <fibrant/observe/svg_plot.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <type_traits>
+#include <vector>
+
+using namespace fibrant;
+using namespace benchmarks;
+namespace strand = compositions::strand;
+
+namespace {
+
+template <beam::BeamElement B>
+struct Held : Policy<B> {
+    using Normal = law::Augmented<law::RegularisedPenalty>;
+};
+
+/// What the law may leave between surfaces that touch: the penalty is adapted to it, or is a soft one that multipliers complete.
+template <simulation::Model M>
+simulation::ModelParameters<M> allowing(double penetration) {
+    simulation::ModelParameters<M> all;
+    if constexpr (law::Augmenting<typename M::Normal>) {
+        all.normal = {.law = {.regularisation_depth = 1e-3 * r}, .largest_penetration = penetration};
+        all.contact.stiffness.allowed_penetration = 1e-2 * r, all.contact.stiffness.initial_fraction = 0.2;
+        all.iteration.multiplier_limit = 40;
+    } else {
+        all.normal = {.regularisation_depth = 0.1 * penetration};
+        all.contact.stiffness.allowed_penetration = penetration;
+    }
+    all.iteration.step_tolerance = 1e-6, all.iteration.residual_tolerance = 1e-6, all.iteration.linear_tolerance = 1e-8;
+    all.iteration.normal_tolerance = 1e-4, all.iteration.normal_step_tolerance = 1e-4, all.iteration.contact_tolerance = 1e-4;
+    all.iteration.newton_limit = 40;
+    return all;
+}
+
+struct Sample {
+    double error = 0.0, seconds = 0.0;
+    simulation::Report report;
+};
+
+/// 200 radii long, stretched by 0.002, the clamps two radii closer than where the fibres would touch (crossed_fibres.json).
+template <simulation::Model M>
+Sample crossing(double penetration, Index elements) {
+    const double length = 4.02, approach = 2.0 * r;
+    const double reference = std::is_same_v<typename M::Beam, beam::DirectorBeam<3>> ? 0.000488522645452 : 0.000487029211873;
+    scene::Assembly assembly;
+    for (const bool upper : {false, true}) {
+        const Vec3 along = upper ? Vec3::UnitY() : Vec3::UnitX(), centre = upper ? Vec3(0, 0, 2.0 * r) : Vec3(Vec3::Zero());
+        scene::FibreSpecification fibre = along_z(1.0, elements);
+        fibre.from = centre - 0.5 * length * along, fibre.to = centre + 0.5 * length * along, fibre.director = Vec3::UnitZ();
+        const Index f = assembly.add(fibre);
+        for (const double end : {0.0, 1.0}) {
+            scene::Hold axial;
+            axial.at = {f, end}, axial.directions = along * along.transpose(), axial.channel = "stretch";
+            axial.displacement = (end - 0.5) * 0.002 * length * along;
+            assembly.hold(axial);
+            assembly.clamp({f, end}, upper ? Vec3(0, 0, -approach) : Vec3(Vec3::Zero()));
+        }
+    }
+    Sample sample;
+    const double start = cpu_seconds();
+    simulation::Simulator<M> simulator(assembly, allowing<M>(penetration));
+    simulation::Loading<M> loading;
+    for (const char* channel : {"stretch", "motion"}) {
+        simulation::Stage<M> stage;
+        stage.ramps = {{channel, 1.0}}, stage.increments = 2;
+        loading.stages.push_back(stage);
+    }
+    sample.report = simulator.run(loading);
+    sample.seconds = cpu_seconds() - start;
+    sample.error = std::abs((simulator.reaction({0, 0.0}) + simulator.reaction({0, 1.0})).z() / reference - 1.0);
+    return sample;
+}
+
+/// Lay of 10 degrees, stretched by 0.002 between ends that do not turn (strand_1_6.json, director).
+template <simulation::Model M>
+Sample stretched_strand(double penetration) {
+    strand::StrandParameters parameters;
+    parameters.core_radius = 0.0215, parameters.layers = {{.wires = 6, .radius = r, .lay_angle_deg = 10.0}};
+    parameters.material = {young, 0.3};
+    parameters.length = 1.48236252744, parameters.elements = 24;
+    Sample sample;
+    const double start = cpu_seconds();
+    simulation::Simulator<M> simulator(strand::straight_strand(parameters), allowing<M>(penetration));
+    simulation::Loading<M> loading;
+    loading.stages.emplace_back();
+    loading.stages.back().ramps = {{strand::stretch, 0.002}, {strand::twist, 0.0}};
+    loading.stages.back().increments = 2;
+    sample.report = simulator.run(loading);
+    sample.seconds = cpu_seconds() - start;
+    sample.error = std::abs(strand::measure(simulator, parameters).force / 0.12578578517 - 1.0);
+    return sample;
+}
+
+/// @param run  run(value), value a penetration over the radius or a number of elements
+template <class Run, class Values>
+void sweep(const char* scene, const char* policy, const Values& values, const Run& run, int repeats, observe::LogLogPlot& plot) {
+    std::vector<std::pair<double, double>> points;
+    for (const auto value : values) {
+        std::vector<double> times;
+        Sample sample;
+        for (int k = 0; k < repeats; ++k) {
+            sample = run(value);
+            times.push_back(sample.seconds);
+        }
+        std::sort(times.begin(), times.end());
+        const double seconds = times[times.size() / 2];
+        std::printf("%s,%s,%g,%.3e,%.3e,%.2e,%ld,%ld,%d\n", scene, policy, static_cast<double>(value), sample.error, seconds, sample.report.contact.greatest_penetration / r,
+                    static_cast<long>(sample.report.counts.newton), static_cast<long>(sample.report.counts.contact_passes), sample.report.converged ? 1 : 0);
+        std::fflush(stdout);
+        if (sample.report.converged) points.emplace_back(seconds, sample.error);
+    }
+    plot.x_label = "CPU time [s]", plot.y_label = "error of the force";
+    plot.lines.push_back({policy, points});
+}
+
+using Director = beam::DirectorBeam<3>;
+using Rod = beam::RigidSectionRod;
+using Cable = beam::KirchhoffCable;
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::filesystem::path directory = argc > 1 ? argv[1] : ".";
+    const int repeats = argc > 2 ? std::max(1, std::atoi(argv[2])) : 3;
+    std::printf("scene,policy,allowed_over_radius or elements,error,seconds,penetration_over_radius,newton,contact_passes,converged\n");
+    observe::LogLogPlot crossed, meshes, wires;
+    crossed.title = "crossed fibres, less and less penetration", meshes.title = "crossed fibres, multipliers, finer and finer meshes", wires.title = "strand 1 + 6";
+    const std::array penetrations{1e-1, 1e-2, 1e-3, 1e-4, 1e-5};
+    const std::array<Index, 5> numbers{8, 16, 32, 64, 128};
+    const auto cross = [&]<simulation::Model M>(const char* policy, Index elements) {
+        sweep("crossing", policy, penetrations, [&](double p) { return crossing<M>(p * r, elements); }, repeats, crossed);
+    };
+    const auto refine = [&]<simulation::Model M>(const char* policy) {
+        sweep("meshes", policy, numbers, [&](Index elements) { return crossing<M>(1e-5 * r, elements); }, repeats, meshes);
+    };
+    const auto stretch = [&]<simulation::Model M>(const char* policy) {
+        sweep("strand", policy, penetrations, [&](double p) { return stretched_strand<M>(p * r); }, repeats, wires);
+    };
+    cross.operator()<Policy<Director>>("director, penalty", 32);
+    cross.operator()<Held<Director>>("director, multipliers", 32);
+    cross.operator()<Policy<Rod>>("rod, penalty", 64);
+    cross.operator()<Held<Rod>>("rod, multipliers", 64);
+    cross.operator()<Policy<Cable>>("cable, penalty", 64);
+    cross.operator()<Held<Cable>>("cable, multipliers", 64);
+    refine.operator()<Held<Director>>("director");
+    refine.operator()<Held<Rod>>("rod");
+    refine.operator()<Held<Cable>>("cable");
+    stretch.operator()<Policy<Director>>("director, penalty");
+    stretch.operator()<Held<Director>>("director, multipliers");
+    observe::write_file(directory / "accuracy_crossing.svg", observe::log_log_svg(crossed));
+    observe::write_file(directory / "accuracy_crossing_meshes.svg", observe::log_log_svg(meshes));
+    observe::write_file(directory / "accuracy_strand.svg", observe::log_log_svg(wires));
+    return 0;
+}
