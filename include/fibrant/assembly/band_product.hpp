@@ -34,7 +34,7 @@ public:
             } else {
                 copy<1>(pack, row);
             }
-        }, layout.unknowns() < 8192 ? packs() : 1);
+        }, scene::grain(layout, packs()));
     }
 
     Index packs() const noexcept { return core::count(packs_); }

@@ -160,7 +160,7 @@ public:
 
     /// y = K x, as if nothing were held.
     void apply_unheld(const Vector& x, Vector& y) const {
-        const Index grain = layout_.unknowns() < 8192 ? band_.packs() : 1;
+        const Index grain = scene::grain(layout_, band_.packs());
         core::parallel_for(band_.packs(), [&](Index p) {
             band_.apply(p, x, y);
             pairs_.find_motions(sides(p), x);

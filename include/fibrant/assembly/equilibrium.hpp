@@ -113,7 +113,7 @@ public:
             for (Index e = 0; e < mesh_->fibre(f).elements; ++e)
                 residual.template segment<element_unknowns>(mesh_->first_unknown(f, e)) +=
                     beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e));
-        });
+        }, mesh_->grain());
         if constexpr (has_solid) solid_.add_forces(state, residual);
         if (damping_ > 0.0) residual += damping_force(state);
         external_.setZero(state.size());
@@ -157,7 +157,7 @@ public:
                     system_.add_diagonal(v, (shift + damping_) * length * length * Mat3::Identity());
                 }
             }
-        });
+        }, mesh_->grain());
         load_.add_stiffness(amplitudes_, state, [&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
         ties_.stiffen(system_.layout(), !tension_only);
         if constexpr (has_solid) {
@@ -180,7 +180,7 @@ public:
         core::parallel_for(mesh_->fibre_count(), [&](Index f) {
             for (Index e = 0; e < mesh_->fibre(f).elements; ++e)
                 part[core::at(f)] += beam_.energy(mesh_->rest(f, e), mesh_->element(state, f, e));
-        });
+        }, mesh_->grain());
         double sum = 0.0;
         for (const double value : part) sum += value;
         if constexpr (has_solid) sum += solid_.energy(state);
@@ -247,7 +247,7 @@ private:
     void for_elements(const Body& body) {
         core::parallel_for(mesh_->fibre_count(), [&](Index f) {
             for (Index e = 0; e < mesh_->fibre(f).elements; ++e) body(f, e);
-        });
+        }, mesh_->grain());
     }
 
     const beam::Mesh<B>* mesh_;

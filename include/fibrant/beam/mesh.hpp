@@ -125,10 +125,12 @@ public:
             for (Index e = 0; e < fibre.elements; ++e)
                 rest_[core::at(first_element_[core::at(f)] + e)] =
                     beam.rest(fibre.section, fibre.material, element(rest_state_, f, e));
-        });
+        }, grain());
     }
 
     Index fibre_count() const noexcept { return core::count(fibres_); }
+    /// Of a loop over the fibres: a small mesh is left to one thread.
+    Index grain() const noexcept { return scene::grain(layout_, fibre_count()); }
     Index element_count() const noexcept { return first_element_.back(); }
     const std::vector<MeshFibre>& fibres() const noexcept { return fibres_; }
     const MeshFibre& fibre(Index f) const noexcept { return fibres_[core::at(f)]; }

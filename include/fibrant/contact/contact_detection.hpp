@@ -131,7 +131,7 @@ struct SampledCentrelines {
             for (Index k = 0; k < count; ++k)  // an element's chords deviate by |x''| / (2 n^2)
                 inflation[core::at(piece.first_segment + k)] =
                     0.125 * mesh.greatest_bend(state, piece.fibre, k / piece.cut) / (n * n);
-        });
+        }, mesh.grain());
         for (const Piece& piece : pieces) {
             const beam::MeshFibre& fibre_data = mesh.fibre(piece.fibre);
             const Index count = fibre_data.elements * piece.cut;

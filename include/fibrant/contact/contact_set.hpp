@@ -52,7 +52,7 @@ public:
     /// @param forced    keep forced orders
     void detect(const Vector& state, const Vector& accepted, double reach, bool forced) {
         std::vector<Zone> found = find_zones(*mesh_, state, search_, parameters_.detection, orders_, reach, forced);
-        core::parallel_for(core::count(found), [&](Index z) { inherit(found[core::at(z)], state); });
+        core::parallel_for(core::count(found), [&](Index z) { inherit(found[core::at(z)], state); }, core::light_items);
         zones_.swap(found);
         regenerate(state, accepted);
     }
@@ -70,7 +70,7 @@ public:
     /// @returns the largest turn of a normal that carries force [radian]
     double refresh(const Vector& state, const Vector& accepted) {
         std::vector<double> turned(elements_.size(), 0.0);
-        core::parallel_for(core::count(elements_), [&](Index k) {
+        for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
             const Vec3 before = element.normal;
             place_particles(element, state, accepted, before);
@@ -81,7 +81,7 @@ public:
         return turned.empty() ? 0.0 : *std::max_element(turned.begin(), turned.end());
     }
 
-    /// Middle loop: the reactions of the last evaluation bound friction from now on. Without the change of its own bound,
+    /// Middle loop: the last reactions bound friction from now on. Without the change of its own bound,
     /// friction has a convex potential and Newton does not cycle between stick and slip.
     void hold_reactions() {
         if constexpr (core::Active<Friction>)
@@ -93,7 +93,7 @@ public:
     void evaluate(const Vector& state) {
         responses_.resize(elements_.size());
         if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
-        core::parallel_for(core::count(elements_), [&](Index k) {
+        for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
             Vec3 slip = Vec3::Zero();
             if constexpr (core::Active<Friction>) slip = particle_offset(element, state) - element.friction.accepted_offset;
@@ -169,7 +169,7 @@ public:
                 const Vec3 value = of_j ? force(k) : Vec3(-force(k));
                 beam::spread(of_j ? element.weights_j : element.weights_i, value, of_j ? element.first_j : element.first_i, residual);
             }
-        });
+        }, mesh_->grain());
     }
 
     /// Sides of contact elements on a fibre, in order.
@@ -206,7 +206,7 @@ public:
         parameters_.stiffness.allowed_penetration = length;
         parameters_.stiffness.validate();
     }
-    /// Keeps normals, friction and zones of an accepted state, and adapts the stiffness of the zones to it.
+    /// Keeps normals, friction and zones of an accepted state, and adapts the zones' stiffness.
     void accept(const Vector& state) {
         accepted_.assign(records(state));
         for (Zone& zone : zones_) {
@@ -234,6 +234,8 @@ public:
     }
 
 private:
+    void for_elements(const auto& body) const { core::parallel_for(core::count(elements_), body, core::light_items); }
+
     void inherit(Zone& zone, const Vector& state) const {
         rules_.apply(zone);
         const Zone* before = predecessor(zones_, zone.span);
@@ -281,7 +283,7 @@ private:
                         element->shift.shift = -normal_.penetration(element->shift.multiplier, zone.stiffness);
                 }
             }
-        });
+        }, core::light_items / block);
         elements_.clear();
         for (Index b = 0; b < blocks; ++b) {
             const Index offset = core::count(elements_);
@@ -358,8 +360,8 @@ private:
         return beam::Mesh<B>::point(state, element.first_j, element.friction.weights_j) -
                beam::Mesh<B>::point(state, element.first_i, element.friction.weights_i);
     }
-    /// Offset of the friction's particles in the last accepted state, turned as the normal and the tangent have turned
-    /// since: without that, a rigid rotation of a pair would slide it by the gap times the angle.
+    /// Offset of the friction's particles in the last accepted state, turned as the normal and the tangent have
+    /// since: else a rigid rotation of a pair would slide it by the gap times the angle.
     Vec3 accepted_offset(const Element& element, const Vector& state, const Vector& accepted) const
         requires core::Active<Friction>
     {
@@ -391,7 +393,7 @@ private:
 
     std::vector<typename Memory::Record> records(const Vector& state) const {
         std::vector<typename Memory::Record> list(elements_.size());
-        core::parallel_for(core::count(elements_), [&](Index k) {
+        for_elements([&](Index k) {
             const Element& element = elements_[core::at(k)];
             typename Memory::Record& record = list[core::at(k)];
             record.fibre_i = element.fibre_i, record.fibre_j = element.fibre_j;

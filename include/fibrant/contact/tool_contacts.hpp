@@ -92,7 +92,7 @@ public:
                     }
                     made[core::at(f)].push_back(element);
                 }
-        });
+        }, mesh_->grain());
         elements_.clear();
         for (Index f = 0; f < fibres; ++f) {
             elements_.insert(elements_.end(), made[core::at(f)].begin(), made[core::at(f)].end());
@@ -114,7 +114,7 @@ public:
             }
             if (k < core::count(responses_) && responses_[core::at(k)].reaction > 0.0)
                 angle[core::at(k)] = std::atan2(before.cross(element.normal).norm(), before.dot(element.normal));
-        });
+        }, core::light_items);
         hold_reactions();
         return angle.empty() ? 0.0 : *std::max_element(angle.begin(), angle.end());
     }
@@ -144,7 +144,7 @@ public:
                 const double bound = element.friction.bound < 0.0 ? response.reaction : element.friction.bound;
                 frictions_[core::at(k)] = friction.response(slip, tools_[core::at(element.tool)].friction_factor * bound, element.friction.history);
             }
-        });
+        }, core::light_items);
     }
 
     /// Force of element k on its particle, against the internal forces [force].
@@ -159,7 +159,7 @@ public:
                 const Element& element = elements_[core::at(k)];
                 beam::spread(element.weights, force(k), element.first, residual);
             }
-        });
+        }, mesh_->grain());
     }
     /// Tangent on a fibre, symmetric and positive semidefinite: add(first unknown, weights, stiffness) of rank-one terms.
     template <class Add>

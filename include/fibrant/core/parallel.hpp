@@ -23,8 +23,12 @@ inline int threads() noexcept {
 #endif
 }
 
+/// Light items, a contact element each, below which threads cost more than they save.
+inline constexpr Index light_items = 256;
+
 /// Calls body(k) for k in [0, n), in any order and on any thread. Items must not share what they write.
 /// The first exception that a body throws is thrown again here.
+/// @param grain  items up to which one thread takes them all
 template <class Body>
 void parallel_for(Index n, const Body& body, [[maybe_unused]] Index grain = 1) {
 #if defined(_OPENMP)

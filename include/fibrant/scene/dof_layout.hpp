@@ -59,4 +59,7 @@ struct DofLayout {
     Index unknowns() const noexcept { return 3 * vectors(); }
 };
 
+/// Grain of a parallel loop over `items` that share a system: below some thousand unknowns threads cost more than they save.
+inline Index grain(const DofLayout& layout, Index items) noexcept { return layout.unknowns() < 8192 ? items : 1; }
+
 }  // namespace fibrant::scene

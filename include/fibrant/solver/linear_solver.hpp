@@ -57,8 +57,7 @@ inline double scaled_norm(const scene::DofLayout& layout, const Vector& r) {
     }));
 }
 
-/// Grain of a parallel loop over `items` that share a system: below some thousand unknowns threads cost more than they save.
-inline Index grain(const scene::DofLayout& layout, Index items) noexcept { return layout.unknowns() < 8192 ? items : 1; }
+using scene::grain;
 
 /// |b - A x| / |b| in `scaled_norm`; r is set to b - A x.
 ///
