@@ -6,8 +6,9 @@
 //               152 (crossing bundles), 304, 608, ... (multiples of 152; of 1216, 1.28 million unknowns). Default: 76 152
 //   --variants  each synthetic scene also with stiffer and fewer contact elements, without friction, misaligned, ungrouped
 // Prints CSV, a line a tolerance. `error` is |x - x*| / |x*| in the energy norm, x* from two levels to 1e-13. `bytes` is
-// the peak of memory beyond the system's. `prepare_s` is that of a second preparation, `ratio` time of the baseline (prepare + solve) over time: of CHOLMOD if built
-// with FIBRANT_WITH_CHOLMOD, else of the block Cholesky in double. Lines "product" compare A x with a scalar CSR product.
+// the peak of memory beyond the system's. `prepare_s` is that of a second preparation. `ratio` is time of the baseline
+// (prepare + solve) over time: of CHOLMOD if built with FIBRANT_WITH_CHOLMOD, else of the block Cholesky in double. Lines
+// "product" compare A x with a scalar CSR product.
 
 #include "../tests/support/fabric_system.hpp"
 
