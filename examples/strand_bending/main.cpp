@@ -24,6 +24,7 @@ struct Strand {
 bool solve(example::TomlReader& file, const example::Output& output) {
     Index wires = 7, elements = 20, increments = 30;
     double radius = core::unset, lay = core::unset, length = core::unset, angle = 90.0, mu = 0.1, depth = 0.02, reversible = 0.1;
+    double damping = 0.0, rest_share = 1e-4;
     double young_modulus = core::unset, poisson_ratio = core::unset;
     bool alternate = true;
     file.require("strand", "wires", wires);
@@ -39,6 +40,8 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     file.read("contact", "allowed_penetration_over_radius", depth);
     file.read("loading", "angle_deg", angle);
     file.read("loading", "increments", increments);
+    file.read("loading", "damping", damping);
+    file.read("loading", "rest_share", rest_share);
     file.refuse_unknown();
     strand::StrandParameters parameters = strand::regular_strand(wires, radius, lay, alternate);
     parameters.length = length, parameters.elements = elements, parameters.material = {young_modulus, poisson_ratio};
@@ -60,6 +63,13 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     loading.stages[0].ramps = {{strand::bend, full}};
     loading.stages[0].increments = increments;
     loading.stages[0].most_increments = 20 * increments;
+    if (damping > 0.0) {  // wires that buckle creep instead of leaping; at the end nothing is held any more
+        loading.stages[0].damping = damping, loading.stages[0].damping_decay = 0.5;
+        loading.stages.push_back(loading.stages[0]);
+        loading.stages[1].name = "rest", loading.stages[1].ramps = {}, loading.stages[1].increments = 1;
+        loading.stages[1].damping_share = rest_share, loading.stages[1].damping_goes_on = true;
+        loading.stages[1].until = simulation::until_settled(1e-3 * radius, 2.0 * depth * radius, rest_share);
+    }
     loading.checkpoint = output.checkpoint(), loading.resume = output.resume;
     const simulation::Report report = simulator.run(loading, recorder);
     const strand::BendingState state = strand::measure_bending(simulator, parameters);
