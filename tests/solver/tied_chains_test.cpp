@@ -52,12 +52,10 @@ TEST_CASE("chains that nothing but ties joins are solved at once, whatever moves
         const Vector b = test::random_load(system.layout(), 3);
         Vector x;
         solver::TwoLevelPcg solver;
-        // One step is exact, but for the single precision of the factors, and the coarse space, which is added to it: without the
-        // projector it takes some iteration for each tied scalar.
+        // One step would be exact, but for the single precision of the factors and for the coarse space, which is added to it.
         const solver::SolveReport report = test::solve(solver, system, b, 1e-4, x);
         CHECK(report.status == solver::SolveStatus::converged);
-        MESSAGE("ties " << ties << ": " << report.iterations);
-        CHECK(report.iterations <= 40);
+        CHECK(report.iterations <= 8);  // 3 and 4
     }
 }
 
@@ -67,7 +65,7 @@ TEST_CASE("fibre ends that are tied on the mean take hardly more iterations than
         const test::Fabric fabric{.bundles = 2, .parallel = true, .fibres = fibres, .elements = 16, .length = 2.2, .end_stiffness = 1e-6};
         const Vector load = test::contact_load(test::FabricSystem(fabric));
         const int held = iterations(bundles(fabric, false), load, 1e-4), tied = iterations(bundles(fabric, true), load, 1e-4);
-        MESSAGE(fibres << " fibres: held " << held << ", tied " << tied);
-        CHECK(tied <= 2 * held);
+        CAPTURE(held);
+        CHECK(tied <= 1.6 * held);  // 105 of 90, 55 of 41
     }
 }

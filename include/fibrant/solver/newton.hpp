@@ -20,7 +20,8 @@ struct IterationParameters {
     double normal_step_tolerance = 1e-3;  ///< displacement in a normal pass [radius], > 0
     double contact_tolerance = 1e-2;      ///< displacement in a contact pass [radius], > 0
     double inexact = 0.3;                 ///< inner tolerance over the last change of the loop outside [1], in [0, 1]
-    double overshoot = 0.5;               ///< slope of the energy at the end of a Newton step over that at its start [1], > 0; infinity: any
+    /// Slope of the energy at the end of a Newton step over that at its start, beyond which the step is cut [1], > 0.
+    double overshoot = std::numeric_limits<double>::infinity();
     double largest_approach = 0.5;        ///< relative motion of a contact in one Newton step [radius], > 0
     Index newton_limit = 15;              ///< iterations of one inner loop
     Index normal_limit = 6;               ///< normal passes of one set of contact elements
