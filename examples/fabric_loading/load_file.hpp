@@ -75,6 +75,8 @@ inline LoadFile read_load_file(TomlReader& file, const std::filesystem::path& fo
     file.read("solver", "step_tolerance", load.scene.iteration.step_tolerance);
     file.read("solver", "linear_tolerance", load.scene.iteration.linear_tolerance);
     file.read("solver", "newton_limit", load.scene.iteration.newton_limit);
+    load.scene.iteration.overshoot = 0.5;
+    file.read("solver", "overshoot", load.scene.iteration.overshoot);
     for (const std::string& name : stages) {
         fibrant::simulation::ProgrammeStage stage;
         stage.name = name;

@@ -20,6 +20,8 @@ struct IterationParameters {
     double normal_step_tolerance = 1e-3;  ///< displacement in a normal pass [radius], > 0
     double contact_tolerance = 1e-2;      ///< displacement in a contact pass [radius], > 0
     double inexact = 0.3;                 ///< inner tolerance over the last change of the loop outside [1], in [0, 1]
+    /// Slope of the energy at the end of a Newton step over that at its start, beyond which the step is cut [1], > 0.
+    double overshoot = std::numeric_limits<double>::infinity();
     double largest_approach = 0.5;        ///< relative motion of a contact in one Newton step [radius], > 0
     Index newton_limit = 15;              ///< iterations of one inner loop
     Index normal_limit = 6;               ///< normal passes of one set of contact elements
@@ -36,6 +38,7 @@ struct IterationParameters {
         core::require_positive("IterationParameters.normal_step_tolerance", normal_step_tolerance);
         core::require_positive("IterationParameters.contact_tolerance", contact_tolerance);
         core::require_between("IterationParameters.inexact", inexact, 0.0, 1.0);
+        core::require(overshoot > 0.0, "IterationParameters.overshoot", overshoot, "> 0");
         core::require_positive("IterationParameters.largest_approach", largest_approach);
         core::require_at_least("IterationParameters.newton_limit", newton_limit, 1);
         core::require_at_least("IterationParameters.normal_limit", normal_limit, 1);
@@ -97,18 +100,22 @@ public:
         report.residual = evaluate(state);
         for (Index iteration = 0; iteration < parameters_.newton_limit; ++iteration) {
             equilibrium.prescribed_step(state, prescribed_);
-            if (!direction(state, eta, counts)) {
+            if (!direction(state, eta, report.residual.scale, counts)) {
                 report.status = NewtonStatus::unsolvable;
                 return report;
             }
+            const double slope = residual_.dot(step_);
+            const bool free = iteration > 0 && prescribed_.norm() <= 1e-3 * step_.norm();  // else the residual is not that of one energy
             step_ += prescribed_;
-            const double scale = bounded(step_);
+            double scale = bounded(step_);
             step_ *= scale;
-            if (mixed) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(state, step_); });
-            state += step_;
-            ++report.iterations, ++counts.newton;
             const assembly::ResidualFigures before = report.residual;
+            before_ = state;
+            state += step_;
             report.residual = evaluate(state);
+            if (free) scale *= shorten(scale * slope, state, report.residual);
+            if (mixed) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
+            ++report.iterations, ++counts.newton;
             report.step = equilibrium.greatest(step_);
             if (!std::isfinite(report.residual.residual) || !std::isfinite(report.step)) {
                 report.status = NewtonStatus::diverged;
@@ -149,11 +156,32 @@ private:
                clock_->time(core::Part::assembly, [&] { return equilibrium_->residual(state, residual_); });
     }
 
+    /// Shortens a step beyond whose end the energy rises steeply: contacts that close or let go within it, one after the other,
+    /// would send Newton's method to and fro for ever. With normals and bounds of friction that stand the energy is convex, and the
+    /// place where it rises is found between.
+    /// @param slope  of the energy along the step, at its start [force * length]
+    /// @returns the part of the step that is left
+    double shorten(double slope, Vector& state, assembly::ResidualFigures& figures) {
+        double part = 1.0;
+        for (int trial = 0; trial < 4 && slope < 0.0 && std::isfinite(figures.residual); ++trial) {
+            const double end = residual_.dot(step_);
+            if (end <= -parameters_.overshoot * slope) break;
+            const double factor = std::clamp(slope / (slope - end), 0.1, 0.8);
+            step_ *= factor, part *= factor, slope *= factor;
+            state = before_ + step_;
+            figures = evaluate(state);
+        }
+        return part;
+    }
+
     /// Free part of the step. An indefinite tangent is met first by leaving compression out of its geometric part, then by
     /// a shift that doubles.
-    bool direction(const Vector& state, double eta, IterationCounts& counts) {
+    /// @param eta    of the linear solution
+    /// @param scale  of forces: what a prescribed motion does at first, to the elements at its ends alone, is far more than they are, and
+    ///               no measure of what the solution may leave over
+    bool direction(const Vector& state, double eta, double scale, IterationCounts& counts) {
         Equilibrium& equilibrium = *equilibrium_;
-        double shift = 0.0;
+        double shift = 0.0, tolerance = eta;
         for (int attempt = 0; attempt < 8; ++attempt) {
             clock_->time(core::Part::assembly, [&] {
                 equilibrium.linearise(state, attempt > 0, shift);
@@ -163,13 +191,15 @@ private:
                     equilibrium.system().apply_unheld(prescribed_, product_);
                     right_ -= product_;
                     scene::project_free(equilibrium.system().layout(), right_);
+                    const double size = equilibrium.norm(right_);
+                    if (scale > 0.0 && size > scale) tolerance = std::max(eta * scale / size, 1e-3 * eta);
                 }
             });
             const SolveStatus prepared = clock_->time(core::Part::preparation, [&] { return linear_->prepare(equilibrium.system()); });
             SolveReport report;
             report.status = prepared;
             if (prepared == SolveStatus::converged) {
-                report = clock_->time(core::Part::solution, [&] { return linear_->solve(equilibrium.system(), right_, eta, step_); });
+                report = clock_->time(core::Part::solution, [&] { return linear_->solve(equilibrium.system(), right_, tolerance, step_); });
                 ++counts.linear_solves, counts.linear_iterations += report.iterations;
             }
             if (report.status == SolveStatus::converged) return true;
@@ -213,7 +243,7 @@ private:
     IterationParameters parameters_;
     double radius_;
     core::StageClock* clock_;
-    Vector residual_, right_, product_, step_, prescribed_;
+    Vector residual_, right_, product_, step_, prescribed_, before_;
 };
 
 }  // namespace fibrant::solver

@@ -6,6 +6,7 @@
 #include <fibrant/solver/block_cholesky.hpp>
 #include <fibrant/solver/chain_clusters.hpp>
 #include <fibrant/solver/coarse_couplings.hpp>
+#include <fibrant/solver/coarse_ties.hpp>
 #include <fibrant/solver/linear_solver.hpp>
 
 #include <Eigen/Geometry>
@@ -235,6 +236,7 @@ private:
             } else {
                 assembly::visit_couplings(system, visitor);
             }
+            if (lane == 0) couple_ties<Values>(modes_, system.layout(), held, add);
         });
     }
 

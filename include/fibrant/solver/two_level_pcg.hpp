@@ -6,6 +6,7 @@
 #include <fibrant/solver/conjugate_gradient.hpp>
 #include <fibrant/solver/rigid_coarse_space.hpp>
 #include <fibrant/solver/stabilised_biconjugate_gradient.hpp>
+#include <fibrant/solver/tied_chains.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -50,6 +51,7 @@ public:
         work.fine = Fine::none;
         work.status = work.factors.prepare(system, [&](Index chain, const Matrix& band) { work.coarse.add_chain(layout, held, chain, band); });
         if (work.status == SolveStatus::not_finite) return work.status;
+        work.ties.prepare(layout, [&](const Vector& r, Vector& z) { work.factors.apply(layout, r, z); });
         const SolveStatus coarse = work.coarse.finish(system);
         if (coarse != SolveStatus::converged) work.status = coarse;
         return work.status;
@@ -62,10 +64,7 @@ public:
             return {};
         }
         RigidCoarseSpace<>* space = &work.coarse;
-        const auto precondition = [&](const Vector& r, Vector& z) {
-            work.factors.apply(system.layout(), r, z);
-            space->add_correction(system.layout(), r, z);
-        };
+        const auto precondition = [&](const Vector& r, Vector& z) { apply(system.layout(), *space, r, z); };
         if constexpr (UnsymmetricSystem<System>)
             if (parameters_.unsymmetric && system.unsymmetric())
                 return stabilised_biconjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.biconjugate, x);
@@ -80,8 +79,7 @@ public:
     /// z = M^-1 r with the coarser space, for strategies that have more parts than this.
     template <assembly::LinearSystem System>
     void precondition(const System& system, const Vector& r, Vector& z) {
-        work_->factors.apply(system.layout(), r, z);
-        work_->coarse.add_correction(system.layout(), r, z);
+        apply(system.layout(), work_->coarse, r, z);
     }
 
     /// Clusters of the last analysis.
@@ -95,12 +93,22 @@ private:
     enum class Fine : std::uint8_t { none, ready, useless };
     struct Work {
         ChainFactors factors;
+        TiedChains ties;
         RigidCoarseSpace<> coarse, finer;
+        Vector forces;  // r as chains that are tied see it
         Fine fine = Fine::none;
         ConjugateGradientVectors vectors;
         BiconjugateVectors biconjugate;
         SolveStatus status = SolveStatus::not_finite;
     };
+    void apply(const scene::DofLayout& layout, RigidCoarseSpace<>& space, const Vector& r, Vector& z) {
+        Work& work = *work_;
+        const bool tied = !work.ties.empty();
+        if (tied) work.forces = r, work.ties.project_forces(layout, work.forces);
+        work.factors.apply(layout, tied ? work.forces : r, z);
+        space.add_correction(layout, tied ? work.forces : r, z);
+        if (tied) work.ties.project(layout, z);
+    }
     /// Forms the finer space of the present values; false if there is none.
     template <assembly::LinearSystem System>
     bool refine(const System& system) {

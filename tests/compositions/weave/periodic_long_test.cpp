@@ -6,7 +6,7 @@
 #include <fibrant/compositions/weave/settle.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/simulation/programme.hpp>
-#include <fibrant/solver/float_block_cholesky.hpp>
+#include <fibrant/solver/two_level_pcg.hpp>
 
 #include <doctest/doctest.h>
 
@@ -24,7 +24,7 @@ struct Cell {
     using Proximity = proximity::GridSearch;
     using Normal = law::LimitedGap<law::RegularisedPenalty>;
     using Friction = law::RegularisedCoulomb;
-    using Solver = solver::FloatBlockCholesky;
+    using Solver = solver::TwoLevelPcg;
     using Connections = connection::RigidBodies;
 };
 
@@ -62,6 +62,8 @@ TEST_CASE("the stress of a stretched cell is the same from the ties of its seams
     }
     auto parameters = model_parameters<Cell>(fabric, settle);
     parameters.iteration.residual_tolerance = 1e-8, parameters.iteration.step_tolerance = 1e-6, parameters.iteration.linear_tolerance = 1e-8;
+    // Normals turn once more after the last solution: what that changes has to be as little as what the solution left.
+    parameters.iteration.normal_step_tolerance = 1e-6, parameters.iteration.normal_limit = 40, parameters.iteration.inexact = 0.0;
     simulation::Simulator<Cell> simulator(periodic_fabric(fabric, CellDrive::strain, settle.tension_strain), parameters);
     simulator.start_from(file);
     std::remove(file.c_str());
@@ -88,9 +90,9 @@ TEST_CASE("the stress of a stretched cell is the same from the ties of its seams
     for (int i = 0; i < 3; ++i)
         std::printf("  %12.8f %12.8f %12.8f   %12.8f %12.8f %12.8f\n", seams(i, 0), seams(i, 1), seams(i, 2), inside(i, 0), inside(i, 1), inside(i, 2));
     std::printf("crimp %.5f\n", crimp_measures(simulator.snapshot(), fabric).warp);
-    // The residual that is left, 2e-7 of the forces, over the nodes: 6e-6. Tows that are kept from moving along themselves at their middles take a part of
-    // the shear: it is not compared.
-    for (int k = 0; k < 2; ++k) CHECK(std::abs(seams(k, k) - inside(k, k)) < 1e-5 * seams(k, k));
+    // Nothing but the seams holds the cell, so that shear agrees as well; passes stop when nothing moves by 1e-6 of a radius.
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) CHECK(std::abs(seams(i, j) - inside(i, j)) < 1e-6 * seams(0, 0));
     CHECK(seams(0, 0) == doctest::Approx(seams(1, 1)).epsilon(0.1));  // warp and weft are alike but for their fibres' places
     CHECK(crimp_measures(simulator.snapshot(), fabric).warp < crimp_before);
     const double bound = fabric.warp.axial_stiffness();

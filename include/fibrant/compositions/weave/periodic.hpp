@@ -22,7 +22,7 @@ inline constexpr std::array cell_strain_channels{"strain_x", "strain_y"};
 /// The overhang is half the spacing of the tows that are crossed, so that a tow is as long as the cell and the seams lie where no
 /// tow crosses: fibres touch their neighbours of the same tow there, on both sides of the seam alike, and no contact crosses it.
 /// Tows do not touch their images beside the cell; a cell of two tows each way knows the gap between neighbours from inside.
-/// Each tow keeps its mean place along itself at its middle, and all of them together their height: that carries no force.
+/// All of them together keep their place: that carries no force. While it settles, each tow keeps its mean place along itself.
 /// @param tension_strain  tension of a tow over its E A at amplitude 1 of the tension channel [1], > 0
 inline scene::Assembly periodic_fabric(const FabricParameters& fabric, CellDrive drive, double tension_strain) {
     fabric.validate();
@@ -49,12 +49,17 @@ inline scene::Assembly periodic_fabric(const FabricParameters& fabric, CellDrive
         height.ends.push_back({f, 0.25});
     }
     assembly.connect(height);
+    // Tows that have not met yet would drift along themselves. In a cell that is loaded their crimp holds them, and all of them together
+    // are held by a force that is nothing.
+    scene::AverageConnection all{.ends = {}, .body = ground, .tied = {true, true, false}};
     for (const Family family : {Family::warp, Family::weft})
         for (Index tow = 0; tow < fabric.tows(family); ++tow) {
             scene::AverageConnection middle{.ends = {}, .body = ground, .tied = {family == Family::warp, family == Family::weft, false}};
             for (Index k = 0; k < fabric.tow(family).fibres; ++k) middle.ends.push_back({fabric.fibre(family, tow, k), 0.5});
-            assembly.connect(middle);
+            if (drive == CellDrive::tension) assembly.connect(middle);
+            all.ends.insert(all.ends.end(), middle.ends.begin(), middle.ends.end());
         }
+    if (drive == CellDrive::strain) assembly.connect(all);
     force_pattern(assembly, fabric, groups);
     return assembly;
 }
