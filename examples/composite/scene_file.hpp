@@ -6,9 +6,7 @@
 
 #include <fibrant/compositions/composite/composite_parameters.hpp>
 
-#include <filesystem>
 #include <string>
-#include <vector>
 
 namespace composite {
 
@@ -23,8 +21,7 @@ struct Scene {
 };
 
 /// Throws std::invalid_argument, "file: section.key = value, but it must be bound".
-inline Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
-    example::TomlReader file(path, overrides);
+inline Scene read_scene(example::TomlReader& file, const std::string& path) {
     Scene scene;
     scene.weave = weave::read_fabric(file, path, false);
     parts::MatrixParameters& matrix = scene.matrix;
@@ -42,6 +39,8 @@ inline Scene read_scene(const std::string& path, const std::vector<std::string>&
     file.read("matrix", "clearance_over_radius", matrix.clearance_over_radius);
     file.read("matrix", "least_thickness_over_cover", matrix.least_thickness_over_cover);
     file.read("matrix", "bonding_factor", matrix.bonding_factor);
+    file.read("matrix", "section_factor", matrix.section_factor);
+    file.read("matrix", "lower_fibres", matrix.lower_fibres);
     std::string sides = "both", kind = "bending";
     bool clip = true;
     file.read("matrix", "sides", sides, {"both", "upper", "lower"});
@@ -55,7 +54,10 @@ inline Scene read_scene(const std::string& path, const std::vector<std::string>&
     file.read("load", "angle_deg", load.angle_deg);
     file.read("load", "increments", load.increments);
     file.read("load", "looseness", load.looseness);
-    file.read("load", "damping_over_stiffness", load.damping_over_stiffness);
+    file.read("load", "rest_damping", load.rest_damping);
+    file.read("load", "rest_share", load.rest_share);
+    file.read("load", "damping", load.damping);
+    file.read("load", "driven", load.driven);
     file.read("load", "settled", scene.settled);
     file.read("solver", "carried", scene.carried);
     file.refuse_unknown();

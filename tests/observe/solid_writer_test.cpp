@@ -96,6 +96,7 @@ TEST_CASE("outer faces are those of one cell, and a plane cuts cells in polygons
         CHECK(std::abs(area) == doctest::Approx(1.0));
     }
     CHECK(observe::solid_cuts(solid, 0, 5.0).empty());
+    CHECK(observe::svg_solid(solid, {1.0, 2.0}, 15.178661).find(">15.2<") != std::string::npos);  // room for so many digits
     const std::string picture = observe::svg_solid(solid, {1.0, 2.0}, 2.0);
     CHECK(picture.find("</svg>") != std::string::npos);
     CHECK(test::refusal([&] { observe::svg_solid(solid, {1.0}, 2.0); }).starts_with("svg_solid.values = 1"));

@@ -36,7 +36,6 @@ public:
     using Ties = typename Connections::template Of<B>;
     static constexpr bool has_solid = core::Active<Solid>;
     static_assert(connection::Connection<Ties, B>);
-    static_assert(!has_solid || std::is_same_v<Connections, connection::NoConnections>, "a model with a Solid has no Connections yet: its edges are driven");
     static constexpr Index element_unknowns = beam::Mesh<B>::element_unknowns;
 
     Equilibrium(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const B& beam, Contacts& contacts,

@@ -42,6 +42,7 @@ public:
     void place(const Vector& state) {
         for (Index v = 0; v < layout_.vectors(); ++v) layout_.value[core::at(v)] = state.segment<3>(3 * v);
         fibres_.place(state);
+        if (fibres_.layout().ties.size() != layout_.ties.size()) share_ties();
     }
 
     // The fibres' bands and points.
@@ -63,12 +64,14 @@ public:
         const auto is_free = [&](const scene::HeldVector& held) {
             return Vec3(held.free * x.segment<3>(3 * held.vector)) == x.segment<3>(3 * held.vector);
         };
-        if (std::all_of(layout_.held.begin(), layout_.held.end(), is_free)) {
+        if (layout_.ties.empty() && std::all_of(layout_.held.begin(), layout_.held.end(), is_free)) {
             apply_unheld(x, y);
         } else {
             free_ = x;
             scene::project_free(layout_, free_);
             apply_unheld(free_, y);
+            scene::add_motion_stiffness(layout_, free_, y);
+            scene::complete_ties(layout_, x, y);
         }
         for (const scene::HeldVector& held : layout_.held) {
             const Vec3 whole = x.segment<3>(3 * held.vector);
@@ -85,7 +88,7 @@ public:
     void chain_band(Index chain, Matrix& blocks) const {
         if (chain < core::count(fibres_.layout().chains)) return fibres_.chain_band(chain, blocks);
         blocks.resize(3 * solid_->nodes(), 3);
-        for (Index n = 0; n < solid_->nodes(); ++n) blocks.block<3, 3>(3 * n, 0) = solid_->diagonal(n);
+        for (Index n = 0; n < solid_->nodes(); ++n) blocks.block<3, 3>(3 * n, 0) = solid_->diagonal(n) + support(n) * Mat3::Identity();
         for (const scene::HeldVector& held : layout_.held) {
             const Index n = held.vector - solid_->first_vector();
             if (n < 0) continue;
@@ -95,6 +98,16 @@ public:
     void node_blocks(Index chain, Matrix& blocks) const {
         if (chain < core::count(fibres_.layout().chains)) return fibres_.node_blocks(chain, blocks);
         chain_band(chain, blocks);
+    }
+
+    /// see(i, j, block) of the solids' nodes, j <= i, in order, with what stands for their ties.
+    template <class See>
+    void visit_solid_blocks(const See& see) const {
+        if (supports_.empty()) return solid_->visit_blocks(see);
+        solid_->visit_blocks([&](Index i, Index j, const Mat3& stiffness) {
+            if (i == j) see(i, j, Mat3(stiffness + support(i) * Mat3::Identity()));
+            else see(i, j, stiffness);
+        });
     }
 
     template <class Terms>
@@ -109,12 +122,24 @@ public:
     }
 
 private:
+    double support(Index node) const noexcept { return supports_.empty() ? 0.0 : supports_[core::at(node)]; }
+    /// The fibres' part of ties, as supports only: projections are those of the whole.
+    void share_ties() {
+        supports_.assign(core::at(solid_->nodes()), 0.0);
+        fibres_.layout().ties = layout_.ties;
+        for (scene::Tie& tie : fibres_.layout().ties) {
+            for (const Index vector : tie.vectors)
+                if (vector >= solid_->first_vector()) supports_[core::at(vector - solid_->first_vector())] += tie.support;
+            std::erase_if(tie.vectors, [&](Index vector) { return vector >= solid_->first_vector(); });
+            tie.weights.resize(tie.vectors.size());  // ends of fibres come first
+        }
+    }
     /// Blocks of the solid, from node n with node n - `apart` or one before it on; then what bonds couple.
     template <class Terms>
     void visit_solid(Terms& terms, Index apart) const {
         const Index first = solid_->first_vector();
         Matrix block = Matrix::Zero(6, 6), own = Matrix::Zero(3, 3);
-        solid_->visit_blocks([&](Index i, Index j, const Mat3& stiffness) {
+        visit_solid_blocks([&](Index i, Index j, const Mat3& stiffness) {
             if (i - j < apart) return;
             if (i == j) {
                 const std::array<Index, 1> vector{first + i};
@@ -144,6 +169,7 @@ private:
     Fibres fibres_;
     const Solid* solid_;
     scene::DofLayout layout_;
+    std::vector<double> supports_;  // of tied nodes of the solid; empty if there are no ties
     mutable Vector free_;  // scratch of a product: one system serves one thread at a time
 };
 

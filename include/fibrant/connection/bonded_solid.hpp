@@ -25,8 +25,12 @@ public:
     struct Parameters {
         typename Element::Parameters element{};
         double bonding_factor = 1.0;  ///< on the stiffness of bonds [1], > 0
+        double section_factor = 0.0;  ///< on that of bonds of sections, which stiffen the solid across fibres [1], >= 0; 0: none
         [[no_unique_address]] typename Debonding::Parameters debonding{};
-        void validate() const { core::require_positive("BondedSolid.bonding_factor", bonding_factor); }
+        void validate() const {
+            core::require_positive("BondedSolid.bonding_factor", bonding_factor);
+            core::require_not_negative("BondedSolid.section_factor", section_factor);
+        }
     };
     explicit BondedSolid(const Parameters& parameters)
         : parameters_{core::validated(parameters)}, element_{parameters.element}, debonding_{parameters.debonding} {}
@@ -56,7 +60,7 @@ public:
             for (const Index node : cell.nodes) used[core::at(node)] = true;
         for (std::size_t k = 0; k < used.size(); ++k)
             if (!used[k]) core::refuse("Solid.nodes", std::to_string(k), "a node of a cell: nothing would hold it");
-        bonds_ = find_bonds(mesh, assembly.solids(), mesh.start_state(), parameters_.bonding_factor);
+        bonds_ = find_bonds(mesh, assembly.solids(), mesh.start_state(), parameters_.bonding_factor, parameters_.section_factor);
         carriers_ = find_carriers(mesh, assembly.solids(), bonds_, mesh.start_state());
         broken_.assign(core::Active<Debonding> ? bonds_.size() : 0, false);
         find_pattern();
@@ -140,7 +144,7 @@ public:
             for (int k = 0; k < 8; ++k) at(forces, bonds_[b].nodes[core::at(k)]) -= bonds_[b].weights[k] * force;
         }
     }
-    /// k_b (x_f - sum w_J X_J): what the solid takes, and the fibre's internal force [force].
+    /// k_b (x_f - sum w_J X_J): what the solid takes, and the fibre's internal force [force; of a section's bond force * length].
     Vec3 bond_force(const Vector& state, std::size_t b) const {
         const Bond& bond = bonds_[b];
         Vec3 gap = state.segment<3>(3 * bond.vector);
@@ -217,7 +221,8 @@ public:
         Index count = 0;
         if constexpr (core::Active<Debonding>) {
             for (std::size_t b = 0; b < bonds_.size(); ++b)
-                if (!broken_[b] && debonding_.breaks(bonds_[b], bond_force(state, b).norm())) broken_[b] = true, ++count;
+                if (bonds_[b].section ? !broken_[b] && broken_[b - 1] : !broken_[b] && debonding_.breaks(bonds_[b], bond_force(state, b).norm()))
+                    broken_[b] = true, ++count;  // with the bond of the centre go those of the section, which follow it
             if (count > 0) set_constant();
         }
         return count;

@@ -93,9 +93,11 @@ std::vector<Carrier> find_carriers(const beam::Mesh<B>& mesh, const std::vector<
     for (const scene::Solid& solid : solids) first.push_back(first.back() + core::count(solid.cells));
     std::vector<Vec3> places;
     std::vector<Index> own(core::at(mesh.layout().vectors()), -1);
-    for (Index b = 0; b < core::count(bonds); ++b) {
-        places.push_back(state.segment<3>(3 * bonds[core::at(b)].vector));
-        own[core::at(bonds[core::at(b)].vector)] = b;
+    std::vector<const Bond*> of_place;
+    for (const Bond& bond : bonds) {
+        if (bond.section) continue;
+        own[core::at(bond.vector)] = core::count(places);
+        places.push_back(state.segment<3>(3 * bond.vector)), of_place.push_back(&bond);
     }
     const detail::NearestPoint nearest(places);
     std::vector<Carrier> carriers(core::at(mesh.layout().vectors()));
@@ -105,7 +107,7 @@ std::vector<Carrier> find_carriers(const beam::Mesh<B>& mesh, const std::vector<
             const Vec3 place = state.segment<3>(3 * position);
             const Index b = own[core::at(position)] >= 0 ? own[core::at(position)] : nearest.find(place);
             if (b < 0) continue;
-            const Bond& bond = bonds[core::at(b)];
+            const Bond& bond = *of_place[core::at(b)];
             const solid::CellNodes nodes = solid::cell_nodes(solids[core::at(bond.solid)], bond.cell);
             const solid::ShapeGradient gradient = solid::shape_derivatives(bond.point) * solid::jacobian(nodes, bond.point).inverse();
             for (Index v = 0; v < B::vectors_per_node; ++v) {

@@ -33,18 +33,24 @@ template <beam::BeamElement B>
 class BodyTies {
 public:
     BodyTies(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const Channels& channels) : motion_{assembly, channels} {
-        std::vector<char> taken(core::at(mesh.layout().vectors()), 0);
+        const SolidPlaces solids(assembly, mesh.start_state());
+        std::vector<char> taken(core::at(solids.state.size() / 3), 0);
         for (const scene::Hold& hold : assembly.holds())
             taken[core::at(mesh.node_vector(hold.at.fibre, station_node(mesh, hold.at), static_cast<Index>(hold.vector)))] = 1;
+        for (const scene::SolidHold& hold : assembly.solid_holds())
+            for (const Index node : hold.nodes) taken[core::at(solids.vector({hold.solid, node}))] = 1;
         const auto take = [&](Index vector) {
             if (taken[core::at(vector)] != 0) core::refuse("connection", "vector " + std::to_string(vector), "of a nodal vector that is neither held nor tied twice");
             taken[core::at(vector)] = 1;
         };
-        const auto finish = [&](scene::Tie& tie, const Condition& condition, Index fibre) {
-            const beam::MeshFibre& of = mesh.fibre(fibre);
+        const auto finish = [&](scene::Tie& tie, const Condition& condition, double support) {
             tie.first = scalars_, scalars_ += tie.count;
-            tie.support = of.material.young_modulus * of.section.area() / of.length();
+            tie.support = support;
             ties_.push_back(tie), conditions_.push_back(condition);
+        };
+        const auto fibre_support = [&](Index fibre) {
+            const beam::MeshFibre& of = mesh.fibre(fibre);
+            return of.material.young_modulus * of.section.area() / of.length();
         };
         for (const scene::AverageConnection& average : assembly.averages()) {
             if (beam::TurningSections<B> && average.vector != scene::NodeVector::position)
@@ -53,7 +59,7 @@ public:
             scene::Tie tie;
             Condition condition;
             condition.owner = average.body, condition.director = average.vector != scene::NodeVector::position;
-            condition.root = std::sqrt(static_cast<double>(average.ends.size()));
+            condition.root = std::sqrt(static_cast<double>(average.ends.size() + average.nodes.size()));
             tie.count = 0;
             for (int k = 0; k < 3; ++k) {
                 if (!average.tied[core::at(k)]) continue;
@@ -61,12 +67,11 @@ public:
                 condition.displacement[tie.count++] = average.displacement[k];
             }
             if (!average.displacement.isZero(0.0)) condition.channel = channels.find(average.channel);
-            for (const scene::Station& at : average.ends) {
-                tie.vectors.push_back(mesh.node_vector(at.fibre, station_node(mesh, at), static_cast<Index>(average.vector)));
-                tie.weights.push_back(1.0 / condition.root);
-                take(tie.vectors.back());
-            }
-            finish(tie, condition, average.ends.front().fibre);
+            for (const scene::Station& at : average.ends) tie.vectors.push_back(mesh.node_vector(at.fibre, station_node(mesh, at), static_cast<Index>(average.vector)));
+            for (const scene::SolidNode& at : average.nodes) tie.vectors.push_back(solids.vector(at));
+            tie.weights.assign(tie.vectors.size(), 1.0 / condition.root);
+            for (const Index vector : tie.vectors) take(vector);
+            finish(tie, condition, average.ends.empty() ? solids.support(assembly, average.nodes.front()) : fibre_support(average.ends.front().fibre));
         }
         for (const scene::PeriodicPair& pair : assembly.pairs())
             for (Index v = 0; v < B::vectors_per_node; ++v) {
@@ -77,10 +82,10 @@ public:
                 tie.vectors = {mesh.node_vector(pair.first.fibre, station_node(mesh, pair.first), v), mesh.node_vector(pair.last.fibre, station_node(mesh, pair.last), v)};
                 tie.weights = {-1.0 / condition.root, 1.0 / condition.root};
                 for (const Index vector : tie.vectors) take(vector);
-                finish(tie, condition, pair.first.fibre);
+                finish(tie, condition, fibre_support(pair.first.fibre));
             }
         find_groups();
-        anchor(mesh.start_state());
+        anchor(solids.state);
     }
 
     /// Conditions count from this state from now on, with the bodies where they were at the start.
@@ -220,6 +225,28 @@ public:
     }
 
 private:
+    /// Where the nodes of solids are among all nodal vectors: after those of the fibres.
+    struct SolidPlaces {
+        SolidPlaces(const scene::Assembly& assembly, const Vector& fibres) {
+            Index nodes = 0;
+            for (const scene::Solid& solid : assembly.solids()) first.push_back(fibres.size() / 3 + nodes), nodes += core::count(solid.nodes);
+            state.resize(fibres.size() + 3 * nodes);
+            state.head(fibres.size()) = fibres;
+            for (std::size_t s = 0; s < first.size(); ++s)
+                for (Index n = 0; n < core::count(assembly.solids()[s].nodes); ++n) state.segment<3>(3 * (first[s] + n)) = assembly.solids()[s].nodes[core::at(n)];
+        }
+        Index vector(const scene::SolidNode& at) const noexcept { return first[core::at(at.solid)] + at.node; }
+        /// E times the size of a cell next to the node: what a cell gives it [force / length].
+        static double support(const scene::Assembly& assembly, const scene::SolidNode& at) {
+            const scene::Solid& solid = assembly.solids()[core::at(at.solid)];
+            for (const auto& cell : solid.cells)
+                if (std::find(cell.begin(), cell.end(), at.node) != cell.end())
+                    return solid.material.young_modulus * (solid.nodes[core::at(cell[6])] - solid.nodes[core::at(cell[0])]).norm();
+            return 0.0;
+        }
+        std::vector<Index> first;
+        Vector state;
+    };
     struct Condition {
         Index owner = -1, channel = -1;
         bool periodic = false, director = false;

@@ -97,7 +97,8 @@ inline std::string svg_solid(const SolidSnapshot& solid, const std::vector<doubl
     for (int k = 0; k < 20; ++k)  // what the colours mean
         body += "<rect x=\"" + std::to_string(static_cast<int>(parameters.width) - 320 + 12 * k) + "\" y=\"" + rounded(height - 30.0, 1) +
                 "\" width=\"12\" height=\"12\" fill=\"" + detail::heat((k + 0.5) / 20.0).text() + "\"/>\n";
-    body += detail::svg_text(parameters.width - 336.0, height - 19.0, "0") + detail::svg_text(parameters.width - 74.0, height - 19.0, core::text(most));
+    const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(most))), 0, 300);  // three digits
+    body += detail::svg_text(parameters.width - 336.0, height - 19.0, "0") + detail::svg_text(parameters.width - 74.0, height - 19.0, rounded(most, decimals));
     body += detail::svg_scale_bar(24, height - 20, 0.2 * parameters.width, scale, parameters.unit);
     return detail::svg_page(parameters.width, height, "path{stroke-width:.4}\n", body, parameters.title);
 }

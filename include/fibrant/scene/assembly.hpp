@@ -200,8 +200,13 @@ public:
 
     void connect(AverageConnection connection) {
         if (connection.body < 0 || connection.body >= core::count(bodies_)) core::refuse("AverageConnection.body", std::to_string(connection.body), "a body of this assembly");
-        if (connection.ends.empty()) core::refuse("AverageConnection.ends", "none", "at least one");
+        if (connection.ends.empty() && connection.nodes.empty()) core::refuse("AverageConnection.ends", "none", "at least one");
         for (const Station& at : connection.ends) check(at);
+        for (const SolidNode& at : connection.nodes)
+            if (at.solid < 0 || at.solid >= core::count(solids_) || at.node < 0 || at.node >= core::count(solids_[core::at(at.solid)].nodes))
+                core::refuse("AverageConnection.nodes", std::to_string(at.solid) + ":" + std::to_string(at.node), "a node of a solid of this assembly");
+        if (!connection.nodes.empty() && connection.vector != NodeVector::position)
+            core::refuse("AverageConnection.vector", "a director", "the position, where nodes of solids are tied");
         const double error = (connection.directions.transpose() * connection.directions - Mat3::Identity()).cwiseAbs().maxCoeff();
         core::require(error < 1e-9, "AverageConnection.directions", error, "orthonormal");
         averages_.push_back(std::move(connection));

@@ -36,10 +36,17 @@ struct RigidBody {
     std::array<Coordinate, 3> translation{}, rotation{};
 };
 
+/// A node of a solid of the scene.
+struct SolidNode {
+    Index solid = 0, node = 0;
+};
+
 /// Ties the mean of nodal vectors to a body, in up to three directions that turn with it (Durville, eq. 13): single ends
-/// move as they like. One end alone is hinged; one end whose directors are tied too is clamped.
+/// move as they like. One end alone is hinged; one end whose directors are tied too is clamped. Nodes of solids have positions
+/// only, and count in the mean as ends of fibres do.
 struct AverageConnection {
     std::vector<Station> ends{};
+    std::vector<SolidNode> nodes{};
     NodeVector vector = NodeVector::position;
     Index body = -1;
     Mat3 directions = Mat3::Identity();               ///< columns at the start, orthonormal; they turn with the body

@@ -74,7 +74,8 @@ void add_solid(observe::Snapshot& shot, const Solid& solid, const Vector& state)
         out.strain.push_back(mean.strain), out.stress.push_back(mean.stress);
     }
     for (std::size_t b = 0; b < solid.bonds().size(); ++b)
-        out.bonds.push_back({state.segment<3>(3 * solid.bonds()[b].vector), solid.holds(b) ? solid.bond_force(state, b) : Vec3(Vec3::Zero()), solid.holds(b)});
+        if (!solid.bonds()[b].section)
+            out.bonds.push_back({state.segment<3>(3 * solid.bonds()[b].vector), solid.holds(b) ? solid.bond_force(state, b) : Vec3(Vec3::Zero()), solid.holds(b)});
 }
 
 }  // namespace fibrant::simulation

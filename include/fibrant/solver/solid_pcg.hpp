@@ -6,9 +6,12 @@
 #include <fibrant/solver/block_cholesky.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -27,7 +30,11 @@ concept SystemWithSolid = assembly::LinearSystem<T> && requires(const T system) 
 ///
 /// In M_f and A_s fibres and solids are held by their bonds to the other at rest: right for motions that differ from fibre to
 /// solid, and far too stiff for those in which both move together, the more so the stiffer the bonds. Those C has; alone
-/// beside M_f it would be too stiff where fibres that hardly stretch stay behind.
+/// beside M_f it would be too stiff where fibres that hardly stretch stay behind. C^T A C is summed and factored once an
+/// analysis: it changes little from one iteration of Newton's method to the next.
+///
+/// Where nodes are tied, the parts have the supports of the ties in their place, and what a tie leaves free, the motions of free
+/// bodies, would be held by them: C^T A C is let go along these motions.
 class SolidPcg {
 public:
     struct Parameters {
@@ -46,6 +53,7 @@ public:
     void analyse(const System& system) {
         fibres_.analyse(system.fibres());
         find_pattern(system);
+        work_->summed = false;
     }
     template <SystemWithSolid System>
     SolveStatus prepare(const System& system) {
@@ -58,13 +66,16 @@ public:
             assert(whole);
         }
         judge(work.alone.factor());
-        if (parameters_.carried) {
+        if (parameters_.carried && !work.summed) {
             if (!sum(system)) {  // contacts that the analysis did not have
                 find_pattern(system);
                 [[maybe_unused]] const bool complete = sum(system);
                 assert(complete);
             }
-            judge(work.together.factor());
+            const auto pivots = work.together.factor();
+            work.summed = pivots.finite && pivots.negative == 0;
+            judge(pivots);
+            if (pivots.finite) let_go(system);
         }
         return work.status;
     }
@@ -83,18 +94,10 @@ public:
             work.motion = r.tail(3 * nodes);
             z.head(3 * first) = work.correction;
             if (parameters_.carried) {
-                work.together_motion = work.motion;
-                for (Index v = 0; v < first; ++v) {
-                    const auto* carrier = carrier_of(system, v);
-                    if (carrier == nullptr) continue;
-                    const auto& cell = system.solid().cell(carrier->cell);
-                    for (int k = 0; k < 8; ++k) work.together_motion.segment<3>(3 * cell[core::at(k)]) += carrier->weights[k] * r.segment<3>(3 * v);
-                }
-                for (const scene::HeldVector& held : system.layout().held) {
-                    const Index n = held.vector - first;
-                    if (n >= 0) work.together_motion.segment<3>(3 * n) = (held.free * work.together_motion.segment<3>(3 * n)).eval();
-                }
+                gather(system, r, work.together_motion);
                 work.together.solve(work.together_motion);
+                if (work.freed.cols() > 0)
+                    work.together_motion += work.freed * work.freed_factor.solve(work.freed_supports.transpose() * work.together_motion);
                 core::parallel_for(first, [&](Index v) {
                     const auto* carrier = carrier_of(system, v);
                     if (carrier == nullptr) return;
@@ -120,6 +123,9 @@ private:
         BlockCholesky<double> alone{SmallPivot::magnitude}, together{SmallPivot::magnitude};  // A_s and C^T A C
         std::vector<std::uint8_t> held;  // vectors of fibres that are held, and not carried
         Vector residual, correction, motion, together_motion;
+        bool summed = false;                  // C^T A C since the last analysis
+        Matrix freed, freed_supports;         // G = K^-1 W and W, of the motions that supports must not hold
+        Eigen::LDLT<Matrix> freed_factor;     // of U^T D U - W^T G
         ConjugateGradientVectors vectors;
         BiconjugateVectors biconjugate;
         SolveStatus status = SolveStatus::not_finite;
@@ -138,6 +144,65 @@ private:
     void mark_held(const System& system) {
         work_->held.assign(core::at(system.solid().first_vector()), 0);
         for (const scene::HeldVector& held : system.fibres().layout().held) work_->held[core::at(held.vector)] = 1;
+    }
+
+    /// C^T r
+    template <class System>
+    void gather(const System& system, const Vector& r, Vector& motion) const {
+        const Index first = system.solid().first_vector();
+        motion = r.tail(3 * system.solid().nodes());
+        for (Index v = 0; v < first; ++v) {
+            const auto* carrier = carrier_of(system, v);
+            if (carrier == nullptr) continue;
+            const auto& cell = system.solid().cell(carrier->cell);
+            for (int k = 0; k < 8; ++k) motion.segment<3>(3 * cell[core::at(k)]) += carrier->weights[k] * r.segment<3>(3 * v);
+        }
+        for (const scene::HeldVector& held : system.layout().held) {
+            const Index n = held.vector - first;
+            if (n >= 0) motion.segment<3>(3 * n) = (held.free * motion.segment<3>(3 * n)).eval();
+        }
+    }
+
+    /// K - W (U^T D U)^-1 W^T in the place of K = C^T A C: D the supports of tied scalars, U how these may move together,
+    /// W = C^T B^T D U. Its inverse is K^-1 + G (U^T D U - W^T G)^-1 G^T, and G^T r = W^T K^-1 r.
+    template <class System>
+    void let_go(const System& system) {
+        Work& work = *work_;
+        const scene::DofLayout& layout = system.layout();
+        Index modes = 0;
+        for (const scene::TiedMotion& motion : layout.motions) modes += motion.modes.cols();
+        work.freed.resize(0, 0);
+        if (modes == 0) return;
+        Vector supports(scene::tied_scalars(layout));
+        for (const scene::Tie& tie : layout.ties) {
+            const double length = layout.length[core::at(tie.vectors.front())];
+            supports.segment(tie.first, tie.count).setConstant(tie.support * length * length);
+        }
+        const Index size = 3 * system.solid().nodes();
+        work.freed.resize(size, modes), work.freed_supports.resize(size, modes);
+        Matrix inner = Matrix::Zero(modes, modes);
+        Index first = 0;
+        Vector full, column;
+        for (const scene::TiedMotion& motion : layout.motions) {
+            const Index own = motion.modes.cols();
+            Matrix weighted = motion.modes;
+            for (Index k = 0; k < weighted.rows(); ++k) weighted.row(k) *= supports[motion.scalars[core::at(k)]];
+            inner.block(first, first, own, own) = motion.modes.transpose() * weighted;
+            for (Index m = 0; m < own; ++m) {
+                Vector scalars = Vector::Zero(supports.size());
+                for (Index k = 0; k < weighted.rows(); ++k) scalars[motion.scalars[core::at(k)]] = weighted(k, m);
+                full.setZero(layout.unknowns());
+                scene::add_tied(layout, scalars, full);
+                gather(system, full, column);
+                work.freed_supports.col(first + m) = column;
+                work.together.solve(column);
+                work.freed.col(first + m) = column;
+            }
+            first += own;
+        }
+        inner -= work.freed_supports.transpose() * work.freed;
+        work.freed_factor.compute(inner);
+        if (work.freed_factor.info() != Eigen::Success || !work.freed_factor.isPositive() || !(work.freed_factor.vectorD().minCoeff() > 0.0)) work.freed.resize(0, 0);
     }
 
     /// The cells that carry the vectors of a term, each once.
@@ -207,7 +272,7 @@ private:
         const assembly::HeldProjector held(system.layout());
         const Index first = system.solid().first_vector();
         matrix.clear();
-        system.solid().visit_blocks([&](Index i, Index j, Mat3 block) {
+        system.visit_solid_blocks([&](Index i, Index j, Mat3 block) {
             held.project(first + i, first + j, block);
             const auto entry = matrix.entry(static_cast<int>(i), static_cast<int>(j));
             if (entry.value == nullptr) complete = false;
@@ -288,7 +353,7 @@ private:
         work_->together.clear();
         Sum sum{*this, system, work_->together, assembly::HeldProjector(system.layout()), true, {}, {}, {}, {}};
         const auto& solid = system.solid();
-        solid.visit_blocks([&](Index i, Index j, const Mat3& block) { sum.add(i, j, block); });
+        system.visit_solid_blocks([&](Index i, Index j, const Mat3& block) { sum.add(i, j, block); });
         system.fibres().visit(sum);
         for (std::size_t b = 0; b < solid.bonds().size(); ++b) {  // between a fibre and the solid
             if (!solid.holds(b)) continue;

@@ -21,6 +21,8 @@ struct MatrixParameters {
     double grading = 1.5;                          ///< outermost over innermost cell [1]
     Index smoothing = 1;                           ///< passes over the inner faces
     double bonding_factor = 1.0;                   ///< on the bonds' stiffness [1], > 0
+    double section_factor = 0.0;                   ///< on that of bonds of sections [1], >= 0; 0: none
+    bool lower_fibres = false;                     ///< fibres' Young's modulus is lowered by the matrix's, which fills their place too
     solid::Sides sides = solid::Sides::both;
     solid::Crossing crossing = solid::Crossing::clip;
 
@@ -40,6 +42,7 @@ struct MatrixParameters {
         core::require_between(name + "grading", grading, 0.01, 100.0);
         core::require_at_least(name + "smoothing", smoothing, 0);
         core::require_positive(name + "bonding_factor", bonding_factor);
+        core::require_not_negative(name + "section_factor", section_factor);
     }
 };
 
@@ -56,14 +59,20 @@ struct LoadParameters {
     double angle_deg = 90.0;          ///< between the edges in bending and twisting [degree]
     Index increments = 20;            ///< >= 1
     double looseness = 5.0;           ///< on the tolerances of passes, as where a fabric comes to rest: paths are a means [1], in [1, 1000]
-    double damping_over_stiffness = 1e-6;  ///< of a spring from every node to where it was, over E A / l of an element [1], >= 0
+    bool driven = false;              ///< edges follow rigid motions node by node; else bodies take the means of their parts along
+    double rest_damping = 0.4;        ///< of a spring from every node to where it was, until the fabric is at rest between the layers, over the
+                                      ///< stiffness that the tension of settling gave a node [1], >= 0
+    double rest_share = 1e-3;         ///< of the forces that it may hold there [1], in (0, 1)
+    double damping = 1e-3;            ///< the same spring under load [1], >= 0
 
     void validate() const {
         core::require_finite("LoadParameters.strain", strain);
         core::require_between("LoadParameters.angle_deg", angle_deg, -180.0, 180.0);
         core::require_at_least("LoadParameters.increments", increments, 1);
         core::require_between("LoadParameters.looseness", looseness, 1.0, 1000.0);
-        core::require_not_negative("LoadParameters.damping_over_stiffness", damping_over_stiffness);
+        core::require_not_negative("LoadParameters.rest_damping", rest_damping);
+        core::require(rest_share > 0.0 && rest_share < 1.0, "LoadParameters.rest_share", rest_share, "> 0 and < 1");
+        core::require_not_negative("LoadParameters.damping", damping);
     }
 };
 

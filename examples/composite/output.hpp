@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What a run of a composite writes beside the table of increments: curve, pictures, summary.
+
+#include "../support/example.hpp"
+#include "../weave/output.hpp"
+
+#include <fibrant/compositions/composite/composite.hpp>
+#include <fibrant/observe/solid_writer.hpp>
+#include <fibrant/observe/svg_curves.hpp>
+#include <fibrant/observe/svg_solid.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace composite {
+
+namespace cloth = fibrant::compositions::weave;
+namespace parts = fibrant::compositions::composite;
+namespace observe = fibrant::observe;
+using fibrant::Index;
+
+/// Name of what a load does, of what it takes, and both after an increment.
+struct CurvePoint {
+    std::string x_name, y_name;
+    double x, y;
+};
+inline CurvePoint curve_point(const parts::LoadParameters& load, double amplitude, const fibrant::simulation::Wrench& edge) {
+    switch (load.load) {
+        case parts::LoadCase::bending: return {"angle_deg", "moment", amplitude * load.angle_deg, edge.moment.y()};
+        case parts::LoadCase::twisting: return {"angle_deg", "torque", amplitude * load.angle_deg, edge.moment.x()};
+        case parts::LoadCase::shear: return {"shear", "force", amplitude * load.strain, edge.force.y()};
+        default: return {"strain", "force", amplitude * load.strain, edge.force.x()};
+    }
+}
+
+/// Sees increments before the others do: its last one, the solid's ParaView files, the curve of the load.
+class Watch {
+public:
+    explicit Watch(const example::Output& output) : folder_{output.folder} {
+        if (output.paraview) series_.emplace(output.folder / "paraview", output.start());
+    }
+    void reported(const fibrant::simulation::IncrementReport& increment) { last_ = &increment; }
+    void accepted(const observe::Snapshot& snapshot) {
+        if (series_) series_->accepted(snapshot);
+    }
+    /// Columns of the table of increments.
+    std::vector<observe::Column> columns(const CurvePoint& point, const fibrant::simulation::Wrench& edge) {
+        if (last_->stage == "load") x_name_ = point.x_name, y_name_ = point.y_name, line_.points.emplace_back(point.x, point.y);
+        const fibrant::simulation::EnergyBalance& energy = last_->energy;
+        return {{point.x_name, point.x}, {"moment_x", edge.moment.x()}, {"moment_y", edge.moment.y()}, {"moment_z", edge.moment.z()},
+                {"force_x", edge.force.x()}, {"force_y", edge.force.y()}, {"force_z", edge.force.z()},
+                {"linear_iterations", last_->counts.linear_iterations}, {"linear_solves", last_->counts.linear_solves},
+                {"elastic", energy.elastic}, {"contact", energy.contact}, {"external", energy.external}, {"dissipated", energy.dissipated},
+                {"damped", energy.damped}, {"rearranged", energy.rearranged}, {"energy_error", energy.error()},
+                {"displacement", last_->displacement}, {"fraction", last_->fraction}};
+    }
+    void write_curve(const std::string& title) const {
+        if (line_.points.empty()) return;
+        observe::write_file(folder_ / "curve.svg", observe::curves_svg({.title = title, .x_label = x_name_, .y_label = y_name_, .lines = {line_}}));
+    }
+
+private:
+    std::filesystem::path folder_;
+    std::optional<observe::SolidWriter> series_;
+    const fibrant::simulation::IncrementReport* last_ = nullptr;
+    std::string x_name_, y_name_;
+    observe::PlotLine line_;
+};
+
+/// view.svg of the fibres, solid.svg of the matrix with stresses, slices through both.
+inline void write_pictures(const example::Output& output, const observe::Snapshot& snapshot, const cloth::FabricParameters& fabric) {
+    if (!output.pictures) return;
+    observe::ViewParameters view;
+    view.palette = cloth::fabric_palette(fabric), view.unit = output.unit, view.azimuth = -65.0, view.elevation = 22.0;
+    observe::write_file(output.folder / "view.svg", observe::svg_view(snapshot, view));
+    std::vector<double> values;
+    for (const fibrant::Mat3& stress : snapshot.solid.stress) values.push_back(observe::von_mises(stress));
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    view.title = "von Mises stress";
+    const double most = std::max(sorted[sorted.size() * 99 / 100], 1e-300);
+    observe::write_file(output.folder / "solid.svg", observe::svg_solid(snapshot.solid, values, most, view));
+    for (const Index axis : {Index{0}, Index{1}}) {
+        observe::SliceParameters slice;
+        slice.axis = axis, slice.unit = output.unit, slice.palette = view.palette;
+        slice.position = fabric.tow_position(axis == 0 ? cloth::Family::weft : cloth::Family::warp, axis == 0 ? fabric.weft_tows / 2 : fabric.warp_tows / 2);
+        observe::write_file(output.folder / (axis == 0 ? "slice_x.svg" : "slice_y.svg"), observe::svg_slice(snapshot, slice));
+    }
+}
+
+/// summary.json
+template <class Simulator>
+void write_summary(const example::Output& output, const Simulator& simulator, const fibrant::simulation::Report& report, const CurvePoint& point, double radius) {
+    const auto& solid = simulator.equilibrium().solid();
+    const auto start = std::find_if(report.increments.begin(), report.increments.end(), [](const auto& increment) { return increment.stage == "load"; });
+    const fibrant::simulation::EnergyBalance none, &before = start == report.increments.begin() || report.increments.empty() ? none : (start - 1)->energy;
+    const auto number = [](auto value) { return static_cast<double>(value); };
+    example::write_summary(output, report, radius, {{"fibres", number(simulator.mesh().fibre_count())},
+                           {"unknowns", number(simulator.state().size())}, {"solid_unknowns", number(3 * solid.nodes())},
+                           {"cells", number(solid.cells())}, {"bonds", number(solid.bonds().size())}, {point.x_name, point.x}, {point.y_name, point.y},
+                           {"linear_iterations", number(report.counts.linear_iterations)},
+                           {"search_seconds", report.seconds[0]}, {"contact_seconds", report.seconds[1]}, {"assembly_seconds", report.seconds[2]},
+                           {"preparation_seconds", report.seconds[3]}, {"solution_seconds", report.seconds[4]}, {"output_seconds", report.seconds[5]},
+                           {"elastic_before_load", before.elastic}, {"external_before_load", before.external}, {"dissipated_before_load", before.dissipated},
+                           {"elastic", report.energy.elastic}, {"external", report.energy.external}, {"dissipated", report.energy.dissipated},
+                           {"damped", report.energy.damped}, {"energy_error", report.energy.error()},
+                           {"cpu_seconds", weave::cpu_seconds()}, {"peak_memory_bytes", number(weave::peak_memory_bytes())}});
+}
+
+}  // namespace composite
