@@ -128,6 +128,7 @@
 
 #include <fibrant/compositions/composite/composite.hpp>
 #include <fibrant/compositions/composite/composite_parameters.hpp>
+#include <fibrant/compositions/composite/edges.hpp>
 
 #include <fibrant/compositions/knot/overhand_knot.hpp>
 #include <fibrant/compositions/mat/random_mat.hpp>
