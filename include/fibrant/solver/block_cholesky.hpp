@@ -152,7 +152,7 @@ public:
         // What fronts leave to their parents lies on two stacks that levels of the tree take by turns: children lie on top of one
         // when their parent puts its own part on the other. One allocation, where each would get its pages cleared.
         std::array<std::unique_ptr<Real[]>, 2> stack;
-        for (std::size_t k : {0, 1}) stack[k] = std::make_unique_for_overwrite<Real[]>(core::at(stack_size_[k]));
+        for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) stack[k] = std::make_unique_for_overwrite<Real[]>(core::at(stack_size_[k]));
         const auto update_of = [&](std::size_t s) {
             return Eigen::Map<RealMatrix>(stack[core::at(update_[s].stack)].get() + update_[s].first, rows_[s], rows_[s]);
         };
