@@ -3,6 +3,7 @@
 /// @file Ties in a preconditioner of chains: the projector that makes chains meet their ties exactly, linear in the tied vectors.
 
 #include <fibrant/scene/tied_vectors.hpp>
+#include <fibrant/solver/chain_clusters.hpp>
 #include <fibrant/solver/linear_solver.hpp>
 
 #include <Eigen/Cholesky>
@@ -145,10 +146,7 @@ private:
     void find_groups() {
         std::vector<Index> parent(chains_.size());
         std::iota(parent.begin(), parent.end(), Index{0});
-        const auto root = [&](Index c) {
-            while (parent[core::at(c)] != c) c = parent[core::at(c)] = parent[core::at(parent[core::at(c)])];
-            return c;
-        };
+        const auto root = [&](Index c) { return detail::representative(parent, c); };
         for (const std::vector<Index>& tied : tied_chains_)
             for (const Index c : tied) {
                 const Index a = root(tied.front()), b = root(c);
