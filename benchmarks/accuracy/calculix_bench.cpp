@@ -39,10 +39,6 @@ double children_seconds() {
     const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
-double median(std::vector<double> times) {
-    std::sort(times.begin(), times.end());
-    return times[times.size() / 2];
-}
 
 Sample ours(Index elements, int repeats) {
     using M = Policy<beam::DirectorBeam<3>>;

@@ -120,8 +120,7 @@ void sweep(const char* scene, const char* policy, const Values& values, const Ru
             sample = run(value);
             times.push_back(sample.seconds);
         }
-        std::sort(times.begin(), times.end());
-        const double seconds = times[times.size() / 2];
+        const double seconds = median(times);
         std::printf("%s,%s,%g,%.3e,%.3e,%.2e,%ld,%ld,%d\n", scene, policy, static_cast<double>(value), sample.error, seconds, sample.report.contact.greatest_penetration / r,
                     static_cast<long>(sample.report.counts.newton), static_cast<long>(sample.report.counts.contact_passes), sample.report.converged ? 1 : 0);
         std::fflush(stdout);

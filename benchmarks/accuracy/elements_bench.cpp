@@ -101,8 +101,7 @@ Sample measure(const Problem& problem, const Vec3& reference, Index elements, in
         sample.error = (value - reference).norm() / problem.size;
         sample.unknowns = simulator.state().size();
     }
-    std::sort(times.begin(), times.end());
-    sample.seconds = times[times.size() / 2];
+    sample.seconds = median(times);
     return sample;
 }
 
@@ -164,10 +163,10 @@ void cost(const char* policy, int repeats) {
         converged = converged && report.converged;
         unknowns = simulator.state().size(), active = report.contact.active, newton = report.counts.newton, force = report.contact.reaction_sum;
     }
-    std::sort(times.begin(), times.end());
+    const double seconds = median(times);
     std::printf("%s,%ld,%zu,%zu,%zu,%zu,%ld,%ld,%.6e,%.3f,%.3e,%d\n", policy, static_cast<long>(unknowns), sizeof(typename B::Rest) + sizeof(typename B::Stresses),
                 sizeof(typename assembly::ChainSystem<B>::Row), sizeof(Element), sizeof(typename assembly::ChainSystem<B>::Point), static_cast<long>(active),
-                static_cast<long>(newton), force, times[times.size() / 2], times[times.size() / 2] / static_cast<double>(newton), converged ? 1 : 0);
+                static_cast<long>(newton), force, seconds, seconds / static_cast<double>(newton), converged ? 1 : 0);
 }
 
 using Director = Policy<beam::DirectorBeam<3>>;

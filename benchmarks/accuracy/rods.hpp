@@ -10,8 +10,10 @@
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
 
+#include <algorithm>
 #include <ctime>
 #include <numbers>
+#include <vector>
 
 namespace benchmarks {
 
@@ -52,5 +54,10 @@ simulation::ModelParameters<M> parameters() {
 }
 
 inline double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+/// Of at least one time.
+inline double median(std::vector<double> times) {
+    std::sort(times.begin(), times.end());
+    return times[times.size() / 2];
+}
 
 }  // namespace benchmarks
