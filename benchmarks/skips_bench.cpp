@@ -5,6 +5,7 @@
 #include "chapter_fabric.hpp"
 
 #include <fibrant/compositions/weave/measures.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/observe/vtk_writer.hpp>
 #include <fibrant/proximity/verlet_search.hpp>

@@ -6,6 +6,7 @@
 
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/connection/bonded_solid.hpp>
+#include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/solid_pcg.hpp>
 

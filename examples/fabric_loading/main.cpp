@@ -5,6 +5,8 @@
 #include "output.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
+#include <fibrant/connection/rigid_bodies.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/any_solver.hpp>
 

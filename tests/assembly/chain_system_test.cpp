@@ -10,15 +10,14 @@
 #include <cstring>
 
 using namespace fibrant;
+
+namespace chain_system_test {
+
 using Rough = test::PressedFibres<law::RegularisedCoulomb>;
 using Smooth = test::PressedFibres<law::Frictionless>;
 
-namespace {
-
 // Sums of some tens of entries, the largest of which are axial stiffnesses: relative to the whole.
 constexpr double rounding = 1e-13;
-
-}  // namespace
 
 TEST_CASE_TEMPLATE("the product is that of the matrix of all terms, held components included", Pressed, Smooth, Rough) {
     const Pressed fibres(true);
@@ -115,3 +114,5 @@ TEST_CASE("a direct solver follows contacts that come to carry force after its a
     CHECK(solver::scaled_norm(fibres.equilibrium.system().layout(), y - b) <
           1e-10 * solver::scaled_norm(fibres.equilibrium.system().layout(), b));
 }
+
+}  // namespace chain_system_test

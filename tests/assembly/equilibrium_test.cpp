@@ -8,10 +8,11 @@
 #include <random>
 
 using namespace fibrant;
+
+namespace equilibrium_test {
+
 using Rough = test::PressedFibres<law::RegularisedCoulomb>;
 using Smooth = test::PressedFibres<law::Frictionless>;
-
-namespace {
 
 /// Largest difference between K x and central differences of the residual, relative to K x, over some random x.
 template <class Pressed, class Directions>
@@ -31,8 +32,6 @@ double derivative_error(Pressed& fibres, const Directions& within) {
     return worst;
 }
 const auto everywhere = [](const Vector& x) { return x; };
-
-}  // namespace
 
 TEST_CASE("the tangent is the derivative of the residual, with contacts active at frozen normals") {
     Smooth fibres(false);
@@ -170,3 +169,5 @@ TEST_CASE("prescribed components step onto their targets, the others stay") {
     }
     CHECK(step.isZero(0.0));
 }
+
+}  // namespace equilibrium_test

@@ -8,9 +8,10 @@
 #include <Eigen/Cholesky>
 
 using namespace fibrant;
-using test::SyntheticSystem;
 
-namespace {
+namespace linear_system_test {
+
+using test::SyntheticSystem;
 
 // Director beams, cables, bars, a node of its own, held vectors of every kind.
 SyntheticSystem mixed() {
@@ -41,8 +42,6 @@ Matrix written_out(const SyntheticSystem& system) {
 
 // Rounding of sums of some tens of entries of order 10.
 constexpr double rounding = 1e-13;
-
-}  // namespace
 
 TEST_CASE("a product visits every term once and leaves held components alone") {
     const SyntheticSystem system = mixed();
@@ -112,3 +111,5 @@ TEST_CASE("a projector projects vectors and blocks alike") {
     held.project(some.vector, some.vector + 1, block);
     CHECK((block - some.free * before).norm() < rounding);
 }
+
+}  // namespace linear_system_test

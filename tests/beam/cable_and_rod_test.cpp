@@ -10,11 +10,12 @@
 #include <numbers>
 
 using namespace fibrant;
+
+namespace cable_and_rod_test {
+
 using namespace fibrant::test;
 using beam::KirchhoffCable;
 using beam::RigidSectionRod;
-
-namespace {
 
 const double radius = 0.0201, length = 6.0 * radius, pi = std::numbers::pi;
 const scene::ElasticMaterial material{7300.0, 0.3};
@@ -57,8 +58,6 @@ template <class B>
 void report(const char* name, const ElementErrors& e) {
     std::printf("%s: force %.1e, tangent %.1e, prediction %.1e, rotation %.1e\n", name, e.force, e.tangent, e.prediction, e.rotation);
 }
-
-}  // namespace
 
 TEST_CASE_TEMPLATE("a straight element of each kind owes the contract of beam elements", B, KirchhoffCable, RigidSectionRod) {
     for (const Mat3& turn : {Mat3(Mat3::Identity()), any_turn}) {
@@ -146,3 +145,5 @@ TEST_CASE("what a cable cannot be is refused by name") {
     CHECK(refusal([&] { KirchhoffCable{}.rest(section, material, bent); }).find("KirchhoffCable.rest: turn between chord and tangent = 0.05") == 0);
     CHECK(refusal([&] { RigidSectionRod{{.shear_factor = -1.0}}; }) == "RigidSectionRod.shear_factor = -1, but it must be finite and > 0");
 }
+
+}  // namespace cable_and_rod_test

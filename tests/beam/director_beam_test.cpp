@@ -6,9 +6,10 @@
 #include <numbers>
 
 using namespace fibrant;
-using namespace fibrant::test;
 
-namespace {
+namespace director_beam_test {
+
+using namespace fibrant::test;
 
 constexpr double radius = 0.0201, length = 6.0 * radius, young = 7300.0, poisson = 0.3;
 const scene::ElasticMaterial material{young, poisson};
@@ -46,8 +47,6 @@ NodeMotion twist(double s) {
     d << 0, 0, 0, 0, s, 0, -s, 0, 0;
     return d;
 }
-
-}  // namespace
 
 TEST_CASE_TEMPLATE("every variant of the element derives from an energy that rigid motions leave alone", B,
                    FIBRANT_ALL_VARIANTS) {
@@ -200,3 +199,5 @@ TEST_CASE("degenerate elements and wrong parameters are refused by name") {
     CHECK_THROWS_AS(beam.rest(section, scene::ElasticMaterial{}, good), std::invalid_argument);
     CHECK_THROWS_AS(beam.rest(scene::CrossSection{}, material, good), std::invalid_argument);
 }
+
+}  // namespace director_beam_test

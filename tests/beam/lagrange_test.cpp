@@ -7,7 +7,8 @@
 
 using namespace fibrant::beam;
 
-namespace {
+namespace lagrange_test {
+
 template <int Nodes>
 double interpolated(const std::array<double, Nodes>& weights, int power) {
     double sum = 0.0;
@@ -37,8 +38,6 @@ void check_quadrature() {
         CHECK(std::abs(sum - (power % 2 == 0 ? 2.0 / (power + 1) : 0.0)) < 1e-15);
     }
 }
-}  // namespace
-
 TEST_CASE("nodes of an element carry every polynomial of their degree") {
     check_interpolation<2>();
     check_interpolation<3>();
@@ -49,3 +48,5 @@ TEST_CASE("Gauss points integrate polynomials of degree 2 n - 1 exactly") {
     check_quadrature<2>();
     check_quadrature<3>();
 }
+
+}  // namespace lagrange_test

@@ -9,9 +9,10 @@
 #include <random>
 
 using namespace fibrant;
-using namespace fibrant::beam;
 
-namespace {
+namespace section_law_test {
+
+using namespace fibrant::beam;
 
 const scene::ElasticMaterial material{7300.0, 0.3};
 
@@ -39,8 +40,6 @@ double integrated(const std::array<double, 15>& e, double a, double b) {
     }
     return sum;
 }
-
-}  // namespace
 
 TEST_CASE("the full law is the three-dimensional law integrated over the section") {
     const double a = 0.03, b = 0.02;
@@ -120,3 +119,5 @@ TEST_CASE("sections without size are refused by name") {
     CHECK_THROWS_AS(Law(SectionConstants{}, material, 1.0), std::invalid_argument);
     CHECK_THROWS_AS(Law(SectionConstants{1.0, 1.0, 0.0}, material, 1.0), std::invalid_argument);
 }
+
+}  // namespace section_law_test

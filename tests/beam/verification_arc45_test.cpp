@@ -4,9 +4,10 @@
 #include <beam/round_rod.hpp>
 
 using namespace fibrant;
-using namespace fibrant::test;
 
-namespace {
+namespace verification_arc45_test {
+
+using namespace fibrant::test;
 
 struct Arc {
     double side = 1.0, force = 300.0, shear_factor = 1.0, torsion_constant = 1.0 / 6.0;
@@ -97,8 +98,6 @@ const std::vector<Case>& cases() {
     return all;
 }
 
-}  // namespace
-
 TEST_CASE("the 45-degree bend converges with the fourth order, in one load step") {
     std::printf(
         "distance of the tip from the own limit over R, n = 8 16 32 64; from the Reissner rod, n = 64; iterations\n");
@@ -130,3 +129,5 @@ TEST_CASE("the 45-degree bend converges with the fourth order, in one load step"
         CHECK(off(finest.energy, c.expected.energy) < 2.0 * models + 1e-6);
     }
 }
+
+}  // namespace verification_arc45_test

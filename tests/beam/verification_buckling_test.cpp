@@ -4,9 +4,10 @@
 #include <beam/round_rod.hpp>
 
 using namespace fibrant;
-using namespace fibrant::test;
 
-namespace {
+namespace verification_buckling_test {
+
+using namespace fibrant::test;
 
 /// Where `unstable(value)` turns from false to true between low and high, to the relative width 1e-9.
 template <class Unstable>
@@ -131,8 +132,6 @@ double lateral_torsional(double width, double height, double length, double youn
     });
 }
 
-}  // namespace
-
 TEST_CASE("a straight fibre buckles at the Euler load of the director rod") {
     struct Case {
         const char* name;
@@ -249,3 +248,5 @@ TEST_CASE("a deep cantilever tips over at the load that includes its bending") {
     CHECK(slender[1] < 1e-3);
     CHECK(thick[1] < 1e-3);
 }
+
+}  // namespace verification_buckling_test

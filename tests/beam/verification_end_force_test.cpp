@@ -4,9 +4,10 @@
 #include <beam/round_rod.hpp>
 
 using namespace fibrant;
-using namespace fibrant::test;
 
-namespace {
+namespace verification_end_force_test {
+
+using namespace fibrant::test;
 
 struct Tip {
     double x = 0, z = 0, rotation = 0, mid_x = 0, mid_z = 0, energy = 0;
@@ -70,8 +71,6 @@ Tip slender_tip(const RoundRod& rod) {
             0,
             {}};
 }
-
-}  // namespace
 
 TEST_CASE("a cantilever converges to the director rod with the fourth order of the mesh") {
     std::printf("distance of the tip over L, n = 8 16 32 64 128\n");
@@ -172,3 +171,5 @@ TEST_CASE("with independent stresses Newton does not care how slender a fibre is
     print_row("independent stresses, one step", independent);
     print_row("displacements alone, one step (may be cut)", plain);
 }
+
+}  // namespace verification_end_force_test

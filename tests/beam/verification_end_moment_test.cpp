@@ -4,9 +4,10 @@
 #include <beam/round_rod.hpp>
 
 using namespace fibrant;
-using namespace fibrant::test;
 
-namespace {
+namespace verification_end_moment_test {
+
+using namespace fibrant::test;
 
 struct Rolled {
     double tip_x = 0, tip_z = 0, mid_x = 0, mid_z = 0, rotation = 0, norm_1 = 0, norm_2 = 0;
@@ -63,8 +64,6 @@ const Case cases[] = {
       {}}},
 };
 
-}  // namespace
-
 TEST_CASE("an end moment rolls a fibre up into the uniform curve of the director rod, with the fourth order") {
     const RoundRod rod;
     std::printf("distance of the tip over L, n = 16 32 64 128\n");
@@ -92,3 +91,5 @@ TEST_CASE("an end moment rolls a fibre up into the uniform curve of the director
         CHECK(std::abs(finest.norm_2 - c.expected.norm_2) < 1e-6);
     }
 }
+
+}  // namespace verification_end_moment_test

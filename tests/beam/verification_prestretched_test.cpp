@@ -4,9 +4,10 @@
 #include <beam/round_rod.hpp>
 
 using namespace fibrant;
-using namespace fibrant::test;
 
-namespace {
+namespace verification_prestretched_test {
+
+using namespace fibrant::test;
 
 struct Pushed {
     double force = 0, axial = 0, energy = 0, uncertainty = 0;
@@ -67,8 +68,6 @@ const Case cases[] = {
     {10000, 0.01, 50, {0.001875295155, 0.0945169356847, 0.0949909201132, 3.6e-10, {}}},
 };
 
-}  // namespace
-
 TEST_CASE("a stretched fibre that is pushed sideways resists as the director rod, however thin its bending layers") {
     std::printf("relative error of the force, n on half the rod = 8 16 32 64; of axial force and energy, n = 64\n");
     for (const Case& c : cases) {
@@ -98,3 +97,5 @@ TEST_CASE("a stretched fibre that is pushed sideways resists as the director rod
         CHECK(row[5] < 2e-7 + 2.0 * c.expected.uncertainty);
     }
 }
+
+}  // namespace verification_prestretched_test

@@ -3,9 +3,10 @@
 #include <beam/round_rod.hpp>
 
 using namespace fibrant;
-using namespace fibrant::test;
 
-namespace {
+namespace verification_section_test {
+
+using namespace fibrant::test;
 
 struct Stretches {
     double along_1 = 0, along_2 = 0, axis = 0;
@@ -51,8 +52,6 @@ void check(const Stretches& s, const Stretches& expected) {
     CHECK(s.axis == doctest::Approx(expected.axis).epsilon(1e-12));
 }
 
-}  // namespace
-
 TEST_CASE_TEMPLATE("a pulled or pressed fibre strains as the law says", Beam, beam::DirectorBeam<2>,
                    beam::DirectorBeam<3>) {
     const RoundRod rod = short_fibre();
@@ -79,3 +78,5 @@ TEST_CASE("a pinch at small load strains the section by -2 q/(pi r E*)") {
     // 1e-6 of strain: the law is linear to as much, and 16 digits leave 1e-10.
     CHECK(e11 == doctest::Approx(-2.0 * line_load / (std::numbers::pi * rod.radius * plain)).epsilon(1e-5));
 }
+
+}  // namespace verification_section_test

@@ -3,9 +3,10 @@
 #include <beam/round_rod.hpp>
 
 using namespace fibrant;
-using namespace fibrant::test;
 
-namespace {
+namespace verification_small_loads_test {
+
+using namespace fibrant::test;
 
 using Full = beam::DirectorBeam<3, beam::DirectorBeamOptions{beam::ElasticLaw::full}>;
 using Two = beam::DirectorBeam<2>;
@@ -23,8 +24,6 @@ double deflection(const RoundRod& rod, int elements) {
     return mesh.position(n)[0] / force;
 }
 double timoshenko(const RoundRod& rod) { return std::pow(rod.length, 3) / (3.0 * rod.EI()) + rod.length / rod.GA(); }
-
-}  // namespace
 
 TEST_CASE("a fibre bends with EI and shears with GA, whatever its Poisson ratio") {
     std::printf("deflection over Timoshenko's, less 1; 4 elements of 3 nodes\n");
@@ -84,3 +83,5 @@ TEST_CASE("a fibre twists with GJ") {
     const Vec3 g1 = mesh.director(16, 1);
     CHECK(std::atan2(g1[1], g1[0]) == doctest::Approx(angle).epsilon(1e-6));
 }
+
+}  // namespace verification_small_loads_test

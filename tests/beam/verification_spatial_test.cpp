@@ -4,9 +4,10 @@
 #include <beam/round_rod.hpp>
 
 using namespace fibrant;
-using namespace fibrant::test;
 
-namespace {
+namespace verification_spatial_test {
+
+using namespace fibrant::test;
 
 struct Spatial {
     RoundRod rod;
@@ -139,8 +140,6 @@ void check_placed(const char* name, const Placed& c, const PlacedSolution& expec
     CHECK(off(s.energy, expected.energy) < of_load);
 }
 
-}  // namespace
-
 TEST_CASE("rods bent and twisted in space by end loads land where the reference does") {
     std::printf("distance of the tip from the own limit over L, n = 8 16 32 64; from the Reissner rod, n = 64\n");
     Spatial dead;
@@ -234,3 +233,5 @@ TEST_CASE("rods with a placed and turned end settle where the reference does") {
                   {}},
                  1.1e-2);  // pulled to a strain of 6e-3: the law is 1.5 times as much stiffer
 }
+
+}  // namespace verification_spatial_test

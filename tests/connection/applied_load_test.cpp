@@ -5,10 +5,11 @@
 #include <doctest/doctest.h>
 
 using namespace fibrant;
+
+namespace applied_load_test {
+
 using Beam = beam::DirectorBeam<3>;
 using scene::NodeVector;
-
-namespace {
 
 /// One element along z with its loads.
 struct Loaded {
@@ -45,8 +46,6 @@ struct Loaded {
 };
 
 constexpr Index last = 2 * 9;  // first unknown of the last node
-
-}  // namespace
 
 TEST_CASE("a dead force keeps its direction and size, and grows with its channel only") {
     Loaded scene;
@@ -124,3 +123,5 @@ TEST_CASE("the stiffness of a moment is minus the derivative of its force, made 
     const Mat3 inside = plane * differences * plane;
     CHECK((inside - inside.transpose()).norm() < 1e-9);
 }
+
+}  // namespace applied_load_test

@@ -3,6 +3,7 @@
 #include "../refusal.hpp"
 #include "../support/bonded_scene.hpp"
 
+#include <fibrant/connection/bonded_solid.hpp>
 #include <fibrant/solver/solid_pcg.hpp>
 
 #include <doctest/doctest.h>
@@ -14,10 +15,11 @@
 #include <random>
 
 using namespace fibrant;
+
+namespace bonded_solid_test {
+
 using test::block;
 using test::cuts;
-
-namespace {
 
 using Element = solid::Hexahedron<solid::EnhancedStrains, solid::SaintVenantKirchhoff>;
 using Bonded = connection::BondedSolid<Element, connection::NeverDebonds>;
@@ -59,8 +61,6 @@ scene::Assembly cube(const Mat3& gradient, scene::ElasticMaterial solid, scene::
     }
     return assembly;
 }
-
-}  // namespace
 
 TEST_CASE("fibres much softer than a uniformly strained block leave its field uniform") {
     const Mat3 f = Mat3::Identity() + some_gradient(), strain = 0.5 * (f.transpose() * f - Mat3::Identity());
@@ -152,8 +152,6 @@ TEST_CASE("a fibre's bonds are those of its nodes in cells, and their stiffness 
     CHECK(Scene(partly).solid().bonds().size() == 11);
 }
 
-namespace {
-
 /// Force that draws a fibre by `pull` out of a block that holds still, of a fibre of the length 1 that ends inside.
 double pull_out_of_rigid(Index elements, double pull) {
     scene::Assembly assembly;
@@ -172,8 +170,6 @@ double pull_out_of_rigid(Index elements, double pull) {
     return scene.reaction([](const Vec3& x) { return x.x() == 1.0 && x.y() == 0.0; }).x();
 }
 
-}  // namespace
-
 TEST_CASE("the force to draw one fibre out converges with its mesh to shear lag") {
     // A rod on springs: F = u sqrt(E A k) tanh(L sqrt(k / E A)), k = 2 pi G / ln(h / 2r) = 15.6 a length.
     const double k = 2.0 * std::numbers::pi * 4.0 / std::log(0.1 / 0.02), stiffness = 2000.0 * std::numbers::pi * 1e-4, pull = 1e-6;
@@ -187,8 +183,6 @@ TEST_CASE("the force to draw one fibre out converges with its mesh to shear lag"
     }
     CHECK(last <= 1e-4);
 }
-
-namespace {
 
 /// Stiffness a length of the slip of a stiff fibre along the middle of a square block held at its sides, over 2 pi G / ln(R / r) with
 /// R = 1.0787 times half the side, the conformal radius of the square.
@@ -215,8 +209,6 @@ double axial_stiffness(Index cells, double radius, const Vec3& offset) {
     return sum.x() / 1e-6 / length * std::log(1.0787 / radius) / (2.0 * std::numbers::pi);
 }
 
-}  // namespace
-
 TEST_CASE("how far a fibre's slip depends on the size of cells is bounded") {
     for (const double radius : {0.005, 0.02})
         for (const Index cells : {5, 9, 19, 39}) {
@@ -233,8 +225,6 @@ TEST_CASE("how far a fibre's slip depends on the size of cells is bounded") {
             CHECK(node < 0.80);
         }
 }
-
-namespace {
 
 struct Moduli {
     double along, across, shear;
@@ -317,8 +307,6 @@ Bounds bounds(double fraction, double ratio, double nu = 0.3) {
     return {1.0 / (v / ratio + 1.0 - v), v * ratio + 1.0 - v, young(g_low, bulk(km, gm, kf, v)), g_low / gm, young(g_high, bulk(kf, gf, km, 1.0 - v)), g_high / gm};
 }
 
-}  // namespace
-
 TEST_CASE("a bundle of fibres in a matrix is as stiff along them as the rule of mixtures says, across them once sections are bonded") {
     for (const double fraction : {0.2, 0.5}) {
         const double ratio = 100.0;
@@ -392,3 +380,5 @@ TEST_CASE("wrong input is refused by name") {
     CHECK(test::refusal([] { Bonded({.section_factor = -1.0}); }).starts_with("BondedSolid.section_factor = -1"));
     CHECK(test::refusal([] { connection::DebondsAtTraction({}); }).starts_with("DebondsAtTraction.strength = nan"));
 }
+
+}  // namespace bonded_solid_test

@@ -10,10 +10,11 @@
 #include <random>
 
 using namespace fibrant;
+
+namespace prescribed_motion_test {
+
 using test::refusal;
 using Beam = beam::DirectorBeam<3>;
-
-namespace {
 
 constexpr double rounding = 1e-14;
 
@@ -55,8 +56,6 @@ struct Scene {
                std::abs(free.trace() - rank) < rounding;
     }
 };
-
-}  // namespace
 
 TEST_CASE("holds of one vector in any directions leave a projector of what is free, and all of them are met") {
     Scene scene;
@@ -177,3 +176,5 @@ TEST_CASE("a channel that no condition uses is refused, with the names of those 
     CHECK(channels.find("pull") == 1);
     CHECK(refusal([&] { channels.find("pul"); }) == "channel = pul, but it must be one that the scene uses (load, pull)");
 }
+
+}  // namespace prescribed_motion_test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rigid bodies that hold fibre ends on the average, and periodic cells, against closed forms of cantilevers and bars.
 #include <fibrant/beam/director_beam.hpp>
+#include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
@@ -18,7 +19,7 @@
 
 using namespace fibrant;
 
-namespace {
+namespace rigid_bodies_test {
 
 struct Tied {
     using Beam = beam::DirectorBeam<3>;
@@ -67,8 +68,6 @@ simulation::ModelParameters<Tied> parameters() {
     model.iteration.newton_limit = 40;
     return model;
 }
-
-}  // namespace
 
 TEST_CASE("the mean of fibre ends follows its body exactly while single ends give way to their own loads") {
     // Cantilevers with dead forces f_k at their ends and a mean that is prescribed: w_k = (f_k + c) L^3 / 3 E I.
@@ -304,3 +303,5 @@ TEST_CASE("an end that is held cannot be tied, nor tied twice, and a body needs 
     CHECK(test::refusal([&] { bundle.assembly.add(skew); }).find("RigidBody.frame") != std::string::npos);
     CHECK(test::refusal([&] { bundle.assembly.connect(scene::AverageConnection{.ends = {scene::last_end(0)}, .body = 7}); }).find("AverageConnection.body = 7") != std::string::npos);
 }
+
+}  // namespace rigid_bodies_test

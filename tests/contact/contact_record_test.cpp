@@ -13,13 +13,14 @@
 #include <random>
 
 using namespace fibrant;
+
+namespace contact_record_test {
+
 using Memory = contact::ContactMemory<law::RegularisedPenalty, law::RegularisedCoulomb>;
 using Record = Memory::Record;
 
 static_assert(sizeof(contact::ContactRecord<law::RegularisedPenalty, law::Frictionless>) + 3 * sizeof(double) == sizeof(Record),
               "a record without friction keeps nothing of it");
-
-namespace {
 
 Record record(int i, int j, double u_i, double u_j, double along = 0.0, double across = 0.0) {
     Record entry;
@@ -31,8 +32,6 @@ Record record(int i, int j, double u_i, double u_j, double along = 0.0, double a
 }
 
 double field(double u) { return 0.3 - 0.07 * u; }
-
-}  // namespace
 
 TEST_CASE("friction that is linear along a contact is carried over exactly to new places") {
     std::mt19937 generator(5);
@@ -126,3 +125,5 @@ TEST_CASE("a record is its numbers, for files") {
     entry.each([&](const auto& number) { numbers.push_back(static_cast<double>(number)); });
     CHECK(numbers == std::vector<double>{3, 5, 1.25, 2.5, 0, 0, 1, 0.1, 0.2, 1});
 }
+
+}  // namespace contact_record_test

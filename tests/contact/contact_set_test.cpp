@@ -22,14 +22,15 @@
 #include <random>
 
 using namespace fibrant;
+
+namespace contact_set_test {
+
 using law::Frictionless;
 using law::RegularisedCoulomb;
 using law::RegularisedPenalty;
 using test::Beam;
 using test::Mesh;
 using test::straight_fibre;
-
-namespace {
 
 template <class Normal, class Friction>
 using Element = contact::ContactElement<Beam, Normal, Friction>;
@@ -144,8 +145,6 @@ Vector tangent_times(const Contact& contacts, const Mesh& mesh, const Vector& st
         });
     return y;
 }
-
-}  // namespace
 
 TEST_CASE("contact forces are the slope of the contact energy while the normals stand") {
     const Scene scene(some_fibres());
@@ -282,8 +281,6 @@ TEST_CASE("a rule for a pair of groups changes the friction and the penetration 
     CHECK_THROWS_WITH(assembly.add(scene::PairRule{0, 0, -0.5}), "PairRule.friction_factor = -0.5, but it must be finite and >= 0");
 }
 
-namespace {
-
 /// Two families of four waving fibres that interlace, and an order between them.
 scene::Assembly interlaced() {
     scene::Assembly assembly;
@@ -336,8 +333,6 @@ void check_same(const Result& a, const Result& b) {
         CHECK(same);
     }
 }
-
-}  // namespace
 
 TEST_CASE("every search finds the same zones and contact elements, with an order forced or without") {
     const scene::Assembly assembly = interlaced();
@@ -436,3 +431,5 @@ TEST_CASE("what a contact element costs in memory") {
                 sizeof(Element<RegularisedPenalty, Frictionless>), sizeof(Element<RegularisedPenalty, RegularisedCoulomb>),
                 sizeof(Element<law::LimitedGap<RegularisedPenalty>, Frictionless>));
 }
+
+}  // namespace contact_set_test

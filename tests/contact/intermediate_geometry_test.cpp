@@ -13,13 +13,14 @@
 #include <random>
 
 using namespace fibrant;
+
+namespace intermediate_geometry_test {
+
 using contact::ContactSpacing;
 using contact::StationPair;
 using test::curved_fibre;
 using test::Mesh;
 using test::straight_fibre;
-
-namespace {
 
 const double r = 0.02;
 const ContactSpacing spacing;
@@ -71,8 +72,6 @@ double sampled_distance(const Mesh& mesh) {
 scene::FibreSpecification wave(const Vec3& centre, const Vec3& along, const Vec3& across, double phase, Index elements) {
     return curved_fibre([=](double t) { return Vec3(centre + (t - 0.5) * along + 0.05 * std::sin(5.0 * t + phase) * across); }, r, elements);
 }
-
-}  // namespace
 
 TEST_CASE("the closest points of crossing curves are those that dense sampling finds") {
     std::mt19937 generator(4);
@@ -357,3 +356,5 @@ TEST_CASE("a spacing without points is refused by name") {
     CHECK(test::refusal([] { core::validated(ContactSpacing{0.0, 30.0, 5.0}); }).find("ContactSpacing.points_per_element") != std::string::npos);
     CHECK(test::refusal([] { core::validated(ContactSpacing{2.0, 91.0, 5.0}); }).find("ContactSpacing.crossing_angle_deg") != std::string::npos);
 }
+
+}  // namespace intermediate_geometry_test

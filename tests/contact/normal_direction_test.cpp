@@ -10,10 +10,11 @@
 #include <random>
 
 using namespace fibrant;
+
+namespace normal_direction_test {
+
 using contact::normal_direction;
 using contact::NormalRule;
-
-namespace {
 
 constexpr double rounding = 1e-14;
 const NormalRule rule;
@@ -42,8 +43,6 @@ double largest_turn(int steps, const Vec3& centres) {
     }
     return most;
 }
-
-}  // namespace
 
 TEST_CASE("the normal of crossing fibres is across both of them and points from the first to the second") {
     for (const double degrees : {30.0, 60.0, 90.0, 135.0}) {
@@ -174,3 +173,5 @@ TEST_CASE("the least turn takes one direction to the other and leaves what is ac
         if (k > 1) CHECK((contact::turned(axis, before, after) - axis).norm() < rounding);
     }
 }
+
+}  // namespace normal_direction_test

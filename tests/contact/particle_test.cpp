@@ -8,10 +8,11 @@
 #include <random>
 
 using namespace fibrant;
+
+namespace particle_test {
+
 using contact::Particle;
 using contact::support_particle;
-
-namespace {
 
 Vec3 random_vector(std::mt19937& generator) {
     std::normal_distribution<double> normal;
@@ -34,8 +35,6 @@ double reach(const scene::CrossSection& section, const Vec3& g_1, const Vec3& g_
     const Particle particle = support_particle(section, g_1, g_2, direction, false);
     return (particle.xi_1 * g_1 + particle.xi_2 * g_2).dot(direction);
 }
-
-}  // namespace
 
 TEST_CASE("a round section touches where the normal leaves it") {
     const scene::CrossSection section = scene::circular(0.02);
@@ -87,3 +86,5 @@ TEST_CASE("a fibre's end is rounded: a cap about the centre") {
     // so is a section that is looked at along the fibre
     CHECK(support_particle(section, Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), false).cap == 0.03);
 }
+
+}  // namespace particle_test

@@ -4,6 +4,8 @@
 #include <contact/contact_model.hpp>
 #include <refusal.hpp>
 
+#include <fibrant/contact/contacts_with_tools.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -13,11 +15,12 @@
 #include <random>
 
 using namespace fibrant;
+
+namespace tool_contacts_test {
+
 using test::Beam;
 using test::Mesh;
 using test::straight_fibre;
-
-namespace {
 
 const double r = 0.02, pi = std::numbers::pi;
 const law::RegularisedPenalty penalty({.regularisation_depth = 0.005 * r});
@@ -82,8 +85,6 @@ simulation::ModelParameters<Pressing> parameters(double mu) {
     all.contact.stiffness.initial_fraction = 10.0;
     return all;
 }
-
-}  // namespace
 
 TEST_CASE("the distance of a point from a tool grows along its normal by as much as the point moves") {
     std::mt19937 generator(7);
@@ -310,3 +311,5 @@ TEST_CASE("a tool that is not one, and a scene whose model knows no tools, are r
     assembly.add(plane(Vec3::Zero(), Vec3::UnitZ()));
     CHECK(test::refusal([&] { simulation::Simulator<test::Smooth>(assembly, test::tight_parameters<test::Smooth>(r)); }).find("assembly.tools = 1") == 0);
 }
+
+}  // namespace tool_contacts_test

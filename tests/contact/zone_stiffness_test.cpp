@@ -11,10 +11,11 @@
 #include <numbers>
 
 using namespace fibrant;
+
+namespace zone_stiffness_test {
+
 using contact::StiffnessAdaptation;
 using contact::Zone;
-
-namespace {
 
 /// Penetration at which a law carries a force, by bisection.
 template <class Law>
@@ -36,8 +37,6 @@ Zone zone(Index i, Index j, double a_i, double b_i, double a_j, double b_j) {
 
 const double allowed = 1e-3, reference = 100.0;
 const StiffnessAdaptation adaptation{.allowed_penetration = allowed};
-
-}  // namespace
 
 TEST_CASE("under a given force the stiffness of a zone settles where the penetration is the target") {
     const law::RegularisedPenalty regularised({.regularisation_depth = 0.1 * allowed});
@@ -100,3 +99,5 @@ TEST_CASE("an adaptation without a bound on the penetration is refused by name")
     wrong = adaptation, wrong.target_fraction = 1.0;
     CHECK(says(wrong).find("StiffnessAdaptation.target_fraction") != std::string::npos);
 }
+
+}  // namespace zone_stiffness_test

@@ -11,7 +11,7 @@
 
 using namespace fibrant;
 
-namespace {
+namespace parallel_test {
 
 Vector random_vector(Index n, unsigned seed) {
     std::mt19937 random(seed);
@@ -19,8 +19,6 @@ Vector random_vector(Index n, unsigned seed) {
     for (Index k = 0; k < n; ++k) v[k] = std::ldexp(static_cast<double>(random()), static_cast<int>(random() % 60) - 30);
     return v;
 }
-
-}  // namespace
 
 TEST_CASE("a loop visits every item once, whatever the number of threads") {
     for (const int threads : {1, 2, 3}) {
@@ -84,3 +82,5 @@ TEST_CASE("a sum over nothing is its zero") {
     CHECK(core::ordered_sum(0, 3.5, [](Index, Index) { return 1.0; }) == 3.5);
     CHECK(core::ordered_sum(1, 3.5, [](Index, Index) { return 1.0; }) == 4.5);
 }
+
+}  // namespace parallel_test

@@ -6,9 +6,10 @@
 #include <doctest/doctest.h>
 
 using namespace fibrant;
-using test::refusal;
 
-namespace {
+namespace parameters_test {
+
+using test::refusal;
 
 struct Depth {
     double value = core::unset;
@@ -28,8 +29,6 @@ struct NeedsMore {
     using Parameters = Depth;
     NeedsMore(const Parameters&, int) {}
 };
-
-}  // namespace
 
 TEST_CASE("a refusal names field, value and bound") {
     CHECK(refusal([] { core::require_positive("Law.depth", -0.001); }) == "Law.depth = -0.001, but it must be finite and > 0");
@@ -77,3 +76,5 @@ TEST_CASE("a policy is a value built from its parameters, and is active unless i
     static_assert(!core::Policy<Depth>);
     static_assert(sizeof(NoSpring) == 1);
 }
+
+}  // namespace parameters_test

@@ -15,12 +15,13 @@
 #include <vector>
 
 using namespace fibrant;
+
+namespace friction_law_test {
+
 using law::Frictionless;
 using law::RegularisedCoulomb;
 using History = RegularisedCoulomb::History;
 using Response = law::FrictionResponse<History>;
-
-namespace {
 
 const double mu = 0.15, range = 1e-3, reaction = 40.0;
 const double bound = mu * reaction;
@@ -60,8 +61,6 @@ Path follow(const std::vector<double>& turns, int steps) {
     }
     return path;
 }
-
-}  // namespace
 
 TEST_CASE("a slip within the reversible displacement is resisted like a spring and given back") {
     const Vec3 slip{0.3 * range, -0.4 * range, 0.0};  // half the range
@@ -278,3 +277,5 @@ TEST_CASE("smooth friction owes what regularised friction owes, and its stiffnes
     CHECK(test::refusal([] { law::SmoothCoulomb{{.friction_coefficient = -1.0, .reversible_displacement = 1.0}}; }) ==
           "SmoothCoulomb.friction_coefficient = -1, but it must be finite and >= 0");
 }
+
+}  // namespace friction_law_test

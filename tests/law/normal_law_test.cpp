@@ -10,6 +10,9 @@
 #include <limits>
 
 using namespace fibrant;
+
+namespace normal_law_test {
+
 using law::LimitedGap;
 using law::LinearPenalty;
 using law::RegularisedPenalty;
@@ -127,3 +130,5 @@ TEST_CASE("multipliers leave a law as it is, and a law without them is not one t
     static_assert(law::Augmenting<law::Augmented<LinearPenalty>> && !law::Augmenting<RegularisedPenalty>);
     CHECK(test::refusal([] { law::Augmented<LinearPenalty>{{}}; }) == "Augmented.largest_penetration = nan, but it must be finite and > 0");
 }
+
+}  // namespace normal_law_test

@@ -7,6 +7,9 @@
 #include <doctest/doctest.h>
 
 using namespace fibrant;
+
+namespace contact_statistics_test {
+
 using namespace fibrant::observe;
 
 TEST_CASE("statistics count all elements, and weigh those that press") {
@@ -66,3 +69,5 @@ TEST_CASE("a loading curve collects one quantity against progress") {
     CHECK(heights.points()[1].value == 0.3);
     static_assert(Observer<decltype(heights)>);
 }
+
+}  // namespace contact_statistics_test

@@ -10,6 +10,9 @@
 #include <string>
 
 using namespace fibrant;
+
+namespace csv_writer_test {
+
 using namespace fibrant::observe;
 
 TEST_CASE("the header is written once and each row is in the file as soon as it is given") {
@@ -56,3 +59,5 @@ TEST_CASE("rows of other columns are refused") {
     CsvWriter resumed(path, Start::resumed);
     CHECK(test::refusal([&] { resumed.row({{"a", 1}}); }).find("CsvWriter.columns = a, but it must be those of") == 0);
 }
+
+}  // namespace csv_writer_test

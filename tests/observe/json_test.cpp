@@ -11,6 +11,9 @@
 #include <vector>
 
 using namespace fibrant;
+
+namespace json_test {
+
 using namespace fibrant::observe;
 
 TEST_CASE("an object lists its values in the order in which they came") {
@@ -65,3 +68,5 @@ TEST_CASE("a key is given once") {
     object.add("a", 1);
     CHECK(test::refusal([&] { object.add("a", 2); }) == "JsonObject.key = a, but it must be new in the object");
 }
+
+}  // namespace json_test

@@ -11,7 +11,7 @@
 
 using namespace fibrant;
 
-namespace {
+namespace solid_writer_test {
 
 /// Two cubes side by side along x, from 0 to 2.
 observe::SolidSnapshot two_cells() {
@@ -30,8 +30,6 @@ observe::SolidSnapshot two_cells() {
     solid.bonds.push_back({Vec3(0.5, 0.5, 0.5), Vec3(1, 2, 3), true});
     return solid;
 }
-
-}  // namespace
 
 TEST_CASE("uniaxial stress is its own von Mises stress, and a pressure has none") {
     Mat3 stress = Mat3::Zero();
@@ -102,3 +100,5 @@ TEST_CASE("outer faces are those of one cell, and a plane cuts cells in polygons
     CHECK(test::refusal([&] { observe::svg_solid(solid, {1.0}, 2.0); }).starts_with("svg_solid.values = 1"));
     CHECK(test::refusal([&] { observe::svg_solid(solid, {1.0, 2.0}, 0.0); }).starts_with("svg_solid.most = 0"));
 }
+
+}  // namespace solid_writer_test

@@ -8,16 +8,16 @@
 #include <cmath>
 
 using namespace fibrant;
+
+namespace svg_plot_test {
+
 using observe::LogLogPlot;
 
-namespace {
 std::size_t times(const std::string& text, const std::string& part) {
     std::size_t n = 0;
     for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
     return n;
 }
-}  // namespace
-
 TEST_CASE("the fitted order of a power law is its power, whatever its factor") {
     for (const double order : {-4.0, 1.5}) {
         std::vector<std::pair<double, double>> points;
@@ -42,3 +42,5 @@ TEST_CASE("decades are equally far apart, and a power law is a straight line") {
 TEST_CASE("a plot of nothing is refused") {
     CHECK(test::refusal([] { observe::log_log_svg({"", "", "", {{"a", {{1.0, 0.0}}}}}); }) == "LogLogPlot.lines = no point, but it must be a point with both numbers > 0");
 }
+
+}  // namespace svg_plot_test

@@ -12,9 +12,10 @@
 #include <string>
 
 using namespace fibrant;
-using namespace fibrant::observe;
 
-namespace {
+namespace svg_test {
+
+using namespace fibrant::observe;
 
 double area(const std::vector<Eigen::Vector2d>& polygon) {
     double doubled = 0.0;
@@ -39,8 +40,6 @@ Snapshot only(const FibreSnapshot& fibre) {
 
 /// Area of the regular polygon that is drawn for a circle, over the circle's.
 const double polygon_share = 32.0 * std::sin(2.0 * std::numbers::pi / 32.0) / (2.0 * std::numbers::pi);
-
-}  // namespace
 
 TEST_CASE("a fibre cut square shows its circle, one cut at an angle an ellipse longer by one over the sine") {
     const auto square = slice_shapes(only(straight_fibre({-1, 2, 3}, {1, 2, 3}, 4, 0.1, 0)), 0, 0.25);
@@ -151,3 +150,5 @@ TEST_CASE("numbers of pictures are short and independent of the locale") {
     CHECK(detail::round_length(200.0) == 200.0);
     CHECK(Colour{1, 0.5, 0}.text() == "#ff8000");
 }
+
+}  // namespace svg_test

@@ -13,9 +13,10 @@
 #include <vector>
 
 using namespace fibrant;
-using namespace fibrant::observe;
 
-namespace {
+namespace vtk_writer_test {
+
+using namespace fibrant::observe;
 
 /// Values of a named array of a .vtp file, read by the rules of the format: a byte count, then the numbers, at its
 /// offset behind the underscore.
@@ -39,8 +40,6 @@ std::vector<std::string> entries(const std::filesystem::path& series) {
         files.push_back(text.substr(at + 6, text.find('"', at + 6) - at - 6));
     return files;
 }
-
-}  // namespace
 
 TEST_CASE("a fibre becomes one polyline with its values at the nodes") {
     const std::string file = fibre_data(crossing_pair()).text();
@@ -157,3 +156,5 @@ assert [(s.getAttribute("timestep"), s.getAttribute("file")) for s in series] ==
     }
     CHECK(std::system((python + " '" + (folder / "read.py").string() + "' '" + folder.string() + "'").c_str()) == 0);
 }
+
+}  // namespace vtk_writer_test

@@ -12,10 +12,11 @@
 #include <fstream>
 
 using namespace fibrant;
+
+namespace search_test {
+
 using namespace fibrant::proximity;
 using fibrant::test::FibreSet;
-
-namespace {
 
 /// Scene file: 8 bytes FIBPOL01, u64 fibres F, u64 vertices V, f64 margin, u64 skipped segments, F f64 radii,
 /// F + 1 u64 first vertices, 3 V f64 coordinates; little endian.
@@ -84,8 +85,6 @@ struct Threads {  // OpenMP's number of threads, put back at the end
     }
     int before = core::threads();
 };
-
-}  // namespace
 
 #define EVERY_SEARCH \
     BruteSearch, BvhSearch, GridSearch, KdTreeSearch, TestPointSearch, VerletSearch<GridSearch>, VerletSearch<KdTreeSearch>
@@ -377,3 +376,5 @@ TEST_CASE("curves cut into chords lose none of their contacts once the chords ar
     CHECK(outside == 0);
     CHECK(missed_bare > 0);  // the inflation is what did it
 }
+
+}  // namespace search_test

@@ -9,10 +9,11 @@
 #include <random>
 
 using namespace fibrant;
+
+namespace segment_distance_test {
+
 using fibrant::proximity::segment_distance;
 using fibrant::proximity::SegmentDistance;
-
-namespace {
 
 using Long = Eigen::Matrix<long double, 3, 1>;
 
@@ -40,8 +41,6 @@ Vec3 random_vector(std::mt19937& random) {
     const double x = uniform(random), y = uniform(random), z = uniform(random);
     return {x, y, z};
 }
-
-}  // namespace
 
 TEST_CASE("crossing segments are closest inside, parallel ones all along, and distant ones at their ends") {
     const SegmentDistance crossing = segment_distance({-1, 0, 0}, {4, 0, 0}, {0, -1, 0.5}, {0, 2, 0});
@@ -99,3 +98,5 @@ TEST_CASE("the branch-free form for whole vectors gives the same distance") {
         CHECK(least == doctest::Approx(segment_distance(a, u, b, v).squared).epsilon(1e-13));  // but for fused operations
     }
 }
+
+}  // namespace segment_distance_test

@@ -7,10 +7,11 @@
 #include <doctest/doctest.h>
 
 using namespace fibrant;
+
+namespace zones_test {
+
 using namespace fibrant::proximity;
 using fibrant::test::FibreSet;
-
-namespace {
 
 std::vector<Vec3> straight(const Vec3& from, const Vec3& to, int segments) {
     std::vector<Vec3> line;
@@ -19,8 +20,6 @@ std::vector<Vec3> straight(const Vec3& from, const Vec3& to, int segments) {
 }
 
 std::vector<ProximityZone> zones_of(const FibreSet& set) { return BruteSearch{}.find(set.centrelines(), set.reach); }
-
-}  // namespace
 
 TEST_CASE("two fibres that cross make one zone, which ends where their axes part by the threshold") {
     for (const int segments : {1, 2, 7, 40, 101}) {
@@ -139,3 +138,5 @@ TEST_CASE("every close pair has its closest points in a zone of its two fibres, 
         CHECK(std::ranges::count(pairs_of, 0) == 0);
     }
 }
+
+}  // namespace zones_test

@@ -8,9 +8,10 @@
 #include <numbers>
 
 using namespace fibrant;
-using test::refusal;
 
-namespace {
+namespace assembly_test {
+
+using test::refusal;
 
 scene::FibreSpecification fibre() {
     scene::FibreSpecification f;
@@ -29,8 +30,6 @@ std::string refused(const Change& change) {
         assembly.add(f);
     });
 }
-
-}  // namespace
 
 TEST_CASE("fibres and groups are numbered in the order in which they are added") {
     scene::Assembly assembly;
@@ -90,3 +89,5 @@ TEST_CASE("a clamp holds position and rotation of a section, and leaves it free 
     const Mat3 half = assembly.holds()[3].rotation(0.5);  // a quarter turn, half way
     CHECK((half * Vec3::UnitX() - Vec3(1, 1, 0).normalized()).norm() < 1e-15);
 }
+
+}  // namespace assembly_test

@@ -7,6 +7,9 @@
 #include <doctest/doctest.h>
 
 using namespace fibrant;
+
+namespace cross_section_test {
+
 using std::numbers::pi;
 using test::refusal;
 
@@ -65,3 +68,5 @@ TEST_CASE("Lame constants give back Young's modulus and Poisson's ratio") {
     CHECK(mu * (3 * lambda + 2 * mu) / (lambda + mu) == doctest::Approx(7300.0).epsilon(1e-14));
     CHECK(lambda / (2 * (lambda + mu)) == doctest::Approx(0.3).epsilon(1e-14));
 }
+
+}  // namespace cross_section_test

@@ -8,9 +8,10 @@
 #include <numbers>
 
 using namespace fibrant;
-using test::refusal;
 
-namespace {
+namespace reference_shape_test {
+
+using test::refusal;
 
 /// Helix of radius R and rise c a radian, `turns` turns.
 struct Helix {
@@ -32,8 +33,6 @@ struct Helix {
         return [*this](double t) { return position(2.0 * std::numbers::pi * turns * t); };
     }
 };
-
-}  // namespace
 
 TEST_CASE("directors are carried along a helix without twist about its axis") {
     const Helix helix;
@@ -117,3 +116,5 @@ TEST_CASE("curves that are no fibre are refused by name") {
     CHECK(refusal([] { scene::straight_frames(Vec3(1, 1, 1), Vec3(1, 1, 1), 2); })
               .starts_with("fibre.to: distance from fibre.from = 0,"));
 }
+
+}  // namespace reference_shape_test

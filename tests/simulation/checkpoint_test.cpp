@@ -11,6 +11,9 @@
 #include <iterator>
 
 using namespace fibrant;
+
+namespace checkpoint_test {
+
 using simulation::Loading;
 using simulation::Report;
 using simulation::Simulator;
@@ -21,8 +24,6 @@ using test::Rod;
 using test::Rough;
 using test::same_bits;
 using test::Smooth;
-
-namespace {
 
 /// A file in the system's folder for temporary files, removed at the end.
 struct TemporaryFile {
@@ -105,8 +106,6 @@ void check_resumes(const scene::Assembly& assembly, const simulation::ModelParam
         }
     }
 }
-
-}  // namespace
 
 TEST_CASE("an interrupted bending of one fibre resumes to the same bits, through cuts") {
     const Rod rod;
@@ -227,3 +226,5 @@ TEST_CASE("a new file takes the place of the old one only when it is whole") {
     CHECK(reader.get_text() == "bc");
     CHECK(failure([&] { reader.get<int>(); }) == "checkpoint " + file.name() + " is damaged");
 }
+
+}  // namespace checkpoint_test

@@ -10,14 +10,15 @@
 #include <cstdio>
 
 using namespace fibrant;
+
+namespace invariance_test {
+
 using simulation::Report;
 using simulation::Simulator;
 using test::Crossing;
 using test::Rod;
 using test::Rough;
 using test::same_bits;
-
-namespace {
 
 struct RoughIterative : Rough {
     using Solver = solver::FibreBlockPcg;
@@ -72,8 +73,6 @@ void check_same(const Outcome& a, const Outcome& b, double tolerance) {
     CHECK(close(a.report.energy.external / (a.force * a.radius), b.report.energy.external / (b.force * b.radius)));
 }
 
-}  // namespace
-
 TEST_CASE_TEMPLATE("a run repeated gives the same bits, on one thread as on two", M, Rough, RoughIterative) {
     const Outcome first = run<M>(dragged()), second = run<M>(dragged());
     CHECK(same_bits(first.state, second.state));
@@ -118,3 +117,5 @@ TEST_CASE("a single fibre bends alike in any units") {
     CHECK((tip(1e-3, 1.0) - reference).norm() < 1e-9);
     CHECK((tip(1e3, 1e-6) - reference).norm() < 1e-9);
 }
+
+}  // namespace invariance_test

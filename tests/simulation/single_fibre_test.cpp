@@ -8,6 +8,9 @@
 #include <cstdio>
 
 using namespace fibrant;
+
+namespace single_fibre_test {
+
 using test::Rod;
 using test::Smooth;
 using Simulator = simulation::Simulator<Smooth>;
@@ -129,3 +132,5 @@ TEST_CASE("the work of the loads is the energy stored, within the order of the t
         CHECK(middle / fine == doctest::Approx(4.0).epsilon(0.08));
     }
 }
+
+}  // namespace single_fibre_test

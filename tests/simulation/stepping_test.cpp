@@ -6,6 +6,9 @@
 #include <doctest/doctest.h>
 
 using namespace fibrant;
+
+namespace stepping_test {
+
 using simulation::Loading;
 using simulation::Ramp;
 using simulation::Report;
@@ -18,8 +21,6 @@ using test::Rough;
 using test::same_bits;
 using test::Smooth;
 
-namespace {
-
 /// Follows the amplitude of a channel.
 template <simulation::Model M>
 struct Amplitudes {
@@ -28,8 +29,6 @@ struct Amplitudes {
     std::vector<double> values{};
     void reported(const simulation::IncrementReport&) { values.push_back(simulator->amplitude(channel)); }
 };
-
-}  // namespace
 
 TEST_CASE("a ramp goes by equal steps or by equal factors, and a channel without a ramp stays") {
     const Rod rod;
@@ -370,3 +369,5 @@ TEST_CASE("scenes and parameters that cannot be run are refused by the simulator
     bad = good, bad.beam.shear_factor = 0.0;
     CHECK(refused(rod.clamped(), bad).starts_with("DirectorBeam.shear_factor = 0,"));
 }
+
+}  // namespace stepping_test

@@ -9,7 +9,7 @@
 
 using namespace fibrant;
 
-namespace {
+namespace hexahedron_map_test {
 
 /// A box of random size, sheared, tapered and with shifted corners, somewhere in space.
 solid::CellNodes random_cell(std::mt19937& generator) {
@@ -59,8 +59,6 @@ void check_round_trips(int cells, int points) {
     CHECK(worst <= 1e-12);
     CHECK(most <= 20);
 }
-
-}  // namespace
 
 TEST_CASE("a point of a sheared and tapered cell is found again to 1e-12, a million times, and nothing outside") {
     check_round_trips(10000, 100);
@@ -142,3 +140,5 @@ TEST_CASE("the search finds the lowest cell of those that hold a point, as tryin
     for (const Vec3& x : solid.nodes) CHECK(check(x));  // corners, shared by up to eight
     for (Index c = 0; c < core::count(solid.cells); ++c) CHECK(check(solid::cell_nodes(solid, c).transpose() * solid::shape(Vec3(1.0, 0.3, -0.2))));
 }
+
+}  // namespace hexahedron_map_test

@@ -11,11 +11,12 @@
 #include <vector>
 
 using namespace fibrant;
+
+namespace hexahedron_test {
+
 using solid::CellMatrix;
 using solid::CellNodes;
 using solid::CellVector;
-
-namespace {
 
 using Law = solid::SaintVenantKirchhoff;
 using Plain = solid::Hexahedron<solid::PlainStrains, Law>;
@@ -44,8 +45,6 @@ CellVector random_step(std::mt19937& generator, double size) {
     for (int k = 0; k < 24; ++k) step[k] = draw(generator);
     return step;
 }
-
-}  // namespace
 
 TEST_CASE_TEMPLATE("force and tangent are derivatives of the energy, and the tangent is symmetric", Element, Plain, Enhanced, EnhancedNeoHookean) {
     const Element element;
@@ -137,8 +136,6 @@ TEST_CASE("without compression the geometric stiffness adds nothing negative") {
     CHECK(Eigen::SelfAdjointEigenSolver<CellMatrix>(kept).eigenvalues()[0] >= -1e-12 * kept.norm());
 }
 
-namespace {
-
 /// Deflection of the end of a clamped plate strip under an end force, small loads, over that of plate theory (cylindrical
 /// bending: the sides are held, so D = E h^3 / (12 (1 - nu^2)) a unit of width), with the shear deformation of thick ones added.
 template <class Element>
@@ -194,8 +191,6 @@ double plate_deflection(Index along, Index through, double length, double thickn
     return tip / (bending + shear);
 }
 
-}  // namespace
-
 TEST_CASE("a plate bends as plate theory says with one enhanced element through the thickness; plain strains lock") {
     // One element of the length 1 for a thickness of 0.2: L/h = 50.
     for (const Index through : {1, 2, 4}) {
@@ -217,3 +212,5 @@ TEST_CASE("a plate bends as plate theory says with one enhanced element through 
     CHECK(trapezoids > 0.5);
     CHECK(trapezoids < 1.0);
 }
+
+}  // namespace hexahedron_test

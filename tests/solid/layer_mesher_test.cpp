@@ -10,9 +10,10 @@
 #include <numbers>
 
 using namespace fibrant;
-using solid::SectionPlace;
 
-namespace {
+namespace layer_mesher_test {
+
+using solid::SectionPlace;
 
 constexpr double radius = 0.1;
 
@@ -47,8 +48,6 @@ solid::LayerParameters parameters() {
     p.material = {100.0, 0.3};
     return p;
 }
-
-}  // namespace
 
 TEST_CASE("a straight round or flattened fibre is met where its contour is") {
     std::vector<SectionPlace> fibre;
@@ -176,3 +175,5 @@ TEST_CASE("what cannot be meshed is refused by name, and inner faces that would 
     p.least_thickness = 0.0;
     CHECK(says("LayerParameters.least_thickness = 0"));
 }
+
+}  // namespace layer_mesher_test

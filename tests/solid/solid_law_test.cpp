@@ -7,10 +7,11 @@
 #include <random>
 
 using namespace fibrant;
+
+namespace solid_law_test {
+
 using solid::Voigt;
 using solid::VoigtMatrix;
-
-namespace {
 
 const scene::ElasticMaterial material{1000.0, 0.3};
 
@@ -20,8 +21,6 @@ Voigt random_strain(std::mt19937& generator, double size) {
     for (int k = 0; k < 6; ++k) e[k] = draw(generator);
     return e;
 }
-
-}  // namespace
 
 TEST_CASE_TEMPLATE("stress and tangent are derivatives of the energy, and small strains meet Hooke's law", Law, solid::SaintVenantKirchhoff,
                    solid::NeoHookean) {
@@ -73,3 +72,5 @@ TEST_CASE("the neo-Hookean law resists compression to nothing, and knows no nega
     inside_out << -0.6, -0.6, 0.0, 0.0, 0.0, 0.0;  // two axes through zero: the determinant alone would not tell
     CHECK_FALSE(std::isfinite(law.response(material, inside_out).energy));
 }
+
+}  // namespace solid_law_test

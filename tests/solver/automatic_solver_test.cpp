@@ -6,12 +6,10 @@
 
 using namespace fibrant;
 
-namespace {
+namespace automatic_solver_test {
 
 // Chains in contact: the second of the systems that every solver solves.
 test::SyntheticSystem touching() { return test::solvable_systems()[1]; }
-
-}  // namespace
 
 TEST_CASE("the automatic strategy owes what every solver does, however soon it falls back") {
     test::check_linear_solver(solver::AutomaticSolver{});
@@ -90,3 +88,5 @@ TEST_CASE("parameters of the automatic strategy that mean nothing are refused by
     CHECK(test::refusal([] { Solver{{.two_level_limit = 0}}; }).starts_with("AutomaticSolver.two_level_limit = 0"));
     CHECK(test::refusal([] { Solver{{.largest_fill = -1.0}}; }).starts_with("AutomaticSolver.largest_fill = -1"));
 }
+
+}  // namespace automatic_solver_test

@@ -11,9 +11,10 @@
 #include <set>
 
 using namespace fibrant;
-using test::SyntheticSystem;
 
-namespace {
+namespace chain_clusters_test {
+
+using test::SyntheticSystem;
 
 // Straight chains of bars from one point to another.
 Index add_line(SyntheticSystem& system, const Vec3& from, const Vec3& to, Index group, Index nodes = 9) {
@@ -43,8 +44,6 @@ void check_partition(const std::vector<solver::ChainCluster>& clusters, Index ch
     }
     CHECK(core::count(seen) == chains);
 }
-
-}  // namespace
 
 TEST_CASE("a group is cut into compact parts of nearly equal number") {
     SyntheticSystem system;
@@ -118,3 +117,5 @@ TEST_CASE("clusters do not depend on where the assembly is or how it is turned")
         CHECK(a == b);
     }
 }
+
+}  // namespace chain_clusters_test

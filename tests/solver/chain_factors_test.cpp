@@ -10,7 +10,7 @@
 
 using namespace fibrant;
 
-namespace {
+namespace chain_factors_test {
 
 template <assembly::LinearSystem System>
 Vector preconditioned(const System& system, const Vector& r) {
@@ -21,8 +21,6 @@ Vector preconditioned(const System& system, const Vector& r) {
     factors.apply(system.layout(), r, z);
     return z;
 }
-
-}  // namespace
 
 TEST_CASE("factors of chains solve chains of every shape, in every lane, to the rounding of float") {
     for (const Index vectors : {1, 2, 3, 4, 5})
@@ -91,3 +89,5 @@ TEST_CASE("a chain with negative stiffness is told, and what stands for it is po
         }
     }
 }
+
+}  // namespace chain_factors_test

@@ -9,7 +9,7 @@
 
 using namespace fibrant;
 
-namespace {
+namespace dissection_test {
 
 // A block of springs: every point is tied to its neighbours along the axes, and to the ground by a weak spring.
 struct Block {
@@ -42,8 +42,6 @@ struct Block {
         return a;
     }
 };
-
-}  // namespace
 
 TEST_CASE("a dissection orders every vertex once, and leaves a section of a bar to the last") {
     const Block bar(24, 4);
@@ -88,3 +86,5 @@ TEST_CASE("graphs without edges, with all edges, and with all vertices in one pl
         for (int k = 0; k < 30; ++k) CHECK(order[core::at(k)] == k);
     }
 }
+
+}  // namespace dissection_test

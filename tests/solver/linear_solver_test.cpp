@@ -10,7 +10,7 @@
 
 using namespace fibrant;
 
-namespace {
+namespace linear_solver_test {
 
 // The least system: what the contract asks for, and nothing else.
 class LeastSystem {
@@ -65,8 +65,6 @@ struct SolverWithoutPreparation {
 };
 static_assert(!solver::LinearSolver<SolverWithoutPreparation, LeastSystem>);
 
-}  // namespace
-
 TEST_CASE_TEMPLATE("a solver takes the least system for what it is", Solver, solver::SparseCholesky, solver::TwoLevelPcg,
                    solver::FibreBlockPcg, solver::FloatBlockCholesky) {
     static_assert(solver::LinearSolver<Solver, LeastSystem>);
@@ -94,3 +92,5 @@ TEST_CASE("parameters that mean nothing are refused by name") {
     CHECK(test::refusal([] { solver::SparseCholesky{{.refinements = -1}}; }).starts_with("SparseCholesky.refinements = -1"));
     CHECK(test::refusal([] { solver::FibreBlockPcg{{.iteration_limit = 0}}; }).starts_with("FibreBlockPcg.iteration_limit = 0"));
 }
+
+}  // namespace linear_solver_test

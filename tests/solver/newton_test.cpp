@@ -8,7 +8,7 @@
 
 using namespace fibrant;
 
-namespace {
+namespace newton_test {
 
 /// One node whose energy is x atan x - log(1 + x^2) / 2 in each component: convex, and its force goes to a bound as that of contacts
 /// that let go. Beyond |x| = 1.3917 Newton's method goes further out with each step.
@@ -68,8 +68,6 @@ struct Exact {
     }
 };
 
-}  // namespace
-
 TEST_CASE("a step that ends where the energy rises is cut, and Newton's method gets to a minimum that it would leave behind") {
     for (const double overshoot : {std::numeric_limits<double>::infinity(), 0.5}) {
         CAPTURE(overshoot);
@@ -109,3 +107,5 @@ TEST_CASE("what the first step of a prescribed motion may leave over is a part o
     CHECK(linear.tolerances[0] * problem.own.coupling == doctest::Approx(1e-2));  // the first solution is to 1e-2
     CHECK(linear.tolerances[1] >= 1e-4);
 }
+
+}  // namespace newton_test

@@ -7,9 +7,10 @@
 #include <doctest/doctest.h>
 
 using namespace fibrant;
-using test::SyntheticSystem;
 
-namespace {
+namespace rigid_coarse_space_test {
+
+using test::SyntheticSystem;
 
 // Chains of several kinds with everything that couples them: contact elements between chains and within one, near and
 // far along it, an average over many nodes, and elements that several chains share.
@@ -85,8 +86,6 @@ Vector rigid_motion(const scene::DofLayout& layout, const Vec3& translation, con
     assembly::HeldProjector(layout).project(z);
     return z;
 }
-
-}  // namespace
 
 TEST_CASE("the coarse correction is the projection on rigid motions in the energy of the whole system") {
     for (const int held : {0, 7}) {
@@ -220,3 +219,5 @@ TEST_CASE("a coarse matrix that is summed in several parts at once is the one th
     coarse.add_correction(system.layout(), r, z);
     CHECK((z - expected).norm() < 1e-2 * expected.norm());
 }
+
+}  // namespace rigid_coarse_space_test

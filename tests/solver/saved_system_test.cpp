@@ -13,7 +13,7 @@
 
 using namespace fibrant;
 
-namespace {
+namespace saved_system_test {
 
 // A folder that is gone at the end of the test.
 struct TemporaryFolder {
@@ -29,8 +29,6 @@ std::string content(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
 }
-
-}  // namespace
 
 TEST_CASE("a system that was written is read as the same system, whatever its chains and terms") {
     const TemporaryFolder folder;
@@ -137,3 +135,5 @@ TEST_CASE("files that are no whole system are refused, not half read") {
     CHECK(test::refusal([] { Recording{{}}; }).starts_with("RecordingSolver.folder = \"\""));
     CHECK(test::refusal([] { Recording{{.folder = "x", .every = 0}}; }).starts_with("RecordingSolver.every = 0"));
 }
+
+}  // namespace saved_system_test

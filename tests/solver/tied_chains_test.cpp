@@ -7,7 +7,7 @@
 
 using namespace fibrant;
 
-namespace {
+namespace tied_chains_test {
 
 /// Bundles as a simulation has them, the ends of each tied on the mean at both ends, or each fibre held on its own.
 assembly::ChainSystem<beam::DirectorBeam<>> bundles(const test::Fabric& fabric, bool tied) {
@@ -42,8 +42,6 @@ int iterations(const assembly::ChainSystem<beam::DirectorBeam<>>& system, const 
     return report.iterations;
 }
 
-}  // namespace
-
 TEST_CASE("chains that nothing but ties joins are solved at once, whatever moves together with them") {
     for (const int ties : {1, 4}) {  // of four, the first two move together
         CAPTURE(ties);
@@ -69,3 +67,5 @@ TEST_CASE("fibre ends that are tied on the mean take hardly more iterations than
         CHECK(tied <= 1.6 * held);  // 105 of 90, 55 of 41
     }
 }
+
+}  // namespace tied_chains_test

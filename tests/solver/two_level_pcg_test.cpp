@@ -9,7 +9,7 @@
 
 using namespace fibrant;
 
-namespace {
+namespace two_level_pcg_test {
 
 using test::contact_load;
 
@@ -27,8 +27,6 @@ int iterations(Solver solver, const test::FabricSystem& system, double tolerance
 }
 
 const test::Fabric bundle{.bundles = 1, .parallel = true, .fibres = 38, .elements = 16, .length = 2.2};
-
-}  // namespace
 
 TEST_CASE("the coarse space takes the bending of a bundle: several times fewer iterations than fibres alone") {
     const test::FabricSystem system(bundle);
@@ -150,3 +148,5 @@ TEST_CASE("parameters of two levels that mean nothing are refused by name") {
     CHECK(test::refusal([] { Solver{{.refine_after = -1}}; }).starts_with("TwoLevelPcg.refine_after = -1"));
     CHECK(test::refusal([] { Solver{{.iteration_limit = 0}}; }).starts_with("TwoLevelPcg.iteration_limit = 0"));
 }
+
+}  // namespace two_level_pcg_test

@@ -9,9 +9,10 @@
 #include <numbers>
 
 using namespace fibrant;
-using namespace fibrant::test;
 
-namespace {
+namespace stability_long_test {
+
+using namespace fibrant::test;
 
 const double r = 0.0201;
 
@@ -28,8 +29,6 @@ double stiffness_of(const SmallFibre& f) {
     const double length = (f.to - f.from).norm(), inertia = 0.25 * std::numbers::pi * std::pow(f.radius, 4);
     return 192.0 * f.young * inertia / std::pow(length, 3) / (1.0 + 24.0 * 1.3 * std::pow(f.radius / length, 2));
 }
-
-}  // namespace
 
 TEST_CASE("crossed fibres of any slenderness from 10 to 1e5 obey beam theory") {
     std::printf("slenderness,force over beam theory,active,newton,rejected\n");
@@ -112,3 +111,5 @@ TEST_CASE("what friction has done does not depend on how finely it was followed"
 }
 
 TEST_CASE("a thousand random small scenes neither crash nor leave a fibre in another one without saying so") { check_random_scenes(1, 1000); }
+
+}  // namespace stability_long_test

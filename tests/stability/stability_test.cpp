@@ -11,9 +11,10 @@
 #include <cstdio>
 
 using namespace fibrant;
-using namespace fibrant::test;
 
-namespace {
+namespace stability_test {
+
+using namespace fibrant::test;
 
 const double r = 0.0201;
 
@@ -41,8 +42,6 @@ const SmallResult& three() {
     static const SmallResult result = run(tight_three());
     return result;
 }
-
-}  // namespace
 
 TEST_CASE("three fibres that are pressed and dragged: converged, in balance, not in each other") {
     const SmallScene scene = tight_three();
@@ -222,3 +221,5 @@ TEST_CASE("a fibre that goes there and back with friction closes its loop, and n
     CHECK(dissipated > 0.0);
     CHECK(errors.back() < 1e-3);
 }
+
+}  // namespace stability_test

@@ -8,6 +8,9 @@
 #include <doctest/doctest.h>
 
 using namespace fibrant;
+
+namespace cable_test {
+
 using Model = test::PlainModel<beam::KirchhoffCable>;
 
 /// What shear, which the cable leaves out, takes off the force on the middle of a clamped fibre at most: 24 (1 + nu) (r/L)^2 of
@@ -101,3 +104,5 @@ TEST_CASE("two parallel cables pressed along their length lie on each other with
     const double high = solved.simulator.value({1, 0.5}).z(), end = solved.simulator.value({1, 0.0}).z();
     CHECK(std::abs(high - end) < 0.2 * (2.0 * r - high));  // an end's point stands for less of the length
 }
+
+}  // namespace cable_test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Multipliers take the penetration away that a penalty leaves, at a penalty that may be soft.
 #include <contact/contact_model.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/law/augmented.hpp>
 
 #include <doctest/doctest.h>
@@ -9,9 +10,10 @@
 #include <cstdio>
 
 using namespace fibrant;
-using test::Smooth;
 
-namespace {
+namespace contact_augmented_test {
+
+using test::Smooth;
 
 const double r = 0.0201;
 
@@ -50,8 +52,6 @@ scene::Assembly crossing(double approach) {
     }
     return assembly;
 }
-
-}  // namespace
 
 TEST_CASE("crossed fibres push each other apart as if neither could enter the other, however soft the penalty") {
     const double approach = 0.0402, expected = 0.00435476149304;  // crossed_fibres.json
@@ -105,3 +105,5 @@ TEST_CASE("multipliers hold a fibre on a plate without a penetration") {
     CHECK(report.contact.greatest_penetration < 1e-6 * r);
     CHECK(report.contact.reaction_sum > 0.0);
 }
+
+}  // namespace contact_augmented_test

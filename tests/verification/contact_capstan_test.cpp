@@ -4,6 +4,8 @@
 #include <contact/contact_model.hpp>
 #include <verification/capstan_reference.hpp>
 
+#include <fibrant/contact/contacts_with_tools.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -13,9 +15,10 @@
 #include <vector>
 
 using namespace fibrant;
-using test::Rough;
 
-namespace {
+namespace contact_capstan_test {
+
+using test::Rough;
 
 const double r = 0.0201, R = 0.5, rho = R + r, pi = std::numbers::pi;
 const double stiffness = 0.25 * pi * r * r * r * r * test::glass.young_modulus;  // E I
@@ -137,8 +140,6 @@ void check_drawn(double mu, double tension, double spacing, double tolerance) {
     }
 }
 
-}  // namespace
-
 TEST_CASE("the reference of this test is that of the table") {
     CHECK(std::abs(reference_ratio(0.15, stiffness, 0.02, pi) - 1.5303156580055) < 1e-6);
     CHECK(std::abs(reference_ratio(0.15, stiffness, 0.2, pi) - 1.5677088680113) < 1e-6);
@@ -159,3 +160,5 @@ TEST_CASE("a fibre drawn half a turn around a rigid cylinder is held back as the
     check_drawn<Tooled>(0.3, 0.03, 2.5, 0.01);    // 0.9 %
     check_drawn<Tooled>(0.15, 0.0025, 5.0, 0.02);  // 3 %
 }
+
+}  // namespace contact_capstan_test

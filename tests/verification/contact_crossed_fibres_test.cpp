@@ -10,10 +10,11 @@
 #include <numbers>
 
 using namespace fibrant;
+
+namespace contact_crossed_fibres_test {
+
 using test::Rough;
 using test::Smooth;
-
-namespace {
 
 const double r = 0.0201;
 
@@ -99,8 +100,6 @@ private:
 
 const auto smooth = test::tight_parameters<Smooth>(1e-3 * r);
 
-}  // namespace
-
 TEST_CASE("two crossed fibres push each other apart as the rods of the reference do") {
     for (const Case& c : cases) {
         CAPTURE(c.length);
@@ -155,3 +154,5 @@ TEST_CASE("a small approach obeys beam theory") {
     std::printf("u 0.01 r: error %+.2e\n", crossing.support(0).z() / c.force - 1.0);
     CHECK(std::abs(crossing.support(0).z() / c.force - 1.0) < 1e-3);
 }
+
+}  // namespace contact_crossed_fibres_test

@@ -9,9 +9,10 @@
 #include <numbers>
 
 using namespace fibrant;
-using test::Smooth;
 
-namespace {
+namespace contact_self_test {
+
+using test::Smooth;
 
 const double r = 0.0201, pi = std::numbers::pi;
 
@@ -40,8 +41,6 @@ scene::Curve hairpin(double leg, double R) {
         return Vec3(R * std::sin(angle), -R * std::cos(angle), 0.0);
     };
 }
-
-}  // namespace
 
 TEST_CASE("a fibre that crosses itself is held apart as two fibres are") {
     // Two straight spans of one fibre, one across the other at mid-span, joined by a loop whose nodes are all held: each span is
@@ -138,3 +137,5 @@ TEST_CASE("the legs of a hairpin that is pressed shut touch each other") {
     std::printf("without: %.5f r apart\n", apart(through) / r);
     CHECK(apart(through) < 1.9 * r);
 }
+
+}  // namespace contact_self_test

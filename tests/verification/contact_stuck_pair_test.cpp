@@ -11,9 +11,10 @@
 #include <numbers>
 
 using namespace fibrant;
-using test::Rough;
 
-namespace {
+namespace contact_stuck_pair_test {
+
+using test::Rough;
 
 const double r = 0.02, range = 0.02 * r;  // radius, reversible displacement [mm]
 
@@ -114,8 +115,6 @@ void check_turning_pair(double angle_deg, Index increments) {
     CHECK(turned.energy.dissipated == dissipated);
 }
 
-}  // namespace
-
 TEST_CASE("a stuck crossing keeps its friction when it is turned as a whole") {
     for (const Index increments : {1, 6}) check_turning_pair(70.0, increments);
 }
@@ -187,3 +186,5 @@ TEST_CASE("a fibre between two others gives way elastically, slips at twice the 
     CHECK(heat > 0.0);
     CHECK(std::abs(work / heat - 1.0) < 0.03);
 }
+
+}  // namespace contact_stuck_pair_test

@@ -4,6 +4,7 @@
 #include <verification/elements.hpp>
 
 #include <fibrant/beam/rigid_section_rod.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/solver/fibre_block_pcg.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
@@ -12,14 +13,13 @@
 
 using namespace fibrant;
 
-namespace {
+namespace rod_test {
+
 struct Model : test::PlainModel<beam::RigidSectionRod> {
     using Friction = law::RegularisedCoulomb;
     using Tools = contact::RigidTools;
 };
 const double pi = std::numbers::pi;
-}  // namespace
-
 TEST_CASE("a cantilever of rods converges with the second order at any slenderness") {
     const struct {
         double slenderness, length;
@@ -265,3 +265,5 @@ TEST_CASE("every strategy solves the tangent of touching rods, whose points have
     CHECK(blocks < 60);
     CHECK(two_level < 60);
 }
+
+}  // namespace rod_test

@@ -3,7 +3,6 @@
 /// @file The tangent of fibres and the solids that they are bonded to.
 
 #include <fibrant/assembly/chain_system.hpp>
-#include <fibrant/connection/bonded_solid.hpp>
 #include <fibrant/solid/no_solid.hpp>
 
 #include <algorithm>
@@ -155,7 +154,7 @@ private:
         std::array<Index, 9> vectors{};
         for (std::size_t b = 0; b < solid_->bonds().size(); ++b) {
             if (!solid_->holds(b)) continue;
-            const connection::Bond& bond = solid_->bonds()[b];
+            const auto& bond = solid_->bonds()[b];
             vectors[8] = bond.vector;
             for (int k = 0; k < 8; ++k) {
                 vectors[core::at(k)] = first + bond.nodes[core::at(k)];

@@ -4,14 +4,18 @@
 
 #include <fibrant/assembly/solid_system.hpp>
 #include <fibrant/beam/beam_element.hpp>
-#include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/contact/contact_set.hpp>
-#include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/law/friction_law.hpp>
 #include <fibrant/law/normal_law.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
 #include <fibrant/solver/linear_solver.hpp>
 #include <fibrant/solver/newton.hpp>
+
+namespace fibrant::contact {
+// Comes with RigidTools, which a model that has tools names; others are spared its compilation.
+template <beam::BeamElement B, proximity::ProximitySearch Search, law::NormalLaw Normal, law::FrictionLaw Friction>
+class ContactsWithTools;
+}  // namespace fibrant::contact
 
 namespace fibrant::simulation {
 

@@ -7,6 +7,7 @@
 
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/connection/bonded_solid.hpp>
+#include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
@@ -19,9 +20,10 @@
 #include <unistd.h>
 
 using namespace fibrant;
-namespace composite = compositions::composite;
 
-namespace {
+namespace composite_test {
+
+namespace composite = compositions::composite;
 
 struct Model {
     using Beam = beam::DirectorBeam<3>;
@@ -117,8 +119,6 @@ simulation::ModelParameters<Model> parameters(double strength) {
     p.solid.debonding.strength = strength;
     return p;
 }
-
-}  // namespace
 
 TEST_CASE("edges move as rigid bodies: on an arc when bent, nearer when twisted") {
     composite::LoadParameters load;
@@ -216,8 +216,6 @@ TEST_CASE("a strip tied to bodies by averages bends as a beam whose ends are fre
     CHECK((other.moment + wrench.moment).norm() <= 1e-3 * wrench.moment.norm());
 }
 
-namespace {
-
 /// A square bar of 16 x n x n cells around one fibre, its faces tied in four quarters to two bodies, the fibre's ends to them too.
 constexpr double bar_length = 4.0, bar_width = 0.4;
 struct Bar {
@@ -258,8 +256,6 @@ simulation::Loading<Model> once() {
     loading.increments = 1;
     return loading;
 }
-
-}  // namespace
 
 TEST_CASE("a bar of matrix and fibre drawn by a body shares the force by E A, and turned by one takes the torque of a free section") {
     const double pi = std::acos(-1.0), matrix = matrix_modulus * bar_width * bar_width, fibre = fibre_modulus * pi * radius * radius, force = 1e-3 * (matrix + fibre);
@@ -350,3 +346,5 @@ TEST_CASE("a run goes on from where another left the same fibres, and not from e
     next.begin_at(Vector::Zero(5));
     CHECK(test::refusal([&] { Simulator(next, parameters(1e6)); }).starts_with("Assembly.start = 5 numbers"));
 }
+
+}  // namespace composite_test

@@ -16,9 +16,10 @@
 #include <cstdio>
 
 using namespace fibrant;
-namespace knot = compositions::knot;
 
-namespace {
+namespace overhand_knot_test {
+
+namespace knot = compositions::knot;
 
 struct Knotted {
     using Beam = beam::DirectorBeam<3>;
@@ -77,8 +78,6 @@ struct Knot {
         return state;
     }
 };
-
-}  // namespace
 
 TEST_CASE("a rod is tied without being stretched, and nothing of it is nearer than a diameter to the rest") {
     for (const int crossings : {3, 5}) {
@@ -141,3 +140,5 @@ TEST_CASE("friction adds mu times the contact force to the pull that tightens a 
     CHECK(std::abs(added / expected - 1.0) < 0.03);
     CHECK(std::abs(0.5 * (tight.force + loosened.force) / smooth.force - 1.0) < 0.06);  // friction moves the contacts a little
 }
+
+}  // namespace overhand_knot_test

@@ -12,9 +12,10 @@
 #include <cstdio>
 
 using namespace fibrant;
-namespace mat = compositions::mat;
 
-namespace {
+namespace random_mat_test {
+
+namespace mat = compositions::mat;
 
 /// Straight fibres at any place of a box, with all copies that a periodic box of side V^(1/3) has around it.
 struct Soft {
@@ -55,8 +56,6 @@ double periodic_pairs(const std::vector<proximity::SegmentPair>& pairs, Index ow
     }
     return sum;
 }
-
-}  // namespace
 
 TEST_CASE("random fibres touch as often as the excluded volume says, and the search finds them all") {
     for (const bool planar : {false, true}) {
@@ -118,3 +117,5 @@ TEST_CASE("a box that is full, and what is not a mat, is refused by name") {
     parameters.tilt_deg = 100.0;
     CHECK(test::refusal([&] { parameters.validate(); }).find("MatParameters.tilt_deg = 100") == 0);
 }
+
+}  // namespace random_mat_test

@@ -13,9 +13,10 @@
 #include <cstdio>
 
 using namespace fibrant;
-namespace strand = compositions::strand;
 
-namespace {
+namespace bending_long_test {
+
+namespace strand = compositions::strand;
 
 struct Rough {
     using Beam = beam::DirectorBeam<3>;
@@ -54,8 +55,6 @@ Bent bend(Index wires, double mu, double angle) {
     return bent;
 }
 
-}  // namespace
-
 TEST_CASE("a strand with friction bends to 90 degrees, between its wires' own stiffness and that of a solid") {
     const double angle = 0.5 * std::numbers::pi;
     for (const Index wires : {7, 19}) {
@@ -85,3 +84,5 @@ TEST_CASE("a strand with friction bends to 90 degrees, between its wires' own st
         CHECK(rough.report.energy.dissipated > 0.0);
     }
 }
+
+}  // namespace bending_long_test

@@ -17,9 +17,10 @@
 #include <cstdio>
 
 using namespace fibrant;
-namespace strand = compositions::strand;
 
-namespace {
+namespace strand_test {
+
+namespace strand = compositions::strand;
 
 struct Frictionless {
     using Beam = beam::DirectorBeam<3>;
@@ -102,8 +103,6 @@ double tension_between_crossings(double length, double lay_angle_deg, double hel
     }
     return tension / full;
 }
-
-}  // namespace
 
 TEST_CASE("wires lie on the helices of the reference") {
     for (const Case& c : cases) {
@@ -201,3 +200,5 @@ TEST_CASE("a strand that has no room for its wires, or too few of them, is refus
         CHECK(core::count(strand::wires_of(regular).fibres()) == wires);
     }
 }
+
+}  // namespace strand_test

@@ -16,9 +16,10 @@
 #include <cstdio>
 
 using namespace fibrant;
-namespace two_ply = compositions::two_ply;
 
-namespace {
+namespace two_ply_test {
+
+namespace two_ply = compositions::two_ply;
 
 struct Frictionless {
     using Beam = beam::DirectorBeam<3>;
@@ -32,8 +33,6 @@ const double r = 0.0201, pi = std::numbers::pi;
 two_ply::TwoPlyParameters rods(double force, double length, Index elements) {
     return {.radius = r, .length = length, .material = {7300.0, 0.3}, .elements = elements, .force = force};
 }
-
-}  // namespace
 
 TEST_CASE("the theory of this test is that of the table") {
     struct Case {
@@ -91,3 +90,5 @@ TEST_CASE("a ply without a pull that is known is refused by name") {
     parameters.force = core::unset;
     CHECK(test::refusal([&] { two_ply::straight_rods(parameters); }) == "TwoPlyParameters.force = nan, but it must be finite and >= 0");
 }
+
+}  // namespace two_ply_test

@@ -12,9 +12,10 @@
 #include <random>
 
 using namespace fibrant;
-using namespace fibrant::compositions::weave;
 
-namespace {
+namespace audit_test {
+
+using namespace fibrant::compositions::weave;
 
 observe::FibreSnapshot curve(const std::vector<Vec3>& nodes, double radius) {
     observe::FibreSnapshot fibre;
@@ -25,8 +26,6 @@ observe::FibreSnapshot curve(const std::vector<Vec3>& nodes, double radius) {
     fibre.director_2.assign(nodes.size(), Vec3::UnitZ());
     return fibre;
 }
-
-}  // namespace
 
 TEST_CASE("a fabric drawn by its pattern passes, every pair of a warp and a weft fibre once") {
     for (const char* name : {"plain", "twill22", "twill31"}) {
@@ -189,3 +188,5 @@ TEST_CASE("the least gap of a fabric is that of a dense sampling of all pairs, w
     CHECK(grid.fibre_i == brute.fibre_i);
     CHECK(grid.fibre_j == brute.fibre_j);
 }
+
+}  // namespace audit_test

@@ -8,9 +8,10 @@
 #include <string>
 
 using namespace fibrant;
-using namespace fibrant::compositions::weave;
 
-namespace {
+namespace fabric_parameters_test {
+
+using namespace fibrant::compositions::weave;
 
 /// What a fabric that was changed in one field says.
 template <class Change>
@@ -19,8 +20,6 @@ std::string refused(const Change& change) {
     change(fabric);
     return test::refusal([&] { fabric.validate(); });
 }
-
-}  // namespace
 
 TEST_CASE("the fabric of the chapter's tables is accepted, with its sizes") {
     FabricParameters fabric = small_fabric(4, 76);
@@ -122,3 +121,5 @@ TEST_CASE("a programme of settling that cannot be is refused") {
     CHECK(refused_settling([](S& s) { s.friction_coefficient = -0.1; }) ==
           "SettleParameters.friction_coefficient = -0.1, but it must be finite and >= 0");
 }
+
+}  // namespace fabric_parameters_test

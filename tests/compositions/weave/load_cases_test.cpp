@@ -12,6 +12,9 @@
 #include <vector>
 
 using namespace fibrant;
+
+namespace load_cases_test {
+
 using namespace fibrant::compositions::weave;
 
 TEST_CASE("one call builds the hierarchy of a sample: every fibre end in the average of its tow end, every tow end on its edge") {
@@ -101,3 +104,5 @@ TEST_CASE("figures of tows are those of the sections they are drawn with") {
     for (const double strain : elements.strain) CHECK(strain == doctest::Approx(0.01));
     for (const double curvature : elements.curvature) CHECK(std::abs(curvature) < 1e-9);
 }
+
+}  // namespace load_cases_test

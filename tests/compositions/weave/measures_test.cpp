@@ -12,9 +12,10 @@
 #include <vector>
 
 using namespace fibrant;
-using namespace fibrant::compositions::weave;
 
-namespace {
+namespace measures_test {
+
+using namespace fibrant::compositions::weave;
 
 constexpr double pi = std::numbers::pi;
 
@@ -37,8 +38,6 @@ std::vector<Vec3> sine_nodes(double a, double k, double length, Index elements) 
     }
     return nodes;
 }
-
-}  // namespace
 
 TEST_CASE("crimp of a sine path is that of its integral, to the fourth order in the elements") {
     const double a = 0.115, k = 2.0 * pi / 1.76, length = 3.52;
@@ -189,3 +188,5 @@ TEST_CASE("a snapshot of another fabric is refused") {
     CHECK(test::refusal([&] { thickness(snapshot, fabric); }) ==
           "Snapshot.fibres[3].position = 33 nodes, but it must be of 65 nodes");
 }
+
+}  // namespace measures_test

@@ -10,6 +10,9 @@
 #include <numbers>
 
 using namespace fibrant;
+
+namespace packing_test {
+
 using namespace fibrant::compositions::weave;
 
 TEST_CASE("7, 19, 37 and 61 fibres are full hexagons") {
@@ -86,3 +89,5 @@ TEST_CASE("a packing that cannot be is refused by field, value and bound") {
     CHECK(refusal([] { compact_packing(7, 1.0, 1.0, -0.1); }) ==
           "compact_packing.gap = -0.1, but it must be finite and >= 0");
 }
+
+}  // namespace packing_test

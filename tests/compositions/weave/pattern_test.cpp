@@ -10,9 +10,10 @@
 #include <vector>
 
 using namespace fibrant;
-using namespace fibrant::compositions::weave;
 
-namespace {
+namespace pattern_test {
+
+using namespace fibrant::compositions::weave;
 
 std::vector<std::string> drawn(const Pattern& pattern) {
     std::vector<std::string> rows;
@@ -22,8 +23,6 @@ std::vector<std::string> drawn(const Pattern& pattern) {
     }
     return rows;
 }
-
-}  // namespace
 
 TEST_CASE("the built-in weaves are those that are drawn on point paper") {
     CHECK(drawn(Pattern::named("plain")) == std::vector<std::string>{"01", "10"});
@@ -147,3 +146,5 @@ TEST_CASE("holding together is decided as by trying every set of tows") {
     CHECK(held > 20);
     CHECK(loose > 20);
 }
+
+}  // namespace pattern_test

@@ -4,6 +4,7 @@
 #include <fibrant/compositions/weave/periodic.hpp>
 #include <fibrant/compositions/weave/measures.hpp>
 #include <fibrant/compositions/weave/settle.hpp>
+#include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/simulation/programme.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
@@ -15,9 +16,10 @@
 #include <string>
 
 using namespace fibrant;
-using namespace fibrant::compositions::weave;
 
-namespace {
+namespace periodic_long_test {
+
+using namespace fibrant::compositions::weave;
 
 struct Cell {
     using Beam = beam::DirectorBeam<3>;
@@ -39,8 +41,6 @@ FabricParameters cell_fabric() {
     fabric.elements = 8;
     return fabric;
 }
-
-}  // namespace
 
 TEST_CASE("the stress of a stretched cell is the same from the ties of its seams and from the forces in fibres and contacts") {
     const FabricParameters fabric = cell_fabric();
@@ -102,3 +102,5 @@ TEST_CASE("the stress of a stretched cell is the same from the ties of its seams
         CHECK(slope < bound);
     }
 }
+
+}  // namespace periodic_long_test

@@ -14,9 +14,10 @@
 #include <filesystem>
 
 using namespace fibrant;
-using namespace fibrant::compositions;
 
-namespace {
+namespace same_bits_test {
+
+using namespace fibrant::compositions;
 
 struct Model {
     using Beam = beam::DirectorBeam<3>;
@@ -72,8 +73,6 @@ bool same_bits(const Vector& a, const Vector& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
 }
 
-}  // namespace
-
 TEST_CASE("tows that part go through the same bits on one thread and on two, and after an interruption") {
     const Run one = test::with_threads(1, [] { return Run("", false, -1); });
     const Run two = test::with_threads(2, [] { return Run("", false, -1); });
@@ -97,3 +96,5 @@ TEST_CASE("tows that part go through the same bits on one thread and on two, and
     std::printf("%td contact elements, %td active, %td Newton iterations\n", one.report.contact.elements, one.report.contact.active,
                 one.report.counts.newton);
 }
+
+}  // namespace same_bits_test

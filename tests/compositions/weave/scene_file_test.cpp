@@ -17,10 +17,11 @@
 #include <vector>
 
 using namespace fibrant;
+
+namespace scene_file_test {
+
 using weave::read_scene;
 using weave::Scene;
-
-namespace {
 
 const std::filesystem::path scenes =
     std::filesystem::path(__FILE__).parent_path() / ".." / ".." / ".." / "examples" / "weave";
@@ -38,8 +39,6 @@ std::string refused_text(const std::string& text) {
     observe::write_file(path, text);
     return test::refusal([&] { read_scene(path.string()); });
 }
-
-}  // namespace
 
 TEST_CASE("the four scenes hold the chapter's tables") {
     for (const std::string name : {"plain", "twill", "plain_76", "twill_76"}) {
@@ -179,3 +178,5 @@ TEST_CASE("a settled fabric leaves its measures and pictures in files of a reaso
 }
 
 #endif
+
+}  // namespace scene_file_test

@@ -2,6 +2,7 @@
 #pragma once
 /// @file How the edges across the warp of a composite are moved: driven node by node, or tied to bodies by averages.
 
+#include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/compositions/composite/composite_parameters.hpp>
 #include <fibrant/compositions/weave/edges.hpp>
 #include <fibrant/core/rotation.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The least type of each contract, which has nothing that the contract does not ask for: generic code compiles and runs
 // with it, so it uses nothing more either.
-#include "refusal.hpp"
-#include "support/synthetic_system.hpp"
+#include <refusal.hpp>
+#include <support/synthetic_system.hpp>
 
 #include <fibrant/assembly/term_assembly.hpp>
 #include <fibrant/observe/observer.hpp>
@@ -14,7 +14,7 @@
 
 using namespace fibrant;
 
-namespace {
+namespace archetypes_test {
 
 /// A bar of two nodes with Green-Lagrange strain and no other unknowns than positions.
 struct LeastBeam {
@@ -165,8 +165,6 @@ simulation::ModelParameters<LeastModel> parameters() {
     return all;
 }
 
-}  // namespace
-
 TEST_CASE("the least model stretches two bars by the closed form") {
     scene::Assembly assembly;
     const Index lower = add_bar(assembly, 0.0), upper = add_bar(assembly, 0.05);
@@ -225,3 +223,5 @@ TEST_CASE("solvers and assembly take a system that has no more than its terms") 
     CHECK(solver.solve(system, Vector::Ones(6), 1e-12, x).iterations == 1);
     CHECK((x - 0.5 * Vector::Ones(6)).norm() < 1e-15);
 }
+
+}  // namespace archetypes_test
