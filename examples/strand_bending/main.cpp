@@ -24,7 +24,7 @@ struct Strand {
 bool solve(example::TomlReader& file, const example::Output& output) {
     Index wires = 7, elements = 20, increments = 30;
     double radius = core::unset, lay = core::unset, length = core::unset, angle = 90.0, mu = 0.1, depth = 0.02, reversible = 0.1;
-    double damping = 0.0, rest_share = 1e-4;
+    double damping = 0.0, rest_share = 1e-4, overshoot = std::numeric_limits<double>::infinity();
     double young_modulus = core::unset, poisson_ratio = core::unset;
     bool alternate = true;
     file.require("strand", "wires", wires);
@@ -42,6 +42,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     file.read("loading", "increments", increments);
     file.read("loading", "damping", damping);
     file.read("loading", "rest_share", rest_share);
+    file.read("solver", "overshoot", overshoot);
     file.refuse_unknown();
     strand::StrandParameters parameters = strand::regular_strand(wires, radius, lay, alternate);
     parameters.length = length, parameters.elements = elements, parameters.material = {young_modulus, poisson_ratio};
@@ -50,7 +51,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     model.normal.regularisation_depth = 0.5 * depth * radius;
     model.friction = {.friction_coefficient = mu, .reversible_displacement = reversible * radius};
     model.contact.stiffness.allowed_penetration = depth * radius;
-    model.iteration.newton_limit = 30;
+    model.iteration.newton_limit = 30, model.iteration.overshoot = overshoot;
     model.iteration.margin = 4.0, model.iteration.largest_margin = 8.0;  // ends swing far
     simulation::Simulator<Strand> simulator(strand::bent_strand(parameters), model);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {

@@ -104,8 +104,9 @@ public:
                 report.status = NewtonStatus::unsolvable;
                 return report;
             }
-            const double slope = residual_.dot(step_);
-            const bool free = iteration > 0 && prescribed_.norm() <= 1e-3 * step_.norm();  // else the residual is not that of one energy
+            // A prescribed motion has a residual that is not that of one energy.
+            const bool watched = std::isfinite(parameters_.overshoot) && iteration > 0 && prescribed_.norm() <= 1e-3 * step_.norm();
+            const double slope = watched ? residual_.dot(step_) : 0.0;
             step_ += prescribed_;
             double scale = bounded(step_);
             step_ *= scale;
@@ -113,7 +114,7 @@ public:
             before_ = state;
             state += step_;
             report.residual = evaluate(state);
-            if (free) scale *= shorten(scale * slope, state, report.residual);
+            if (watched) scale *= shorten(scale * slope, state, report.residual);
             if (mixed) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
             ++report.iterations, ++counts.newton;
             report.step = equilibrium.greatest(step_);

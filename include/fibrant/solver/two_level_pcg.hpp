@@ -17,8 +17,8 @@ namespace fibrant::solver {
 ///
 /// The factors take the stiff modes of single fibres exactly; what they leave is the bending of neighbours that contact
 /// ties together, which the coarse space has. Forms no matrix but P^T A P. A solve that takes long goes on with a finer
-/// space: a station every element and a quarter of the fibres in a cluster. It is formed when first wanted, and kept
-/// until the next preparation; every solve begins with the coarser one, so that no solve depends on another.
+/// space: a quarter of the fibres in a cluster, or, where clusters are single chains, twice the stations. It is formed when
+/// first wanted, and kept until the next preparation; every solve begins with the coarser one, so that no solve depends on another.
 class TwoLevelPcg {
 public:
     struct Parameters {
@@ -115,7 +115,9 @@ private:
         Work& work = *work_;
         if (work.fine != Fine::none) return work.fine == Fine::ready;
         work.fine = Fine::useless;
-        work.finer.analyse(system, std::max(1, parameters_.fibres_per_cluster / 4), 1);
+        const int fibres = std::max(1, parameters_.fibres_per_cluster / 4);
+        work.finer.analyse(system, fibres, parameters_.elements_per_station);
+        if (work.finer.stations() == work.coarse.stations()) work.finer.analyse(system, fibres, std::max(1, parameters_.elements_per_station / 2));
         if (work.finer.stations() == work.coarse.stations()) return false;
         const scene::DofLayout& layout = system.layout();
         const assembly::HeldProjector held(layout);
