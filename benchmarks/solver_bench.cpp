@@ -6,7 +6,8 @@
 //               152 (crossing bundles), 304, 608, ... (multiples of 152; of 1216, 1.28 million unknowns). Default: 76 152
 //   --variants  each synthetic scene also with stiffer and fewer contact elements, without friction, misaligned, ungrouped
 // Prints CSV, a line a tolerance. `error` is |x - x*| / |x*| in the energy norm, x* from two levels to 1e-13. `bytes` is
-// the peak of memory beyond the system's. `prepare_s` is that of a second preparation. `ratio` is time of the baseline
+// the peak of memory beyond the system's. `prepare_s` is that of a second preparation. Seconds are processor time on one
+// thread, which other programs hardly change, and wall time on more. `ratio` is time of the baseline
 // (prepare + solve) over time: of CHOLMOD if built with FIBRANT_WITH_CHOLMOD, else of the block Cholesky in double. Lines
 // "product" compare A x with a scalar CSR product.
 
@@ -27,10 +28,10 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -43,8 +44,12 @@ namespace {
 
 constexpr std::array tolerances{1e-2, 1e-4, 1e-6, 1e-8};
 
+/// Processor time if the process has one thread.
 double seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+#if defined(_OPENMP)
+    if (omp_get_max_threads() > 1) return omp_get_wtime();
+#endif
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 template <class Work>
 double median_seconds(const Work& work) {

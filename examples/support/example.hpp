@@ -2,6 +2,7 @@
 #pragma once
 /// @file What the examples that read a scene file have in common: the command line, progress, tables, pictures and a summary.
 
+#include "memory.hpp"
 #include "toml_reader.hpp"
 
 #include <fibrant/observe/csv_writer.hpp>
@@ -53,6 +54,7 @@ int run(int argc, char** argv, const char* name, const char* description, const 
     app.add_flag("--resume", output.resume, "go on from the last accepted increment in the folder");
     app.add_flag("--quiet", output.quiet, "print nothing but errors");
     CLI11_PARSE(app, argc, argv);
+    keep_freed_memory();
     try {
         TomlReader reader(scene, set);
         reader.read("output", "paraview", output.paraview);

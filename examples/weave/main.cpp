@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The initial state of a woven fabric at the scale of its fibres, found from flat, interpenetrating tows.
 //   weave SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
+#include "../support/memory.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
 
@@ -87,6 +88,7 @@ int main(int argc, char** argv) {
     app.add_flag("--resume", options.resume, "go on from the last accepted increment in the folder");
     app.add_flag("--quiet", options.quiet, "print nothing but errors");
     CLI11_PARSE(app, argc, argv);
+    example::keep_freed_memory();
     try {
         const weave::Scene scene = weave::read_scene(options.scene, options.set);
         const Index wanted = options.threads > 0 ? options.threads : scene.threads;
