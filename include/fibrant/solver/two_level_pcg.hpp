@@ -24,7 +24,7 @@ public:
     struct Parameters {
         int fibres_per_cluster = 19;   ///< about, > 0
         int elements_per_station = 2;  ///< along the chains, > 0
-        int refine_after = 150;        ///< iterations before the space is refined, >= 0
+        int refine_after = 300;        ///< iterations before the space is refined, >= 0
         int iteration_limit = 2000;    ///< > 0
         bool unsymmetric = true;       ///< where a system is not symmetric: BiCGStab on all of it, not CG on its symmetric part
         void validate() const {
