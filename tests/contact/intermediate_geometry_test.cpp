@@ -357,4 +357,34 @@ TEST_CASE("a spacing without points is refused by name") {
     CHECK(test::refusal([] { core::validated(ContactSpacing{2.0, 91.0, 5.0}); }).find("ContactSpacing.crossing_angle_deg") != std::string::npos);
 }
 
+TEST_CASE("fibres that bend towards each other cross only from the angle at which their centres have one closest place") {
+    const double kappa = 1.0 / (12.0 * r);  // of each; a second place comes up at sin^2 a = 4 r kappa - (2 r kappa)^2, a = 33.56 degrees
+    const auto bent = [&](double angle_deg, double curvature_i, double curvature_j) {
+        const double half = 0.5 * angle_deg * std::numbers::pi / 180.0;
+        const auto line = [=](double side, double curvature) {
+            return [=](double t) {
+                const double s = 6.0 * r * (2.0 * t - 1.0);
+                return Vec3(s * std::cos(half), side * s * std::sin(half), -side * (r - 0.5 * curvature * s * s));
+            };
+        };
+        return mesh_of({curved_fibre(line(1.0, curvature_i), r, 20), curved_fibre(line(-1.0, curvature_j), r, 20)});
+    };
+    const proximity::ProximityZone whole = zone(0, 20, 0, 20);
+    const auto angle = [&](const Mesh& mesh) { return contact::crossing_angle_deg(mesh, mesh.rest_state(), whole); };
+    const double critical = std::asin(std::sqrt(4.0 / 12.0 - 4.0 / 144.0)) * 180.0 / std::numbers::pi;
+    for (const double off : {-6.0, -3.0, 3.0, 6.0}) {
+        const Mesh mesh = bent(critical + off, kappa, kappa);
+        // By samples: does the distance fall beside the middle, or is it least there?
+        double beside = 1e300;
+        for (const double e : {-0.3, -0.2, 0.2, 0.3}) beside = std::min(beside, distance(mesh, 10.0 + e, 10.0 + e));
+        CHECK((beside > distance(mesh, 10.0, 10.0)) == (off > 0.0));
+        CHECK((angle(mesh) > 0.0) == (off > 0.0));
+        CHECK(angle(mesh) < critical + off);
+    }
+    // Straight ones, one that is bent away as much as the other follows it, and both bent away: the angle between the tangents.
+    CHECK(angle(bent(40.0, 0.0, 0.0)) == doctest::Approx(40.0).epsilon(1e-9));
+    CHECK(angle(bent(40.0, -kappa, -kappa)) == doctest::Approx(40.0).epsilon(1e-6));  // the tangents are those of elements
+    CHECK(angle(bent(90.0, kappa, kappa)) == doctest::Approx(std::asin(std::sqrt(1.0 - std::pow(std::sin(critical * std::numbers::pi / 180.0), 2))) * 180.0 / std::numbers::pi).epsilon(1e-3));
+}
+
 }  // namespace intermediate_geometry_test

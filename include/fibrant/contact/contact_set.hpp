@@ -241,9 +241,7 @@ private:
         const Zone* before = predecessor(zones_, zone.span);
         zone.stiffness = before ? before->stiffness : parameters_.stiffness.initial_fraction * zone.reference;
         if (zone.forced) return;
-        const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
-        const double angle = angle_between_deg(mesh_->derivative(state, i, zone.span.closest_i).normalized(),
-                                               mesh_->derivative(state, j, zone.span.closest_j).normalized());
+        const double angle = crossing_angle_deg(*mesh_, state, zone.span);
         const double shift = !before ? 0.0 : parameters_.spacing.angle_hysteresis_deg * (before->crossing ? -1.0 : 1.0);
         zone.crossing = angle > parameters_.spacing.crossing_angle_deg + shift;
     }

@@ -80,7 +80,7 @@ inline double self_contact_arc(double radius, double element_length) noexcept {
 /// How contact points are placed.
 struct ContactSpacing {
     double points_per_element = 2.0;    ///< along near-parallel fibres [1], > 0
-    double crossing_angle_deg = 30.0;   ///< above: one contact element for the zone [degree]
+    double crossing_angle_deg = 30.0;   ///< of `contact::crossing_angle_deg`, above: one contact element for the zone [degree]
     double angle_hysteresis_deg = 5.0;  ///< a zone keeps its kind within this of the bound [degree]
     /// Depth that may go unseen between two contact points, where fibres slant or bend towards each other; beyond it the
     /// spacing is halved, up to three times [radius], > 0.
@@ -92,6 +92,26 @@ struct ContactSpacing {
         core::require_between("ContactSpacing.angle_hysteresis_deg", angle_hysteresis_deg, 0.0, 20.0);
     }
 };
+
+/// Angle between two fibres at the closest points of their zone, less what bending towards each other takes of it [degree].
+///
+/// The distance of their centres is least there and nowhere beside if its second variation is positive: straight fibres at any
+/// angle a; bent ones, c from centre to centre and k their curvature vectors, if sin^2 a > c.(k_i - k_j) + (c.k_i)(c.k_j). That is what is
+/// taken off sin^2 a: as it goes to zero a second closest place comes up beside the first, and one contact element would hop to and fro.
+template <class B>
+double crossing_angle_deg(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone) {
+    const Vec3 d_i = mesh.derivative(state, zone.fibre_i, zone.closest_i), d_j = mesh.derivative(state, zone.fibre_j, zone.closest_j);
+    const Vec3 t_i = d_i.normalized(), t_j = d_j.normalized();
+    const Vec3 centres = mesh.position(state, zone.fibre_j, zone.closest_j) - mesh.position(state, zone.fibre_i, zone.closest_i);
+    const auto bend = [&](Index fibre, double u, const Vec3& derivative, const Vec3& tangent) {
+        const Vec3 second = mesh.second_derivative(state, fibre, u);
+        return centres.dot(second - second.dot(tangent) * tangent) / derivative.squaredNorm();
+    };
+    const double bend_i = bend(zone.fibre_i, zone.closest_i, d_i, t_i), bend_j = bend(zone.fibre_j, zone.closest_j, d_j, t_j);
+    const double taken = bend_i - bend_j + bend_i * bend_j, sine = t_i.cross(t_j).norm();
+    if (taken <= 0.0) return angle_between_deg(t_i, t_j);
+    return std::asin(std::sqrt(std::clamp(sine * sine - taken, 0.0, 1.0))) * 180.0 / std::numbers::pi;
+}
 
 /// Stations of a zone (Durville, eq. 6 to 8). The intermediate geometry is the mean of the zone's two lines, points stand
 /// at equal distances on it, and the plane across it cuts the two centrelines.
