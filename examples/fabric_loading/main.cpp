@@ -45,9 +45,9 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     // The programme.
     fabric_loading::Curve curve;
     example::Recorder recorder(output, radius, [&] {
-        const std::vector<cloth::Figure> figures = cloth::load_figures(scene, simulator);
-        curve.add(figures);
-        return fabric_loading::columns(figures, simulator.snapshot(), fabric);
+        std::vector<observe::Column> row = fabric_loading::columns(cloth::load_figures(scene, simulator), simulator.snapshot(), fabric);
+        curve.add(row);
+        return row;
     });
     simulation::Loading<LoadedWeave> loading = simulation::loading_of<LoadedWeave>(load.programme);
     loading.checkpoint = output.checkpoint(), loading.checkpoint_seconds = 20.0, loading.resume = output.resume;
@@ -55,7 +55,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
 
     const observe::Snapshot snapshot = simulator.snapshot();
     fabric_loading::write_state(output.folder / "after", snapshot, load.scene, output.pictures);
-    curve.write(output.folder / "curve.svg", load.name);
+    curve.write(output.folder, load.name);
     const cloth::CrimpMeasures before = cloth::crimp_measures(settled, fabric), after = cloth::crimp_measures(snapshot, fabric);
     std::vector<std::pair<std::string, double>> figures{{"fibres", static_cast<double>(fabric.fibres())}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())}};
     for (const auto& figure : cloth::load_figures(scene, simulator)) figures.push_back(figure);

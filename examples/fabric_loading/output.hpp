@@ -61,17 +61,21 @@ inline void write_state(const std::filesystem::path& folder, const observe::Snap
     observe::write_file(folder / "contacts.json", json.text() + "\n");
 }
 
-/// The curve of a case as its two first figures.
+/// The curve of a case, its two first figures, and the gaps between neighbouring tows over the same abscissa.
 struct Curve {
     std::string x_name, y_name;
-    observe::PlotLine line;
-    void add(const std::vector<cloth::Figure>& figures) {
-        x_name = figures[0].first, y_name = figures[1].first;
-        line.points.emplace_back(figures[0].second, figures[1].second);
+    observe::PlotLine line, warp{"warp", {}}, weft{"weft", {}};
+    void add(const std::vector<observe::Column>& row) {
+        x_name = row[0].name, y_name = row[1].name;
+        const double x = std::stod(row[0].value);
+        line.points.emplace_back(x, std::stod(row[1].value));
+        for (const observe::Column& column : row)
+            if (column.name == "warp_gap" || column.name == "weft_gap") (column.name == "warp_gap" ? warp : weft).points.emplace_back(x, std::stod(column.value));
     }
-    void write(const std::filesystem::path& path, const std::string& title) const {
+    void write(const std::filesystem::path& folder, const std::string& title) const {
         if (line.points.empty()) return;
-        observe::write_file(path, observe::curves_svg({.title = title, .x_label = x_name, .y_label = y_name, .lines = {line}}));
+        observe::write_file(folder / "curve.svg", observe::curves_svg({.title = title, .x_label = x_name, .y_label = y_name, .lines = {line}}));
+        observe::write_file(folder / "gap.svg", observe::curves_svg({.title = title, .x_label = x_name, .y_label = "gap between neighbouring tows", .lines = {warp, weft}}));
     }
 };
 

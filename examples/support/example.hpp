@@ -90,6 +90,7 @@ public:
                                                                            {"active_contacts", increment.contact.active},
                                                                            {"greatest_penetration_over_radius", increment.contact.greatest_penetration / radius_},
                                                                            {"residual", increment.residual},
+                                                                           {"damping_share", increment.damping},
                                                                            {"seconds", increment.seconds}})
             columns.push_back(column);
         table_.row(columns);

@@ -120,7 +120,7 @@ TEST_CASE("an interrupted contact with friction resumes to the same bits") {
     crossing.drag = 0.2 * crossing.radius;
     Loading<Rough> loading;
     loading.stages = {{.name = "press", .increments = 3, .ramps = {{"approach", 1.0}}},
-                      {.name = "drag", .increments = 3, .ramps = {{"drag", 1.0}}}};
+                      {.name = "drag", .increments = 3, .ramps = {{"drag", 1.0}}, .damping = 1e-3, .damping_carried = true}};
     check_resumes<Rough>(crossing.assembly(), test::model_parameters<Rough>(crossing.radius), loading);
 }
 

@@ -134,6 +134,66 @@ TEST_CASE("damping is not lowered while fibres still move far, and where they co
     CHECK(short_report.increments.size() == 1);
 }
 
+TEST_CASE("damping that is carried along does not hold back what is driven steadily, to or fro, and what is not driven it holds") {
+    const Rod rod;
+    const double step = 0.1 * rod.radius, stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3);  // of the tip
+    scene::Assembly assembly;
+    assembly.clamp(scene::first_end(assembly.add(rod.specification())), Vec3(0, step, 0), Vec3::Zero(), Vec3::Zero(), "drag");
+    assembly.apply(scene::DeadForce{scene::last_end(0), {}, Vec3(0.1 * stiffness * step, 0, 0), "load"});
+    struct Drag {
+        const Simulator<Smooth>* simulator;
+        std::vector<double> forces{}, shares{};
+        void reported(const simulation::IncrementReport& increment) {
+            forces.push_back(simulator->reaction(scene::first_end(0)).y()), shares.push_back(increment.damping);
+        }
+    };
+    std::vector<Drag> drags;
+    Loading<Smooth> loading;
+    loading.stages = {{.increments = 4, .ramps = {{"drag", 4.0}}}, {.increments = 4, .ramps = {{"drag", 0.0}}}, {.increments = 1, .ramps = {{"load", 1.0}}}};
+    for (const bool carried : {false, true}) {
+        for (Stage<Smooth>& stage : loading.stages) stage.damping = 1e-4 * stiffness, stage.damping_carried = carried;
+        Simulator<Smooth> simulator(assembly, test::tight_parameters<Smooth>(rod.radius));
+        drags.push_back({&simulator});
+        REQUIRE(simulator.run(loading, drags.back()).converged);
+    }
+    // Each of the nodes is held by the damping times its motion; it bends the fibre by a part of a thousandth of that.
+    const double whole = 1e-4 * stiffness * step * static_cast<double>(2 * rod.elements + 1);
+    for (std::size_t k = 0; k < 8; ++k) {
+        const double sign = k < 4 ? 1.0 : -1.0;
+        CHECK(drags[0].forces[k] == doctest::Approx(sign * whole).epsilon(5e-3));
+        if (k == 0) CHECK(drags[1].forces[k] == doctest::Approx(whole).epsilon(5e-3));  // nothing was known before
+        else CHECK(std::abs(drags[1].forces[k]) < 5e-3 * whole);
+    }
+    CHECK(std::abs(drags[1].forces[8]) < 5e-3 * whole);  // nor of another channel
+    CHECK(drags[1].shares[8] == doctest::Approx(drags[0].shares[8]).epsilon(1e-2));
+}
+
+TEST_CASE("a mean motion foretells a rigid or affine motion exactly, and in part when channels change by less") {
+    const Crossing crossing;
+    const scene::Assembly assembly = crossing.assembly();
+    const beam::Mesh<Smooth::Beam> mesh(assembly, Smooth::Beam(test::model_parameters<Smooth>(crossing.radius).beam));
+    Mat3 map = Mat3::Identity();
+    map << 0.9, 0.2, 0.1, -0.3, 1.1, 0.0, 0.05, -0.1, 1.2;
+    const Vec3 shift(0.3, -0.2, 0.1);
+    const auto moved = [&](const Vector& state, double part) {
+        Vector result = state;
+        for (Index f = 0; f < mesh.fibre_count(); ++f)
+            for (Index a = 0; a < mesh.node_count(f); ++a) {
+                const Vec3 x = state.segment<3>(3 * mesh.node_vector(f, a));
+                result.segment<3>(3 * mesh.node_vector(f, a)) = x + part * (map * x + shift - x);
+            }
+        return result;
+    };
+    simulation::MeanMotion motion(mesh, 2);
+    const Vector before = mesh.rest_state(), after = moved(before, 1.0);
+    CHECK(same_bits(motion.ahead(mesh, after, {1.0, 0.0}), after));  // nothing has been learnt
+    motion.learn(mesh, before, after, {0.5, 0.0});
+    const double rounding = 1e-10;  // the fibres lie apart by a twenty-fifth of their length, which the fit squares
+    for (const double part : {1.0, 0.25, -1.0}) CHECK((motion.ahead(mesh, after, {0.5 * part, 0.0}) - moved(after, part)).cwiseAbs().maxCoeff() < rounding);
+    CHECK((motion.ahead(mesh, after, {50.0, 0.0}) - moved(after, 2.0)).cwiseAbs().maxCoeff() < rounding);  // it is not trusted further
+    CHECK(same_bits(motion.ahead(mesh, after, {0.0, 1.0}), after));
+}
+
 TEST_CASE("a stage may end while its damping holds no more than a share of the forces, and the next one goes on from there") {
     const Rod rod;
     const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3);  // of the tip

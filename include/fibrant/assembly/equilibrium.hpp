@@ -80,6 +80,9 @@ public:
         reset_stresses(state);
     }
 
+    /// Springs of the damping have their places in this state instead.
+    void carry(const Vector& place) { anchor_ = place; }
+
     /// Point stresses that belong to a state: the start of an increment, or the fallback of the mixed iteration.
     void reset_stresses(const Vector& state) {
         for_elements([&](Index f, Index e) { stress(f, e) = beam_.stresses(mesh_->rest(f, e), mesh_->element(state, f, e)); });

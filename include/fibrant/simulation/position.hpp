@@ -5,6 +5,7 @@
 #include <fibrant/connection/channels.hpp>
 #include <fibrant/simulation/loading.hpp>
 
+#include <cmath>
 #include <vector>
 
 namespace fibrant::simulation {
@@ -32,6 +33,22 @@ private:
         for (auto& amplitude : self.from) body(amplitude);
     }
 };
+
+/// Amplitudes at a progress of a stage, in [0, 1]; `amplitudes` are those now.
+template <Model M>
+std::vector<double> amplitudes_at(const Stage<M>& stage, double progress, const Position& position, const connection::Channels& channels, std::vector<double> amplitudes) {
+    for (const Ramp& ramp : stage.ramps) {
+        const std::size_t c = core::at(channels.find(ramp.channel));
+        const double from = position.from[c];
+        amplitudes[c] = ramp.geometric ? from * std::pow(ramp.to / from, progress) : from + progress * (ramp.to - from);
+    }
+    return amplitudes;
+}
+
+inline std::vector<double> difference(std::vector<double> a, const std::vector<double>& b) {
+    for (std::size_t k = 0; k < a.size(); ++k) a[k] -= b[k];
+    return a;
+}
 
 /// Throws std::invalid_argument unless the ramps of all stages are of channels, and geometric ones between numbers > 0.
 template <Model M>

@@ -20,7 +20,7 @@ struct ProgrammeStage {
     double back = 0.0;            ///< amplitude at the end of each cycle
     std::optional<double> friction{};  ///< coefficient from here on [1], >= 0
     bool rest = false;            ///< goes on until forces balance, after its ramps
-    double damping = 0.0;         ///< over that of the programme [1], >= 0; falls in a stage that rests
+    double damping = 0.0;         ///< over that of the programme [1], >= 0; falls in a stage that rests, is carried along in others
     double looseness = 5.0;       ///< on the tolerances of passes, >= 1
 };
 
@@ -71,6 +71,7 @@ Loading<M> loading_of(const LoadProgramme& programme) {
         stage.increments = given.increments << programme.halvings;
         stage.most_increments = std::max<Index>(200, 40 * stage.increments);
         stage.damping = given.damping * programme.damping;
+        stage.damping_carried = !given.rest;
         stage.largest_displacement = programme.largest_displacement;
         stage.looseness = given.looseness;
         if (given.friction)

@@ -4,6 +4,7 @@
 
 #include <fibrant/observe/observer.hpp>
 #include <fibrant/simulation/increment_file.hpp>
+#include <fibrant/simulation/mean_motion.hpp>
 #include <fibrant/simulation/position.hpp>
 #include <fibrant/simulation/state_file.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
@@ -68,6 +69,7 @@ public:
         Report report;
         position_ = {};
         position_.from = amplitudes_;
+        motion_ = MeanMotion(mesh_, amplitudes_.size());
         if (loading.resume && !loading.checkpoint.empty() && std::filesystem::exists(loading.checkpoint))
             read_checkpoint(loading.checkpoint, stages, report);
         auto saved = start;
@@ -182,16 +184,6 @@ private:
         position_.from = amplitudes_;
     }
 
-    std::vector<double> amplitudes_at(const Stage<M>& stage, double progress) const {
-        std::vector<double> amplitudes = amplitudes_;
-        for (const Ramp& ramp : stage.ramps) {
-            const std::size_t c = core::at(channels_.find(ramp.channel));
-            const double from = position_.from[c];
-            amplitudes[c] = ramp.geometric ? from * std::pow(ramp.to / from, progress) : from + progress * (ramp.to - from);
-        }
-        return amplitudes;
-    }
-
     /// One accepted increment, after as many cuts as it takes.
     bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report) {
         const auto start = std::chrono::steady_clock::now();
@@ -211,11 +203,12 @@ private:
                 else contacts_.normal_law() = contacts_.normal_law().with_limit(std::numeric_limits<double>::infinity());
             }
             contacts_.allow_penetration(stage.allowed_penetration.value_or(parameters_.contact.stiffness.allowed_penetration));
-            const std::vector<double> amplitudes = amplitudes_at(stage, progress);
+            const std::vector<double> amplitudes = amplitudes_at(stage, progress, position_, channels_, amplitudes_), change = difference(amplitudes, amplitudes_);
             const double contact_before = contacts_work_;
             Vector trial = state_;
             move_tools(amplitudes);
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping);
+            if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver> loops(
                 equilibrium_, contacts_, linear_, parameters_.iteration, radius_, touching, clock_);
             // A limited gap moves fibres by about the limit: the search looks that far ahead.
@@ -225,6 +218,7 @@ private:
             attempt_newton = static_cast<double>(attempt.counts.newton) / static_cast<double>(std::max<Index>(1, attempt.counts.normal_passes));
             if (attempt.converged) {
                 account(trial, increment, contact_before, stage.forced_orders);
+                if (stage.damping_carried) motion_.learn(mesh_, state_, trial, change);
                 state_ = trial;
                 equilibrium_.ties().accept();
                 mesh_.rewind(state_, {&last_external_, &last_damping_});
@@ -350,9 +344,8 @@ private:
         if constexpr (HasSolid<M>) put_solid(file, equilibrium_.solid());
         file.put(report.rejected_increments), file.put(report.counts), file.put(clock_.seconds());
         file.put(core::count(report.increments));
-        for (const IncrementReport& increment : report.increments) {
-            put_increment(file, increment);
-        }
+        for (const IncrementReport& increment : report.increments) put_increment(file, increment);
+        motion_.each([&](const double value) { file.put(value); });
         file.write(path);
     }
 
@@ -391,6 +384,7 @@ private:
             get_increment(file, increment);
             report.wall_seconds += increment.seconds;
         }
+        motion_.each([&](double& value) { value = file.get<double>(); });
     }
 
     ModelParameters<M> parameters_;
@@ -405,6 +399,7 @@ private:
     double radius_ = 0.0;
     std::vector<Index> tool_channels_;
     Position position_;
+    MeanMotion motion_;
     EnergyBalance energy_;
     double contacts_work_ = 0.0;
     Vector last_external_, last_damping_;

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file The mean motion of each group of fibres in an increment, which damping that is carried along leaves alone.
+
+#include <fibrant/beam/mesh.hpp>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace fibrant::simulation {
+
+/// Affine field that is nearest, over the centres of a group's nodes, to their displacement in the last increment, and by how much
+/// channels changed in it. What a further change of the same channels would move is foretold in proportion; other channels foretell
+/// nothing. Nothing depends on the axes, and a rigid motion that is repeated is foretold exactly.
+class MeanMotion {
+public:
+    MeanMotion() = default;
+    /// Of a mesh that has not moved yet.
+    template <beam::BeamElement B>
+    MeanMotion(const beam::Mesh<B>& mesh, std::size_t channels) : change_(channels, 0.0) {
+        Index groups = 0;
+        for (const beam::MeshFibre& fibre : mesh.fibres()) groups = std::max<Index>(groups, fibre.group + 2);
+        fields_.assign(core::at(groups), Field{});
+    }
+
+    /// Takes over the motion of an increment.
+    /// @param change  of the amplitudes
+    template <beam::BeamElement B>
+    void learn(const beam::Mesh<B>& mesh, const Vector& before, const Vector& after, std::vector<double> change) {
+        change_ = std::move(change);
+        std::vector<Mat3> spread(fields_.size(), Mat3::Zero()), lean(fields_.size(), Mat3::Zero());
+        std::vector<double> count(fields_.size(), 0.0);
+        fields_.assign(fields_.size(), Field{});
+        each_centre(mesh, [&](std::size_t g, Index v) { fields_[g].middle += before.segment<3>(3 * v), count[g] += 1.0; });
+        for (std::size_t g = 0; g < fields_.size(); ++g) fields_[g].middle /= std::max(1.0, count[g]);
+        each_centre(mesh, [&](std::size_t g, Index v) {
+            const Vec3 moved = after.segment<3>(3 * v) - before.segment<3>(3 * v), arm = before.segment<3>(3 * v) - fields_[g].middle;
+            fields_[g].shift += moved;
+            spread[g] += arm * arm.transpose(), lean[g] += moved * arm.transpose();
+        });
+        for (std::size_t g = 0; g < fields_.size(); ++g) {
+            if (!(count[g] > 0.0)) continue;
+            fields_[g].shift /= count[g];
+            // A straight fibre has no extent across itself, and says nothing of a gradient there.
+            const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread[g]);
+            for (int k = 0; k < 3; ++k)
+                if (axes.eigenvalues()[k] > 1e-8 * axes.eigenvalues()[2])
+                    fields_[g].gradient += lean[g] * axes.eigenvectors().col(k) * axes.eigenvectors().col(k).transpose() / axes.eigenvalues()[k];
+        }
+    }
+
+    /// A state with its centres where the last motion leads when amplitudes change so.
+    template <beam::BeamElement B>
+    Vector ahead(const beam::Mesh<B>& mesh, const Vector& state, const std::vector<double>& change) const {
+        double same = 0.0, square = 0.0;
+        for (std::size_t c = 0; c < change_.size(); ++c) same += change[c] * change_[c], square += change_[c] * change_[c];
+        if (same == 0.0) return state;
+        const double part = std::clamp(same / square, -largest_part, largest_part);
+        Vector moved = state;
+        each_centre(mesh, [&](std::size_t g, Index v) {
+            moved.segment<3>(3 * v) += part * (fields_[g].shift + fields_[g].gradient * (state.segment<3>(3 * v) - fields_[g].middle));
+        });
+        return moved;
+    }
+
+    /// Every number that it keeps, for a file.
+    template <class Body>
+    void each(const Body& body) { each_of(*this, body); }
+    template <class Body>
+    void each(const Body& body) const { each_of(*this, body); }
+
+private:
+    static constexpr double largest_part = 2.0;  ///< of an increment that a motion is trusted for
+
+    struct Field {
+        Vec3 middle = Vec3::Zero(), shift = Vec3::Zero();
+        Mat3 gradient = Mat3::Zero();
+    };
+
+    template <beam::BeamElement B, class Body>
+    static void each_centre(const beam::Mesh<B>& mesh, const Body& body) {
+        for (Index f = 0; f < mesh.fibre_count(); ++f)
+            for (Index a = 0; a < mesh.node_count(f); ++a) body(core::at(mesh.fibre(f).group + 1), mesh.node_vector(f, a, 0));
+    }
+    template <class Self, class Body>
+    static void each_of(Self& self, const Body& body) {
+        for (auto& change : self.change_) body(change);
+        for (auto& field : self.fields_) {
+            for (int k = 0; k < 3; ++k) body(field.middle[k]), body(field.shift[k]);
+            for (int k = 0; k < 9; ++k) body(field.gradient.data()[k]);
+        }
+    }
+
+    std::vector<Field> fields_;   ///< first that of the fibres of no group, then one a group
+    std::vector<double> change_;
+};
+
+}  // namespace fibrant::simulation
