@@ -75,12 +75,12 @@ public:
             refuse(section, key, *found, "one of " + joined(allowed));
         return true;
     }
-    /// A list of texts.
+    /// A list of texts, which may be empty.
     bool read(const std::string& section, const std::string& key, std::vector<std::string>& value) {
         const toml::node* found = node(section, key);
         if (found == nullptr) return false;
         const toml::array* list = found->as_array();
-        if (list == nullptr || !list->is_homogeneous(toml::node_type::string))
+        if (list == nullptr || (!list->empty() && !list->is_homogeneous(toml::node_type::string)))
             refuse(section, key, *found, "a list of texts");
         value.clear();
         for (const toml::node& row : *list) value.push_back(row.as_string()->get());
