@@ -192,6 +192,12 @@ TEST_CASE("a mean motion foretells a rigid or affine motion exactly, and in part
     for (const double part : {1.0, 0.25, -1.0}) CHECK((motion.ahead(mesh, after, {0.5 * part, 0.0}) - moved(after, part)).cwiseAbs().maxCoeff() < rounding);
     CHECK((motion.ahead(mesh, after, {50.0, 0.0}) - moved(after, 2.0)).cwiseAbs().maxCoeff() < rounding);  // it is not trusted further
     CHECK(same_bits(motion.ahead(mesh, after, {0.0, 1.0}), after));
+    // A last bit the same way does not make it forget, and one to the other side does.
+    const Vector further = moved(after, 0.02);
+    motion.learn(mesh, after, further, {0.01, 0.0});
+    CHECK((motion.ahead(mesh, further, {-0.5, 0.0}) - moved(further, -1.0)).cwiseAbs().maxCoeff() < rounding);
+    motion.learn(mesh, after, further, {-0.01, 0.0});
+    CHECK((motion.ahead(mesh, further, {-0.01, 0.0}) - moved(further, 0.02)).cwiseAbs().maxCoeff() < rounding);
 }
 
 TEST_CASE("a stage may end while its damping holds no more than a share of the forces, and the next one goes on from there") {

@@ -7,7 +7,6 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 namespace fibrant::simulation {
@@ -26,11 +25,16 @@ public:
         fields_.assign(core::at(groups), Field{});
     }
 
-    /// Takes over the motion of an increment.
+    /// Takes over the motion of an increment. One that goes on the same way by less than half of what is known, the last bit of a ramp
+    /// or one that was cut, is added to half of that: alone it would tell little of the next.
     /// @param change  of the amplitudes
     template <beam::BeamElement B>
-    void learn(const beam::Mesh<B>& mesh, const Vector& before, const Vector& after, std::vector<double> change) {
-        change_ = std::move(change);
+    void learn(const beam::Mesh<B>& mesh, const Vector& before, const Vector& after, const std::vector<double>& change) {
+        double same = 0.0, square = 0.0;
+        for (std::size_t c = 0; c < change_.size(); ++c) same += change[c] * change_[c], square += change_[c] * change_[c];
+        const double kept = same > 0.0 && same < 0.5 * square ? 0.5 : 0.0;
+        const std::vector<Field> known = fields_;
+        for (std::size_t c = 0; c < change_.size(); ++c) change_[c] = kept * change_[c] + change[c];
         std::vector<Mat3> spread(fields_.size(), Mat3::Zero()), lean(fields_.size(), Mat3::Zero());
         std::vector<double> count(fields_.size(), 0.0);
         fields_.assign(fields_.size(), Field{});
@@ -49,6 +53,8 @@ public:
             for (int k = 0; k < 3; ++k)
                 if (axes.eigenvalues()[k] > 1e-8 * axes.eigenvalues()[2])
                     fields_[g].gradient += lean[g] * axes.eigenvectors().col(k) * axes.eigenvectors().col(k).transpose() / axes.eigenvalues()[k];
+            fields_[g].shift += kept * (known[g].shift + known[g].gradient * (fields_[g].middle - known[g].middle));
+            fields_[g].gradient += kept * known[g].gradient;
         }
     }
 
