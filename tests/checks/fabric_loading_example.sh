@@ -25,7 +25,7 @@ done
   --set settled.checkpoint="$out/settled/checkpoint.bin" --quiet || fail "edges were not released"
 "$loading" "$scenes/fabric_loading/equibiaxial.toml" --output "$out/stretched" --set "settled.set=[$list]" --set stretch.increments=2 \
   --set 'stretch.ramps=["strain = 0.001"]' --set settled.checkpoint="$out/released/checkpoint.bin" --set output.paraview=false --quiet || fail "the fabric was not stretched"
-for file in summary.json increments.csv curve.svg before/view.svg after/slice_warp_0.svg after/sections.csv after/contacts.json after/strain_histogram.csv; do
+for file in summary.json increments.csv curve.svg gap.svg before/view.svg after/slice_warp_0.svg after/sections.csv after/contacts.json after/strain_histogram.csv; do
   [ -s "$out/stretched/$file" ] || fail "there is no $file"
 done
 grep -q '"converged": true' "$out/stretched/summary.json" || fail "summary.json does not say that it converged"
@@ -34,5 +34,11 @@ text=$("$loading" "$scenes/fabric_loading/equibiaxial.toml" --output "$out/refus
 case $text in
   *tickle*) ;;
   *) fail "the refusal does not name the case: $text" ;;
+esac
+# As the scene file is, with no values replaced: all that is wrong is that nothing has been settled there.
+text=$("$loading" "$scenes/fabric_loading/release.toml" --output "$out/refused" --set settled.checkpoint="$out/nowhere.bin" 2>&1)
+case $text in
+  *nowhere*) ;;
+  *) fail "the scene file is not accepted as it is: $text" ;;
 esac
 exit 0
