@@ -7,7 +7,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <string>
+#include <utility>
 
 using namespace fibrant;
 
@@ -174,6 +177,36 @@ TEST_CASE("what cannot be meshed is refused by name, and inner faces that would 
     p = parameters();
     p.least_thickness = 0.0;
     CHECK(says("LayerParameters.least_thickness = 0"));
+}
+
+TEST_CASE("a layer without thickness, one thinner than the sheet is rough, and one of cells inside out are refused with place, value and bound") {
+    const solid::FibreSurface surface(sheet());
+    auto p = parameters();
+    const auto refusal = [&] { return test::refusal([&] { solid::mesh_layers(surface, p); }); };
+    p.penetration_depth = 0.0, p.smoothing = 0, p.upper_face = 0.22;  // level with the crests
+    CHECK_MESSAGE(refusal().starts_with("LayerParameters.upper_face = 0.22, but it must be higher: at x = "), refusal());
+    CHECK(refusal().ends_with("less than least_thickness = 0.02"));
+    p.upper_face = 0.35, p.lower_face = -0.15;  // in the troughs, above the crests of the other side
+    CHECK_MESSAGE(refusal().starts_with("LayerParameters.lower_face = -0.15, but it must be lower: at x = "), refusal());
+    p.lower_face = 0.35, p.upper_face = -0.35;  // both faces changed over
+    CHECK_MESSAGE(refusal().starts_with("LayerParameters.upper_face = -0.35, but it must be higher: at x = "), refusal());
+    p = parameters();
+    p.sides = solid::Sides::lower, p.penetration_depth = 2.0;  // through the sheet and out again
+    CHECK_MESSAGE(refusal().starts_with("LayerParameters.penetration_depth = 2, but it must be less: at x = "), refusal());
+    // From both sides the depth is cut to what there is, however large; what is left are cells that are whole.
+    p.sides = solid::Sides::both, p.penetration_depth = 1e6;
+    const solid::Layers clipped = solid::mesh_layers(surface, p);
+    CHECK(clipped.clipped == clipped.columns);
+    for (const solid::Layer& layer : clipped.list)
+        for (Index c = 0; c < core::count(layer.solid.cells); ++c) REQUIRE(solid::least_jacobian(solid::cell_nodes(layer.solid, c)) > 0.0);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const auto& [field, name] : {std::pair{&solid::LayerParameters::penetration_depth, "penetration_depth"}, {&solid::LayerParameters::upper_face, "upper_face"},
+                                      {&solid::LayerParameters::lower_face, "lower_face"}, {&solid::LayerParameters::clearance, "clearance"},
+                                      {&solid::LayerParameters::least_thickness, "least_thickness"}, {&solid::LayerParameters::grading, "grading"}}) {
+        p = parameters();
+        p.*field = nan;
+        CHECK_MESSAGE(refusal().starts_with(std::string("LayerParameters.") + name + " = nan, but it must be"), refusal());
+    }
 }
 
 }  // namespace layer_mesher_test

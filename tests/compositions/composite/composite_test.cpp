@@ -17,6 +17,9 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <limits>
+#include <string>
+#include <type_traits>
 #include <unistd.h>
 
 using namespace fibrant;
@@ -36,6 +39,8 @@ struct Model {
 };
 static_assert(simulation::Model<Model> && simulation::HasSolid<Model> && simulation::HasConnections<Model>);
 using Simulator = simulation::Simulator<Model>;
+// Contacts do not know of solids: the same type, with the same bytes an element, as in a model of fibres alone.
+static_assert(std::is_same_v<Simulator::Contacts, contact::ContactSet<Model::Beam, Model::Proximity, Model::Normal, Model::Friction>>);
 
 constexpr double radius = 0.04, length = 4.0, width = 0.4, matrix_modulus = 50.0, fibre_modulus = 5000.0;
 
@@ -325,6 +330,36 @@ TEST_CASE("a matrix a million times as stiff as the fibres, and one a million ti
         MESSAGE("matrix " << factor << " times the fibres: moment over that of one part alone " << moment / (curvature * (factor > 1.0 ? stiff : fibres)));
         CHECK(moment == doctest::Approx(curvature * (factor > 1.0 ? stiff : fibres)).epsilon(0.03));
     }
+}
+
+TEST_CASE("a matrix that cannot be is refused by the name of the field, its value and its bound") {
+    const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+    const auto says = [](auto&& change) {
+        composite::MatrixParameters matrix;
+        matrix.material = {100.0, 0.35}, matrix.cover = 0.05, matrix.cells_along = matrix.cells_across = 4;
+        matrix.validate();
+        change(matrix);
+        const std::string text = test::refusal([&] { matrix.validate(); });
+        CHECK_MESSAGE(text.find("must be") != std::string::npos, text);
+        return text.substr(0, text.find(','));
+    };
+    using Matrix = composite::MatrixParameters;
+    CHECK(says([](Matrix& m) { m.cover = 0.0; }) == "MatrixParameters.cover = 0");  // a layer without thickness
+    CHECK(says([](Matrix& m) { m.cover = -0.1; }) == "MatrixParameters.cover = -0.1");
+    CHECK(says([&](Matrix& m) { m.cover = nan; }) == "MatrixParameters.cover = nan");
+    CHECK(says([](Matrix& m) { m.penetration_depth_over_radius = -1.0; }) == "MatrixParameters.penetration_depth_over_radius = -1");
+    CHECK(says([&](Matrix& m) { m.penetration_depth_over_radius = nan; }) == "MatrixParameters.penetration_depth_over_radius = nan");
+    CHECK(says([](Matrix& m) { m.clearance_over_radius = 0.0; }) == "MatrixParameters.clearance_over_radius = 0");
+    CHECK(says([](Matrix& m) { m.least_thickness_over_cover = 0.0; }) == "MatrixParameters.least_thickness_over_cover = 0");
+    CHECK(says([](Matrix& m) { m.least_thickness_over_cover = 1.5; }) == "MatrixParameters.least_thickness_over_cover = 1.5");
+    CHECK(says([](Matrix& m) { m.cells_along = 0; }) == "MatrixParameters.cells_along = 0");
+    CHECK(says([](Matrix& m) { m.cells_across = -1; }) == "MatrixParameters.cells_across = -1");
+    CHECK(says([](Matrix& m) { m.through = 0; }) == "MatrixParameters.through = 0");
+    CHECK(says([&](Matrix& m) { m.grading = nan; }) == "MatrixParameters.grading = nan");
+    CHECK(says([&](Matrix& m) { m.material.young_modulus = infinity; }) == "MatrixParameters.material.young_modulus = inf");
+    CHECK(says([](Matrix& m) { m.material.poisson_ratio = 0.5; }) == "MatrixParameters.material.poisson_ratio = 0.5");
+    CHECK(says([](Matrix& m) { m.bonding_factor = 0.0; }) == "MatrixParameters.bonding_factor = 0");
+    CHECK(says([&](Matrix& m) { m.section_factor = nan; }) == "MatrixParameters.section_factor = nan");
 }
 
 TEST_CASE("a run goes on from where another left the same fibres, and not from elsewhere") {
