@@ -30,6 +30,23 @@ static_assert(assembly::LinearSystem<System> && solver::LinearSolver<solver::Sol
 // What a scene without a solid pays for it: nothing.
 static_assert(std::is_empty_v<solid::NoSolid> && !core::Active<solid::NoSolid>);
 static_assert(std::is_same_v<assembly::Equilibrium<Scene::Beam, Scene::Contacts>::System, assembly::ChainSystem<Scene::Beam>>);
+/// What an equilibrium of fibres holds, member by member.
+struct FibresAlone {
+    const beam::Mesh<Scene::Beam>* mesh;
+    Scene::Beam beam;
+    Scene::Contacts* contacts;
+    connection::PrescribedMotion<Scene::Beam> motion;
+    connection::AppliedLoad<Scene::Beam> load;
+    [[no_unique_address]] connection::NoConnections::Of<Scene::Beam> ties;
+    assembly::ChainSystem<Scene::Beam> system;
+    std::vector<Scene::Beam::Stresses> stresses;
+    std::vector<double> amplitudes;
+    std::vector<Vec3> targets;
+    Vector external, reaction, anchor;
+    double damping, rounding;
+};
+static_assert(sizeof(assembly::Equilibrium<Scene::Beam, Scene::Contacts>) == sizeof(FibresAlone));
+static_assert(sizeof(Scene::Equilibrium) > sizeof(FibresAlone));
 
 Mat3 some_gradient() {
     Mat3 gradient;
