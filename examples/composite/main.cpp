@@ -52,7 +52,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     auto parameters = cloth::model_parameters<Composite>(fabric, scene.weave.settle);
     parameters.friction.friction_coefficient = scene.weave.settle.friction_coefficient;
     parameters.iteration = scene.weave.iteration, parameters.iteration.margin = 1.0, parameters.iteration.largest_margin = 8.0;  // edges swing far
-    parameters.iteration.overshoot = scene.overshoot, parameters.contact.spacing.crossing_angle_deg = scene.crossing_angle_deg;
+    parameters.iteration.overshoot = scene.overshoot;
     parameters.solver.carried = scene.carried;
     parameters.solid.bonding_factor = scene.matrix.bonding_factor, parameters.solid.section_factor = scene.matrix.section_factor;
     simulation::Simulator<Composite> simulator(composite.assembly, parameters);

@@ -18,9 +18,6 @@ struct Scene {
     parts::MatrixParameters matrix;
     parts::LoadParameters load;
     double overshoot = std::numeric_limits<double>::infinity();  ///< of solver::IterationParameters under load
-    /// Angle above which two fibres have one contact between them [degree]. A bent sheet bends its fibres, and neighbours that slant
-    /// past each other in a bend touch at two places unless the angle exceeds arccos(1 - 2 r curvature).
-    double crossing_angle_deg = 60.0;
     bool carried = false;  ///< of solver::SolidPcg: pays where bonds are much stiffer than the sheet is in bending
     std::string settled;  ///< checkpoint of the weave's settled state; empty: settled.bin in the folder of results
 };
@@ -64,7 +61,6 @@ inline Scene read_scene(example::TomlReader& file, const std::string& path) {
     file.read("load", "damping", load.damping);
     file.read("load", "driven", load.driven);
     file.read("load", "settled", scene.settled);
-    file.read("contact", "crossing_angle_deg", scene.crossing_angle_deg);
     file.read("solver", "overshoot", scene.overshoot);
     file.read("solver", "carried", scene.carried);
     file.refuse_unknown();
