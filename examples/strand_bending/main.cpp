@@ -10,6 +10,8 @@
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/float_block_cholesky.hpp>
 
+#include <limits>
+
 using namespace fibrant;
 namespace strand = compositions::strand;
 

@@ -26,6 +26,8 @@ TEST_CASE("a loop visits every item once, whatever the number of threads") {
             std::vector<int> visits(1001, 0);
             core::parallel_for(1001, [&](Index k) { ++visits[core::at(k)]; });
             CHECK(std::count(visits.begin(), visits.end(), 1) == 1001);
+            core::parallel_for<core::Share::turns>(1001, [&](Index k) { ++visits[core::at(k)]; });
+            CHECK(std::count(visits.begin(), visits.end(), 2) == 1001);
             core::parallel_for(0, [&](Index) { FAIL("no items"); });
         });
     }
@@ -36,6 +38,23 @@ TEST_CASE("an exception leaves the loop that threw it, with its own type and mes
         test::with_threads(threads, [] {
             CHECK_THROWS_WITH_AS(
                 core::parallel_for(100, [](Index k) { if (k == 73) throw std::domain_error("item 73"); }), "item 73", std::domain_error);
+            CHECK_THROWS_WITH_AS(
+                core::parallel_for<core::Share::turns>(100, [](Index k) { if (k == 73) throw std::domain_error("item 73"); }), "item 73", std::domain_error);
+        });
+    }
+}
+
+TEST_CASE("parts are joined in their order, and what the whole held before is gone") {
+    for (const int threads : {1, 2, 3}) {
+        test::with_threads(threads, [] {
+            std::vector<std::vector<Index>> parts(100);
+            std::vector<Index> expected, whole(10'000, -1);
+            for (Index p = 0; p < 100; ++p)
+                for (Index k = 0; k < (p * p) % 7; ++k) parts[core::at(p)].push_back(1000 * p + k), expected.push_back(1000 * p + k);
+            core::join(parts, whole);
+            CHECK(whole == expected);
+            core::join(std::vector<std::vector<Index>>{}, whole);
+            CHECK(whole.empty());
         });
     }
 }

@@ -251,7 +251,7 @@ private:
         const Index blocks = (core::count(zones_) + block - 1) / block;
         std::vector<std::vector<Element>> made(core::at(blocks));
         const double forced_keep = 0.5;  // radii of clearance beyond which a forced pair needs no element
-        core::parallel_for(blocks, [&](Index b) {
+        core::parallel_for<core::Share::turns>(blocks, [&](Index b) {
             std::vector<StationPair> pairs;
             for (Index z = b * block; z < std::min(core::count(zones_), (b + 1) * block); ++z) {
                 Zone& zone = zones_[core::at(z)];
@@ -282,13 +282,11 @@ private:
                 }
             }
         }, core::light_items / block);
-        elements_.clear();
-        for (Index b = 0; b < blocks; ++b) {
-            const Index offset = core::count(elements_);
+        for (Index b = 0, offset = 0; b < blocks; offset += core::count(made[core::at(b++)])) {
             for (Index z = b * block; z < std::min(core::count(zones_), (b + 1) * block); ++z)
                 zones_[core::at(z)].first += offset, zones_[core::at(z)].last += offset;
-            elements_.insert(elements_.end(), made[core::at(b)].begin(), made[core::at(b)].end());
         }
+        core::join(made, elements_);
     }
 
     Element make(const Zone& zone, Index z, const StationPair& pair) const {

@@ -93,11 +93,8 @@ public:
                     made[core::at(f)].push_back(element);
                 }
         }, mesh_->grain());
-        elements_.clear();
-        for (Index f = 0; f < fibres; ++f) {
-            elements_.insert(elements_.end(), made[core::at(f)].begin(), made[core::at(f)].end());
-            first_[core::at(f + 1)] = core::count(elements_);
-        }
+        for (Index f = 0; f < fibres; ++f) first_[core::at(f + 1)] = first_[core::at(f)] + core::count(made[core::at(f)]);
+        core::join(made, elements_);
     }
 
     /// Middle loop: normals and particles at the same stations. @returns the largest turn of a normal that carries force [radian]

@@ -5,6 +5,8 @@
 #include <fibrant/core/types.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <vector>
 
@@ -26,28 +28,51 @@ inline int threads() noexcept {
 /// Light items, a contact element each, below which threads cost more than they save.
 inline constexpr Index light_items = 256;
 
+/// How threads share the items of a loop.
+enum class Share : std::uint8_t {
+    runs,   ///< each takes a run of them, the same one in every loop, whose data it then has in its cache
+    turns,  ///< one by one, as they come to be free: for large items of uneven work
+};
+
 /// Calls body(k) for k in [0, n), in any order and on any thread. Items must not share what they write.
 /// The first exception that a body throws is thrown again here.
 /// @param grain  items up to which one thread takes them all
-template <class Body>
+template <Share share = Share::runs, class Body>
 void parallel_for(Index n, const Body& body, [[maybe_unused]] Index grain = 1) {
 #if defined(_OPENMP)
     if (n > grain && threads() > 1 && omp_in_parallel() == 0) {
         std::exception_ptr failure;
-#pragma omp parallel for schedule(static)
-        for (Index k = 0; k < n; ++k) {
+        const auto guarded = [&](Index k) {
             try {
                 body(k);
             } catch (...) {
 #pragma omp critical(fibrant_parallel_for)
                 if (!failure) failure = std::current_exception();
             }
+        };
+        if constexpr (share == Share::runs) {
+#pragma omp parallel for schedule(static)
+            for (Index k = 0; k < n; ++k) guarded(k);
+        } else {
+#pragma omp parallel for schedule(dynamic)
+            for (Index k = 0; k < n; ++k) guarded(k);
         }
         if (failure) std::rethrow_exception(failure);
         return;
     }
 #endif
     for (Index k = 0; k < n; ++k) body(k);
+}
+
+/// whole = all parts, one behind the other.
+template <class Value>
+void join(const std::vector<std::vector<Value>>& parts, std::vector<Value>& whole) {
+    std::vector<std::size_t> first{0};
+    for (const auto& part : parts) first.push_back(first.back() + part.size());
+    whole.resize(first.back());
+    parallel_for(count(parts), [&](Index p) {
+        std::copy(parts[at(p)].begin(), parts[at(p)].end(), whole.begin() + static_cast<std::ptrdiff_t>(first[at(p)]));
+    }, light_items / 8);
 }
 
 /// Sum over [0, n) of body(first, last), taken on blocks of fixed length and added in their order.

@@ -47,19 +47,20 @@ public:
             "\" NumberOfLines=\"" + std::to_string(line_ends_.size()) +
             "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
         std::string data;
+        data.reserve(bytes() + 8192);  // and the header
         write_arrays(head, data, "PointData", point_data_, points_.size());
         write_arrays(head, data, "CellData", cell_data_, cells);
-        std::vector<double> coordinates;
-        for (const Vec3& point : points_) coordinates.insert(coordinates.end(), point.data(), point.data() + 3);
         head += "<Points>\n";
-        write_array<double>(head, data, "Points", "Float64", 3, coordinates);
+        static_assert(sizeof(Vec3) == 3 * sizeof(double));
+        write_array<double>(head, data, "Points", "Float64", 3, {reinterpret_cast<const double*>(points_.data()), 3 * points_.size()});
         head += "</Points>\n";
         std::vector<std::int64_t> ends;
         for (std::size_t k = 0; k < vertex_points_.size(); ++k) ends.push_back(static_cast<std::int64_t>(k + 1));
         write_cells(head, data, "Verts", vertex_points_, ends);
         write_cells(head, data, "Lines", line_points_, line_ends_);
-        return head + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + data +
-               "\n</AppendedData>\n</VTKFile>\n";
+        head += "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
+        data.insert(0, head);
+        return data += "\n</AppendedData>\n</VTKFile>\n";
     }
 
 private:
@@ -69,13 +70,23 @@ private:
         std::vector<float> values;
     };
 
+    /// Of all arrays.
+    std::size_t bytes() const noexcept {
+        std::size_t sum = 24 * points_.size() + 8 * (2 * vertex_points_.size() + line_points_.size() + line_ends_.size()) + 64;
+        for (const auto* arrays : {&point_data_, &cell_data_})
+            for (const Array& array : *arrays) sum += 4 * array.values.size() + 8;
+        return sum;
+    }
+
     static void add(std::vector<Array>& arrays, std::string&& name, std::span<const double> values) {
         Array array{std::move(name), 1, {}};
+        array.values.reserve(values.size());
         for (const double value : values) array.values.push_back(static_cast<float>(value));
         arrays.push_back(std::move(array));
     }
     static void add(std::vector<Array>& arrays, std::string&& name, std::span<const Vec3> values) {
         Array array{std::move(name), 3, {}};
+        array.values.reserve(3 * values.size());
         for (const Vec3& value : values)
             for (const double component : value) array.values.push_back(static_cast<float>(component));
         arrays.push_back(std::move(array));
@@ -83,7 +94,7 @@ private:
 
     template <class Number>
     static void write_array(std::string& head, std::string& data, const std::string& name, const char* type,
-                            std::size_t components, const std::vector<Number>& values) {
+                            std::size_t components, std::span<const Number> values) {
         head += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) +
                 "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"appended\" offset=\"" +
                 std::to_string(data.size()) + "\"/>\n";

@@ -2,6 +2,7 @@
 #pragma once
 /// @file Fibres and contacts of each increment for ParaView.
 
+#include <fibrant/core/parallel.hpp>
 #include <fibrant/observe/poly_data.hpp>
 
 #include <filesystem>
@@ -84,8 +85,13 @@ public:
 
     /// Throws std::runtime_error if a file cannot be written.
     void accepted(const Snapshot& snapshot) {
-        fibres_.write(snapshot.increment, "vtp", fibre_data(snapshot).text());
-        contacts_.write(snapshot.increment, "vtp", contact_data(snapshot).text());
+        core::parallel_for(2, [&](Index k) {
+            if (k == 0) {
+                fibres_.write(snapshot.increment, "vtp", fibre_data(snapshot).text());
+            } else {
+                contacts_.write(snapshot.increment, "vtp", contact_data(snapshot).text());
+            }
+        });
     }
 
 private:

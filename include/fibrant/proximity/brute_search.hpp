@@ -25,7 +25,7 @@ public:
             detail::keep_close(table, records.data(), candidates, close[core::at(a)]);
         });
         std::vector<SegmentPair> all;
-        for (const auto& part : close) all.insert(all.end(), part.begin(), part.end());
+        core::join(close, all);
         return all;
     }
 

@@ -153,7 +153,7 @@ private:
             const std::int32_t* map = place_owner_.empty() ? nullptr : place_owner_[level].data();
             const Index blocks = (grid.cells() + cells_together - 1) / cells_together;
             reserve_blocks(done + core::at(blocks));
-            core::parallel_for(blocks, [&](Index b) {
+            core::parallel_for<core::Share::turns>(blocks, [&](Index b) {
                 detail::CandidateSink sink(table, records_.data(), map, map, close_[done + core::at(b)]);
                 const auto first = static_cast<std::int32_t>(b * cells_together);
                 grid.overlaps_inside(first, std::min(grid.cells(), first + cells_together), sink);
@@ -170,7 +170,7 @@ private:
         const detail::CellGrid& grid = levels_[upper];
         const Index blocks = (grid.size() + together - 1) / together;
         reserve_blocks(done + core::at(blocks));
-        core::parallel_for(blocks, [&](Index b) {
+        core::parallel_for<core::Share::turns>(blocks, [&](Index b) {
             detail::CandidateSink sink(table, records_.data(), place_owner_[upper].data(), place_owner_[lower].data(),
                                        close_[done + core::at(b)]);
             for (auto k = static_cast<std::int32_t>(b * together); k < std::min<Index>(grid.size(), (b + 1) * together); ++k)

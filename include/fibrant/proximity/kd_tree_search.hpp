@@ -109,7 +109,7 @@ public:
             }
         });
         std::vector<SegmentPair> all;
-        for (const auto& some : part) all.insert(all.end(), some.begin(), some.end());
+        core::join(part, all);
         return all;
     }
 

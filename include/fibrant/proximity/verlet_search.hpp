@@ -54,11 +54,8 @@ public:
             close_[core::at(b)].clear();
             detail::keep_close(table, records_.data(), candidates, close_[core::at(b)]);
         });
-        std::size_t total = 0;
-        for (const auto& some : close_) total += some.size();
         std::vector<SegmentPair> all;
-        all.reserve(total);
-        for (const auto& some : close_) all.insert(all.end(), some.begin(), some.end());
+        core::join(close_, all);
         return all;
     }
 

@@ -215,13 +215,13 @@ inline std::vector<ProximityZone> zones_from_pairs(std::span<const Centreline> f
     constexpr std::size_t together = 64;  // a block of the loop: fixed, so that nothing depends on the threads
     const std::size_t twos = first.size() - 1, blocks = (twos + together - 1) / together;
     std::vector<std::vector<ProximityZone>> part(blocks);
-    core::parallel_for(static_cast<Index>(blocks), [&](Index b) {
+    core::parallel_for<core::Share::turns>(static_cast<Index>(blocks), [&](Index b) {
         detail::ZoneMaker maker(table);
         for (std::size_t k = core::at(b) * together; k < std::min(twos, (core::at(b) + 1) * together); ++k)
             maker.append({sorted.data() + first[k], first[k + 1] - first[k]}, part[core::at(b)]);
     });
     std::vector<ProximityZone> zones;
-    for (const auto& some : part) zones.insert(zones.end(), some.begin(), some.end());
+    core::join(part, zones);
     return zones;
 }
 

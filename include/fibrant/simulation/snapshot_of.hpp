@@ -15,8 +15,9 @@ namespace fibrant::simulation {
 template <beam::BeamElement Beam>
 observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const Vector& state) {
     observe::Snapshot shot;
-    for (Index f = 0; f < mesh.fibre_count(); ++f) {
-        observe::FibreSnapshot fibre;
+    shot.fibres.resize(core::at(mesh.fibre_count()));
+    core::parallel_for(mesh.fibre_count(), [&](Index f) {
+        observe::FibreSnapshot& fibre = shot.fibres[core::at(f)];
         fibre.section = mesh.fibre(f).section;
         fibre.group = mesh.fibre(f).group;
         for (Index a = 0; a < mesh.node_count(f); ++a) {
@@ -30,8 +31,7 @@ observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const Vector& state)
             fibre.director_2.push_back(director_2);
             fibre.curvature.push_back(first.cross(second).norm() / std::pow(first.norm(), 3));
         }
-        shot.fibres.push_back(std::move(fibre));
-    }
+    }, mesh.grain());
     return shot;
 }
 
@@ -41,9 +41,10 @@ observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const contact::Conta
                               const Vector& state) {
     using Mesh = beam::Mesh<Beam>;
     observe::Snapshot shot = snapshot_of(mesh, state);
-    for (Index k = 0; k < core::count(contacts.elements()); ++k) {
+    shot.contacts.resize(contacts.elements().size());
+    core::parallel_for(core::count(shot.contacts), [&](Index k) {
         const auto& element = contacts.elements()[core::at(k)];
-        observe::ContactSnapshot contact;
+        observe::ContactSnapshot& contact = shot.contacts[core::at(k)];
         contact.fibre_i = element.fibre_i, contact.fibre_j = element.fibre_j;
         contact.abscissa_i = element.u_i * mesh.fibre(element.fibre_i).element_length;
         contact.abscissa_j = element.u_j * mesh.fibre(element.fibre_j).element_length;
@@ -55,8 +56,7 @@ observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const contact::Conta
         if constexpr (core::Active<Friction>) contact.friction = contacts.frictions()[core::at(k)].force;
         contact.stiffness = contacts.stiffness(element);
         contact.crossing = element.crossing;
-        shot.contacts.push_back(contact);
-    }
+    }, core::light_items);
     return shot;
 }
 
