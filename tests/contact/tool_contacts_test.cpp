@@ -271,6 +271,54 @@ TEST_CASE("a stuck fibre that turns with its tool feels nothing of it") {
     CHECK(report.energy.dissipated == 0.0);
 }
 
+TEST_CASE("a fibre's end is round to a tool: as deep in it at any slant") {
+    for (const double slant_deg : {10.0, 30.0, 60.0, 80.0, 84.0, 85.0, 90.0}) {  // to the plane
+        CAPTURE(slant_deg);
+        const double slant = slant_deg * pi / 180.0;
+        const Vec3 foot(0, 0, 0.98 * r), along(std::cos(slant), 0, std::sin(slant));
+        scene::Assembly assembly;
+        assembly.add(straight_fibre(foot, foot + 0.5 * along, r, 6));
+        assembly.add(plane(Vec3::Zero(), Vec3::UnitZ()));
+        const Mesh mesh(assembly, Beam{});
+        contact::StiffnessAdaptation adaptation;
+        adaptation.allowed_penetration = 0.05 * r;
+        Tools tools(assembly, mesh, adaptation, 2.0);
+        tools.detect(mesh.rest_state(), mesh.rest_state(), 0.1 * r, penalty);
+        tools.evaluate(mesh.rest_state(), penalty, coulomb);
+        contact::ContactFigures sum;
+        tools.add_figures(mesh.rest_state(), penalty, sum);
+        CHECK(sum.active == 1);
+        CHECK(std::abs(sum.greatest_penetration - 0.02 * r) < 1e-12);
+    }
+}
+
+TEST_CASE("a slanted fibre that stands with its end on a smooth plate bends and shortens as a cantilever does") {
+    for (const double tilt_deg : {3.0, 5.6, 20.0}) {  // from the plate's normal; the section reaches a tenth of a radius down at 5.7
+        CAPTURE(tilt_deg);
+        const double tilt = tilt_deg * pi / 180.0, length = 0.5, way = 5e-3 * r;
+        const Vec3 foot(0, 0, r), along(std::sin(tilt), 0, std::cos(tilt));
+        scene::Assembly assembly;
+        assembly.add(straight_fibre(foot, foot + length * along, r, 6));
+        assembly.clamp(scene::last_end(0), Vec3(0, 0, -way), Vec3::Zero(), Vec3::Zero(), "press");
+        assembly.add(plane(Vec3::Zero(), Vec3::UnitZ()));
+        Simulator simulator(assembly, parameters(0.0));
+        const simulation::Report report = simulator.run(test::stage<Pressing>({{"press", 1.0}}, 4));
+        REQUIRE_MESSAGE(report.converged, report.reason);
+        const double area = pi * r * r, inertia = 0.25 * area * r * r, young = test::glass.young_modulus, shear = young / (2.0 * (1.0 + test::glass.poisson_ratio));
+        const double depth = r - simulator.value(scene::first_end(0), scene::NodeVector::position).z();
+        const double load = -simulator.contacts().tools().reaction(0).force.z();
+        // A cantilever under a load along and across it: both bend it (Timoshenko and Gere, 1.11).
+        const double k = std::sqrt(load * std::cos(tilt) / (young * inertia));
+        const double give = std::pow(std::cos(tilt), 2) * length / (young * area) + std::pow(std::sin(tilt), 2) * length / (shear * area) +
+                            std::sin(tilt) * std::tan(tilt) * (std::tan(k * length) / k - length) / load;
+        std::printf("end on a plate, %.1f degrees: %.3e N, %.3e expected, %.1e radii deep\n", tilt_deg, load, (way - depth) / give, depth / r);
+        CHECK(depth > 0.0);
+        CHECK(depth < 2e-3 * r);
+        // The end turns by up to a tenth of the tilt, which shortens the lever by half of that in the square: terms of the third order.
+        CHECK(std::abs(load * give / (way - depth) - 1.0) < 0.03);
+    }
+}
+
 TEST_CASE("a run with tools that is interrupted goes on to the same bits") {
     scene::Assembly assembly;
     assembly.add(straight_fibre({0, 0, r}, {0.5, 0, r}, r, 6));

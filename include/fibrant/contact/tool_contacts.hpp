@@ -170,7 +170,7 @@ public:
                 sum += plane * frictions_[core::at(k)].tangent * plane;
             }
             if (!sum.isZero(0.0)) add(element.first, element.weights, sum);
-            section_stiffness_term(*mesh_, state, fibre, element.u, element.first, element.normal, response.reaction, false, add);
+            section_stiffness_term(*mesh_, state, fibre, element.u, element.first, element.normal, response.reaction, element.end, add);
         }
     }
 
@@ -267,12 +267,15 @@ private:
         for (auto& record : self.accepted_) Record::each(record, see);
         for (auto& value : self.accepted_stiffness_) see(value);
     }
+    /// Sine of a fibre's angle to a tool beyond which its end is rounded; there the two stand apart by half a hundredth of a radius.
+    static constexpr double slanted = 0.1;
+
     std::size_t slot(Index fibre, Index tool) const noexcept { return core::at(fibre * core::count(tools_) + tool); }
     Vec3 tangent(const Element& element, const Vector& state) const {
         return contact_tangent(*mesh_, state, element.fibre, element.u).normalized();
     }
     void follow_support(Element& element, const Vector& state) const {
-        element.cap = support_weights(*mesh_, state, element.fibre, element.u, element.first, Vec3(-element.normal), false, element.weights);
+        element.cap = support_weights(*mesh_, state, element.fibre, element.u, element.first, Vec3(-element.normal), element.end, element.weights);
     }
     /// How far the tool's point stood from its present place, where the last evaluation is of the accepted state.
     Vec3 back_step(const Element& element) const {
@@ -284,6 +287,9 @@ private:
         const std::size_t t = core::at(element.tool);
         const scene::ToolPose& pose = pose_[t];
         element.normal = pose.turn * scene::tool_distance(tools_[t], pose.material(mesh_->position(state, element.fibre, element.u))).normal;
+        // Of a section that faces the tool with its flat side, the furthest particle is now here, now there: a rounded end is not.
+        const bool last = element.u == 0.0 || element.u == static_cast<double>(mesh_->fibre(element.fibre).elements);
+        element.end = last && std::abs(tangent(element, state).dot(element.normal)) > slanted;
         follow_support(element, state);
         const Vec3 particle = beam::Mesh<B>::point(state, element.first, element.weights);
         element.foot = particle - scene::tool_distance(tools_[t], pose.material(particle)).distance * element.normal;

@@ -21,6 +21,7 @@ struct ToolElement {
     double cap = 0.0;                      ///< radius of a fibre's end, taken off the gap [length]
     std::int32_t fibre = -1, tool = -1, first = 0;  ///< first unknown of the fibre's element
     std::int32_t station = 0;              ///< of the fibre: stations stand at the same material for ever
+    bool end = false;                      ///< the rounded end of the fibre touches, not its side
     [[no_unique_address]] GapShift<Normal> shift;
     [[no_unique_address]] FrictionState<B, Friction> friction;
 
