@@ -230,6 +230,35 @@ TEST_CASE("a fibre pressed on a rough plate is dragged along with it, and slips 
     CHECK(std::abs(report.energy.error()) < 0.01 * report.energy.external);  // of sliding: the trapezoidal rule over ten increments
 }
 
+TEST_CASE("a tool that comes closer in long steps does not hold by more than the friction of what it presses with") {
+    // Each step begins with the tool deep in the fibre: what that overlap would press with bounds nothing.
+    const double mu = 0.15;
+    scene::Assembly assembly;
+    assembly.add(straight_fibre({0, 0, r}, {0.5, 0, r}, r, 6));
+    scene::Tool table = plane(Vec3::Zero(), Vec3::UnitZ());
+    table.displacement = {0, 2.0 * r, 0.5 * r};
+    assembly.add(table);
+    for (const double end : {0.0, 1.0}) assembly.clamp({0, end});
+    auto ordinary = parameters(mu);
+    ordinary.iteration = {};
+    ordinary.contact.stiffness.initial_fraction = 1.0;
+    Simulator simulator(assembly, ordinary);
+    simulation::Loading<Pressing> loading = test::stage<Pressing>({{"tools", 1.0}}, 20);
+    loading.stages[0].looseness = 1000.0;  // a single pass an increment
+    struct Held {
+        const Simulator* simulator;
+        std::vector<double> ratios{};
+        void reported(const simulation::IncrementReport&) {
+            const Vec3 sum = simulator->reaction({0, 0.0}) + simulator->reaction({0, 1.0});
+            ratios.push_back(std::abs(sum.y() / sum.z()));
+        }
+    } held{&simulator};
+    const simulation::Report report = simulator.run(loading, held);
+    REQUIRE_MESSAGE(report.converged, report.reason);
+    for (const double ratio : held.ratios) CHECK(ratio < 1.05 * mu);  // bounds are those of the increment before, and the pressure grows
+    CHECK(held.ratios.back() > 0.8 * mu);
+}
+
 TEST_CASE("a stuck fibre that turns with its tool feels nothing of it") {
     // From -1 to 0 the fibre is pressed on a drum and drawn along it by a part of the reversible way; then both turn about the
     // drum's axis as one rigid body.

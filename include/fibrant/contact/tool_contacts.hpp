@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace fibrant::contact {
@@ -62,6 +63,8 @@ public:
     void detect(const Vector& state, const Vector& accepted, double reach, const Normal& normal) {
         std::vector<Record> last = elements_.empty() ? accepted_ : records(state);
         const Index fibres = mesh_->fibre_count();
+        // An increment begins with tools that have moved and fibres that have not: that overlap says nothing of how they will press.
+        starting_ = state == accepted;
         std::vector<std::vector<Element>> made(core::at(fibres));
         core::parallel_for(fibres, [&](Index f) {
             const double end = static_cast<double>(mesh_->fibre(f).elements);
@@ -77,8 +80,7 @@ public:
                     element.fibre = static_cast<std::int32_t>(f), element.tool = static_cast<std::int32_t>(t);
                     element.station = static_cast<std::int32_t>(s);
                     element.first = static_cast<std::int32_t>(mesh_->first_unknown(f, mesh_->locate(f, u).first));
-                    Record key;
-                    key.fibre = element.fibre, key.tool = element.tool, key.station = element.station;
+                    const Record key = key_of(element);
                     if constexpr (law::Augmenting<Normal>) {
                         const Record* record = find(last, key);
                         element.shift.multiplier = record ? record->multiplier : 0.0;
@@ -115,11 +117,16 @@ public:
         hold_reactions();
         return angle.empty() ? 0.0 : *std::max_element(angle.begin(), angle.end());
     }
-    /// The reactions of the last evaluation bound friction from now on.
+    /// The reactions of the last evaluation bound friction from now on; at the start of an increment those that it starts from do.
     void hold_reactions() {
-        if constexpr (core::Active<Friction>)
-            for (std::size_t k = 0; k < std::min(elements_.size(), responses_.size()); ++k)
-                elements_[k].friction.bound = responses_[k].reaction;
+        if constexpr (core::Active<Friction>) {
+            const bool starting = std::exchange(starting_, false);
+            for (std::size_t k = 0; k < std::min(elements_.size(), responses_.size()); ++k) {
+                Element& element = elements_[k];
+                const Record* record = starting ? find(accepted_, key_of(element)) : nullptr;
+                element.friction.bound = !starting ? responses_[k].reaction : record ? record->multiplier : 0.0;
+            }
+        }
     }
 
     /// Inner loop: gaps, reactions and friction of a state.
@@ -303,6 +310,11 @@ private:
         }
     }
 
+    static Record key_of(const Element& element) {
+        Record key;
+        key.fibre = element.fibre, key.tool = element.tool, key.station = element.station;
+        return key;
+    }
     static const Record* find(const std::vector<Record>& records, const Record& key) {
         const auto found = std::lower_bound(records.begin(), records.end(), key);
         return found != records.end() && !(key < *found) ? &*found : nullptr;
@@ -334,6 +346,7 @@ private:
     std::vector<ContactResponse> responses_;
     std::vector<law::FrictionResponse<typename Friction::History>> frictions_;
     std::vector<Record> accepted_;
+    bool starting_ = false;  // fibres stand where the last increment left them
 };
 
 }  // namespace fibrant::contact

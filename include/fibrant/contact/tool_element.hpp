@@ -34,7 +34,7 @@ struct ToolElement {
 template <law::NormalLaw Normal, law::FrictionLaw Friction>
 struct ToolRecord {
     std::int32_t fibre = -1, tool = -1, station = 0;
-    double multiplier = 0.0;  ///< of an augmented law [force]
+    double multiplier = 0.0;  ///< its reaction, which an augmented law starts from and friction is bounded by [force]
     [[no_unique_address]] RecordedFriction<Friction> friction;
 
     /// Calls see(number) with each number of the record, in a fixed order: for files.
