@@ -161,11 +161,60 @@ TEST_CASE("damping that is carried along does not hold back what is driven stead
     for (std::size_t k = 0; k < 8; ++k) {
         const double sign = k < 4 ? 1.0 : -1.0;
         CHECK(drags[0].forces[k] == doctest::Approx(sign * whole).epsilon(5e-3));
-        if (k == 0) CHECK(drags[1].forces[k] == doctest::Approx(whole).epsilon(5e-3));  // nothing was known before
-        else CHECK(std::abs(drags[1].forces[k]) < 5e-3 * whole);
+        CHECK(std::abs(drags[1].forces[k]) < 5e-3 * whole);  // nor the first, of which nothing was known: it is solved twice
     }
-    CHECK(std::abs(drags[1].forces[8]) < 5e-3 * whole);  // nor of another channel
-    CHECK(drags[1].shares[8] == doctest::Approx(drags[0].shares[8]).epsilon(1e-2));
+    // The other channel bends the fibre; of that, (3 L s^2 - s^3) / 2 L^3 of the tip's motion, a square of s leaves less than a thirtieth.
+    CHECK(drags[1].shares[8] < drags[0].shares[8] / 30.0);
+}
+
+TEST_CASE("damping that is carried along holds what moves otherwise than its group") {
+    const Rod rod;
+    const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3), load = 0.01 * stiffness * rod.radius;  // of the tip
+    scene::Assembly assembly;
+    for (const double beside : {-1.0, 0.0, 1.0}) {  // sums and slopes of 1, -2 and 1 are nothing
+        scene::FibreSpecification fibre = rod.specification();
+        fibre.from += Vec3(0, 0.1 * beside * rod.length, 0), fibre.to += Vec3(0, 0.1 * beside * rod.length, 0);
+        const Index of = assembly.add(fibre);
+        assembly.clamp(scene::first_end(of));
+        assembly.apply(scene::DeadForce{scene::last_end(of), {}, Vec3((beside == 0.0 ? -2.0 : 1.0) * load, 0, 0), "load"});
+    }
+    std::vector<Record<Smooth>> records;
+    Loading<Smooth> loading;
+    loading.stages = {{.increments = 3, .ramps = {{"load", 3.0}}}};
+    for (const bool carried : {false, true}) {
+        loading.stages[0].damping = stiffness, loading.stages[0].damping_carried = carried;
+        Simulator<Smooth> simulator(assembly, test::tight_parameters<Smooth>(rod.radius));
+        records.emplace_back(simulator);
+        REQUIRE(simulator.run(loading, records.back()).converged);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+        CHECK(records[0].increments[k].damping > 0.02);
+        CHECK(records[1].increments[k].damping == doctest::Approx(records[0].increments[k].damping).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("a mean motion foretells how a long group bends, whichever way it lies") {
+    Rod rod;
+    const beam::Mesh<Smooth::Beam> mesh(rod.clamped(), Smooth::Beam(test::model_parameters<Smooth>(rod.radius).beam));
+    const auto bent = [&](const Vector& state, double part) {
+        Vector result = state;
+        for (Index a = 0; a < mesh.node_count(0); ++a) {
+            const Vec3 x = state.segment<3>(3 * mesh.node_vector(0, a));
+            result.segment<3>(3 * mesh.node_vector(0, a)) += part * 1e-3 * Vec3(0.1 * x.z() * x.z() - 0.2 * x.z(), 0.3 - 0.05 * x.z() * x.z(), 0);
+        }
+        return result;
+    };
+    simulation::MeanMotion motion(mesh, 1);
+    CHECK(!motion.foretells({1.0}));
+    const Vector before = mesh.rest_state(), after = bent(before, 1.0);
+    motion.learn(mesh, before, after, {1.0});
+    CHECK(motion.foretells({0.1}));
+    CHECK(!motion.foretells({-0.1}));
+    for (const double part : {1.0, 0.5, -1.0}) CHECK((motion.ahead(mesh, after, {part}) - bent(after, part)).cwiseAbs().maxCoeff() < 1e-12);
+    // A last bit is added to what was known: half of that and it. The group's axis has turned by a part of a thousandth meanwhile.
+    const Vector further = bent(after, 0.02);
+    motion.learn(mesh, after, further, {0.02});
+    CHECK((motion.ahead(mesh, further, {0.52}) - bent(further, 0.52)).cwiseAbs().maxCoeff() < 1e-7);
 }
 
 TEST_CASE("a mean motion foretells a rigid or affine motion exactly, and in part when channels change by less") {

@@ -7,13 +7,15 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace fibrant::simulation {
 
-/// Affine field that is nearest, over the centres of a group's nodes, to their displacement in the last increment, and by how much
-/// channels changed in it. What a further change of the same channels would move is foretold in proportion; other channels foretell
-/// nothing. Nothing depends on the axes, and a rigid motion that is repeated is foretold exactly.
+/// Field that is nearest, over the centres of a group's nodes, to their displacement in the last increment, and by how much
+/// channels changed in it: affine and, of a group twice as long as it is wide, bent by the square of the place along it. What a further change of the same
+/// channels would move is foretold in proportion; other channels foretell nothing. Nothing depends on the axes, and a rigid motion that
+/// is repeated is foretold exactly.
 class MeanMotion {
 public:
     MeanMotion() = default;
@@ -37,13 +39,17 @@ public:
         for (std::size_t c = 0; c < change_.size(); ++c) change_[c] = kept * change_[c] + change[c];
         std::vector<Mat3> spread(fields_.size(), Mat3::Zero()), lean(fields_.size(), Mat3::Zero());
         std::vector<double> count(fields_.size(), 0.0);
+        std::vector<Bend> bend(fields_.size());
         fields_.assign(fields_.size(), Field{});
+        const auto arm = [&](std::size_t g, Index v) { return Vec3(before.segment<3>(3 * v) - fields_[g].middle); };
+        const auto moved = [&](std::size_t g, Index v) {
+            return Vec3(after.segment<3>(3 * v) - before.segment<3>(3 * v) + kept * known[g].at(before.segment<3>(3 * v)));
+        };
         each_centre(mesh, [&](std::size_t g, Index v) { fields_[g].middle += before.segment<3>(3 * v), count[g] += 1.0; });
         for (std::size_t g = 0; g < fields_.size(); ++g) fields_[g].middle /= std::max(1.0, count[g]);
         each_centre(mesh, [&](std::size_t g, Index v) {
-            const Vec3 moved = after.segment<3>(3 * v) - before.segment<3>(3 * v), arm = before.segment<3>(3 * v) - fields_[g].middle;
-            fields_[g].shift += moved;
-            spread[g] += arm * arm.transpose(), lean[g] += moved * arm.transpose();
+            fields_[g].shift += moved(g, v);
+            spread[g] += arm(g, v) * arm(g, v).transpose(), lean[g] += moved(g, v) * arm(g, v).transpose();
         });
         for (std::size_t g = 0; g < fields_.size(); ++g) {
             if (!(count[g] > 0.0)) continue;
@@ -52,10 +58,29 @@ public:
             const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread[g]);
             for (int k = 0; k < 3; ++k)
                 if (axes.eigenvalues()[k] > 1e-8 * axes.eigenvalues()[2])
-                    fields_[g].gradient += lean[g] * axes.eigenvectors().col(k) * axes.eigenvectors().col(k).transpose() / axes.eigenvalues()[k];
-            fields_[g].shift += kept * (known[g].shift + known[g].gradient * (fields_[g].middle - known[g].middle));
-            fields_[g].gradient += kept * known[g].gradient;
+                    bend[g].inverse += axes.eigenvectors().col(k) * axes.eigenvectors().col(k).transpose() / axes.eigenvalues()[k];
+            fields_[g].gradient = lean[g] * bend[g].inverse;
+            if (axes.eigenvalues()[2] > 4.0 * axes.eigenvalues()[1]) fields_[g].axis = axes.eigenvectors().col(2) / std::sqrt(axes.eigenvalues()[2] / count[g]);
         }
+        // What an affine field leaves of the square of the place along the axis, and what the motion has of that.
+        each_centre(mesh, [&](std::size_t g, Index v) {
+            const double square = std::pow(fields_[g].axis.dot(arm(g, v)), 2);
+            bend[g].mean += square / count[g], bend[g].lean += square * arm(g, v);
+        });
+        for (std::size_t g = 0; g < fields_.size(); ++g) fields_[g].level = bend[g].mean, fields_[g].slope = bend[g].inverse * bend[g].lean;
+        each_centre(mesh, [&](std::size_t g, Index v) {
+            const double part = fields_[g].bow(arm(g, v));
+            bend[g].square += part * part / count[g], bend[g].moved += part * moved(g, v) / count[g];
+        });
+        for (std::size_t g = 0; g < fields_.size(); ++g)
+            if (bend[g].square > 1e-6) fields_[g].bend = bend[g].moved / bend[g].square;
+    }
+
+    /// Is anything known of such a change, going on the same way?
+    bool foretells(const std::vector<double>& change) const {
+        double same = 0.0;
+        for (std::size_t c = 0; c < change_.size(); ++c) same += change[c] * change_[c];
+        return same > 0.0;
     }
 
     /// A state with its centres where the last motion leads when amplitudes change so.
@@ -67,7 +92,7 @@ public:
         const double part = std::clamp(same / square, -largest_part, largest_part);
         Vector moved = state;
         each_centre(mesh, [&](std::size_t g, Index v) {
-            moved.segment<3>(3 * v) += part * (fields_[g].shift + fields_[g].gradient * (state.segment<3>(3 * v) - fields_[g].middle));
+            moved.segment<3>(3 * v) += part * fields_[g].at(state.segment<3>(3 * v));
         });
         return moved;
     }
@@ -84,6 +109,19 @@ private:
     struct Field {
         Vec3 middle = Vec3::Zero(), shift = Vec3::Zero();
         Mat3 gradient = Mat3::Zero();
+        Vec3 axis = Vec3::Zero(), slope = Vec3::Zero(), bend = Vec3::Zero();  // axis: over the root mean square of the places along it
+        double level = 0.0;
+
+        double bow(const Vec3& arm) const noexcept { return std::pow(axis.dot(arm), 2) - level - slope.dot(arm); }
+        Vec3 at(const Vec3& place) const noexcept {
+            const Vec3 arm = place - middle;
+            return shift + gradient * arm + bow(arm) * bend;
+        }
+    };
+    struct Bend {
+        Mat3 inverse = Mat3::Zero();
+        Vec3 lean = Vec3::Zero(), moved = Vec3::Zero();
+        double mean = 0.0, square = 0.0;
     };
 
     template <beam::BeamElement B, class Body>
@@ -95,7 +133,8 @@ private:
     static void each_of(Self& self, const Body& body) {
         for (auto& change : self.change_) body(change);
         for (auto& field : self.fields_) {
-            for (int k = 0; k < 3; ++k) body(field.middle[k]), body(field.shift[k]);
+            for (int k = 0; k < 3; ++k) body(field.middle[k]), body(field.shift[k]), body(field.axis[k]), body(field.slope[k]), body(field.bend[k]);
+            body(field.level);
             for (int k = 0; k < 9; ++k) body(field.gradient.data()[k]);
         }
     }

@@ -5,6 +5,7 @@
 #include <fibrant/connection/channels.hpp>
 #include <fibrant/simulation/loading.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -18,6 +19,19 @@ struct Position {
     double damping_floor = 0.0;  ///< that it does not fall below: what has failed is not tried again at once
     bool stage_over = false;
     std::vector<double> from;    ///< amplitudes at the start of the stage
+    static constexpr double least_damping = 1e-3;  ///< over that of the stage: below, none
+
+    /// Damping is the inverse of a time step: what was solved with ease goes on faster, and what was hard more slowly.
+    /// @param effort  iterations of a normal pass of the last attempt over how many it may take [1]
+    template <Model M>
+    void adapt_damping(const Stage<M>& stage, const IncrementReport& increment, double effort) {
+        if (increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= 0.6)
+            damping = std::max(damping * (damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, fraction)), std::min(damping, damping_floor));
+        else if (stage.damping_decay < 1.0 && effort > 0.75)
+            damping = std::min(2.0 * damping, 1.0 / least_damping);
+        if (damping < least_damping) damping = 0.0;
+        damping_floor *= 0.8;
+    }
 
     template <class Body>
     void each(const Body& body) { each_of(*this, body); }

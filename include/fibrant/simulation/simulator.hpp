@@ -100,8 +100,8 @@ public:
         return report;
     }
 
-    /// Starts from the state that a run of another scene of the same fibres has left in a checkpoint, with what its contacts
-    /// remember. What is held, tied and applied is that of this scene: averages and periodic pairs count from there.
+    /// Starts from what a run of another scene of the same fibres left in a checkpoint, with what its contacts remember. What is held,
+    /// tied and applied is that of this scene: averages and periodic pairs count from there.
     /// @throws std::runtime_error if the file cannot be read or has other fibres
     void start_from(const std::string& checkpoint) {
         CheckpointReader file(checkpoint);
@@ -118,13 +118,11 @@ public:
     double amplitude(const std::string& channel) const { return amplitudes_[core::at(channels_.find(channel))]; }
     /// Force that the support exerts on a held nodal vector, in its held directions [force].
     Vec3 reaction(const scene::Station& at, scene::NodeVector vector = scene::NodeVector::position) const {
-        const Index v = mesh_.node_vector(at.fibre, connection::station_node(mesh_, at), static_cast<Index>(vector));
-        return equilibrium_.reaction().size() > 0 ? Vec3(equilibrium_.reaction().template segment<3>(3 * v)) : Vec3(Vec3::Zero());
+        return equilibrium_.reaction().size() > 0 ? Vec3(equilibrium_.reaction().template segment<3>(first_of(at, vector))) : Vec3(Vec3::Zero());
     }
     /// Value of a nodal vector now.
     Vec3 value(const scene::Station& at, scene::NodeVector vector = scene::NodeVector::position) const {
-        const Index v = mesh_.node_vector(at.fibre, connection::station_node(mesh_, at), static_cast<Index>(vector));
-        return state_.segment<3>(3 * v);
+        return state_.segment<3>(first_of(at, vector));
     }
 
     /// The present state as plain data.
@@ -149,8 +147,11 @@ public:
     }
 
 private:
-    static constexpr double least_damping = 1e-3;  ///< over that of the stage: below, none
+    static constexpr double least_damping = Position::least_damping;
 
+    Index first_of(const scene::Station& at, scene::NodeVector vector) const {
+        return 3 * mesh_.node_vector(at.fibre, connection::station_node(mesh_, at), static_cast<Index>(vector));
+    }
     static const ModelParameters<M>& checked(const ModelParameters<M>& parameters) {
         parameters.contact.validate();
         parameters.iteration.validate();
@@ -189,14 +190,14 @@ private:
         const auto start = std::chrono::steady_clock::now();
         IncrementReport increment;
         double attempt_newton = 0.0;  // iterations a normal pass of the last attempt
+        bool rehearsed = false;
         const bool touching = mesh_.fibre_count() > 1 || parameters_.contact.detection.self_contact || HasTools<M>;
         while (true) {
             if (position_.in_stage >= stage.most_increments) {
                 report.reason = "stage " + stage.name + " did not reach its end in " + std::to_string(stage.most_increments) + " increments";
                 return false;
             }
-            double step = position_.fraction / static_cast<double>(stage.increments);
-            double progress = stage.ramps.empty() && !stage.until ? 1.0 : std::min(1.0, position_.progress + step);
+            double progress = stage.ramps.empty() && !stage.until ? 1.0 : std::min(1.0, position_.progress + position_.fraction / static_cast<double>(stage.increments));
             if (progress > 1.0 - 1e-9) progress = 1.0;
             if constexpr (requires { contacts_.normal_law().with_limit(1.0); }) {
                 if (stage.gap_limit) contacts_.normal_law() = contacts_.normal_law().with_limit(*stage.gap_limit * position_.fraction);
@@ -216,6 +217,12 @@ private:
             const solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, stage.looseness, stage.largest_displacement);
             increment.counts += attempt.counts;
             attempt_newton = static_cast<double>(attempt.counts.newton) / static_cast<double>(std::max<Index>(1, attempt.counts.normal_passes));
+            // What nothing foretells would be held back: a first solution tells where it goes.
+            if (attempt.converged && stage.damping_carried && stage.damping > 0.0 && !rehearsed && !motion_.foretells(change)) {
+                motion_.learn(mesh_, state_, trial, change);
+                contacts_.restore(), rehearsed = true;
+                continue;
+            }
             if (attempt.converged) {
                 account(trial, increment, contact_before, stage.forced_orders);
                 if (stage.damping_carried) motion_.learn(mesh_, state_, trial, change);
@@ -257,15 +264,7 @@ private:
         const bool reached = position_.progress >= 1.0 && (!stage.until || stage.until(increment));
         const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
         position_.stage_over = reached && !held;
-        // Damping is the inverse of a time step: what was solved with ease goes on faster, and what was hard more slowly.
-        const double effort = attempt_newton / static_cast<double>(parameters_.iteration.newton_limit);
-        if (increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= 0.6)
-            position_.damping = std::max(position_.damping * (position_.damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, position_.fraction)),
-                                         std::min(position_.damping, position_.damping_floor));
-        else if (stage.damping_decay < 1.0 && effort > 0.75)
-            position_.damping = std::min(2.0 * position_.damping, 1.0 / least_damping);
-        if (position_.damping < least_damping) position_.damping = 0.0;
-        position_.damping_floor *= 0.8;
+        position_.adapt_damping(stage, increment, attempt_newton / static_cast<double>(parameters_.iteration.newton_limit));
         contacts_.accept(state_);
         if constexpr (HasSolid<M>) energy_.released += accept_solid();
         increment.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
