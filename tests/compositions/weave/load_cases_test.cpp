@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -68,6 +69,51 @@ TEST_CASE("the picture frame keeps its sides, and the chapter's shear leaves the
     const connection::Channels names(shear.assembly);
     CHECK(names.names() == std::vector<std::string>{shear_channel, tension_channel});
     CHECK(connection::BodyMotion(shear.assembly, names).free_coordinates() == 7);  // the height; of two edges both places and the turn
+}
+
+TEST_CASE("a bent sheet's edges turn against each other, and the ends of the tows across go along with the arc") {
+    const FabricParameters fabric = small_fabric();
+    const LoadCase load = load_case("bending", woven_snapshot(fabric, 0.1), fabric);
+    const connection::Channels channels(load.assembly);
+    connection::BodyMotion motion(load.assembly, channels);
+    // The distance of the edges; of eight ends the places in the plane and the roll. Nothing says how sections that roll alone lean.
+    CHECK(motion.free_coordinates() == 1 + 8 * 3);
+    for (const scene::RigidBody& body : load.assembly.bodies())
+        if (body.translation[0].free && body.translation[1].free) {
+            CHECK(!body.rotation[0].free);
+            CHECK(body.rotation[1].free);
+            CHECK(!body.rotation[2].free);
+        }
+    const double angle = 0.05, radius = 0.5 * load.width / angle;
+    std::vector<double> amplitudes(channels.names().size(), 0.0);
+    amplitudes[core::at(channels.find(bend_channel))] = angle;
+    motion.begin(amplitudes);
+    for (const Edge edge : {Edge::south, Edge::north})
+        for (const Index end : load.bodies.tow_end[static_cast<std::size_t>(edge)]) {
+            const Vec3 place = motion.position(end);
+            const double height = radius * (std::cos(angle) - std::cos(place.x() / radius));
+            const double risen = place.z() - load.assembly.bodies()[core::at(end)].position.z();
+            CHECK(std::abs(risen - height) < 0.1 * angle * angle * angle * load.width);  // a parabola in the place of the arc
+        }
+    // Edges lie across the arc there: along it, the west one goes down and the east one up.
+    const Vec3 west = motion.frame(load.bodies.of(Edge::west)).col(0), east = motion.frame(load.bodies.of(Edge::east)).col(0);
+    CHECK(west.z() == doctest::Approx(-std::sin(angle)));
+    CHECK(east.z() == doctest::Approx(std::sin(angle)));
+}
+
+TEST_CASE("the inner part of a sample lies between the outermost but one of its tows") {
+    for (const Index tows : {2, 4, 6}) {
+        const FabricParameters fabric = small_fabric(tows);
+        const double spacings = tows == 2 ? 1.0 : static_cast<double>(tows - 3);
+        for (const Family family : {Family::warp, Family::weft}) CHECK(inner_extent(woven_snapshot(fabric, 0.1), fabric, family) == doctest::Approx(0.88 * spacings));
+    }
+}
+
+TEST_CASE("what presses a tow is the sum of the reactions with all other fibres") {
+    observe::Snapshot snapshot;
+    for (const auto& [i, j, reaction] : {std::array{0.0, 1.0, 1.0}, {0.0, 2.0, 10.0}, {1.0, 3.0, 100.0}, {2.0, 3.0, 1000.0}})
+        snapshot.contacts.push_back({.fibre_i = static_cast<Index>(i), .fibre_j = static_cast<Index>(j), .reaction = reaction});
+    CHECK(pressing_force(snapshot, {0, 1}) == 110.0);
 }
 
 TEST_CASE("every load case can be built, and one that is not known is refused") {

@@ -32,9 +32,10 @@ struct EdgeParameters {
     std::array<scene::Coordinate, 3> tow_translation{};  ///< of a tow end from its place at the edge, along x, y and z
     scene::Coordinate tow_roll{};                        ///< of a tow end about its own axis
     bool turning = false;                                ///< sections of fibre ends turn with their tow end: it bends them
-    /// No body for the edge: each tow end has one of its own that is free in all ways, under this pull outwards at amplitude 1 of the
-    /// tension channel [force].
+    /// No body for the edge: each tow end has one of its own that is free to move, to roll and, if its sections turn with it, to lean,
+    /// under this pull outwards at amplitude 1 of the tension channel [force].
     std::optional<double> loose{};
+    std::vector<scene::Coordinate> loose_height{};       ///< along z of each loose tow end; none: free
     std::vector<Index> left_out{};                       ///< tows that are not connected
 };
 
@@ -99,7 +100,11 @@ inline EdgeBodies add_edges(scene::Assembly& assembly, const observe::Snapshot& 
                 scene::RigidBody end;
                 end.name = std::string(edge_name(edge)) + " " + std::to_string(tow);
                 end.position = tow_end_middle(snapshot, fabric, edge, tow);
-                for (auto* coordinates : {&end.translation, &end.rotation}) coordinates->fill(scene::Coordinate::loose());
+                end.translation.fill(scene::Coordinate::loose());
+                if (!parameters.loose_height.empty()) end.translation[2] = parameters.loose_height[core::at(tow)];
+                // Sections that do not turn with the body say nothing of how it leans: left loose, it would lean by any angle.
+                for (std::size_t k = 0; k < 3; ++k)
+                    if (ties.turning || k == axis) end.rotation[k] = scene::Coordinate::loose();
                 end.translation[axis] = scene::Coordinate::under(at_last_end(edge) ? *parameters.loose : -*parameters.loose, tension_channel);
                 bodies.tow_end[e][core::at(tow)] = assembly.add(end);
                 connect_tow_end(assembly, fabric, edge, tow, bodies.tow_end[e][core::at(tow)], ties);

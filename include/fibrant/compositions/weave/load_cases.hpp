@@ -5,6 +5,7 @@
 #include <fibrant/compositions/weave/edges.hpp>
 #include <fibrant/compositions/weave/measures.hpp>
 #include <fibrant/core/rotation.hpp>
+#include <fibrant/scene/dof_layout.hpp>
 
 #include <algorithm>
 #include <array>
@@ -36,10 +37,27 @@ struct LoadCase {
     EdgeBodies bodies;
     Index puller = -1;               ///< body of the tow that is pulled
     double pulled_from = 0.0;        ///< where it was along x [length]
+    std::vector<Index> pulled_fibres{};  ///< of that tow
     std::array<Index, 2> plates{-1, -1};  ///< below and above
     double width = 0.0, height = 0.0;     ///< between the edges along x and along y at the start [length]
     double plate_distance = 0.0;          ///< at the start [length]
+    FabricParameters fabric;
+    std::array<double, 2> inner{0.0, 0.0};  ///< inner_extent() along x and y at the start [length]
 };
+
+/// Distance, along a family, of the outermost but one of the tows that it crosses [length]: the part of a sample that knows nothing of
+/// its edges. Of fewer than four tows, of the outermost.
+inline double inner_extent(const observe::Snapshot& snapshot, const FabricParameters& fabric, Family along) {
+    const Family across = other(along);
+    const Index tows = fabric.tows(across), edge = tows >= 4 ? 1 : 0;
+    const auto place = [&](Index tow) {
+        const std::vector<Vec3> line = tow_centreline(snapshot, fabric, across, tow);
+        double sum = 0.0;
+        for (const Vec3& point : line) sum += point[axis_of(along)] / static_cast<double>(line.size());
+        return sum;
+    };
+    return place(tows - 1 - edge) - place(edge);
+}
 
 /// @param name      one of load_case_names()
 /// @param snapshot  the settled fabric
@@ -50,7 +68,8 @@ inline LoadCase load_case(const std::string& name, const observe::Snapshot& snap
     if (std::find(names.begin(), names.end(), name) == names.end()) core::refuse("load_case.name", name, "a load case");
     fabric.validate();
     LoadCase load;
-    load.name = name;
+    load.name = name, load.fabric = fabric;
+    for (const Family family : {Family::warp, Family::weft}) load.inner[core::at(axis_of(family))] = inner_extent(snapshot, fabric, family);
     add_flat_fibres(load.assembly, fabric);
     std::array<Vec3, 4> middle;
     for (const Edge edge : all_edges) {
@@ -92,8 +111,17 @@ inline LoadCase load_case(const std::string& name, const observe::Snapshot& snap
     } else if (name == "bending") {
         west.rotation[1] = Coordinate::held_at(1.0, bend_channel), east.rotation[1] = Coordinate::held_at(-1.0, bend_channel);
         west.turning = east.turning = true;
-        east.translation[0] = Coordinate::under(pull[0], tension_channel), east.translation[2] = Coordinate::loose();
-        south.loose = north.loose = fabric.weft.axial_stiffness();
+        east.translation[0] = Coordinate::under(pull[0], tension_channel);
+        // The ends of the tows across go along with the arc, as in a sheet that is wider: left free, they rise from the surface, and the
+        // crimp at the sides goes out of the tows that are bent.
+        for (const Edge edge : {Edge::south, Edge::north}) {
+            EdgeParameters& side = edges[static_cast<std::size_t>(edge)];
+            side.loose = fabric.weft.axial_stiffness();
+            for (Index tow = 0; tow < fabric.weft_tows; ++tow) {
+                const double x = tow_end_middle(snapshot, fabric, edge, tow).x() - 0.5 * (middle[0].x() + middle[1].x());
+                side.loose_height.push_back(Coordinate::held_at((x * x - 0.25 * load.width * load.width) / load.width, bend_channel));
+            }
+        }
     } else if (name == "compaction") {
         double low = std::numeric_limits<double>::infinity(), high = -low;
         for (const observe::FibreSnapshot& fibre : snapshot.fibres)
@@ -115,11 +143,33 @@ inline LoadCase load_case(const std::string& name, const observe::Snapshot& snap
         puller.translation[0] = Coordinate::held_at(fabric.weft_spacing, pull_channel);
         load.bodies = add_edges(load.assembly, snapshot, fabric, edges);
         load.puller = load.assembly.add(puller), load.pulled_from = puller.position.x();
+        for (Index k = 0; k < fabric.warp.fibres; ++k) load.pulled_fibres.push_back(fabric.fibre(Family::warp, tow, k));
         connect_tow_end(load.assembly, fabric, Edge::east, tow, load.puller, {.spin = true});
         return load;
     }
     load.bodies = add_edges(load.assembly, snapshot, fabric, edges);
     return load;
+}
+
+/// Sum of the reactions between some fibres and all others [force]: times the coefficient of friction, the most that can hold them
+/// together against what pulls them along.
+inline double pressing_force(const observe::Snapshot& snapshot, const std::vector<Index>& fibres) {
+    const auto one = [&](Index fibre) { return std::find(fibres.begin(), fibres.end(), fibre) != fibres.end(); };
+    double sum = 0.0;
+    for (const observe::ContactSnapshot& contact : snapshot.contacts)
+        if (one(contact.fibre_i) != one(contact.fibre_j)) sum += contact.reaction;
+    return sum;
+}
+
+/// Sum of what the damping of the last increment exerts on the fibres [force]: its share of the response.
+template <class Simulator>
+Vec3 damping_force(const Simulator& simulator) {
+    const Vector forces = simulator.equilibrium().damping_force(simulator.state());
+    const auto& kind = simulator.mesh().layout().kind;
+    Vec3 sum = Vec3::Zero();
+    for (Index v = 0; v < core::count(kind); ++v)
+        if (kind[core::at(v)] == scene::VectorKind::position) sum -= forces.template segment<3>(3 * v);
+    return sum;
 }
 
 /// A named figure of a load case.
@@ -136,6 +186,13 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
     std::vector<Figure> figures;
     if (load.name == "release" || load.name == "equibiaxial" || load.name == "uniaxial") {
         figures = {{"strain", (place(Edge::east) - place(Edge::west)).x() / load.width - 1.0}, {"force", 0.5 * (force(Edge::east) - force(Edge::west)).x()}};
+        // What an inner tow carries, and the strain that it sees: edges and the straight ends beyond the outermost crossings left out.
+        const std::vector<Index>& ends = load.bodies.tow_end[static_cast<std::size_t>(Edge::east)];
+        const Index edge = core::count(ends) >= 4 ? 1 : 0, inner = core::count(ends) - 2 * edge;
+        double sum = 0.0;
+        for (Index tow = edge; tow < edge + inner; ++tow) sum += ties.wrench(ends[core::at(tow)]).force.x() / static_cast<double>(inner);
+        figures.push_back({"inner_strain", inner_extent(simulator.snapshot(), load.fabric, Family::warp) / load.inner[0] - 1.0});
+        figures.push_back({"inner_tow_force", sum});
     } else if (load.name == "shear") {
         const Vec3 side = place(Edge::north) - place(Edge::south);
         figures = {{"angle_deg", degree * std::atan2(side.x(), side.y())}, {"force", force(Edge::north).x()}};
@@ -150,7 +207,15 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
     } else if (load.name == "bending") {
         const Mat3 frame = ties.motion().frame(load.bodies.of(Edge::west)), other = ties.motion().frame(load.bodies.of(Edge::east));
         const double turn = std::atan2(frame(0, 2), frame(2, 2)) - std::atan2(other(0, 2), other(2, 2));
-        figures = {{"curvature", turn / load.width}, {"moment", 0.5 * (ties.wrench(load.bodies.of(Edge::west)).moment.y() - ties.wrench(load.bodies.of(Edge::east)).moment.y())}};
+        // Half of the work that all bodies do for each radian of an edge, the motions being those of an arc, whose chord the tension shortens.
+        const double half = 0.5 * turn, chord = std::abs(half) > 1e-3 ? (half * std::cos(half) - std::sin(half)) / (half * half) : -half / 3.0;
+        double work = ties.wrench(load.bodies.of(Edge::west)).moment.y() - ties.wrench(load.bodies.of(Edge::east)).moment.y() + force(Edge::east).x() * load.width * chord;
+        for (const Edge edge : {Edge::south, Edge::north})
+            for (const Index end : load.bodies.tow_end[static_cast<std::size_t>(edge)]) {
+                const double x = ties.motion().position(end).x() - 0.5 * (place(Edge::west) + place(Edge::east)).x();
+                work += ties.wrench(end).force.z() * (x * x - 0.25 * load.width * load.width) / load.width;
+            }
+        figures = {{"curvature", turn / load.width}, {"moment", 0.5 * work}};
     } else if (load.name == "compaction") {
         const auto& tools = simulator.contacts().tools();
         figures = {{"thickness", load.plate_distance * (1.0 - simulator.amplitude(plate_channel))},
@@ -158,7 +223,17 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
     } else {
         figures = {{"displacement", ties.motion().position(load.puller).x() - load.pulled_from}, {"force", ties.wrench(load.puller).force.x()}};
     }
-    Vec3 sum = load.puller >= 0 ? ties.wrench(load.puller).force : Vec3(Vec3::Zero());
+    Vec3 sum = Vec3::Zero();
+    for (const Edge edge : all_edges)
+        if (load.bodies.of(edge) < 0)
+            for (const Index end : load.bodies.tow_end[static_cast<std::size_t>(edge)])
+                if (end >= 0) sum += ties.wrench(end).force;
+    if (load.puller >= 0) {
+        sum = ties.wrench(load.puller).force;
+        figures.push_back({"pressing", pressing_force(simulator.snapshot(), load.pulled_fibres)});
+    }
+    for (const Index plate : load.plates)
+        if (plate >= 0) sum -= simulator.contacts().tools().reaction(plate).force;
     for (const Edge edge : all_edges) {
         const Index body = load.bodies.of(edge);
         if (body < 0) continue;
@@ -171,7 +246,9 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
         for (int k = 0; k < 3; ++k) figures.push_back({edge_name(edge) + std::string("_force") + axes[k], wrench.force[k]});
         for (int k = 0; k < 3; ++k) figures.push_back({edge_name(edge) + std::string("_moment") + axes[k], wrench.moment[k]});
     }
-    figures.push_back({"unbalanced_force", sum.norm()});
+    const Vec3 damping = damping_force(simulator);
+    figures.push_back({"damping_force", damping.norm()});
+    figures.push_back({"unbalanced_force", (sum + damping).norm()});
     figures.push_back({"connection_misfit", ties.misfit()});
     figures.push_back({"frame_error", ties.motion().orthonormality_error()});
     return figures;
