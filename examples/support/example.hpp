@@ -91,6 +91,9 @@ public:
                                                                            {"greatest_penetration_over_radius", increment.contact.greatest_penetration / radius_},
                                                                            {"residual", increment.residual},
                                                                            {"damping_share", increment.damping},
+                                                                           {"external_work", increment.energy.external},
+                                                                           {"dissipated", increment.energy.dissipated},
+                                                                           {"damped", increment.energy.damped},
                                                                            {"seconds", increment.seconds}})
             columns.push_back(column);
         table_.row(columns);
