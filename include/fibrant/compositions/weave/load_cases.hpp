@@ -42,21 +42,14 @@ struct LoadCase {
     double width = 0.0, height = 0.0;     ///< between the edges along x and along y at the start [length]
     double plate_distance = 0.0;          ///< at the start [length]
     FabricParameters fabric;
-    std::array<double, 2> inner{0.0, 0.0};  ///< inner_extent() along x and y at the start [length]
 };
 
-/// Distance, along a family, of the outermost but one of the tows that it crosses [length]: the part of a sample that knows nothing of
-/// its edges. Of fewer than four tows, of the outermost.
-inline double inner_extent(const observe::Snapshot& snapshot, const FabricParameters& fabric, Family along) {
-    const Family across = other(along);
-    const Index tows = fabric.tows(across), edge = tows >= 4 ? 1 : 0;
-    const auto place = [&](Index tow) {
-        const std::vector<Vec3> line = tow_centreline(snapshot, fabric, across, tow);
-        double sum = 0.0;
-        for (const Vec3& point : line) sum += point[axis_of(along)] / static_cast<double>(line.size());
-        return sum;
-    };
-    return place(tows - 1 - edge) - place(edge);
+/// Strain of the woven part of a sample, between the outermost crossings [1]: the ends beyond them are straight, and take what E A says.
+/// @param strain  of the whole, between the edges [1]
+/// @param force   of a tow [force]
+inline double woven_strain(const FabricParameters& fabric, Family family, double strain, double force) {
+    const double length = fabric.fibre_length(family), ends = 2.0 * fabric.overhang;
+    return (strain * length - ends * force / fabric.tow(family).axial_stiffness()) / (length - ends);
 }
 
 /// @param name      one of load_case_names()
@@ -69,7 +62,6 @@ inline LoadCase load_case(const std::string& name, const observe::Snapshot& snap
     fabric.validate();
     LoadCase load;
     load.name = name, load.fabric = fabric;
-    for (const Family family : {Family::warp, Family::weft}) load.inner[core::at(axis_of(family))] = inner_extent(snapshot, fabric, family);
     add_flat_fibres(load.assembly, fabric);
     std::array<Vec3, 4> middle;
     for (const Edge edge : all_edges) {
@@ -186,12 +178,12 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
     std::vector<Figure> figures;
     if (load.name == "release" || load.name == "equibiaxial" || load.name == "uniaxial") {
         figures = {{"strain", (place(Edge::east) - place(Edge::west)).x() / load.width - 1.0}, {"force", 0.5 * (force(Edge::east) - force(Edge::west)).x()}};
-        // What an inner tow carries, and the strain that it sees: edges and the straight ends beyond the outermost crossings left out.
+        // What an inner tow carries, and the strain that it sees.
         const std::vector<Index>& ends = load.bodies.tow_end[static_cast<std::size_t>(Edge::east)];
         const Index edge = core::count(ends) >= 4 ? 1 : 0, inner = core::count(ends) - 2 * edge;
         double sum = 0.0;
         for (Index tow = edge; tow < edge + inner; ++tow) sum += ties.wrench(ends[core::at(tow)]).force.x() / static_cast<double>(inner);
-        figures.push_back({"inner_strain", inner_extent(simulator.snapshot(), load.fabric, Family::warp) / load.inner[0] - 1.0});
+        figures.push_back({"woven_strain", woven_strain(load.fabric, Family::warp, figures[0].second, sum)});
         figures.push_back({"inner_tow_force", sum});
     } else if (load.name == "shear") {
         const Vec3 side = place(Edge::north) - place(Edge::south);
