@@ -32,7 +32,8 @@ struct Stage {
     /// Spring from every centre to its last accepted place [force / length]: keeps what is slack from leaping.
     double damping = 0.0;
     bool damping_goes_on = false;               ///< starts from what the stage before it ended with, if that is less
-    /// The place moves on with the mean motion of the fibre's group in the last increment: what is driven steadily is not held back.
+    /// The place moves on with the mean motion of the fibre's group in the last increment: what is driven steadily is not held back. An
+    /// increment of which no last one tells is solved twice.
     bool damping_carried = false;
     /// Factor on the damping after each increment without a cut, in (0, 1]; a cut raises it again.
     double damping_decay = 1.0;
