@@ -5,19 +5,14 @@
 # usage: without_solid.sh INCLUDE_FOLDER [COMPILER]; prints sizes, counts, and the functions that differ
 set -eu
 include=$(cd "$1" && pwd)
+here=$(cd "$(dirname "$0")" && pwd)
 compiler=${2:-c++}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
 cp -r "$include" "$folder/without"
-cd "$folder/without/fibrant"
-sed -i -e 's/, class Solid = solid::NoSolid//' -e 's/typename SystemOf<B, Solid>::Type/ChainSystem<B>/' -e '/bool has_solid/d' \
-  -e 's/, const Solid& solid = Solid())/)/' -e 's/ solid_{taken(solid, assembly, mesh, channels)},//' -e 's/system_{system(mesh, solid_)}/system_{mesh}/' \
-  -e '/Solid& solid()/d' -e '/static Solid taken(/,/^    }$/d' -e '/static System system(/,/^    }$/d' \
-  -e '/if constexpr (has_solid) {$/,/^ *}$/d' -e '/if constexpr (has_solid)/d' -e '/Solid solid_;/d' -e 's/solid_system.hpp/chain_system.hpp/' assembly/equilibrium.hpp
-if grep -nE 'solid_|Solid|NoSolid' assembly/equilibrium.hpp | grep -vE '//[/ !]'; then
-  echo "these lines still deal with solids"; exit 1
-fi
+sh "$here/cut_solid.sh" "$folder/without"
+cd "$folder"
 
 cat > "$folder/model.cpp" <<'CPP'
 #include <fibrant/assembly/equilibrium.hpp>
