@@ -290,6 +290,29 @@ TEST_CASE("an increment that moves further than its stage allows is cut") {
     CHECK((bounded.state() - free.state()).cwiseAbs().maxCoeff() < 1e-3 * rod.length);
 }
 
+TEST_CASE("what is driven further than the last increment moved is found by the first search all the same") {
+    // Both fibres move by two radii aside, far beyond the least reach of a search, after an increment in which they were at rest.
+    Crossing crossing;
+    crossing.drag = 8.0 * crossing.radius;
+    scene::Assembly assembly;
+    const scene::Assembly still = crossing.assembly();
+    for (const scene::FibreSpecification& fibre : still.fibres()) assembly.add(fibre);
+    for (const Index f : {Index{0}, Index{1}})
+        for (const double end : {0.0, 1.0}) assembly.clamp({f, end}, Vec3(crossing.drag, 0, 0), Vec3::Zero(), Vec3::Zero(), "drag");
+    auto parameters = test::model_parameters<Smooth>(crossing.radius);
+    parameters.iteration.largest_margin = 8.0;
+    Loading<Smooth> loading;
+    loading.stages = {{.name = "rest", .increments = 1}, {.name = "drag", .increments = 4, .ramps = {{"drag", 1.0}}}};
+    Simulator<Smooth> simulator(assembly, parameters);
+    const Report report = simulator.run(loading);
+    REQUIRE(report.converged);
+    CHECK(report.rejected_increments == 0);
+    for (std::size_t k = 1; k < report.increments.size(); ++k) {
+        CHECK(report.increments[k].displacement == doctest::Approx(2.0 * crossing.radius).epsilon(1e-2));
+        CHECK(report.increments[k].counts.contact_passes <= 2);  // one that moves them, one that finds nothing else to do
+    }
+}
+
 TEST_CASE("a stage may allow more penetration than the model, and the next one takes it back at the same force") {
     const Crossing crossing;
     const double allowed = 1e-2 * crossing.radius;

@@ -41,6 +41,10 @@ public:
                         double furthest = std::numeric_limits<double>::infinity()) {
         AttemptReport report;
         Newton<Equilibrium, Contacts, Linear> newton(*equilibrium_, *contacts_, *linear_, parameters_, radius_, *clock_);
+        // What is driven goes on as it did: a search that reaches just so far would have to be repeated every other time.
+        Vector driven;
+        equilibrium_->prescribed_step(state, driven);
+        if (const double least = equilibrium_->greatest(driven); least > 0.0) expected = 1.1 * std::max(expected, least);
         const double reach = std::clamp(2.0 * expected, parameters_.margin * radius_, parameters_.largest_margin * radius_);
         const double bound = contact_possible_ ? std::max(reach, radius_) : std::numeric_limits<double>::infinity();
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
