@@ -169,6 +169,29 @@ TEST_CASE("a fibre's bonds are those of its nodes in cells, and their stiffness 
     CHECK(Scene(partly).solid().bonds().size() == 11);
 }
 
+TEST_CASE("a fibre that turns about itself in a block is held by bonds of its sections, and by nothing else") {
+    const double radius = 0.01, angle = 1e-3, shear = 40.0;
+    const auto stiffness = [&](double sections) {
+        scene::Assembly assembly;
+        assembly.add(block(cuts(0, 2, 20), cuts(-0.5, 0.5, 5), cuts(-0.5, 0.5, 5), {100.0, 0.25}));
+        scene::FibreSpecification one;
+        one.from = Vec3::Zero(), one.to = Vec3(2.0, 0, 0);
+        one.section = scene::circular(radius), one.material = {1e4, 0.3}, one.elements = 10;
+        assembly.add(one);
+        Scene scene(assembly, {.section_factor = sections});
+        const Mat3 turn = Eigen::AngleAxisd(angle, Vec3::UnitX()).toRotationMatrix();
+        const auto& layout = scene.equilibrium.system().layout();
+        for (Index v = 0; v < scene.solid().first_vector(); ++v)
+            if (layout.kind[core::at(v)] != scene::VectorKind::position) scene.state.segment<3>(3 * v) = turn * scene.state.segment<3>(3 * v);
+        return scene.equilibrium.elastic_energy(scene.state) / (0.5 * angle * angle);
+    };
+    // A stiff cylinder that turns in a matrix takes 4 pi G r^2 a length. Springs to the field of displacement that were chosen for the
+    // shear of the section hold a turn 16 (1 - nu) / (3 (3 - 4 nu)) = 2 times as stiffly, over the matrix's part 1 - V of a cell.
+    const double cylinder = 4.0 * std::numbers::pi * shear * radius * radius * 2.0, matrix = 1.0 - std::numbers::pi * radius * radius / (0.2 * 0.2);
+    CHECK(stiffness(0.0) <= 1e-9 * cylinder);  // energies of the fibre's section strains in 1e-16 E
+    CHECK(stiffness(1.0) == doctest::Approx(2.0 * cylinder / matrix).epsilon(1e-3));
+}
+
 /// Force that draws a fibre by `pull` out of a block that holds still, of a fibre of the length 1 that ends inside.
 double pull_out_of_rigid(Index elements, double pull) {
     scene::Assembly assembly;
