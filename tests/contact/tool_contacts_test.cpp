@@ -301,7 +301,7 @@ TEST_CASE("a stuck fibre that turns with its tool feels nothing of it") {
 }
 
 TEST_CASE("a fibre's end is round to a tool: as deep in it at any slant") {
-    for (const double slant_deg : {10.0, 30.0, 60.0, 80.0, 84.0, 85.0, 90.0}) {  // to the plane
+    for (const double slant_deg : {20.0, 30.0, 60.0, 80.0, 84.0, 85.0, 90.0}) {  // to the plane
         CAPTURE(slant_deg);
         const double slant = slant_deg * pi / 180.0;
         const Vec3 foot(0, 0, 0.98 * r), along(std::cos(slant), 0, std::sin(slant));

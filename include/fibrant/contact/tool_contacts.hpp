@@ -274,8 +274,9 @@ private:
         for (auto& record : self.accepted_) Record::each(record, see);
         for (auto& value : self.accepted_stiffness_) see(value);
     }
-    /// Sine of a fibre's angle to a tool beyond which its end is rounded; there the two stand apart by half a hundredth of a radius.
-    static constexpr double slanted = 0.1;
+    /// Sine of a fibre's angle to a tool beyond which its end is rounded, and not its last section a disc; there the two are a twentieth
+    /// of a radius apart. A fibre that lies on a plate and sags keeps its sections.
+    static constexpr double slanted = 0.3;
 
     std::size_t slot(Index fibre, Index tool) const noexcept { return core::at(fibre * core::count(tools_) + tool); }
     Vec3 tangent(const Element& element, const Vector& state) const {

@@ -46,12 +46,12 @@ TEST_CASE("a mat that is pressed carries more and more, feels both plates alike,
     const simulation::Report report = simulator.run(loading, observer);
     REQUIRE_MESSAGE(report.converged, report.reason);
     const mat::MatState end = states.back();
-    const mat::MatState& middle = *std::find_if(states.begin(), states.end(), [&](const mat::MatState& state) { return state.volume_fraction > 0.8 * end.volume_fraction; });
+    const mat::MatState& middle = *std::find_if(states.begin(), states.end(), [&](const mat::MatState& state) { return state.volume_fraction > 0.6 * end.volume_fraction; });
     std::printf("mat: %zu increments, fraction %.3f, pressure %.3e and %.3e of the modulus, %.2f contacts a fibre (%.2f without bulk)\n", states.size(), end.volume_fraction,
                 end.pressure / 7300.0, end.lower_pressure / 7300.0, end.contacts_per_fibre, end.contacts_without_bulk);
     CHECK(end.volume_fraction == doctest::Approx(24.0 * std::numbers::pi * r * r * 0.5 / (0.62 * 0.62 * last)).epsilon(1e-12));
     std::printf("pressure at %.3f: %.3e\n", middle.volume_fraction, middle.pressure / 7300.0);
-    CHECK(end.pressure > std::pow(1.0 / 0.8, 3) * middle.pressure);  // van Wyk's cube, and a threshold, which makes it steeper
+    CHECK(end.pressure > std::pow(1.0 / 0.6, 3) * middle.pressure);  // van Wyk's cube; a threshold makes it steeper
     CHECK(middle.pressure >= 0.0);
     // Walls are smooth, so what the plates feel differs by what damping takes, springs to where fibres were, in full:
     CHECK(end.pressure > end.lower_pressure);
@@ -76,7 +76,7 @@ TEST_CASE("a mat that is pressed carries more and more, feels both plates alike,
     std::printf("deepest in a wall %.4f radii, in each other %.4f, contact says %.4f\n", outside / r, 2.0 - std::sqrt(nearest) / r, report.contact.greatest_penetration / r);
     // Depths are those that contact knows of, which may be more than allowed while the stiffness has yet to grow, and what sections give way.
     CHECK(report.contact.greatest_penetration < 0.2 * r);
-    CHECK(outside < report.contact.greatest_penetration + 0.01 * r);
+    CHECK(outside < report.contact.greatest_penetration + 0.05 * r);  // an end that is slanted by less than 0.3 is a disc to a plate
     CHECK(2.0 * r - std::sqrt(nearest) < report.contact.greatest_penetration + 0.02 * r);
     CHECK(report.energy.dissipated > 0.0);
     CHECK(end.elastic_energy > 0.0);
