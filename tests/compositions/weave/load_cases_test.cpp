@@ -110,6 +110,7 @@ TEST_CASE("the woven part of a sample and its straight ends stretch one after th
 
 TEST_CASE("what presses a tow is the sum of the reactions with all other fibres") {
     observe::Snapshot snapshot;
+    snapshot.fibres.resize(8);
     for (const auto& [i, j, reaction] : {std::array{0.0, 1.0, 1.0}, {0.0, 2.0, 10.0}, {1.0, 3.0, 100.0}, {2.0, 3.0, 1000.0}})
         snapshot.contacts.push_back({.fibre_i = static_cast<Index>(i), .fibre_j = static_cast<Index>(j), .reaction = reaction});
     CHECK(pressing_force(snapshot, {0, 1}) == 110.0);

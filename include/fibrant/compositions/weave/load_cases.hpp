@@ -146,10 +146,11 @@ inline LoadCase load_case(const std::string& name, const observe::Snapshot& snap
 /// Sum of the reactions between some fibres and all others [force]: times the coefficient of friction, the most that can hold them
 /// together against what pulls them along.
 inline double pressing_force(const observe::Snapshot& snapshot, const std::vector<Index>& fibres) {
-    const auto one = [&](Index fibre) { return std::find(fibres.begin(), fibres.end(), fibre) != fibres.end(); };
+    std::vector<char> one(snapshot.fibres.size(), 0);
+    for (const Index fibre : fibres) one[core::at(fibre)] = 1;
     double sum = 0.0;
     for (const observe::ContactSnapshot& contact : snapshot.contacts)
-        if (one(contact.fibre_i) != one(contact.fibre_j)) sum += contact.reaction;
+        if (one[core::at(contact.fibre_i)] != one[core::at(contact.fibre_j)]) sum += contact.reaction;
     return sum;
 }
 
