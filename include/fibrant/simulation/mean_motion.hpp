@@ -32,8 +32,7 @@ public:
     /// @param change  of the amplitudes
     template <beam::BeamElement B>
     void learn(const beam::Mesh<B>& mesh, const Vector& before, const Vector& after, const std::vector<double>& change) {
-        double same = 0.0, square = 0.0;
-        for (std::size_t c = 0; c < change_.size(); ++c) same += change[c] * change_[c], square += change_[c] * change_[c];
+        const double same = along(change), square = along(change_);
         const double kept = same > 0.0 && same < 0.5 * square ? 0.5 : 0.0;
         const std::vector<Field> known = fields_;
         for (std::size_t c = 0; c < change_.size(); ++c) change_[c] = kept * change_[c] + change[c];
@@ -77,17 +76,12 @@ public:
     }
 
     /// Is anything known of such a change, going on the same way?
-    bool foretells(const std::vector<double>& change) const {
-        double same = 0.0;
-        for (std::size_t c = 0; c < change_.size(); ++c) same += change[c] * change_[c];
-        return same > 0.0;
-    }
+    bool foretells(const std::vector<double>& change) const { return along(change) > 0.0; }
 
     /// A state with its centres where the last motion leads when amplitudes change so.
     template <beam::BeamElement B>
     Vector ahead(const beam::Mesh<B>& mesh, const Vector& state, const std::vector<double>& change) const {
-        double same = 0.0, square = 0.0;
-        for (std::size_t c = 0; c < change_.size(); ++c) same += change[c] * change_[c], square += change_[c] * change_[c];
+        const double same = along(change), square = along(change_);
         if (same == 0.0) return state;
         const double part = std::clamp(same / square, -largest_part, largest_part);
         Vector moved = state;
@@ -123,6 +117,13 @@ private:
         Vec3 lean = Vec3::Zero(), moved = Vec3::Zero();
         double mean = 0.0, square = 0.0;
     };
+
+    /// What a change of the channels has of the known one, times that.
+    double along(const std::vector<double>& change) const noexcept {
+        double sum = 0.0;
+        for (std::size_t c = 0; c < change_.size(); ++c) sum += change[c] * change_[c];
+        return sum;
+    }
 
     template <beam::BeamElement B, class Body>
     static void each_centre(const beam::Mesh<B>& mesh, const Body& body) {

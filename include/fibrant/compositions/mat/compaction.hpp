@@ -137,7 +137,7 @@ simulation::ModelParameters<M> model_parameters(const MatParameters& parameters,
 template <simulation::Model M>
 simulation::Loading<M> pressing(const MatParameters& parameters, const PressParameters& press) {
     parameters.validate(), press.validate(parameters);
-    const double bending = 0.25 * parameters.material.young_modulus * std::numbers::pi * std::pow(parameters.radius, 4);
+    const double bending = parameters.material.young_modulus * scene::circular(parameters.radius).second_moment_1();
     simulation::Loading<M> loading;
     loading.stages.resize(1);
     simulation::Stage<M>& down = loading.stages[0];

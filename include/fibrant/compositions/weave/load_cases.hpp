@@ -52,6 +52,10 @@ inline double woven_strain(const FabricParameters& fabric, Family family, double
     return (strain * length - ends * force / fabric.tow(family).axial_stiffness()) / (length - ends);
 }
 
+/// How far a place goes up when the edges, `width` apart, are each turned by one radian along a flat arc whose ends stay [length].
+/// @param x  from the middle [length]
+inline double arc_rise(double x, double width) noexcept { return (x * x - 0.25 * width * width) / width; }
+
 /// @param name      one of load_case_names()
 /// @param snapshot  the settled fabric
 /// @throws std::invalid_argument naming the field that is wrong
@@ -111,7 +115,7 @@ inline LoadCase load_case(const std::string& name, const observe::Snapshot& snap
             side.loose = fabric.weft.axial_stiffness();
             for (Index tow = 0; tow < fabric.weft_tows; ++tow) {
                 const double x = tow_end_middle(snapshot, fabric, edge, tow).x() - 0.5 * (middle[0].x() + middle[1].x());
-                side.loose_height.push_back(Coordinate::held_at((x * x - 0.25 * load.width * load.width) / load.width, bend_channel));
+                side.loose_height.push_back(Coordinate::held_at(arc_rise(x, load.width), bend_channel));
             }
         }
     } else if (name == "compaction") {
@@ -206,7 +210,7 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
         for (const Edge edge : {Edge::south, Edge::north})
             for (const Index end : load.bodies.tow_end[static_cast<std::size_t>(edge)]) {
                 const double x = ties.motion().position(end).x() - 0.5 * (place(Edge::west) + place(Edge::east)).x();
-                work += ties.wrench(end).force.z() * (x * x - 0.25 * load.width * load.width) / load.width;
+                work += ties.wrench(end).force.z() * arc_rise(x, load.width);
             }
         figures = {{"curvature", turn / load.width}, {"moment", 0.5 * work}};
     } else if (load.name == "compaction") {
@@ -222,7 +226,7 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
             for (const Index end : load.bodies.tow_end[static_cast<std::size_t>(edge)])
                 if (end >= 0) sum += ties.wrench(end).force;
     if (load.puller >= 0) {
-        sum = ties.wrench(load.puller).force;
+        sum += ties.wrench(load.puller).force;
         figures.push_back({"pressing", pressing_force(simulator.snapshot(), load.pulled_fibres)});
     }
     for (const Index plate : load.plates)
