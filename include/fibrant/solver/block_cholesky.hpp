@@ -2,6 +2,7 @@
 #pragma once
 /// @file Sparse Cholesky factor of a symmetric matrix of small blocks, multifrontal: all work is on dense matrices.
 
+#include <fibrant/core/large_array.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/solver/supernodes.hpp>
 
@@ -13,7 +14,6 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -76,17 +76,14 @@ public:
             for (const int row : list[s].rows) rows_[s] += size(row);
             if (list[s].parent >= 0) children_[core::at(list[s].parent)].push_back(static_cast<int>(s));
         }
-        panel_.resize(list.size());
+        panel_first_.assign(1, 0);
+        for (int s = 0; s < static_cast<int>(list.size()); ++s) panel_first_.push_back(panel_first_.back() + columns(s) * (columns(s) + rows_[core::at(s)]));
         stack_updates();
     }
 
     Index unknowns() const noexcept { return offset_.empty() ? 0 : offset_.back(); }
     /// Entries of the factor, zeros in its dense panels included.
-    Index fill() const {
-        Index sum = 0;
-        for (std::size_t s = 0; s < panel_.size(); ++s) sum += columns(static_cast<int>(s)) * (columns(static_cast<int>(s)) + rows_[s]);
-        return sum;
-    }
+    Index fill() const noexcept { return panel_first_.empty() ? 0 : panel_first_.back(); }
 
     /// Sets the matrix to zero.
     ///
@@ -150,20 +147,21 @@ public:
         Pivots pivots;
         const auto& list = supernodes_.list();
         // What fronts leave to their parents lies on two stacks that levels of the tree take by turns: children lie on top of one
-        // when their parent puts its own part on the other. One allocation, where each would get its pages cleared.
-        std::array<std::unique_ptr<Real[]>, 2> stack;
-        for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) stack[k] = std::make_unique_for_overwrite<Real[]>(core::at(stack_size_[k]));
+        // when their parent puts its own part on the other. They are kept: pages that are new to a process are slow.
+        for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) stack_[k].resize(stack_size_[k]);
+        panels_.resize(fill());
         const auto update_of = [&](std::size_t s) {
-            return Eigen::Map<RealMatrix>(stack[core::at(update_[s].stack)].get() + update_[s].first, rows_[s], rows_[s]);
+            return Eigen::Map<RealMatrix>(stack_[core::at(update_[s].stack)].data() + update_[s].first, rows_[s], rows_[s]);
         };
+        Scratch scratch;
         std::vector<int> local(core::at(supernodes_.vertices()), -1);  // first row of a block in the front
         for (std::size_t s = 0; s < list.size(); ++s) {
             const Index m = columns(static_cast<int>(s)), n = m + rows_[s];
             int row = 0;
             for (int k = list[s].first; k < list[s].last; ++k) local[core::at(k)] = row, row += size(k);
             for (const int k : list[s].rows) local[core::at(k)] = row, row += size(k);
-            RealMatrix& panel = panel_[s];
-            panel.setZero(n, m);
+            Panel panel = panel_of(s);
+            panel.setZero();
             auto update = update_of(s);
             for (Index k = 0; k < n - m; ++k) update.col(k).tail(n - m - k).setZero();  // the upper part is not used
             for (int k = list[s].first; k < list[s].last; ++k) {
@@ -177,10 +175,8 @@ public:
                 for (const int other : supernodes_.later(k)) take(other);
             }
             for (const int c : children_[s]) extend(c, update_of(core::at(c)), local, panel, update);
-            eliminate(panel, pivot_scale(list[s]), pivots);
-            if (n > m) {
-                update.template selfadjointView<Eigen::Lower>().rankUpdate(panel.bottomRows(n - m), Real(-1));
-            }
+            eliminate(panel, 0, m, pivot_scale(list[s]), scratch, pivots);
+            if (n > m) subtract_square(panel.bottomRows(n - m), update);
         }
         return pivots;
     }
@@ -196,9 +192,10 @@ public:
         for (std::size_t s = 0; s < list.size(); ++s) {
             const Index m = columns(static_cast<int>(s));
             auto own = work_.segment(offset_[core::at(list[s].first)], m);
-            panel_[s].topRows(m).template triangularView<Eigen::Lower>().solveInPlace(own);
+            const auto panel = panel_of(s);
+            panel.topRows(m).template triangularView<Eigen::Lower>().solveInPlace(own);
             if (rows_[s] == 0) continue;
-            gathered_.noalias() = panel_[s].bottomRows(rows_[s]) * own;
+            gathered_.noalias() = panel.bottomRows(rows_[s]) * own;
             Index row = 0;
             for (const int k : list[s].rows) work_.segment(offset_[core::at(k)], size(k)) -= gathered_.segment(row, size(k)), row += size(k);
         }
@@ -208,8 +205,9 @@ public:
             gathered_.resize(rows_[s]);
             Index row = 0;
             for (const int k : list[s].rows) gathered_.segment(row, size(k)) = work_.segment(offset_[core::at(k)], size(k)), row += size(k);
-            if (rows_[s] > 0) own.noalias() -= panel_[s].bottomRows(rows_[s]).transpose() * gathered_;
-            panel_[s].topRows(m).template triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+            const auto panel = panel_of(s);
+            if (rows_[s] > 0) own.noalias() -= panel.bottomRows(rows_[s]).transpose() * gathered_;
+            panel.topRows(m).template triangularView<Eigen::Lower>().transpose().solveInPlace(own);
         }
         for (int v = 0; v < supernodes_.vertices(); ++v) {
             x.segment(input_[core::at(v)], size(supernodes_.place(v))) =
@@ -218,6 +216,13 @@ public:
     }
 
 private:
+    using Panel = Eigen::Map<RealMatrix>;
+
+    /// Columns of a supernode, the diagonal part on top.
+    Panel panel_of(std::size_t s) {
+        const Index m = columns(static_cast<int>(s));
+        return {panels_.data() + panel_first_[s], m + rows_[s], m};
+    }
     int size(int place) const noexcept { return static_cast<int>(offset_[core::at(place) + 1] - offset_[core::at(place)]); }
     Index columns(int s) const noexcept {
         const auto& supernode = supernodes_.list()[core::at(s)];
@@ -271,7 +276,7 @@ private:
     }
 
     /// Adds the update matrix of a child to the panel and the update matrix of its parent.
-    void extend(int child, const Eigen::Map<RealMatrix>& from, const std::vector<int>& local, RealMatrix& panel, Eigen::Map<RealMatrix>& update) const {
+    void extend(int child, const Eigen::Map<RealMatrix>& from, const std::vector<int>& local, Panel& panel, Eigen::Map<RealMatrix>& update) const {
         struct Run {
             Index from, to, length;
         };
@@ -301,30 +306,47 @@ private:
             }
     }
 
-    /// Cholesky of the columns of a front, the upper part of `panel`, and what it makes of the rows below: wide steps, so that
-    /// large fronts are not read and written once every few columns, made of narrow ones.
-    void eliminate(RealMatrix& panel, const RealVector& scale, Pivots& pivots) const {
-        constexpr Index wide = 240, narrow = 48;
-        const Index m = panel.cols(), n = panel.rows();
-        for (Index first = 0; first < m; first += wide) {
-            const Index last = std::min(first + wide, m);
-            for (Index k = first; k < last; k += narrow) {
-                const Index width = std::min(narrow, last - k), next = k + width;
-                eliminate_diagonal(panel, k, width, scale, pivots);
-                if (next == n) continue;
-                auto below = panel.block(next, k, n - next, width);
-                panel.block(k, k, width, width).template triangularView<Eigen::Lower>().transpose().template solveInPlace<Eigen::OnTheRight>(below);
-                if (next < last)
-                    panel.block(next, next, n - next, last - next).noalias() -= below * below.topRows(last - next).transpose();
-            }
-            for (Index column = last; column < m; column += wide) {  // the lower part alone
-                const Index width = std::min(wide, m - column);
-                panel.block(column, column, n - column, width).noalias() -=
-                    panel.block(column, first, n - column, last - first) * panel.block(column, first, width, last - first).transpose();
-            }
+    /// square -= rows rows^T, the lower part: below strips' own blocks as products, which are faster than Eigen's rank update.
+    template <class Rows, class Square>
+    static void subtract_square(const Rows& rows, Square&& square) {
+        constexpr Index strip = 1536;
+        for (Index first = 0; first < rows.rows(); first += strip) {
+            const Index width = std::min(strip, rows.rows() - first), below = rows.rows() - first - width;
+            const auto own = rows.middleRows(first, width);
+            square.block(first, first, width, width).template selfadjointView<Eigen::Lower>().rankUpdate(own, Real(-1));
+            if (below > 0) square.block(first + width, first, below, width).noalias() -= rows.bottomRows(below) * own.transpose();
         }
     }
-    void eliminate_diagonal(RealMatrix& panel, Index first, Index width, const RealVector& scale, Pivots& pivots) const {
+
+    /// Cholesky of the columns [first, last) of a front, the upper part of `panel`, and what it makes of the rows below.
+    ///
+    /// By halves, so that most is done by wide products. Below the narrowest diagonal blocks the rows are multiplied by
+    /// the inverse, which is faster than a solution and as good: these blocks are small.
+    struct Scratch {
+        RealMatrix inverse, rows;
+    };
+    void eliminate(Panel& panel, Index first, Index last, const RealVector& scale, Scratch& scratch, Pivots& pivots) const {
+        constexpr Index narrow = 24, strip = 768;
+        const Index width = last - first, n = panel.rows();
+        if (width > narrow) {
+            const Index half = first + (width / 2 + narrow - 1) / narrow * narrow, other = last - half;
+            eliminate(panel, first, half, scale, scratch, pivots);
+            const auto own = panel.block(half, first, other, half - first);
+            subtract_square(own, panel.block(half, half, other, other));
+            if (last < n) panel.block(last, half, n - last, other).noalias() -= panel.block(last, first, n - last, half - first) * own.transpose();
+            eliminate(panel, half, last, scale, scratch, pivots);
+            return;
+        }
+        eliminate_diagonal(panel, first, width, scale, pivots);
+        scratch.inverse.setIdentity(width, width);
+        panel.block(first, first, width, width).template triangularView<Eigen::Lower>().solveInPlace(scratch.inverse);
+        for (Index row = last; row < n; row += strip) {
+            auto rows = panel.block(row, first, std::min(strip, n - row), width);
+            scratch.rows = rows;
+            rows.noalias() = scratch.rows * scratch.inverse.transpose();
+        }
+    }
+    void eliminate_diagonal(Panel& panel, Index first, Index width, const RealVector& scale, Pivots& pivots) const {
         auto diagonal = panel.block(first, first, width, width);
         for (Index j = 0; j < width; ++j) {
             const Real original = scale[first + j];
@@ -362,7 +384,9 @@ private:
     };
     std::vector<Update> update_;  // of each supernode: the place of what it leaves to its parent
     std::array<Index, 2> stack_size_{};
-    std::vector<RealMatrix> panel_;
+    std::vector<Index> panel_first_;  // of each supernode, in `panels_`
+    core::LargeArray<Real> panels_;
+    std::array<core::LargeArray<Real>, 2> stack_;
     RealVector work_, gathered_;
     bool uniform_ = true;  // all blocks have the same size
 };
