@@ -2,6 +2,8 @@
 // What does a weave pay for friction, and what does it save without? The same small fabric, settled with the law of
 // Coulomb and with the empty law, in one run. Prints CSV: bytes of each part, then medians of time per contact element.
 // usage: benchmark_null_policy_bench [fibres a tow [repeats]]; default 7 and 7
+#include "timing.hpp"
+
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/compositions/weave/measures.hpp>
 #include <fibrant/compositions/weave/settle.hpp>
@@ -9,13 +11,12 @@
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <vector>
 
 using namespace fibrant;
+using namespace fibrant::benchmarks;
 namespace cloth = compositions::weave;
 
 namespace {
@@ -28,18 +29,6 @@ struct Weave {
     using Friction = Law;
     using Solver = solver::TwoLevelPcg;
 };
-
-template <class Body>
-double median_seconds(int repeats, const Body& body) {
-    std::vector<double> times;
-    for (int k = 0; k < repeats; ++k) {
-        const auto start = std::chrono::steady_clock::now();
-        body();
-        times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    }
-    std::sort(times.begin(), times.end());
-    return times[times.size() / 2];
-}
 
 struct Figures {
     double element_bytes, response_bytes, record_bytes, regenerate, refresh, evaluate, forces, settle;

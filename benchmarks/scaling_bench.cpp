@@ -3,11 +3,10 @@
 // same kind, from flat tows to rest. Prints CSV and, last, the exponents fitted over the unknowns.
 // usage: benchmark_scaling_bench [fibres a tow [tows a family]...]; default 19 2 3 4 6
 #include "chapter_fabric.hpp"
+#include "timing.hpp"
 
 #include <fibrant/compositions/weave/audit.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
-
-#include <sys/resource.h>
 
 #include <cmath>
 #include <cstdio>
@@ -20,12 +19,6 @@ namespace cloth = compositions::weave;
 namespace {
 
 using Weave = benchmarks::SettledWeave<solver::TwoLevelPcg>;
-
-double peak_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
 
 /// Slope of log y over log x.
 double exponent(const std::vector<double>& x, const std::vector<double>& y) {
@@ -61,7 +54,7 @@ int main(int argc, char** argv) {
         seconds.push_back(report.wall_seconds);
         each.push_back(report.wall_seconds / static_cast<double>(report.counts.newton));
         linear.push_back(static_cast<double>(report.counts.linear_iterations) / solves);
-        bytes.push_back(peak_bytes());
+        bytes.push_back(benchmarks::peak_bytes());
         std::printf("%td,%td,%.0f,%td,%d,%td,%.4f,%zu,%td,%td,%.1f,%.2f,%.4f,%.0f\n", tows, fabric.fibres(), unknowns.back(),
                     report.contact.elements, report.converged ? 1 : 0, audit.wrong_crossings + audit.missing_crossings,
                     audit.least_gap.gap_over_radius, report.increments.size(), report.rejected_increments, report.counts.newton,

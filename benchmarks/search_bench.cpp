@@ -47,7 +47,7 @@ Row halved(const std::string& name, Search& search, std::span<const proximity::C
     return {name, [&search, lines, reach] {
                 const proximity::detail::SegmentTable table(lines, reach);
                 search.build(table);
-                Call call{.built = now()};
+                Call call{.built = time_now()};
                 call.pairs = search.search(table);
                 call.bytes = search.bytes();
                 return call;

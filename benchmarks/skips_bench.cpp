@@ -3,6 +3,7 @@
 // more at a time that it could do without. The answer has to be the same. Prints CSV; medians of several runs, one thread.
 // usage: benchmark_skips_bench [fibres a tow [repeats]]; default 7 and 5
 #include "chapter_fabric.hpp"
+#include "timing.hpp"
 
 #include <fibrant/compositions/weave/measures.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
@@ -71,8 +72,7 @@ void measure(const char* name, Scene& scene, bool self_contact, Observers&... ob
         newton = report.counts.newton, elements = report.contact.elements;
         crimp = cloth::crimp_measures(simulator.snapshot(), scene.fabric).warp;
     }
-    std::sort(seconds.begin(), seconds.end());
-    const double median = seconds[seconds.size() / 2];
+    const double median = benchmarks::median(seconds);
     if (scene.seconds == 0.0) scene.seconds = median, scene.crimp = crimp;
     std::printf("%s,%.3f,%.3f,%td,%td,%.6f,%.1e,%zu\n", name, median, median / scene.seconds, newton, elements, crimp,
                 std::abs(crimp / scene.crimp - 1.0), sizeof(typename simulation::Simulator<M>::Contacts::Element));

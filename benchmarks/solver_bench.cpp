@@ -12,6 +12,7 @@
 // "product" compare A x with a scalar CSR product.
 
 #include "../tests/support/fabric_system.hpp"
+#include "timing.hpp"
 
 #include <fibrant/assembly/term_assembly.hpp>
 #include <fibrant/solver/automatic_solver.hpp>
@@ -22,7 +23,6 @@
 #endif
 
 #include <malloc.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -38,49 +38,26 @@
 #include <vector>
 
 using namespace fibrant;
+using namespace fibrant::benchmarks;
 using System = assembly::ChainSystem<beam::DirectorBeam<>>;
 
 namespace {
 
 constexpr std::array tolerances{1e-2, 1e-4, 1e-6, 1e-8};
 
-/// Processor time if the process has one thread.
-double seconds() {
-#if defined(_OPENMP)
-    if (omp_get_max_threads() > 1) return omp_get_wtime();
-#endif
-    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-template <class Work>
-double median_seconds(const Work& work) {
-    std::vector<double> times;
-    for (int k = 0; k < 9; ++k) {
-        const double start = seconds();
-        work();
-        times.push_back(seconds() - start);
-    }
-    std::sort(times.begin(), times.end());
-    return times[times.size() / 2];
-}
 void set_threads([[maybe_unused]] int threads) {
 #if defined(_OPENMP)
     omp_set_num_threads(threads);
 #endif
 }
 
-/// Resident memory now, and at its peak [bytes].
+/// Resident memory now [bytes].
 double resident() {
     std::ifstream file("/proc/self/statm");
     double all = 0.0, pages = 0.0;
     file >> all >> pages;
     return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
-double peak() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
-
 struct Row {
     double analyse, prepare, solve, residual, error, bytes;
     int status, iterations;
@@ -114,24 +91,24 @@ void measure(Solver solver, const System& system, const Vector& b, const Vector&
     malloc_trim(0);  // what the system's making has left free would hide what is taken now
 #endif
     const double before = resident();
-    const double start = seconds();
+    const double start = time_now();
     solver.analyse(system);
-    const double first = seconds();
+    const double first = time_now();
     solver.prepare(system);
-    const double analysed = seconds();
+    const double analysed = time_now();
     solver.prepare(system);  // again, as in each iteration of Newton's method: memory is at hand
-    const double prepared = seconds();
+    const double prepared = time_now();
     Vector x, energy(b.size());
     system.apply(reference, energy);
     const double size = reference.dot(energy);
     for (std::size_t k = 0; k < tolerances.size(); ++k) {
-        const double begin = seconds();
+        const double begin = time_now();
         const solver::SolveReport report = solver.solve(system, b, tolerances[k], x);
-        const double end = seconds();
+        const double end = time_now();
         const Vector difference = x - reference;
         system.apply(difference, energy);
         rows[k] = {first - start, prepared - analysed, end - begin, report.residual, std::sqrt(std::abs(difference.dot(energy)) / size),
-                   peak() - before, static_cast<int>(report.status), report.iterations};
+                   peak_bytes() - before, static_cast<int>(report.status), report.iterations};
     }
 }
 
@@ -171,8 +148,8 @@ void measure_product(const std::string& scene, const System& system, const Vecto
         assembly::assemble_from_terms(system, a);
         const Eigen::SparseMatrix<double, Eigen::RowMajor> rows_of_a = a;
         a.resize(0, 0);
-        const double own = median_seconds([&] { system.apply(b, y); });
-        const double csr = median_seconds([&] { z.noalias() = rows_of_a * b; });
+        const double own = median_seconds(9, [&] { system.apply(b, y); });
+        const double csr = median_seconds(9, [&] { z.noalias() = rows_of_a * b; });
         const double error = (y - z).norm() / z.norm();
         to[0] = {0.0, 0.0, csr, 0.0, 0.0, static_cast<double>(rows_of_a.nonZeros()) * 12.0, 0, 1};
         to[1] = {0.0, 0.0, own, 0.0, error, 0.0, 0, 1};

@@ -19,7 +19,7 @@
 #include <vector>
 
 using namespace fibrant;
-using namespace benchmarks;
+using namespace fibrant::benchmarks;
 
 namespace {
 
@@ -87,7 +87,7 @@ Sample measure(const Problem& problem, const Vec3& reference, Index elements, in
     Sample sample;
     std::vector<double> times;
     for (int k = 0; k < repeats; ++k) {
-        const double start = cpu_seconds();
+        const double start = processor_time();
         simulation::Simulator<M> simulator(problem.assembly(elements), parameters<M>());
         simulation::Loading<M> loading;
         for (const auto& ramps : problem.stages) {
@@ -96,7 +96,7 @@ Sample measure(const Problem& problem, const Vec3& reference, Index elements, in
             loading.stages.push_back(stage);
         }
         sample.converged = simulator.run(loading).converged;
-        times.push_back(cpu_seconds() - start);
+        times.push_back(processor_time() - start);
         const Vec3 value = problem.reaction() ? Vec3(simulator.reaction({0, 0.5}).x(), 0, 0) : simulator.value(scene::last_end(0));
         sample.error = (value - reference).norm() / problem.size;
         sample.unknowns = simulator.state().size();
@@ -156,10 +156,10 @@ void cost(const char* policy, int repeats) {
     double force = 0.0;
     bool converged = true;
     for (int k = 0; k < repeats; ++k) {
-        const double start = cpu_seconds();
+        const double start = processor_time();
         simulation::Simulator<M> simulator(layers(), parameters<M>());
         const simulation::Report report = simulator.run({.increments = 4});
-        times.push_back(cpu_seconds() - start);
+        times.push_back(processor_time() - start);
         converged = converged && report.converged;
         unknowns = simulator.state().size(), active = report.contact.active, newton = report.counts.newton, force = report.contact.reaction_sum;
     }

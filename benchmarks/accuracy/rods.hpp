@@ -2,6 +2,8 @@
 #pragma once
 /// @file What the accuracy benchmarks share: compositions by element and laws, the rod that is loaded, and the clock.
 
+#include "../timing.hpp"
+
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
@@ -10,14 +12,10 @@
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
 
-#include <algorithm>
-#include <ctime>
 #include <numbers>
 #include <vector>
 
-namespace benchmarks {
-
-using namespace fibrant;
+namespace fibrant::benchmarks {
 
 template <beam::BeamElement B, law::FrictionLaw Law = law::Frictionless>
 struct Policy {
@@ -53,11 +51,4 @@ simulation::ModelParameters<M> parameters() {
     return all;
 }
 
-inline double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-/// Of at least one time.
-inline double median(std::vector<double> times) {
-    std::sort(times.begin(), times.end());
-    return times[times.size() / 2];
-}
-
-}  // namespace benchmarks
+}  // namespace fibrant::benchmarks

@@ -2,12 +2,11 @@
 #pragma once
 /// @file Times of a search in halves, and what its pairs miss.
 
-#include <fibrant/core/parallel.hpp>
+#include "../timing.hpp"
+
 #include <fibrant/proximity/exact_filter.hpp>
 
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 #include <functional>
 #include <iterator>
 #include <string>
@@ -16,21 +15,6 @@
 namespace fibrant::benchmarks {
 
 using Pairs = std::vector<proximity::SegmentPair>;
-
-/// Processor time for one thread, which others on the machine disturb least; else time on the wall [s].
-inline double now() {
-    if (core::threads() == 1) {
-        timespec time{};
-        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-        return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-    }
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-inline double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
 
 /// One call of a search. `built` is when its structure stood; 0 if it has no such moment.
 struct Call {
@@ -50,9 +34,9 @@ inline Figures measure(int repeats, const Method& method) {
     std::vector<double> build, query, total;
     Figures figures;
     for (int k = 0; k < repeats; ++k) {
-        const double start = now();
+        const double start = time_now();
         Call call = method();
-        const double end = now();
+        const double end = time_now();
         total.push_back(end - start);
         if (call.built > 0.0) build.push_back(call.built - start), query.push_back(end - call.built);
         figures.bytes = call.bytes;
@@ -94,12 +78,12 @@ inline double floor_seconds(int repeats, std::span<const proximity::Centreline> 
     for (int k = 0; k < repeats; ++k) {
         Pairs close;
         close.reserve(wanted.size() + 64);
-        const double start = now();
+        const double start = time_now();
         Vec3 sum = Vec3::Zero();
         for (const proximity::Centreline& line : fibres)
             for (const Vec3& x : line.points) sum += x;
         proximity::detail::keep_close(table, records.data(), candidates, close);
-        seconds.push_back(now() - start);
+        seconds.push_back(time_now() - start);
         keep = keep + sum.sum();
     }
     return median(seconds);

@@ -53,9 +53,9 @@ inline void measure_motion(Scene scene, double step, int calls, bool self) {
         const auto lines = scene.centrelines(self);
         Pairs expected;
         for (Strategy& strategy : strategies) {
-            const double start = now();
+            const double start = time_now();
             Pairs pairs = strategy.pairs(lines);
-            if (call > 0) strategy.seconds += now() - start;
+            if (call > 0) strategy.seconds += time_now() - start;
             std::sort(pairs.begin(), pairs.end());
             if (expected.empty()) expected = pairs;
             strategy.wrong += lacking(expected, pairs) + lacking(pairs, expected);

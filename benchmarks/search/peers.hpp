@@ -35,7 +35,7 @@ inline Call nanoflann_pairs(std::span<const proximity::Centreline> fibres, doubl
         longest = std::max(longest, 0.5 * std::sqrt(dot(r.chord, r.chord)) + r.half);
     }
     const PointTree tree(middles);
-    Call call{.built = now()};
+    Call call{.built = time_now()};
     std::vector<std::int32_t> found;
     std::vector<Candidate> candidates;
     for (const SegmentRecord& r : records) {
@@ -78,7 +78,7 @@ inline Call boost_pairs(std::span<const proximity::Centreline> fibres, double re
         entries.push_back({{Point(low[0], low[1], low[2]), Point(high[0], high[1], high[2])}, r.segment});
     }
     const geometry::index::rtree<Entry, geometry::index::quadratic<8>> tree(entries.begin(), entries.end());
-    Call call{.built = now()};
+    Call call{.built = time_now()};
     std::vector<Candidate> candidates;
     for (const Entry& entry : entries) {
         candidates.clear();
