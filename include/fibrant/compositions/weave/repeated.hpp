@@ -3,6 +3,7 @@
 /// @file Larger pieces of a fabric out of the state of its repeating cell: a cell of several, or a finite sample with the same inside.
 
 #include <fibrant/compositions/weave/periodic.hpp>
+#include <fibrant/compositions/weave/tow_geometry.hpp>
 #include <fibrant/simulation/stored_state.hpp>
 
 #include <algorithm>
