@@ -23,7 +23,7 @@ using fibrant::Index;
 struct LoadFile {
     weave::Scene scene;  ///< of the settled fabric
     std::string checkpoint, name;
-    bool free_across = false;
+    cloth::TowEnds tow_ends = cloth::TowEnds::kept;
     Index points_per_element = 0;  ///< spacing of contacts, if it is another
     fibrant::simulation::LoadProgramme programme;
 };
@@ -52,11 +52,15 @@ inline LoadFile read_load_file(TomlReader& file, const std::filesystem::path& fo
     file.read("settled", "set", set);
     file.require("settled", "checkpoint", load.checkpoint);
     file.require("loading", "case", load.name);
-    file.read("loading", "free_across", load.free_across);
+    std::string ends = cloth::tow_ends_names().front();
+    file.read("loading", "tow_ends", ends);
+    const auto found = std::find(cloth::tow_ends_names().begin(), cloth::tow_ends_names().end(), ends);
+    if (found == cloth::tow_ends_names().end()) file.refuse("loading", "tow_ends", "kept, spread, free or fibres");
+    load.tow_ends = static_cast<cloth::TowEnds>(found - cloth::tow_ends_names().begin());
     file.require("loading", "stages", stages);
     load.scene = weave::read_scene((folder / scene).string(), set);
     const double r = cloth::smallest_radius(load.scene.fabric), allowed = load.scene.settle.allowed_penetration_over_radius * r;
-    double friction = load.scene.settle.friction_coefficient, rest_motion = load.scene.settle.rest_motion_over_radius, largest = 1.0;
+    double friction = load.scene.settle.friction_coefficient, rest_motion = load.scene.settle.rest_motion_over_radius, largest = 1.0, calm = 0.15;
     auto& programme = load.programme;
     programme.rest_share = load.scene.settle.rest_share;
     file.read("loading", "halvings", programme.halvings);
@@ -64,8 +68,9 @@ inline LoadFile read_load_file(TomlReader& file, const std::filesystem::path& fo
     file.read("loading", "rest_motion_over_radius", rest_motion);
     file.read("loading", "rest_share", programme.rest_share);
     file.read("loading", "largest_displacement_over_radius", largest);
+    file.read("loading", "calm_over_radius", calm);
     programme.rest_motion = rest_motion * r, programme.rest_penetration = 2.0 * allowed, programme.largest_displacement = largest * r;
-    programme.calm = 0.15 * r;
+    programme.calm = calm * r;
     programme.reversible_displacement = std::max(0.02 * r, friction * allowed);
     programme.damping = cloth::node_stiffness(load.scene.fabric, load.scene.settle.tension_strain);
     file.read("contact", "points_per_element", load.points_per_element);

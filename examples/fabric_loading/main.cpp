@@ -34,7 +34,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     auto parameters = cloth::model_parameters<LoadedWeave>(fabric, load.scene.settle);
     const beam::Mesh<LoadedWeave::Beam> mesh(fibres, LoadedWeave::Beam(parameters.beam));
     const observe::Snapshot settled = simulation::snapshot_of(mesh, simulation::checkpoint_state(load.checkpoint, mesh));
-    const cloth::LoadCase scene = cloth::load_case(load.name, settled, fabric, load.free_across);
+    const cloth::LoadCase scene = cloth::load_case(load.name, settled, fabric, load.tow_ends);
     parameters.iteration = load.scene.iteration;
     parameters.solver.strategy = load.scene.linear_solver;
     if (load.points_per_element > 0) parameters.contact.spacing.points_per_element = static_cast<double>(load.points_per_element);

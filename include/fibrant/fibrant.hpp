@@ -124,6 +124,7 @@
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 #include <fibrant/simulation/state_file.hpp>
+#include <fibrant/simulation/stored_state.hpp>
 #include <fibrant/simulation/support_wrench.hpp>
 
 #include <fibrant/compositions/composite/composite.hpp>
@@ -148,6 +149,7 @@
 #include <fibrant/compositions/weave/packing.hpp>
 #include <fibrant/compositions/weave/pattern.hpp>
 #include <fibrant/compositions/weave/periodic.hpp>
+#include <fibrant/compositions/weave/repeated.hpp>
 #include <fibrant/compositions/weave/settle.hpp>
 #include <fibrant/compositions/weave/slices.hpp>
 #include <fibrant/compositions/weave/tow_section.hpp>

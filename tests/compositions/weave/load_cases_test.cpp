@@ -103,9 +103,73 @@ TEST_CASE("a bent sheet's edges turn against each other, and the ends of the tow
 
 TEST_CASE("the woven part of a sample and its straight ends stretch one after the other") {
     const FabricParameters fabric = small_fabric(6);
-    const double woven = 5.0 * 0.88, ends = 2.0 * 0.88, force = 0.7, own = 0.004;
+    const double woven = 0.94 * 5.0 * 0.88, ends = 2.0 * 0.88, force = 0.7, own = 0.004;
     const double strain = (own * woven + force / fabric.weft.axial_stiffness() * ends) / (woven + ends);
-    for (const Family family : {Family::warp, Family::weft}) CHECK(woven_strain(fabric, family, strain, force) == doctest::Approx(own).epsilon(1e-12));
+    for (const Family family : {Family::warp, Family::weft}) CHECK(woven_strain(fabric, family, woven + ends, strain, force) == doctest::Approx(own).epsilon(1e-12));
+}
+
+TEST_CASE("tow ends that are spread move as the fabric does: every one by the same strain along and across") {
+    FabricParameters fabric = small_fabric(3, 7);
+    fabric.weft_tows = 5;
+    const observe::Snapshot snapshot = woven_snapshot(fabric, 0.1);
+    const double strain = 0.01;
+    for (const TowEnds how : {TowEnds::kept, TowEnds::spread, TowEnds::free}) {
+        const LoadCase load = load_case("equibiaxial", snapshot, fabric, how);
+        const connection::Channels channels(load.assembly);
+        connection::BodyMotion motion(load.assembly, channels);
+        CHECK(motion.free_coordinates() == (how == TowEnds::free ? 2 * (3 + 5) : 0));
+        std::vector<double> amplitudes(channels.names().size(), 0.0);
+        amplitudes[core::at(channels.find(strain_channel))] = strain;
+        motion.begin(amplitudes);
+        for (const Edge edge : all_edges)
+            for (const Index end : load.bodies.tow_end[static_cast<std::size_t>(edge)]) {
+                const Vec3 from = load.assembly.bodies()[core::at(end)].position;
+                Vec3 to = (1.0 + strain) * from;
+                to.z() = from.z();
+                if (how != TowEnds::spread) to[axis_of(other(family_of(edge)))] = from[axis_of(other(family_of(edge)))];
+                CHECK((motion.position(end) - to).norm() < 1e-14);
+            }
+    }
+    // What is drawn alone spreads the ends that lie along it.
+    const LoadCase load = load_case("uniaxial", snapshot, fabric, TowEnds::spread);
+    for (const Edge edge : all_edges)
+        for (const Index end : load.bodies.tow_end[static_cast<std::size_t>(edge)]) {
+            const scene::RigidBody& body = load.assembly.bodies()[core::at(end)];
+            CHECK(std::abs(body.translation[0].value - (family_of(edge) == Family::weft ? body.position.x() : 0.0)) < 1e-14);
+            CHECK(body.translation[1].value == 0.0);
+        }
+}
+
+TEST_CASE("fibre ends that are held one by one have each a tie to their tow end, in the place of one for all") {
+    const FabricParameters fabric = small_fabric(4, 7);
+    const observe::Snapshot snapshot = woven_snapshot(fabric, 0.1);
+    for (const std::string& name : load_case_names()) {
+        CAPTURE(name);
+        const LoadCase load = load_case(name, snapshot, fabric, TowEnds::fibres);
+        std::vector<int> ends(core::at(2 * fabric.fibres()), 0);
+        for (const scene::AverageConnection& average : load.assembly.averages()) {
+            if (average.vector != scene::NodeVector::position) continue;
+            // The end of a tow that is pulled out stays in one hand.
+            CHECK((average.ends.size() == 1 || average.body == load.puller));
+            for (const scene::Station& at : average.ends) ++ends[core::at(2 * at.fibre + (at.fraction > 0.5 ? 1 : 0))];
+        }
+        for (const int count : ends) CHECK(count <= 1);
+        if (name != "pull_out" && name != "compaction")
+            for (const int count : ends) CHECK(count == 1);
+    }
+}
+
+TEST_CASE("the middle of a sample lies between its middle tows, over two spacings where their number is odd") {
+    for (const Index tows : {2, 3, 4, 5, 8}) {
+        FabricParameters fabric = small_fabric(4, 7);
+        fabric.weft_tows = tows;
+        CAPTURE(tows);
+        const auto [first, last] = middle_tows(tows);
+        CHECK(first + last == tows - 1);
+        CHECK(last - first == (tows % 2 == 0 ? 1 : 2));
+        CHECK(middle_spacing(woven_snapshot(fabric, 0.1), fabric) == doctest::Approx(static_cast<double>(last - first) * 0.88).epsilon(1e-12));
+    }
+    CHECK(middle_tows(1) == std::array<Index, 2>{0, 0});
 }
 
 TEST_CASE("what presses a tow is the sum of the reactions with all other fibres") {
@@ -121,7 +185,7 @@ TEST_CASE("every load case can be built, and one that is not known is refused") 
     const observe::Snapshot snapshot = woven_snapshot(fabric, 0.1);
     for (const std::string& name : load_case_names()) {
         CAPTURE(name);
-        const LoadCase load = load_case(name, snapshot, fabric, true);
+        const LoadCase load = load_case(name, snapshot, fabric, TowEnds::free);
         CHECK(core::count(load.assembly.fibres()) == fabric.fibres());
         CHECK(!load.assembly.averages().empty());
         CHECK(load.width == doctest::Approx(fabric.fibre_length(Family::warp)));

@@ -30,8 +30,10 @@ struct EdgeParameters {
     std::optional<Edge> parent{};       ///< an edge that comes before it, on which its body hangs
     std::array<scene::Coordinate, 3> translation{}, rotation{};
     std::array<scene::Coordinate, 3> tow_translation{};  ///< of a tow end from its place at the edge, along x, y and z
+    std::string spread_channel{};                        ///< of the strain along the edge by which tow ends move apart; empty: they do not
     scene::Coordinate tow_roll{};                        ///< of a tow end about its own axis
     bool turning = false;                                ///< sections of fibre ends turn with their tow end: it bends them
+    bool one_by_one = false;                             ///< each fibre end keeps its place at its tow end; else their mean does
     /// No body for the edge: each tow end has one of its own that is free to move, to roll and, if its sections turn with it, to lean,
     /// under this pull outwards at amplitude 1 of the tension channel [force].
     std::optional<double> loose{};
@@ -66,10 +68,13 @@ struct SectionTies {
     bool turning = false;  ///< the direction of the fibre
 };
 
-/// Ties the mean position of a tow's fibre ends to a body, and their sections one by one as asked for.
-inline void connect_tow_end(scene::Assembly& assembly, const FabricParameters& fabric, Edge edge, Index tow, Index body, const SectionTies& ties) {
+/// Ties the mean position of a tow's fibre ends, or each of them, to a body, and their sections one by one as asked for.
+inline void connect_tow_end(scene::Assembly& assembly, const FabricParameters& fabric, Edge edge, Index tow, Index body, const SectionTies& ties, bool one_by_one = false) {
     const std::vector<scene::Station> ends = tow_ends(fabric, edge, tow);
-    assembly.connect({.ends = ends, .body = body});
+    if (one_by_one)
+        for (const scene::Station& end : ends) assembly.connect({.ends = {end}, .body = body});
+    else
+        assembly.connect({.ends = ends, .body = body});
     if (!ties.spin && !ties.turning) return;
     Mat3 section;  // g_1 and g_2 at rest
     const Vec3 along = family_of(edge) == Family::warp ? Vec3::UnitX() : Vec3::UnitY();
@@ -107,7 +112,7 @@ inline EdgeBodies add_edges(scene::Assembly& assembly, const observe::Snapshot& 
                     if (ties.turning || k == axis) end.rotation[k] = scene::Coordinate::loose();
                 end.translation[axis] = scene::Coordinate::under(at_last_end(edge) ? *parameters.loose : -*parameters.loose, tension_channel);
                 bodies.tow_end[e][core::at(tow)] = assembly.add(end);
-                connect_tow_end(assembly, fabric, edge, tow, bodies.tow_end[e][core::at(tow)], ties);
+                connect_tow_end(assembly, fabric, edge, tow, bodies.tow_end[e][core::at(tow)], ties, parameters.one_by_one);
             }
             continue;
         }
@@ -125,9 +130,13 @@ inline EdgeBodies add_edges(scene::Assembly& assembly, const observe::Snapshot& 
             end.position = tow_end_middle(snapshot, fabric, edge, tow);
             end.parent = bodies.edge[e];
             end.translation = parameters.tow_translation;
+            if (!parameters.spread_channel.empty()) {
+                const auto across = static_cast<std::size_t>(axis_of(other(family_of(edge))));
+                end.translation[across] = scene::Coordinate::held_at((end.position - body.position)[static_cast<Index>(across)], parameters.spread_channel);
+            }
             end.rotation[static_cast<std::size_t>(axis_of(family_of(edge)))] = parameters.tow_roll;
             bodies.tow_end[e][core::at(tow)] = assembly.add(end);
-            connect_tow_end(assembly, fabric, edge, tow, bodies.tow_end[e][core::at(tow)], ties);
+            connect_tow_end(assembly, fabric, edge, tow, bodies.tow_end[e][core::at(tow)], ties, parameters.one_by_one);
         }
     }
     return bodies;

@@ -30,6 +30,14 @@ inline const std::vector<std::string>& load_case_names() {
     return names;
 }
 
+/// What tow ends do along their edge: keep their places, move apart by the strain of the fabric across them, or go where they like, while
+/// it is stretched; or move apart with every fibre at its place in its tow end, in all load cases: tows do not spread there.
+enum class TowEnds { kept, spread, free, fibres };
+inline const std::vector<std::string>& tow_ends_names() {
+    static const std::vector<std::string> names{"kept", "spread", "free", "fibres"};
+    return names;
+}
+
 /// A scene with its bodies, and which of its figures make the curve.
 struct LoadCase {
     std::string name;
@@ -41,15 +49,37 @@ struct LoadCase {
     std::array<Index, 2> plates{-1, -1};  ///< below and above
     double width = 0.0, height = 0.0;     ///< between the edges along x and along y at the start [length]
     double plate_distance = 0.0;          ///< at the start [length]
+    double middle_spacing = 0.0;          ///< between middle_crossings at the start [length]
     FabricParameters fabric;
 };
 
 /// Strain of the woven part of a sample, between the outermost crossings [1]: the ends beyond them are straight, and take what E A says.
+/// @param length  between the edges, at the start: shorter than the fibres by their crimp [length]
 /// @param strain  of the whole, between the edges [1]
 /// @param force   of a tow [force]
-inline double woven_strain(const FabricParameters& fabric, Family family, double strain, double force) {
-    const double length = fabric.fibre_length(family), ends = 2.0 * fabric.overhang;
+inline double woven_strain(const FabricParameters& fabric, Family family, double length, double strain, double force) {
+    const double ends = 2.0 * fabric.overhang;
     return (strain * length - ends * force / fabric.tow(family).axial_stiffness()) / (length - ends);
+}
+
+/// The two middle ones of a family's tows, the outer two of the middle three if their number is odd; the same tow twice if it is alone.
+inline std::array<Index, 2> middle_tows(Index tows) noexcept {
+    const Index low = (tows - 1) / 2 - (tows > 2 && tows % 2 == 1 ? 1 : 0);
+    return {low, tows - 1 - low};
+}
+
+/// Mean distance of the crossings of the middle warp tows with the middle weft tows, along the warp [length].
+inline double middle_spacing(const observe::Snapshot& snapshot, const FabricParameters& fabric) {
+    const auto [first, last] = middle_tows(fabric.weft_tows);
+    const std::array<Index, 2> warp = middle_tows(fabric.warp_tows);
+    double sum = 0.0;
+    for (const Index tow : warp) {
+        const std::vector<double> crossings = crossing_parameters(snapshot, fabric, Family::warp, tow);
+        const std::vector<Vec3> centre = tow_centreline(snapshot, fabric, Family::warp, tow);
+        const NodalCurve line{centre};
+        sum += 0.5 * (line.position(crossings[core::at(last)]) - line.position(crossings[core::at(first)])).x();
+    }
+    return sum;
 }
 
 /// How far a place goes up when the edges, `width` apart, are each turned by one radian along a flat arc whose ends stay [length].
@@ -59,7 +89,7 @@ inline double arc_rise(double x, double width) noexcept { return (x * x - 0.25 *
 /// @param name      one of load_case_names()
 /// @param snapshot  the settled fabric
 /// @throws std::invalid_argument naming the field that is wrong
-inline LoadCase load_case(const std::string& name, const observe::Snapshot& snapshot, const FabricParameters& fabric, bool free_across = false) {
+inline LoadCase load_case(const std::string& name, const observe::Snapshot& snapshot, const FabricParameters& fabric, TowEnds ends = TowEnds::kept) {
     using scene::Coordinate;
     const auto& names = load_case_names();
     if (std::find(names.begin(), names.end(), name) == names.end()) core::refuse("load_case.name", name, "a load case");
@@ -73,10 +103,12 @@ inline LoadCase load_case(const std::string& name, const observe::Snapshot& snap
         Vec3& sum = middle[static_cast<std::size_t>(edge)] = Vec3::Zero();
         for (Index tow = 0; tow < tows; ++tow) sum += tow_end_middle(snapshot, fabric, edge, tow) / static_cast<double>(tows);
     }
+    load.middle_spacing = middle_spacing(snapshot, fabric);
     load.width = middle[1].x() - middle[0].x(), load.height = middle[3].y() - middle[2].y();
     const std::array<double, 2> pull{static_cast<double>(fabric.warp_tows) * fabric.warp.axial_stiffness(),
                                      static_cast<double>(fabric.weft_tows) * fabric.weft.axial_stiffness()};
     std::array<EdgeParameters, 4> edges;
+    for (EdgeParameters& edge : edges) edge.one_by_one = ends == TowEnds::fibres;
     EdgeParameters &west = edges[0], &east = edges[1], &south = edges[2], &north = edges[3];
     const auto stretch = [](EdgeParameters& low, EdgeParameters& high, std::size_t axis, double size) {
         low.translation[axis] = Coordinate::held_at(-0.5 * size, strain_channel), high.translation[axis] = Coordinate::held_at(0.5 * size, strain_channel);
@@ -91,8 +123,12 @@ inline LoadCase load_case(const std::string& name, const observe::Snapshot& snap
         stretch(west, east, 0, load.width);
         if (name == "equibiaxial") stretch(south, north, 1, load.height);
         else draw(south, north, 1, pull[1]);
-        if (free_across)
-            for (const Edge edge : all_edges) edges[static_cast<std::size_t>(edge)].tow_translation[core::at(1 - axis_of(family_of(edge)))] = Coordinate::loose();
+        for (const Edge edge : all_edges) {
+            EdgeParameters& side = edges[static_cast<std::size_t>(edge)];
+            // A uniaxial stretch drives no strain across the ends of the tows that it draws.
+            if ((ends == TowEnds::spread || ends == TowEnds::fibres) && (name == "equibiaxial" || family_of(edge) == Family::weft)) side.spread_channel = strain_channel;
+            if (ends == TowEnds::free) side.tow_translation[core::at(1 - axis_of(family_of(edge)))] = Coordinate::loose();
+        }
     } else if (name == "shear") {
         north.translation[0] = Coordinate::held_at(load.height, shear_channel);
         north.translation[1] = Coordinate::under(pull[1], tension_channel);
@@ -188,8 +224,12 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
         const Index edge = core::count(ends) >= 4 ? 1 : 0, inner = core::count(ends) - 2 * edge;
         double sum = 0.0;
         for (Index tow = edge; tow < edge + inner; ++tow) sum += ties.wrench(ends[core::at(tow)]).force.x() / static_cast<double>(inner);
-        figures.push_back({"woven_strain", woven_strain(load.fabric, Family::warp, figures[0].second, sum)});
+        figures.push_back({"woven_strain", woven_strain(load.fabric, Family::warp, load.width, figures[0].second, sum)});
         figures.push_back({"inner_tow_force", sum});
+        // The same where edges are furthest away.
+        figures.push_back({"middle_strain", middle_spacing(simulator.snapshot(), load.fabric) / load.middle_spacing - 1.0});
+        const auto [first, last] = middle_tows(core::count(ends));
+        figures.push_back({"middle_tow_force", 0.5 * (ties.wrench(ends[core::at(first)]).force + ties.wrench(ends[core::at(last)]).force).x()});
     } else if (load.name == "shear") {
         const Vec3 side = place(Edge::north) - place(Edge::south);
         figures = {{"angle_deg", degree * std::atan2(side.x(), side.y())}, {"force", force(Edge::north).x()}};

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file A state as a file that another scene may start from: what is not the run's but the fibres' and the contacts'.
+
+#include <fibrant/simulation/model.hpp>
+#include <fibrant/simulation/report.hpp>
+#include <fibrant/simulation/state_file.hpp>
+
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace fibrant::simulation {
+
+/// Places and directors of all fibres, and what their contacts remember.
+template <Model M>
+struct StoredState {
+    using Record = contact::ContactRecord<typename M::Normal, typename M::Friction>;
+    Vector state;
+    std::vector<Record> records{};
+    std::vector<contact::Zone> zones{};
+};
+
+/// @throws std::runtime_error if the file cannot be read or has other fibres
+template <Model M>
+StoredState<M> read_state(const std::string& path, const beam::Mesh<typename M::Beam>& mesh) {
+    CheckpointReader file(path);
+    file.expect(file.get_text() == checkpoint_format, "the format");
+    file.expect(file.get<std::uint64_t>() == outline_identity(mesh), "the set of fibres");
+    for (int k = 0; k < 3; ++k) file.get<std::uint64_t>();  // of the scene and the loading
+    StoredState<M> stored{.state = file.get_vector()};
+    for (int k = 0; k < 2; ++k) file.get_vector();  // forces of the last increment
+    file.get<EnergyBalance>(), file.get<double>();
+    stored.records.resize(core::at(file.get<Index>()));
+    for (auto& record : stored.records) record.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
+    stored.zones.resize(core::at(file.get<Index>()));
+    for (contact::Zone& zone : stored.zones) zone = file.get<contact::Zone>();
+    return stored;
+}
+
+/// Writes a file that `Simulator::start_from` takes, but no run resumes from.
+template <Model M>
+void write_state(const std::string& path, const beam::Mesh<typename M::Beam>& mesh, const StoredState<M>& stored) {
+    CheckpointWriter file;
+    file.put(std::string(checkpoint_format));
+    file.put(outline_identity(mesh)), file.put(fibre_identity(mesh));
+    for (int k = 0; k < 2; ++k) file.put(std::uint64_t{0});
+    file.put(stored.state);
+    for (int k = 0; k < 2; ++k) file.put(Vector(Vector::Zero(stored.state.size())));
+    file.put(EnergyBalance{}), file.put(0.0);
+    file.put(core::count(stored.records));
+    for (const auto& record : stored.records) record.each([&](const auto& value) { file.put(value); });
+    file.put(core::count(stored.zones));
+    for (const contact::Zone& zone : stored.zones) file.put(zone);
+    file.write(path);
+}
+
+}  // namespace fibrant::simulation
