@@ -2,6 +2,7 @@
 #pragma once
 /// @file Everything: the folders in the order of the computation, then the compositions.
 
+#include <fibrant/core/large_array.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/rotation.hpp>
