@@ -387,4 +387,36 @@ TEST_CASE("fibres that bend towards each other cross only from the angle at whic
     CHECK(angle(bent(90.0, kappa, kappa)) == doctest::Approx(std::asin(std::sqrt(1.0 - std::pow(std::sin(critical * std::numbers::pi / 180.0), 2))) * 180.0 / std::numbers::pi).epsilon(1e-3));
 }
 
+TEST_CASE("fibres that run side by side and splay where they end do not cross, however great the angle there is") {
+    // One is straight; the other runs beside and above it, and in its last four radii turns by 45 degrees, until its end is right above the first one's.
+    const double aside = 1.5 * r, angle = 0.25 * std::numbers::pi, turn = aside / (1.0 - std::cos(angle)), along = 96.0 * r, all = along + turn * angle;
+    const auto splayed = [=](double t) {
+        const double arc = std::max(0.0, (t * all - along) / turn);
+        return Vec3(std::min(t * all, along) + turn * std::sin(arc), turn * (1.0 - std::cos(arc)) - aside, 2.0 * r);
+    };
+    const Mesh mesh = mesh_of({straight_fibre({0, 0, 0}, {splayed(1.0).x(), 0, 0}, r, 80), curved_fibre(splayed, r, 80)});
+    const auto angle_of = [&](double from) {
+        proximity::ProximityZone ending = zone(from, 80, from, 80);
+        ending.closest_i = ending.closest_j = 80;
+        return contact::crossing_angle_deg(mesh, mesh.rest_state(), ending);
+    };
+    CHECK(angle_of(79.0) == doctest::Approx(45.0).epsilon(0.02));  // of the ends alone; an element is 1.25 radii long
+    CHECK(angle_of(0.0) == doctest::Approx(std::asin(1.5 / 99.6) * 180.0 / std::numbers::pi).epsilon(1e-2));  // 1.5 radii apart over 99.6
+}
+
+TEST_CASE("a straight crossing is one from its angle, however long its zone, and an arc around another fibre from that of its second variation") {
+    for (const double angle : {20.0, 31.0, 45.0, 90.0})
+        for (const double length : {3.0, 30.0}) {
+            const Vec3 half = 0.5 * length * r * Vec3(std::cos(angle * std::numbers::pi / 180.0), std::sin(angle * std::numbers::pi / 180.0), 0);
+            const Mesh mesh = mesh_of({straight_fibre({-0.5 * length * r, 0, 0}, {0.5 * length * r, 0, 0}, r, 10),
+                                       straight_fibre(Vec3(0, 0, 2.0 * r) - half, Vec3(0, 0, 2.0 * r) + half, r, 10)});
+            CHECK(contact::crossing_angle_deg(mesh, mesh.rest_state(), zone(0, 10, 0, 10)) == doctest::Approx(angle).epsilon(1e-6));
+        }
+    // A quarter of a circle of 4 radii, whose middle is 2 radii above the other one: the distance grows with half of the second variation
+    // of straight lines, and over the whole arc as fast.
+    const auto arc = [](double t) { return Vec3(0, 4.0 * r * std::sin((t - 0.5) * std::numbers::pi), 4.0 * r * std::cos((t - 0.5) * std::numbers::pi)); };
+    const Mesh mesh = mesh_of({straight_fibre({-r, 0, 2.0 * r}, {r, 0, 2.0 * r}, r, 10), curved_fibre(arc, r, 40)});
+    CHECK(contact::crossing_angle_deg(mesh, mesh.rest_state(), zone(0, 10, 0, 40)) == doctest::Approx(45.0).epsilon(0.01));
+}
+
 }  // namespace intermediate_geometry_test

@@ -93,24 +93,36 @@ struct ContactSpacing {
     }
 };
 
-/// Angle between two fibres at the closest points of their zone, less what bending towards each other takes of it [degree].
+/// Angle between two fibres at the closest points of their zone, less what bending towards each other takes of it; at most that of two
+/// lines which part as fast as the two halves of the zone do [degree].
 ///
 /// The distance of their centres is least there and nowhere beside if its second variation is positive: straight fibres at any
 /// angle a; bent ones, c from centre to centre and k their curvature vectors, if sin^2 a > c.(k_i - k_j) + (c.k_i)(c.k_j). That is what is
 /// taken off sin^2 a: as it goes to zero a second closest place comes up beside the first, and one contact element would hop to and fro.
+/// Fibres that run side by side and splay where they end are closest there and at an angle, yet touch all along: their zone is long, and hardly
+/// parts. Straight lines part by s sin a or more, and arcs around a line as the second variation says.
 template <class B>
 double crossing_angle_deg(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone) {
     const Vec3 d_i = mesh.derivative(state, zone.fibre_i, zone.closest_i), d_j = mesh.derivative(state, zone.fibre_j, zone.closest_j);
     const Vec3 t_i = d_i.normalized(), t_j = d_j.normalized();
-    const Vec3 centres = mesh.position(state, zone.fibre_j, zone.closest_j) - mesh.position(state, zone.fibre_i, zone.closest_i);
+    const Vec3 x_i = mesh.position(state, zone.fibre_i, zone.closest_i), x_j = mesh.position(state, zone.fibre_j, zone.closest_j);
+    const Vec3 centres = x_j - x_i;
     const auto bend = [&](Index fibre, double u, const Vec3& derivative, const Vec3& tangent) {
         const Vec3 second = mesh.second_derivative(state, fibre, u);
         return centres.dot(second - second.dot(tangent) * tangent) / derivative.squaredNorm();
     };
     const double bend_i = bend(zone.fibre_i, zone.closest_i, d_i, t_i), bend_j = bend(zone.fibre_j, zone.closest_j, d_j, t_j);
-    const double taken = bend_i - bend_j + bend_i * bend_j, sine = t_i.cross(t_j).norm();
-    if (taken <= 0.0) return angle_between_deg(t_i, t_j);
-    return std::asin(std::sqrt(std::clamp(sine * sine - taken, 0.0, 1.0))) * 180.0 / std::numbers::pi;
+    const double taken = std::max(0.0, bend_i - bend_j + bend_i * bend_j);
+    double sine = std::sqrt(std::max(0.0, t_i.cross(t_j).squaredNorm() - taken));
+    const double touching = mesh.fibre(zone.fibre_i).section.radius() + mesh.fibre(zone.fibre_j).section.radius();
+    for (const bool first : {true, false}) {
+        const Vec3 end_i = mesh.position(state, zone.fibre_i, first ? zone.a_i : zone.b_i);
+        const Vec3 end_j = mesh.position(state, zone.fibre_j, first ? zone.a_j : zone.b_j);
+        const double length = std::max((end_i - x_i).norm(), (end_j - x_j).norm());
+        if (length <= 2.0 * touching) continue;  // no room for another contact
+        sine = std::min(sine, std::sqrt(std::max(0.0, (end_j - end_i).squaredNorm() - centres.squaredNorm())) / length);
+    }
+    return std::asin(std::min(1.0, sine)) * 180.0 / std::numbers::pi;
 }
 
 /// Stations of a zone (Durville, eq. 6 to 8). The intermediate geometry is the mean of the zone's two lines, points stand
@@ -229,9 +241,7 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
     };
     if (first > last) add_station(0.5, step * h);
     // Between two stations fibres come closer than at either where they slant past each other, the distance of their centres
-    // being a hyperbola, and where they bend towards each other: the spacing is halved there. Not where they cross, which
-    // only zones with a prescribed normal do that come here.
-    const double crossing_sine = std::sin(spacing.crossing_angle_deg * std::numbers::pi / 180.0);
+    // being a hyperbola, and where they bend towards each other: the spacing is halved there.
     std::vector<double> between;  // earlier stations at parts of the spacing
     earlier([&](double u_i, double u_j) {
         const double k = mean_abscissa(u_i, u_j) / step;
@@ -244,7 +254,6 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         });
     };
     const auto add_between = [&](Index k, double sine) {
-        if (sine >= crossing_sine) return;
         const double s = share(static_cast<double>(k) + 0.5);
         const double u_i = zone.a_i + s * (zone.b_i - zone.a_i), u_j = zone.a_j + s * (zone.b_j - zone.a_j);
         const Vec3 centres = mesh.position(state, j, u_j) - mesh.position(state, i, u_i);

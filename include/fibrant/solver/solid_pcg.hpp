@@ -32,6 +32,7 @@ concept SystemWithSolid = assembly::LinearSystem<T> && requires(const T system) 
 /// solid, and far too stiff for those in which both move together, the more so the stiffer the bonds. Those C has; alone
 /// beside M_f it would be too stiff where fibres that hardly stretch stay behind. C^T A C is summed and factored once an
 /// analysis: it changes little from one iteration of Newton's method to the next.
+/// Both factors are of floats: they are read from memory twice an iteration, and a preconditioner need not be finer.
 ///
 /// Where nodes are tied, the parts have the supports of the ties in their place, and what a tie leaves free, the motions of free
 /// bodies, would be held by them: C^T A C is let go along these motions.
@@ -120,7 +121,7 @@ public:
 
 private:
     struct Work {
-        BlockCholesky<double> alone{SmallPivot::magnitude}, together{SmallPivot::magnitude};  // A_s and C^T A C
+        BlockCholesky<float> alone{SmallPivot::magnitude}, together{SmallPivot::magnitude};  // A_s and C^T A C
         std::vector<std::uint8_t> held;  // vectors of fibres that are held, and not carried
         Vector residual, correction, motion, together_motion;
         bool summed = false;                  // C^T A C since the last analysis
@@ -131,7 +132,7 @@ private:
         SolveStatus status = SolveStatus::not_finite;
     };
 
-    void judge(const BlockCholesky<double>::Pivots& pivots) {
+    void judge(const BlockCholesky<float>::Pivots& pivots) {
         if (!pivots.finite) work_->status = SolveStatus::not_finite;
         else if (pivots.negative > 0 && work_->status == SolveStatus::converged) work_->status = SolveStatus::indefinite;
     }
@@ -267,7 +268,7 @@ private:
     /// A_s. @returns false if the pattern is that of another solid
     template <class System>
     bool sum_alone(const System& system) {
-        BlockCholesky<double>& matrix = work_->alone;
+        BlockCholesky<float>& matrix = work_->alone;
         bool complete = true;
         const assembly::HeldProjector held(system.layout());
         const Index first = system.solid().first_vector();
@@ -283,7 +284,7 @@ private:
     }
     /// The identity outside the free directions.
     template <class System>
-    static void complete_held(const System& system, BlockCholesky<double>& matrix) {
+    static void complete_held(const System& system, BlockCholesky<float>& matrix) {
         for (const scene::HeldVector& held : system.layout().held) {
             const Index n = held.vector - system.solid().first_vector();
             if (n >= 0) matrix.entry(static_cast<int>(n), static_cast<int>(n)).add(0, 0, Mat3(Mat3::Identity() - held.free));
@@ -296,7 +297,7 @@ private:
         struct Sum {
             const SolidPcg& self;
             const System& system;
-            BlockCholesky<double>& matrix;
+            BlockCholesky<float>& matrix;
             const assembly::HeldProjector held;
             bool complete = true;
             std::vector<Index> cells;
