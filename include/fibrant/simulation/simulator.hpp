@@ -335,7 +335,7 @@ private:
         file.put(state_);
         file.put(last_external_), file.put(last_damping_);
         file.put(energy_), file.put(contacts_work_);
-        put_memory(file, contacts_);
+        put_memory(file, contacts_.accepted_memory().records(), contacts_.accepted_zones());
         for (const double amplitude : amplitudes_) file.put(amplitude);
         position_.each([&](const auto& value) { file.put(value); });
         if constexpr (HasTools<M>) contacts_.tools().each_accepted([&](const auto& value) { file.put(value); });
@@ -359,7 +359,10 @@ private:
         state_ = file.get_vector();
         last_external_ = file.get_vector(), last_damping_ = file.get_vector();
         energy_ = file.get<EnergyBalance>(), contacts_work_ = file.get<double>();
-        get_memory(file, contacts_);
+        std::vector<typename Contacts::Memory::Record> records;
+        std::vector<contact::Zone> zones;
+        get_memory(file, records, zones);
+        contacts_.resume(std::move(records), std::move(zones));
     }
 
     void read_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, Report& report) {

@@ -50,32 +50,36 @@ std::uint64_t loading_identity(const std::vector<Stage<M>>& stages) {
     return loading.identity();
 }
 
-/// The state that a checkpoint holds, of fibres that are cut and grouped alike.
+/// A checkpoint from its state on, of fibres that are cut and grouped alike.
 /// @throws std::runtime_error if the file cannot be read or has other fibres
 template <beam::BeamElement B>
-Vector checkpoint_state(const std::string& path, const beam::Mesh<B>& mesh) {
+CheckpointReader read_from_state(const std::string& path, const beam::Mesh<B>& mesh) {
     CheckpointReader file(path);
     file.expect(file.get_text() == checkpoint_format, "the format");
     file.expect(file.get<std::uint64_t>() == outline_identity(mesh), "the set of fibres");
     for (int k = 0; k < 3; ++k) file.get<std::uint64_t>();  // of the scene and the loading
-    return file.get_vector();
+    return file;
+}
+/// The state alone; throws as `read_from_state`.
+template <beam::BeamElement B>
+Vector checkpoint_state(const std::string& path, const beam::Mesh<B>& mesh) {
+    return read_from_state(path, mesh).get_vector();
 }
 
 /// What contacts remember.
-template <class Contacts>
-void put_memory(CheckpointWriter& file, const Contacts& contacts) {
-    file.put(core::count(contacts.accepted_memory().records()));
-    for (const auto& record : contacts.accepted_memory().records()) record.each([&](const auto& value) { file.put(value); });
-    file.put(core::count(contacts.accepted_zones()));
-    for (const contact::Zone& zone : contacts.accepted_zones()) file.put(zone);
+template <class Record>
+void put_memory(CheckpointWriter& file, const std::vector<Record>& records, const std::vector<contact::Zone>& zones) {
+    file.put(core::count(records));
+    for (const Record& record : records) record.each([&](const auto& value) { file.put(value); });
+    file.put(core::count(zones));
+    for (const contact::Zone& zone : zones) file.put(zone);
 }
-template <class Contacts>
-void get_memory(CheckpointReader& file, Contacts& contacts) {
-    std::vector<typename Contacts::Memory::Record> records(core::at(file.get<Index>()));
-    for (auto& record : records) record.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
-    std::vector<contact::Zone> zones(core::at(file.get<Index>()));
+template <class Record>
+void get_memory(CheckpointReader& file, std::vector<Record>& records, std::vector<contact::Zone>& zones) {
+    records.resize(core::at(file.get<Index>()));
+    for (Record& record : records) record.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
+    zones.resize(core::at(file.get<Index>()));
     for (contact::Zone& zone : zones) zone = file.get<contact::Zone>();
-    contacts.resume(std::move(records), std::move(zones));
 }
 
 /// Which solids they are, and which of their bonds are broken.

@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 namespace fibrant::simulation {
@@ -25,17 +24,11 @@ struct StoredState {
 /// @throws std::runtime_error if the file cannot be read or has other fibres
 template <Model M>
 StoredState<M> read_state(const std::string& path, const beam::Mesh<typename M::Beam>& mesh) {
-    CheckpointReader file(path);
-    file.expect(file.get_text() == checkpoint_format, "the format");
-    file.expect(file.get<std::uint64_t>() == outline_identity(mesh), "the set of fibres");
-    for (int k = 0; k < 3; ++k) file.get<std::uint64_t>();  // of the scene and the loading
+    CheckpointReader file = read_from_state(path, mesh);
     StoredState<M> stored{.state = file.get_vector()};
     for (int k = 0; k < 2; ++k) file.get_vector();  // forces of the last increment
     file.get<EnergyBalance>(), file.get<double>();
-    stored.records.resize(core::at(file.get<Index>()));
-    for (auto& record : stored.records) record.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
-    stored.zones.resize(core::at(file.get<Index>()));
-    for (contact::Zone& zone : stored.zones) zone = file.get<contact::Zone>();
+    get_memory(file, stored.records, stored.zones);
     return stored;
 }
 
@@ -49,10 +42,7 @@ void write_state(const std::string& path, const beam::Mesh<typename M::Beam>& me
     file.put(stored.state);
     for (int k = 0; k < 2; ++k) file.put(Vector(Vector::Zero(stored.state.size())));
     file.put(EnergyBalance{}), file.put(0.0);
-    file.put(core::count(stored.records));
-    for (const auto& record : stored.records) record.each([&](const auto& value) { file.put(value); });
-    file.put(core::count(stored.zones));
-    for (const contact::Zone& zone : stored.zones) file.put(zone);
+    put_memory(file, stored.records, stored.zones);
     file.write(path);
 }
 
