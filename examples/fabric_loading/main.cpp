@@ -45,7 +45,8 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     // The programme.
     fabric_loading::Curve curve;
     example::Recorder recorder(output, radius, [&] {
-        std::vector<observe::Column> row = fabric_loading::columns(cloth::load_figures(scene, simulator), simulator.snapshot(), fabric);
+        const observe::Snapshot now = simulator.snapshot();
+        std::vector<observe::Column> row = fabric_loading::columns(cloth::load_figures(scene, simulator, now), now, fabric);
         curve.add(row);
         return row;
     });
@@ -58,7 +59,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     curve.write(output.folder, load.name);
     const cloth::CrimpMeasures before = cloth::crimp_measures(settled, fabric), after = cloth::crimp_measures(snapshot, fabric);
     std::vector<std::pair<std::string, double>> figures{{"fibres", static_cast<double>(fabric.fibres())}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())}};
-    for (const auto& figure : cloth::load_figures(scene, simulator)) figures.push_back(figure);
+    for (const auto& figure : cloth::load_figures(scene, simulator, snapshot)) figures.push_back(figure);
     for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"crimp_before", before.warp}, {"crimp_after", after.warp}, {"dissipated", report.energy.dissipated}, {"damped", report.energy.damped}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()}, {"linear_iterations", static_cast<double>(report.counts.linear_iterations)}})
         figures.emplace_back(name, value);
     example::write_summary(output, report, radius, figures);

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 // A repeating cell of plain weave, settled and stretched along both families: its stress found in two ways, and its stiffness.
-#include <fibrant/beam/director_beam.hpp>
+#include "periodic_cell.hpp"
+
 #include <fibrant/compositions/weave/periodic.hpp>
 #include <fibrant/compositions/weave/measures.hpp>
 #include <fibrant/compositions/weave/settle.hpp>
-#include <fibrant/connection/rigid_bodies.hpp>
-#include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/simulation/programme.hpp>
-#include <fibrant/solver/two_level_pcg.hpp>
 
 #include <doctest/doctest.h>
 
@@ -20,27 +18,6 @@ using namespace fibrant;
 namespace periodic_long_test {
 
 using namespace fibrant::compositions::weave;
-
-struct Cell {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::LimitedGap<law::RegularisedPenalty>;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::TwoLevelPcg;
-    using Connections = connection::RigidBodies;
-};
-
-FabricParameters cell_fabric() {
-    FabricParameters fabric;
-    const scene::CrossSection macro = scene::macro_fibre(380.0, 0.018, 7.0);
-    fabric.warp_tows = fabric.weft_tows = 2;
-    fabric.warp = {7, macro.semi_axis_1, macro.inertia_factor, {7300.0, 0.3}};
-    fabric.weft = fabric.warp;
-    fabric.warp_spacing = fabric.weft_spacing = 0.88;
-    fabric.overhang = 0.44;
-    fabric.elements = 8;
-    return fabric;
-}
 
 TEST_CASE("the stress of a stretched cell is the same from the ties of its seams and from the forces in fibres and contacts") {
     const FabricParameters fabric = cell_fabric();

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Pieces of one fabric, periodic and finite, out of the state of one cell: how the force of a tow depends on how many there are.
-#include <fibrant/beam/director_beam.hpp>
+#include "periodic_cell.hpp"
+
 #include <fibrant/compositions/weave/load_cases.hpp>
 #include <fibrant/compositions/weave/repeated.hpp>
 #include <fibrant/compositions/weave/settle.hpp>
-#include <fibrant/connection/rigid_bodies.hpp>
-#include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/simulation/programme.hpp>
-#include <fibrant/solver/two_level_pcg.hpp>
 
 #include <doctest/doctest.h>
 
@@ -22,34 +20,15 @@ namespace repeated_cell_long_test {
 
 using namespace fibrant::compositions::weave;
 
-struct Woven {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::LimitedGap<law::RegularisedPenalty>;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::TwoLevelPcg;
-    using Connections = connection::RigidBodies;
-};
-using Mesh = beam::Mesh<Woven::Beam>;
+using Mesh = beam::Mesh<Cell::Beam>;
 
-FabricParameters cell_fabric() {
-    FabricParameters fabric;
-    const scene::CrossSection macro = scene::macro_fibre(380.0, 0.018, 7.0);
-    fabric.warp_tows = fabric.weft_tows = 2;
-    fabric.warp = {7, macro.semi_axis_1, macro.inertia_factor, {7300.0, 0.3}};
-    fabric.weft = fabric.warp;
-    fabric.warp_spacing = fabric.weft_spacing = 0.88;
-    fabric.overhang = 0.44;
-    fabric.elements = 8;
-    return fabric;
-}
 constexpr double strain = 0.006;  // of the settled period
 const std::string settled_file = "repeated_cell_settled.bin", file = "repeated_cell_started.bin";
 
 Mesh mesh_of(const FabricParameters& fabric) {
     scene::Assembly fibres;
     add_flat_fibres(fibres, fabric);
-    return Mesh(fibres, Woven::Beam(Woven::Beam::Parameters{}));
+    return Mesh(fibres, Cell::Beam(Cell::Beam::Parameters{}));
 }
 
 simulation::LoadProgramme stretch(const std::vector<simulation::Ramp>& ramps, double r) {
@@ -59,8 +38,8 @@ simulation::LoadProgramme stretch(const std::vector<simulation::Ramp>& ramps, do
     return programme;
 }
 
-simulation::ModelParameters<Woven> parameters(const FabricParameters& fabric) {
-    auto answer = model_parameters<Woven>(fabric, SettleParameters{});
+simulation::ModelParameters<Cell> parameters(const FabricParameters& fabric) {
+    auto answer = model_parameters<Cell>(fabric, SettleParameters{});
     answer.iteration.residual_tolerance = 1e-5, answer.iteration.overshoot = 0.5;
     return answer;
 }
@@ -68,12 +47,12 @@ simulation::ModelParameters<Woven> parameters(const FabricParameters& fabric) {
 /// Force of a tow of a periodic piece of `repeats` cells each way [force].
 double periodic_force(Index repeats) {
     const FabricParameters fabric = repeated(cell_fabric(), repeats);
-    simulation::Simulator<Woven> simulator(periodic_fabric(fabric, CellDrive::strain, 0.002), parameters(fabric));
+    simulation::Simulator<Cell> simulator(periodic_fabric(fabric, CellDrive::strain, 0.002), parameters(fabric));
     simulator.start_from(file);
     const observe::Snapshot shot = simulator.snapshot();
     const double period = shot.fibres[0].position.back().x() - shot.fibres[0].position.front().x(), length = fabric.fibre_length(Family::warp);
     const double gradient = strain * period / length;  // that of a cell counts over the fibres at rest
-    const auto report = simulator.run(simulation::loading_of<Woven>(stretch({{"strain_x", gradient}, {"strain_y", gradient}}, smallest_radius(fabric))));
+    const auto report = simulator.run(simulation::loading_of<Cell>(stretch({{"strain_x", gradient}, {"strain_y", gradient}}, smallest_radius(fabric))));
     CAPTURE(report.reason);
     REQUIRE(report.converged);
     const double force = simulator.equilibrium().ties().cell_force(0)(0, 0) / length / static_cast<double>(fabric.warp_tows);
@@ -86,9 +65,9 @@ double finite_force(Index repeats) {
     const FabricParameters fabric = repeated(cell_fabric(), repeats);
     const Mesh mesh = mesh_of(fabric);
     const LoadCase load = load_case("equibiaxial", simulation::snapshot_of(mesh, simulation::checkpoint_state(file, mesh)), fabric, TowEnds::fibres);
-    simulation::Simulator<Woven> simulator(load.assembly, parameters(fabric));
+    simulation::Simulator<Cell> simulator(load.assembly, parameters(fabric));
     simulator.start_from(file);
-    const auto report = simulator.run(simulation::loading_of<Woven>(stretch({{strain_channel, strain}}, smallest_radius(fabric))));
+    const auto report = simulator.run(simulation::loading_of<Cell>(stretch({{strain_channel, strain}}, smallest_radius(fabric))));
     CAPTURE(report.reason);
     REQUIRE(report.converged);
     const auto& ties = simulator.equilibrium().ties();
@@ -102,19 +81,19 @@ double finite_force(Index repeats) {
 TEST_CASE("finite samples come near to periodic ones of the same fabric, the nearer the more tows they have") {
     const FabricParameters cell = cell_fabric();
     {
-        simulation::Simulator<Woven> simulator(periodic_fabric(cell, CellDrive::tension, 0.002), model_parameters<Woven>(cell, {}));
-        auto loading = settling<Woven>(cell, SettleParameters{});
+        simulation::Simulator<Cell> simulator(periodic_fabric(cell, CellDrive::tension, 0.002), model_parameters<Cell>(cell, {}));
+        auto loading = settling<Cell>(cell, SettleParameters{});
         loading.checkpoint = settled_file;
         REQUIRE(simulator.run(loading).converged);
     }
     const Mesh cell_mesh = mesh_of(cell);
-    const auto stored = simulation::read_state<Woven>(settled_file, cell_mesh);
+    const auto stored = simulation::read_state<Cell>(settled_file, cell_mesh);
     std::vector<double> periodic, finite;
     for (const Index repeats : {1, 2, 3}) {
         const Mesh mesh = mesh_of(repeated(cell, repeats));
-        const auto larger = repeated<Woven>(stored, cell, cell_mesh, mesh, repeats);
+        const auto larger = repeated<Cell>(stored, cell, cell_mesh, mesh, repeats);
         CHECK(larger.records.size() == core::at(repeats * repeats) * stored.records.size());
-        simulation::write_state<Woven>(file, mesh, larger);
+        simulation::write_state<Cell>(file, mesh, larger);
         if (repeats == 1) {
             CHECK(larger.state == stored.state);
         } else {

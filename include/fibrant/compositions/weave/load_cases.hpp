@@ -49,7 +49,7 @@ struct LoadCase {
     std::array<Index, 2> plates{-1, -1};  ///< below and above
     double width = 0.0, height = 0.0;     ///< between the edges along x and along y at the start [length]
     double plate_distance = 0.0;          ///< at the start [length]
-    double middle_spacing = 0.0;          ///< between middle_crossings at the start [length]
+    double middle_spacing = 0.0;          ///< of middle crossings at the start [length]
     FabricParameters fabric;
 };
 
@@ -210,8 +210,9 @@ using Figure = std::pair<std::string, double>;
 
 /// Figures of a load case after an increment: the two of its curve first (with their names), then places, turns and reactions of
 /// all edges. Forces are those that bodies exert on the sample.
+/// @param snapshot  of the simulator now
 template <class Simulator>
-std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulator) {
+std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulator, const observe::Snapshot& snapshot) {
     const auto& ties = simulator.equilibrium().ties();
     const auto force = [&](Edge edge) { return load.bodies.of(edge) < 0 ? Vec3(Vec3::Zero()) : ties.wrench(load.bodies.of(edge)).force; };
     const auto place = [&](Edge edge) { return load.bodies.of(edge) < 0 ? Vec3(Vec3::Zero()) : ties.motion().position(load.bodies.of(edge)); };
@@ -227,7 +228,7 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
         figures.push_back({"woven_strain", woven_strain(load.fabric, Family::warp, load.width, figures[0].second, sum)});
         figures.push_back({"inner_tow_force", sum});
         // The same where edges are furthest away.
-        figures.push_back({"middle_strain", middle_spacing(simulator.snapshot(), load.fabric) / load.middle_spacing - 1.0});
+        figures.push_back({"middle_strain", middle_spacing(snapshot, load.fabric) / load.middle_spacing - 1.0});
         const auto [first, last] = middle_tows(core::count(ends));
         figures.push_back({"middle_tow_force", 0.5 * (ties.wrench(ends[core::at(first)]).force + ties.wrench(ends[core::at(last)]).force).x()});
     } else if (load.name == "shear") {
@@ -267,7 +268,7 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
                 if (end >= 0) sum += ties.wrench(end).force;
     if (load.puller >= 0) {
         sum += ties.wrench(load.puller).force;
-        figures.push_back({"pressing", pressing_force(simulator.snapshot(), load.pulled_fibres)});
+        figures.push_back({"pressing", pressing_force(snapshot, load.pulled_fibres)});
     }
     for (const Index plate : load.plates)
         if (plate >= 0) sum -= simulator.contacts().tools().reaction(plate).force;

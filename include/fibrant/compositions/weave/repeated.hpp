@@ -30,7 +30,6 @@ simulation::StoredState<M> repeated(const simulation::StoredState<M>& stored, co
                                     const beam::Mesh<typename M::Beam>& mesh, Index repeats) {
     const FabricParameters fabric = repeated(cell, repeats);
     const Index last = cell.nodes_per_fibre() - 1;
-    const auto vector_of = [](const auto& of, Index fibre, Index node, Index k) { return 3 * (of.fibre(fibre).first_vector + 3 * node + k); };
     const auto along = [&](Index fibre) { return core::at(axis_of(cell.place(fibre).family)); };
     const auto image = [&](Index fibre, const std::array<Index, 2>& at) {
         const FibrePlace place = cell.place(fibre);
@@ -39,7 +38,7 @@ simulation::StoredState<M> repeated(const simulation::StoredState<M>& stored, co
     };
     std::array<Vec3, 2> period{Vec3::Zero(), Vec3::Zero()};
     for (Index f = 0; f < cell.fibres(); ++f)
-        period[along(f)] += (stored.state.template segment<3>(vector_of(cell_mesh, f, last, 0)) - stored.state.template segment<3>(vector_of(cell_mesh, f, 0, 0))) /
+        period[along(f)] += (stored.state.template segment<3>(3 * cell_mesh.node_vector(f, last)) - stored.state.template segment<3>(3 * cell_mesh.node_vector(f, 0))) /
                             static_cast<double>(cell.tows(cell.place(f).family) * cell.tow(cell.place(f).family).fibres);
     const Vec3 middle = 0.5 * static_cast<double>(repeats - 1) * (period[0] + period[1]);
     simulation::StoredState<M> answer;
@@ -51,9 +50,9 @@ simulation::StoredState<M> repeated(const simulation::StoredState<M>& stored, co
             for (Index f = 0; f < cell.fibres(); ++f) {
                 const Index first = at[along(f)] * last;
                 for (Index node = 0; node <= last; ++node)
-                    for (Index k = 0; k < 3; ++k)
-                        answer.state.template segment<3>(vector_of(mesh, image(f, at), first + node, k)) =
-                            stored.state.template segment<3>(vector_of(cell_mesh, f, node, k)) + (k == 0 ? shift : Vec3(Vec3::Zero()));
+                    for (Index k = 0; k < M::Beam::vectors_per_node; ++k)
+                        answer.state.template segment<3>(3 * mesh.node_vector(image(f, at), first + node, k)) =
+                            stored.state.template segment<3>(3 * cell_mesh.node_vector(f, node, k)) + (k == 0 ? shift : Vec3(Vec3::Zero()));
             }
             const auto on = [&](Index fibre, double place) { return place + static_cast<double>(at[along(fibre)] * cell.elements); };
             for (auto record : stored.records) {
