@@ -38,6 +38,45 @@ TEST_CASE("factors of chains solve chains of every shape, in every lane, to the 
             }
 }
 
+TEST_CASE("blocks that are nothing are not kept: middle nodes couple with their element alone, whichever lane they are in") {
+    const int nodes = 9, m = 3, reach = 2, lanes = 8;
+    // Bands whose odd nodes couple with the node before only; `full`: one chain that couples them over two nodes.
+    const auto bands = [&](int full) {
+        std::array<Matrix, core::at(lanes)> all;
+        for (int lane = 0; lane < lanes; ++lane) {
+            Matrix& band = all[core::at(lane)];
+            band.setZero(nodes * m, (reach + 1) * m);
+            for (int a = 0; a < nodes; ++a) {
+                band.block(a * m, 0, m, m) = (10.0 + lane) * Mat3::Identity();
+                for (int d = 1; d <= std::min(a, a % 2 == 0 || lane == full ? 2 : 1); ++d)
+                    band.block(a * m, d * m, m, m) << 1, 0.5, 0.2 * a, -0.3, d, 0.1, 0.4, -0.2 * lane, 0.7;
+            }
+        }
+        return all;
+    };
+    solver::BlockBandCholesky<3, lanes> factor({nodes, m, reach});
+    const std::size_t block = 9 * sizeof(float) * lanes, triangle = 6 * sizeof(float) * lanes;
+    for (const int full : {-1, 5, -1}) {  // and back again
+        const auto all = bands(full);
+        for (const bool accepted : factor.factor(all, 1e-12)) CHECK(accepted);
+        CHECK(factor.bytes() == nodes * triangle + (full < 0 ? 4 + 8 : 7 + 8) * block);
+        std::vector<Eigen::Array<float, lanes, 1>> x(core::at(nodes * m));
+        for (int k = 0; k < nodes * m; ++k) x[core::at(k)] = static_cast<float>(k % 5 - 1);
+        factor.solve(x.data());
+        for (int lane = 0; lane < lanes; ++lane) {
+            Matrix dense = Matrix::Zero(nodes * m, nodes * m);
+            for (int a = 0; a < nodes; ++a)
+                for (int d = 0; d <= std::min(a, reach); ++d) {
+                    dense.block(a * m, (a - d) * m, m, m) = all[core::at(lane)].block(a * m, d * m, m, m);
+                    dense.block((a - d) * m, a * m, m, m) = dense.block(a * m, (a - d) * m, m, m).transpose().eval();
+                }
+            Vector b(nodes * m), z(nodes * m);
+            for (int k = 0; k < nodes * m; ++k) b[k] = k % 5 - 1, z[k] = static_cast<double>(x[core::at(k)][lane]);
+            CHECK((dense * z - b).norm() < 1e-5 * b.norm());  // rounding of float; the condition number is below 10
+        }
+    }
+}
+
 TEST_CASE("while nothing touches a few iterations solve fibres of any slenderness, held at both ends") {
     // The condition number grows to 1e11: the residual of 1e-8 is below the rounding of A x for the most slender one.
     struct Case {

@@ -35,7 +35,7 @@ public:
     using Wide = Eigen::Array<double, Lanes, 1>;
     using Kept = Eigen::Array<float, Lanes, 1>;
 
-    explicit BlockBandCholesky(const BandShape& shape = {}) : shape_{shape}, factor_(core::at(shape.nodes * stride())) {}
+    explicit BlockBandCholesky(const BandShape& shape = {}) : shape_{shape}, before_(core::at(shape.nodes)) {}
 
     const BandShape& shape() const noexcept { return shape_; }
     /// Bytes of the factor.
@@ -50,29 +50,26 @@ public:
         const int m = block(), reach = shape_.reach, mm = m * m;
         std::array<bool, core::at(Lanes)> accepted;
         accepted.fill(true);
+        outline(bands);
+        Kept* kept = factor_.data();
         // The last reach + 1 rows of L, and G of their diagonals: row a is kept at slot a % (reach + 1).
         std::vector<Wide> rows(core::at((reach + 1) * (reach + 1) * mm)), inverses(core::at((reach + 1) * mm));
         const auto lower = [&](int a, int d) { return rows.data() + ((a % (reach + 1)) * (reach + 1) + d) * mm; };
         const auto inverse = [&](int a) { return inverses.data() + (a % (reach + 1)) * mm; };
         std::vector<Wide> product(core::at(mm));
         for (int a = 0; a < shape_.nodes; ++a) {
-            const int before = std::min(a, reach);
+            const int before = before_[core::at(a)];
             for (int d = before; d >= 0; --d) gather(bands, a, d, lower(a, d));
             for (int d = before; d > 0; --d) {
-                for (int e = before; e > d; --e) subtract_outer(m, lower(a, e), lower(a - d, e - d), lower(a, d));
+                for (int e = std::min(before, d + before_[core::at(a - d)]); e > d; --e) subtract_outer(m, lower(a, e), lower(a - d, e - d), lower(a, d));
                 multiply_transposed_lower(m, lower(a, d), inverse(a - d), product.data());
                 std::copy(product.begin(), product.end(), lower(a, d));
                 subtract_outer_lower(m, lower(a, d), lower(a, 0));
             }
             invert_cholesky(m, bands, a, low, lower(a, 0), inverse(a), accepted);
-            Kept* kept = factor_.data() + static_cast<std::ptrdiff_t>(a) * stride();
             for (int i = 0; i < m; ++i)
                 for (int j = 0; j <= i; ++j) *kept++ = inverse(a)[i * m + j].template cast<float>();
-            for (int d = 1; d <= reach; ++d, kept += mm) {
-                if (d > before) {
-                    std::fill(kept, kept + mm, Kept::Zero());
-                    continue;
-                }
+            for (int d = 1; d <= before; ++d, kept += mm) {
                 for (int i = 0; i < m; ++i)
                     for (int j = 0; j < m; ++j) {
                         Wide sum = Wide::Zero();
@@ -86,16 +83,16 @@ public:
 
     /// x <- B^-1 x, nodes m entries.
     void solve(Kept* x) const noexcept {
-        const int m = block(), reach = shape_.reach, mm = m * m, triangle = m * (m + 1) / 2;
+        const int m = block(), mm = m * m, triangle = m * (m + 1) / 2;
+        const Kept* g = factor_.data();
         for (int a = 0; a < shape_.nodes; ++a) {
-            const Kept* g = factor_.data() + static_cast<std::ptrdiff_t>(a) * stride();
             Kept* y = x + static_cast<std::ptrdiff_t>(a) * m;
             for (int i = m - 1; i >= 0; --i) {
                 Kept sum = Kept::Zero();
                 for (int j = 0; j <= i; ++j) sum += g[i * (i + 1) / 2 + j] * y[j];
                 y[i] = sum;
             }
-            for (int d = 1; d <= std::min(a, reach); ++d) {
+            for (int d = 1; d <= before_[core::at(a)]; ++d) {
                 const Kept* w = g + triangle + (d - 1) * mm;
                 const Kept* above = y - d * m;
                 for (int i = 0; i < m; ++i) {
@@ -104,11 +101,12 @@ public:
                     y[i] -= sum;
                 }
             }
+            g += triangle + before_[core::at(a)] * mm;
         }
         for (int a = shape_.nodes - 1; a >= 0; --a) {
-            const Kept* g = factor_.data() + static_cast<std::ptrdiff_t>(a) * stride();
+            g -= triangle + before_[core::at(a)] * mm;
             Kept* y = x + static_cast<std::ptrdiff_t>(a) * m;
-            for (int d = 1; d <= std::min(a, reach); ++d) {
+            for (int d = 1; d <= before_[core::at(a)]; ++d) {
                 const Kept* w = g + triangle + (d - 1) * mm;
                 Kept* above = y - d * m;
                 for (int j = 0; j < m; ++j) {
@@ -127,7 +125,21 @@ public:
 
 private:
     int block() const noexcept { return Block > 0 ? Block : shape_.block; }
-    int stride() const noexcept { return block() * (block() + 1) / 2 + shape_.reach * block() * block(); }
+
+    /// Blocks left of each diagonal block from the first that is not zero on: a factor has no others. A node in the middle of an
+    /// element couples with that element's nodes alone, which makes four blocks of five.
+    void outline(std::span<const Matrix, core::at(Lanes)> bands) {
+        const int m = block();
+        std::size_t entries = 0;
+        for (int a = 0; a < shape_.nodes; ++a) {
+            int before = std::min(a, shape_.reach);
+            const auto is_zero = [&](const Matrix& band) { return (band.block(a * m, before * m, m, m).array() == 0.0).all(); };
+            while (before > 0 && std::all_of(bands.begin(), bands.end(), is_zero)) --before;
+            before_[core::at(a)] = before;
+            entries += core::at(m * (m + 1) / 2 + before * m * m);
+        }
+        factor_.resize(entries);
+    }
 
     /// Block A(a, a - d) of all lanes, row by row.
     void gather(std::span<const Matrix, core::at(Lanes)> bands, int a, int d, Wide* to) const {
@@ -196,6 +208,7 @@ private:
     }
 
     BandShape shape_;
+    std::vector<int> before_;   // blocks that are kept left of each diagonal block
     std::vector<Kept> factor_;  // node by node: G packed by rows of its lower triangle, then W(a, 1), W(a, 2), ...
 };
 
