@@ -59,6 +59,7 @@ inline Scene read_scene(example::TomlReader& file, const std::string& path) {
     file.read("load", "rest_damping", load.rest_damping);
     file.read("load", "rest_share", load.rest_share);
     file.read("load", "damping", load.damping);
+    file.read("load", "patches_across", load.patches_across);
     file.read("load", "driven", load.driven);
     file.read("load", "settled", scene.settled);
     file.read("solver", "overshoot", scene.overshoot);

@@ -54,6 +54,20 @@ struct Rod {
         assembly.apply(scene::DeadForce{scene::last_end(0), scene::NodeVector::position, Vec3(force, 0, 0), "load"});
         return assembly;
     }
+    /// Eleven of them side by side, each pushed by P L^2 / EI = `load`, and if asked for a twelfth that is `softness` times as soft.
+    scene::Assembly row(double load, double softness = 0.0) const {
+        scene::Assembly assembly;
+        const double force = load * bending_stiffness() / (length * length);
+        for (int k = 0; k < (softness > 0.0 ? 12 : 11); ++k) {
+            scene::FibreSpecification fibre = specification();
+            fibre.from.y() = fibre.to.y() = 4.0 * k * length;
+            if (k == 11) fibre.material.young_modulus /= softness;
+            const Index of = assembly.add(fibre);
+            assembly.clamp(scene::first_end(of));
+            assembly.apply(scene::DeadForce{scene::last_end(of), scene::NodeVector::position, Vec3(force, 0, 0), "load"});
+        }
+        return assembly;
+    }
 };
 
 /// Two crossing fibres, clamped at their ends; the ends of the upper one (fibre 1) move down by `approach` and aside by

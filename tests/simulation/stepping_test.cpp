@@ -290,6 +290,44 @@ TEST_CASE("an increment that moves further than its stage allows is cut") {
     CHECK((bounded.state() - free.state()).cwiseAbs().maxCoeff() < 1e-3 * rod.length);
 }
 
+TEST_CASE("one fibre of many that goes too far is held alone: increments stay, and the others do not notice") {
+    const Rod rod;
+    const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3);  // of the tip
+    Loading<Smooth> loading;
+    loading.stages = {{.name = "push", .increments = 4, .ramps = {{"load", 1.0}}, .damping = 1e-3 * stiffness, .largest_displacement = 0.02 * rod.length},
+                      {.name = "rest", .increments = 1, .damping = 1e-3 * stiffness, .damping_goes_on = true, .damping_decay = 0.5,
+                       .largest_displacement = 0.02 * rod.length, .until = simulation::until_settled(1e-4 * rod.radius, 0.0)}};
+    const double push = 0.1;  // each tip goes by a thirtieth of the length, and by a hundred times that if nothing holds it
+    Simulator<Smooth> alone(rod.row(push), test::tight_parameters<Smooth>(rod.radius));
+    Record<Smooth> calm(alone);
+    REQUIRE(alone.run(loading, calm).converged);
+    Simulator<Smooth> both(rod.row(push, 10.0), test::tight_parameters<Smooth>(rod.radius));
+    Record<Smooth> record(both);
+    const Report report = both.run(loading, record);
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    CHECK(report.rejected_increments > 0);
+    const Index first = alone.state().size();
+    for (std::size_t k = 0; k < 4; ++k) {
+        CHECK(record.increments[k].stage == "push");
+        CHECK(record.increments[k].fraction == 1.0);
+        CHECK(record.increments[k].displacement <= 0.02 * rod.length);
+        CHECK((record.states[k].head(first) - calm.states[k]).cwiseAbs().maxCoeff() < 1e-9 * rod.length);
+    }
+    CHECK(record.increments[4].stage == "rest");
+    // In the end nothing holds the soft one either: a thirtieth of the length tenfold, as far as large deflections let it.
+    Simulator<Smooth> direct(rod.row(push, 10.0), test::tight_parameters<Smooth>(rod.radius));
+    REQUIRE(direct.run({.increments = 1}).converged);
+    CHECK(direct.value(scene::last_end(11)).x() > 0.25 * rod.length);
+    CHECK((both.state() - direct.state()).cwiseAbs().maxCoeff() < 1e-6 * rod.length);
+    // Of twelve that are alike all go too far: the increment is made smaller, as ever.
+    Simulator<Smooth> all(rod.row(10.0 * push), test::tight_parameters<Smooth>(rod.radius));
+    Record<Smooth> cut(all);
+    loading.stages[0].most_increments = 400, loading.stages[1].most_increments = 400;
+    REQUIRE(all.run(loading, cut).converged);
+    CHECK(cut.increments[0].fraction < 1.0);
+}
+
 TEST_CASE("what is driven further than the last increment moved is found by the first search all the same") {
     // Both fibres move by two radii aside, far beyond the least reach of a search, after an increment in which they were at rest.
     Crossing crossing;

@@ -67,9 +67,11 @@ public:
     /// Sets what is imposed, and the state from which the increment starts.
     /// @param damping  of a spring from every centre to its place in `state`, >= 0 [force / length]; directors count at the
     ///                 surface. It holds what nothing else holds, and leaves no force once nothing moves.
-    void begin(std::span<const double> amplitudes, const Vector& state, double damping = 0.0) {
+    /// @param holding  factor on it of each fibre, >= 1; none: 1
+    void begin(std::span<const double> amplitudes, const Vector& state, double damping = 0.0, std::span<const double> holding = {}) {
         amplitudes_.assign(amplitudes.begin(), amplitudes.end());
         damping_ = damping;
+        holding_.assign(holding.begin(), holding.end());
         if (damping_ > 0.0) anchor_ = state;
         motion_.at(amplitudes, state, system_.layout().held, targets_);
         ties_.begin(amplitudes);
@@ -152,12 +154,8 @@ public:
             contacts_->section_stiffness_terms(f, state, [&](Index first, const auto& weights, const Mat3& stiffness) {
                 system_.add_rank_one(f, first, weights, stiffness);
             });
-            if (shift + damping_ > 0.0) {
-                const scene::Chain& chain = system_.layout().chains[core::at(f)];
-                for (Index v = chain.first_vector; v < chain.first_vector + chain.nodes * chain.vectors_per_node; ++v) {
-                    const double length = system_.layout().length[core::at(v)];
-                    system_.add_diagonal(v, (shift + damping_) * length * length * Mat3::Identity());
-                }
+            if (const double spring = shift + damping_ * holding(f); spring > 0.0) {
+                for_vectors(f, [&](Index v, double length) { system_.add_diagonal(v, spring * length * length * Mat3::Identity()); });
             }
         }, mesh_->grain());
         load_.add_stiffness(amplitudes_, state, [&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
@@ -196,6 +194,8 @@ public:
             const double length = system_.layout().length[core::at(v)];
             force.segment<3>(3 * v) = damping_ * length * length * (state.segment<3>(3 * v) - anchor_.segment<3>(3 * v));
         }
+        for (Index f = 0; f < core::count(holding_); ++f)
+            if (holding(f) != 1.0) for_vectors(f, [&](Index v, double) { force.segment<3>(3 * v) *= holding(f); });
         return force;
     }
     /// External forces, and forces on held components, of the last residual.
@@ -217,6 +217,14 @@ public:
         return std::sqrt(core::largest(core::count(length), 0.0, [&](Index v) {
             return step.segment<3>(3 * v).squaredNorm() * length[core::at(v)] * length[core::at(v)];
         }));
+    }
+
+    /// Of each fibre the greatest displacement of a step, directors counted at the surface [length]; empty if the step is not finite.
+    std::vector<double> greatest_by_fibre(const Vector& step) const {
+        std::vector<double> greatest(step.size() > 0 && step.allFinite() ? core::at(mesh_->fibre_count()) : 0, 0.0);
+        for (Index f = 0; f < core::count(greatest); ++f)
+            for_vectors(f, [&](Index v, double length) { greatest[core::at(f)] = std::max(greatest[core::at(f)], length * step.segment<3>(3 * v).norm()); });
+        return greatest;
     }
 
 private:
@@ -244,6 +252,13 @@ private:
             if (!column.isZero(0.0)) system_.skews().push_back({static_cast<std::int32_t>(points.size() - 1), column, element.normal});
         }
     }
+    double holding(Index f) const noexcept { return holding_.empty() ? 1.0 : holding_[core::at(f)]; }
+    /// body(vector, its length) of each nodal vector of a fibre.
+    template <class Body>
+    void for_vectors(Index f, const Body& body) const {
+        const scene::Chain& chain = system_.layout().chains[core::at(f)];
+        for (Index v = chain.first_vector; v < chain.first_vector + chain.nodes * chain.vectors_per_node; ++v) body(v, system_.layout().length[core::at(v)]);
+    }
     typename B::Stresses& stress(Index f, Index e) noexcept { return stresses_[core::at(mesh_->element_index(f, e))]; }
     template <class Body>
     void for_elements(const Body& body) {
@@ -261,7 +276,7 @@ private:
     [[no_unique_address]] Solid solid_;
     System system_;
     std::vector<typename B::Stresses> stresses_;
-    std::vector<double> amplitudes_;
+    std::vector<double> amplitudes_, holding_;
     std::vector<Vec3> targets_;
     Vector external_, reaction_, anchor_;
     double damping_ = 0.0;

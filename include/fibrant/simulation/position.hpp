@@ -19,18 +19,44 @@ struct Position {
     double damping_floor = 0.0;  ///< that it does not fall below: what has failed is not tried again at once
     bool stage_over = false;
     std::vector<double> from;    ///< amplitudes at the start of the stage
+    std::vector<double> holding; ///< damping of each fibre over that of all, >= 1
     static constexpr double least_damping = 1e-3;  ///< over that of the stage: below, none
+    static constexpr double few = 0.1;             ///< of the fibres, which alone are held harder
+    static constexpr double far = 0.25;            ///< of the greatest motion: what counts as restless
+    static constexpr double most_holding = 4096.0;
+
+    /// After an attempt that has failed. What stops increments is often one fibre, or two at the edge of a tow: those that moved
+    /// most in the last iteration or pass, if they are few, are held four times as hard, and the increment stays as it is. Else it
+    /// is made smaller, and damping of all rises.
+    /// @param moved     of each fibre, in what did not settle [length]; empty: not known
+    /// @param allowed   that it may be without harm [length]
+    /// @param attempts  at this increment that have failed, >= 1
+    template <Model M>
+    void give_way(const Stage<M>& stage, const std::vector<double>& moved, double allowed, Index attempts) {
+        easy = 0;
+        if (attempts % 5 != 0 && damping * stage.damping > 0.0 && hold_restless(moved, allowed)) return;
+        // Once its ramps are over, only more damping makes an increment easier.
+        const bool damped = stage.damping > 0.0 && damping < 1.0 / least_damping;
+        if (progress < 1.0 || !damped) fraction *= 0.5;
+        damping_floor = 2.0 * damping;
+        damping = std::clamp(4.0 * damping, least_damping, 1.0 / least_damping);
+    }
 
     /// Damping is the inverse of a time step: what was solved with ease goes on faster, and what was hard more slowly.
     /// @param effort  iterations of a normal pass of the last attempt over how many it may take [1]
     template <Model M>
     void adapt_damping(const Stage<M>& stage, const IncrementReport& increment, double effort) {
+        const double before = damping;
         if (increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= 0.6)
             damping = std::max(damping * (damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, fraction)), std::min(damping, damping_floor));
         else if (stage.damping_decay < 1.0 && effort > 0.75)
             damping = std::min(2.0 * damping, 1.0 / least_damping);
         if (damping < least_damping) damping = 0.0;
         damping_floor *= 0.8;
+        // What holds a single fibre is halved after each increment without a cut, be it by its own factor or by that of all.
+        const double share = 0.5 * (before > 0.0 ? before / std::max(damping, 0.5 * before) : 1.0);
+        if (increment.cuts == 0)
+            for (double& factor : holding) factor = std::max(1.0, share * factor);
     }
 
     template <class Body>
@@ -39,12 +65,26 @@ struct Position {
     void each(const Body& body) const { each_of(*this, body); }
 
 private:
+    /// @returns false where too many moved, or one that did is held as hard as may be
+    bool hold_restless(const std::vector<double>& moved, double allowed) {
+        const double most = moved.empty() ? 0.0 : *std::max_element(moved.begin(), moved.end());
+        std::vector<std::size_t> restless;
+        for (std::size_t f = 0; f < moved.size(); ++f)
+            if (moved[f] > std::max(far * most, allowed)) restless.push_back(f);
+        if (restless.empty() || static_cast<double>(restless.size()) > few * static_cast<double>(moved.size())) return false;
+        for (const std::size_t f : restless)
+            if (holding[f] >= most_holding) return false;
+        for (const std::size_t f : restless) holding[f] *= 4.0;
+        return true;
+    }
+
     template <class Self, class Body>
     static void each_of(Self& self, const Body& body) {
         body(self.stage), body(self.in_stage), body(self.accepted), body(self.easy);
         body(self.progress), body(self.fraction), body(self.displacement);
         body(self.damping), body(self.damping_floor), body(self.stage_over);
         for (auto& amplitude : self.from) body(amplitude);
+        for (auto& factor : self.holding) body(factor);
     }
 };
 

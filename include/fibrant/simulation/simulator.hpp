@@ -69,6 +69,7 @@ public:
         Report report;
         position_ = {};
         position_.from = amplitudes_;
+        position_.holding.assign(core::at(mesh_.fibre_count()), 1.0);
         motion_ = MeanMotion(mesh_, amplitudes_.size());
         if (loading.resume && !loading.checkpoint.empty() && std::filesystem::exists(loading.checkpoint))
             read_checkpoint(loading.checkpoint, stages, report);
@@ -147,8 +148,6 @@ public:
     }
 
 private:
-    static constexpr double least_damping = Position::least_damping;
-
     Index first_of(const scene::Station& at, scene::NodeVector vector) const {
         return 3 * mesh_.node_vector(at.fibre, connection::station_node(mesh_, at), static_cast<Index>(vector));
     }
@@ -208,7 +207,7 @@ private:
             const double contact_before = contacts_work_;
             Vector trial = state_;
             move_tools(amplitudes);
-            equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping);
+            equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping, position_.holding);
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver> loops(
                 equilibrium_, contacts_, linear_, parameters_.iteration, radius_, touching, clock_);
@@ -239,12 +238,7 @@ private:
             }
             ++report.rejected_increments, ++increment.cuts;
             contacts_.restore();
-            // Once its ramps are over, only more damping makes an increment easier.
-            const bool damped = stage.damping > 0.0 && position_.damping < 1.0 / least_damping;
-            if (position_.progress < 1.0 || !damped) position_.fraction *= 0.5;
-            position_.easy = 0;
-            position_.damping_floor = 2.0 * position_.damping;
-            position_.damping = std::clamp(4.0 * position_.damping, least_damping, 1.0 / least_damping);
+            position_.give_way(stage, equilibrium_.greatest_by_fibre(attempt.unsettled), attempt.allowed, increment.cuts);
             if (position_.fraction < loading.smallest_fraction || report.rejected_increments > loading.most_rejected) {
                 report.counts += increment.counts;
                 report.reason = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": " + attempt.reason;

@@ -20,6 +20,8 @@ struct AttemptReport {
     double force_scale = 0.0;   ///< norm of those [force]
     double step = 0.0;          ///< last Newton step [length]
     double displacement = 0.0;  ///< greatest of the increment [length]
+    Vector unsettled;           ///< last step, or displacement of the last pass or of the whole, of an attempt that has failed
+    double allowed = 0.0;       ///< what that may be anywhere without harm [length]
 };
 
 /// Solves increments; loops inside are solved to a part of the last change of the loop outside.
@@ -49,7 +51,7 @@ public:
         const double bound = contact_possible_ ? std::max(reach, radius_) : std::numeric_limits<double>::infinity();
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
-        Vector searched;                                          // state of the last search
+        Vector searched, travel;                                  // state of the last search, displacement of the last pass
         Index passes = 0, searches = 0, moves = 0, renewals = 0;
         // Further than so many searches reach: what hardly anything holds goes on for ever, and where displacements have a bound,
         // more damping or a smaller increment costs less than to follow it.
@@ -57,6 +59,7 @@ public:
         while (true) {
             if (passes >= parameters_.contact_limit || moves > most_moves) {
                 report.reason = "contact passes do not settle: last displacement " + core::text(change / radius_) + " radii";
+                report.unsettled = travel;
                 return report;
             }
             ++report.counts.contact_passes;
@@ -76,13 +79,18 @@ public:
             });
             const Vector before_pass = state;
             const bool moved = !normal_passes(newton, state, accepted, searched, bound, looseness, report);
-            if (!report.reason.empty()) return report;
+            if (!report.reason.empty()) {
+                report.unsettled = newton.last_step();
+                return report;
+            }
             report.displacement = equilibrium_->greatest(state - accepted);
             if (report.displacement > furthest) {
                 report.reason = "fibres moved by " + core::text(report.displacement / radius_) + " radii in an increment";
+                report.unsettled = state - accepted, report.allowed = furthest;
                 return report;
             }
-            change = equilibrium_->greatest(state - before_pass);
+            travel = state - before_pass;
+            change = equilibrium_->greatest(travel);
             if (moved) {
                 ++moves;
                 continue;

@@ -114,6 +114,12 @@ public:
             before_ = state;
             state += step_;
             report.residual = evaluate(state);
+            // Where a cell of a solid is turned inside out there are no forces.
+            for (int cut = 0; cut < 6 && !std::isfinite(report.residual.residual) && step_.allFinite(); ++cut) {
+                step_ *= 0.25, scale *= 0.25;
+                state = before_ + step_;
+                report.residual = evaluate(state);
+            }
             if (watched) scale *= shorten(scale * slope, state, report.residual);
             if (mixed) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
             ++report.iterations, ++counts.newton;
@@ -146,6 +152,9 @@ public:
         }
         return report;
     }
+
+    /// Of the last iteration.
+    const Vector& last_step() const noexcept { return step_; }
 
 private:
     double residual_tolerance(double tolerance) const {

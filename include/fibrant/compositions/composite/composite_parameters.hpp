@@ -64,6 +64,8 @@ struct LoadParameters {
                                       ///< stiffness that the tension of settling gave a node [1], >= 0
     double rest_share = 1e-3;         ///< of the forces that it may hold there [1], in (0, 1)
     double damping = 1e-3;            ///< the same spring under load [1], >= 0
+    Index patches_across = 0;         ///< of a layer's face, whose means the bodies take along, >= 0; 0: as many as warp tows. A corner of a
+                                      ///< face is held the less the more cells a patch has
 
     void validate() const {
         core::require_finite("LoadParameters.strain", strain);
@@ -73,6 +75,7 @@ struct LoadParameters {
         core::require_not_negative("LoadParameters.rest_damping", rest_damping);
         core::require(rest_share > 0.0 && rest_share < 1.0, "LoadParameters.rest_share", rest_share, "> 0 and < 1");
         core::require_not_negative("LoadParameters.damping", damping);
+        core::require_at_least("LoadParameters.patches_across", patches_across, 0);
     }
 };
 

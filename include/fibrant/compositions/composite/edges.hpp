@@ -133,6 +133,7 @@ inline void tie_edges(Composite& composite, const FabricParameters& fabric, cons
     using scene::Coordinate;
     load.validate();
     const double full = load.angle_deg * std::numbers::pi / 180.0;
+    const Index patches = load.patches_across > 0 ? load.patches_across : fabric.warp_tows;
     for (const bool is_east : {false, true}) {
         const double half = is_east ? 0.5 : -0.5;
         scene::RigidBody body;
@@ -151,7 +152,7 @@ inline void tie_edges(Composite& composite, const FabricParameters& fabric, cons
         for (Index tow = 0; tow < fabric.warp_tows; ++tow)  // a fibre's turn about itself: nothing else may hold it
             weave::connect_tow_end(composite.assembly, fabric, edge, tow, number, {.spin = !is_east});
         for (Index layer = 0; layer < core::count(layers.list); ++layer)
-            for (const auto& patch : face_patches(layers.list[core::at(layer)], layer, is_east, fabric.warp_tows))
+            for (const auto& patch : face_patches(layers.list[core::at(layer)], layer, is_east, patches))
                 if (!patch.empty()) composite.assembly.connect({.nodes = patch, .body = number});
     }
 }
