@@ -25,7 +25,7 @@ struct Position {
     static constexpr double far = 0.25;            ///< of the greatest motion: what counts as restless
     static constexpr double most_holding = 4096.0;
 
-    /// After an attempt that has failed. What stops increments is often one fibre, or two at the edge of a tow: those that moved
+    /// After an attempt that has failed. What stops increments is often one fibre, or two at the edge of a bundle: those that moved
     /// most in the last iteration or pass, if they are few, are held four times as hard, and the increment stays as it is. Else it
     /// is made smaller, and damping of all rises.
     /// @param moved     of each fibre, in what did not settle [length]; empty: not known
