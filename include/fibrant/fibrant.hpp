@@ -116,6 +116,7 @@
 #include <fibrant/observe/vtk_writer.hpp>
 
 #include <fibrant/simulation/checkpoint.hpp>
+#include <fibrant/simulation/energy_account.hpp>
 #include <fibrant/simulation/increment_file.hpp>
 #include <fibrant/simulation/loading.hpp>
 #include <fibrant/simulation/model.hpp>

@@ -221,13 +221,13 @@ TEST_CASE("a fibre pressed on a rough plate is dragged along with it, and slips 
     CHECK(report.energy.dissipated == 0.0);
     report = simulator.run(test::stage<Pressing>({{"table", 0.0}}, 2));
     CHECK(std::abs(felt().y()) < 1e-3 * quarter);  // elastic
-    report = simulator.run(test::stage<Pressing>({{"table", 20.0}}, 10));
+    report = simulator.run(test::stage<Pressing>({{"table", 20.0}}, 40));
     REQUIRE_MESSAGE(report.converged, report.reason);
     std::printf("plate: presses %.5f N, drags %.5f N, ratio %.5f\n", -felt().z(), -felt().y(), felt().y() / felt().z());
     CHECK(std::abs(felt().y() / felt().z() - mu) < 1e-3 * mu);
     CHECK(report.energy.dissipated > 0.0);
     std::printf("energy %.2e of %.2e missing\n", report.energy.error(), report.energy.external);
-    CHECK(std::abs(report.energy.error()) < 0.01 * report.energy.external);  // of sliding: the trapezoidal rule over ten increments
+    CHECK(std::abs(report.energy.error()) < 0.002 * report.energy.external);  // increments of half the reversible way: the force bends within none
 }
 
 TEST_CASE("a tool that comes closer in long steps does not hold by more than the friction of what it presses with") {

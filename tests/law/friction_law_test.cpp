@@ -278,4 +278,23 @@ TEST_CASE("smooth friction owes what regularised friction owes, and its stiffnes
           "SmoothCoulomb.friction_coefficient = -1, but it must be finite and >= 0");
 }
 
+TEST_CASE_TEMPLATE("what friction does not dissipate of the work along its slip, it stores", Law, RegularisedCoulomb, law::SmoothCoulomb) {
+    const Law friction{{.friction_coefficient = mu, .reversible_displacement = range}};
+    typename Law::History history;
+    double work = 0.0, dissipated = 0.0, force = 0.0;
+    const int steps = 4000;  // so many that trapezia miss less than a millionth where the force bends
+    for (const double way : {3.0, -1.4, 0.6, -5.0, 2.2}) {
+        const double step = way * range / steps;
+        for (int n = 0; n < steps; ++n) {
+            const auto answer = friction.response({step, 0.0, 0.0}, reaction, history);
+            work += 0.5 * (force + answer.force.x()) * step;
+            dissipated += answer.dissipated, force = answer.force.x(), history = answer.history;
+        }
+        const double stored = friction.response(Vec3::Zero(), reaction, history).stored;
+        CHECK(work == doctest::Approx(dissipated + stored).epsilon(1e-6));
+        CHECK(stored > 0.0);
+    }
+    CHECK(friction.response({3.0 * range, 0.0, 0.0}, 0.0, {}).stored == 0.0);
+}
+
 }  // namespace friction_law_test

@@ -165,61 +165,72 @@ TEST_CASE("slack fibres under a load they cannot carry yet find their shape, or 
     CHECK(arc == doctest::Approx(1.0).epsilon(2e-3));  // it bends rather than being squeezed by a tenth
 }
 
-TEST_CASE("a fibre that goes there and back with friction closes its loop, and no work is lost") {
+/// A fibre pressed down across another one, then the lower one dragged to and fro.
+struct Cycle {
+    double work = 0.0, dissipated = 0.0;  ///< of the second cycle [force * length]
+    double error = 0.0;                   ///< of its energy balance, over the work
+    double loop = 0.0;                    ///< by how much its last force is not that of the first cycle, over the force
+};
+/// @param allowed     penetration [radius]
+/// @param increments  a stroke
+/// @param beginning   more of them for the first quarter of each stroke, in which fibres stick, bend and begin to slide
+Cycle second_cycle(double allowed, Index increments, Index beginning) {
     SmallScene scene = dragged_three();
-    scene.tight = true;
-    scene.fibres.pop_back();
-    scene.fibres[1].move_from = scene.fibres[1].move_to = Vec3(0, 0, -1.0 * r);
-    // pressed first, then dragged to and fro by the lower fibre
-    double dissipated = 0.0;
-    simulation::ModelParameters<StableModel> parameters = parameters_of(scene);
+    scene.tight = true, scene.allowed = allowed;
     scene::Assembly assembly;
     for (const bool upper : {false, true}) {
-        scene::FibreSpecification f{.from = scene.fibres[upper].from, .to = scene.fibres[upper].to, .section = scene::circular(r), .material = {7300.0, 0.3}, .elements = 8};
-        const Index fibre = assembly.add(f);
+        const Index fibre = assembly.add({.from = scene.fibres[upper].from, .to = scene.fibres[upper].to, .section = scene::circular(r), .material = {7300.0, 0.3}, .elements = 8});
         for (const double end : {0.0, 1.0})
             assembly.clamp({fibre, end}, upper ? Vec3(0, 0, -r) : Vec3(0.6 * r, 0, 0), Vec3::Zero(), Vec3::Zero(), upper ? "press" : "drag");
     }
-    std::vector<double> errors;
-    for (const Index increments : {10, 20, 40}) {
-        simulation::Simulator<StableModel> simulator(assembly, parameters);
-        const auto go = [&](const char* channel, double to, Index steps) {
-            simulation::Stage<StableModel> stage;
-            stage.ramps = {{channel, to, false}}, stage.increments = steps;
-            simulation::Loading<StableModel> loading;
-            loading.stages = {stage};
-            return simulator.run(loading);
-        };
-        REQUIRE(go("press", 1.0, 8).converged);
-        REQUIRE(go("drag", 1.0, increments).converged);
-        std::vector<Vec3> force;
-        double work = 0.0, lost = 0.0, first_error = 0.0, last_error = 0.0;
-        for (int cycle = 0; cycle < 2; ++cycle) {
-            for (const double to : {-1.0, 1.0}) {
-                const simulation::Report report = go("drag", to, 2 * increments);
-                REQUIRE(report.converged);
-                double before = -1.0;
-                for (const auto& increment : report.increments) {
-                    CHECK(increment.energy.dissipated >= before);  // never falls
-                    before = increment.energy.dissipated;
-                }
-                if (cycle == 0 && to > 0.0) first_error = report.energy.error(), work = report.energy.external, lost = report.energy.dissipated;
-                last_error = report.energy.error();
-                if (cycle == 1 && to > 0.0) {
-                    work = report.energy.external - work, lost = report.energy.dissipated - lost;
-                }
-            }
-            force.push_back(simulator.reaction(scene::first_end(0)) + simulator.reaction(scene::last_end(0)));
+    simulation::Simulator<StableModel> simulator(assembly, parameters_of(scene));
+    simulation::Report report;
+    const auto go = [&](const char* channel, double to, Index steps) {
+        simulation::Stage<StableModel> stage;
+        stage.ramps = {{channel, to, false}}, stage.increments = steps, stage.most_increments = 2 * steps + 10;
+        simulation::Loading<StableModel> loading;
+        loading.stages = {stage};
+        report = simulator.run(loading);
+        REQUIRE(report.converged);
+        for (std::size_t k = 1; k < report.increments.size(); ++k)
+            CHECK(report.increments[k].energy.dissipated >= report.increments[k - 1].energy.dissipated);
+    };
+    go("press", 1.0, 8), go("drag", 1.0, increments / 2);
+    Cycle cycle;
+    Vec3 before = Vec3::Zero();
+    for (const bool second : {false, true}) {
+        const simulation::EnergyBalance first = report.energy;
+        for (const double to : {-1.0, 1.0}) {
+            if (beginning > 0) go("drag", -0.5 * to, beginning);
+            go("drag", to, increments);
         }
-        // The second cycle is the first one again: the loop is closed, and the work over it is what friction took.
-        CHECK((force[1] - force[0]).norm() < 1e-4 * force[0].norm());
-        errors.push_back(std::abs(last_error - first_error) / work);
-        std::printf("%ld increments a stroke: work of a cycle %.6e, dissipated %.6e, balance off by %.2e of it, loop by %.1e\n", static_cast<long>(2 * increments), work, lost, errors.back(),
-                    (force[1] - force[0]).norm() / force[0].norm());
-        dissipated = lost;
+        const Vec3 force = simulator.reaction(scene::first_end(0)) + simulator.reaction(scene::last_end(0));
+        cycle.work = report.energy.external - first.external, cycle.dissipated = report.energy.dissipated - first.dissipated;
+        cycle.error = (report.energy.error() - first.error()) / cycle.work;
+        cycle.loop = (force - before).norm() / force.norm();
+        if (!second) before = force;
     }
-    CHECK(dissipated > 0.0);
-    CHECK(errors.back() < 1e-3);
+    std::printf("penetration %.0e r, %ld increments a stroke and %ld at its beginning: work of a cycle %.6e, dissipated %.6e, balance off by %.2e of it, loop by %.1e\n", allowed,
+                static_cast<long>(increments), static_cast<long>(beginning), cycle.work, cycle.dissipated, cycle.error, cycle.loop);
+    return cycle;
+}
+
+TEST_CASE("a fibre that goes there and back with friction closes its loop, and no work is lost") {
+    // Work is counted by trapezia: what is missed is the bend of the force where sliding begins, of second order.
+    double before = 1.0;
+    for (const Index increments : {20, 40, 80}) {
+        const Cycle cycle = second_cycle(1e-2, increments, 0);
+        CHECK(cycle.loop < 1e-8);
+        CHECK(cycle.dissipated > 0.0);
+        CHECK(std::abs(cycle.error) < 0.5 * before);
+        before = std::abs(cycle.error);
+    }
+    CHECK(before < 3e-4);
+    // With that bend resolved, and particles that hardly sink into each other, the balance closes to a millionth.
+    const Cycle fine = second_cycle(1e-4, 160, 400);
+    CHECK(std::abs(fine.error) < 1e-6);
+    CHECK(fine.loop < 1e-8);
+    CHECK(fine.dissipated == doctest::Approx(fine.work).epsilon(3e-5));  // the rest went with renewed contact elements
 }
 
 }  // namespace stability_test

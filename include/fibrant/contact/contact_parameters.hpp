@@ -36,7 +36,7 @@ struct ContactFigures {
     Index active = 0;                ///< with a reaction
     Index shifted = 0;               ///< still shown a limited gap
     double greatest_penetration = 0; ///< true, of all elements; 0 if none [length]
-    double work = 0;                 ///< stored by the normal law [force * length]
+    double work = 0;                 ///< stored by the laws [force * length]
     double dissipated = 0;           ///< by sliding since the last accepted state [force * length]
     double reaction_sum = 0;         ///< sum of R_N [force]
     ContactFigures& operator+=(const ContactFigures& other) noexcept {

@@ -90,13 +90,15 @@ public:
     }
 
     /// Inner loop: gaps, reactions and friction of a state.
-    void evaluate(const Vector& state) {
+    /// @param start  it is the last accepted one: nothing has slipped yet, however pairs have turned since
+    void evaluate(const Vector& state, bool start = false) {
         responses_.resize(elements_.size());
         if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
             Vec3 slip = Vec3::Zero();
-            if constexpr (core::Active<Friction>) slip = particle_offset(element, state) - element.friction.accepted_offset;
+            if constexpr (core::Active<Friction>)
+                if (!start) slip = particle_offset(element, state) - element.friction.accepted_offset;
             follow_support(element, state);
             const double gap = element.gap(state) + element.shift.value();
             const law::NormalResponse response = normal_.response(gap, stiffness(element));
@@ -195,7 +197,8 @@ public:
                 sum.greatest_penetration = std::max(sum.greatest_penetration, -element.gap(state));
                 sum.work += normal_.energy(response.gap, stiffness(element));
                 sum.reaction_sum += response.reaction;
-                if constexpr (core::Active<Friction>) sum.dissipated += frictions_[core::at(k)].dissipated;
+                if constexpr (core::Active<Friction>)
+                    sum.work += frictions_[core::at(k)].stored, sum.dissipated += frictions_[core::at(k)].dissipated;
             }
             return sum;
         });

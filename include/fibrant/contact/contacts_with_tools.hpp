@@ -46,8 +46,8 @@ public:
         Base::hold_reactions();
         tools_.hold_reactions();
     }
-    void evaluate(const Vector& state) {
-        Base::evaluate(state);
+    void evaluate(const Vector& state, bool start = false) {
+        Base::evaluate(state, start);
         tools_.evaluate(state, this->normal_law(), this->friction_law());
     }
     template <class Add>

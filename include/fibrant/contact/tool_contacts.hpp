@@ -219,7 +219,8 @@ public:
             sum.greatest_penetration = std::max(sum.greatest_penetration, -element.gap(state));
             sum.work += normal.energy(response.gap, stiffness(element));
             sum.reaction_sum += response.reaction;
-            if constexpr (core::Active<Friction>) sum.dissipated += frictions_[core::at(k)].dissipated;
+            if constexpr (core::Active<Friction>)
+                sum.work += frictions_[core::at(k)].stored, sum.dissipated += frictions_[core::at(k)].dissipated;
         }
     }
     /// Greatest gap or penetration of what carries force [length].

@@ -15,13 +15,14 @@ struct FrictionResponse {
     Vec3 force = Vec3::Zero();      ///< R_T [force], along the reversible displacement: it resists the slip
     Mat3 tangent = Mat3::Zero();    ///< dR_T / dslip, symmetric [force / length]
     History history{};              ///< to be kept when the increment is accepted
+    double stored = 0.0;            ///< in the reversible displacement [force * length]
     double dissipated = 0.0;        ///< work lost to sliding in this increment, >= 0 [force * length]
     bool sliding = false;
 };
 
 /// Tangential reaction as a function of the slip since the last accepted state.
 /// Owed beyond the syntax, and checked by tests: no force without a reaction, |R_T| <= mu R_N, `tangent` is the
-/// derivative at a frozen reaction, nothing negative is dissipated.
+/// derivative at a frozen reaction, nothing negative is dissipated, and what is not dissipated of the work is stored.
 ///
 /// A history with something in it has a member `reversible`, a tangential 3-vector [length].
 template <class L>

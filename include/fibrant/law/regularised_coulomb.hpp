@@ -37,12 +37,14 @@ public:
             answer.force = bound / range * trial;
             answer.tangent.diagonal().setConstant(bound / range);
             answer.history.reversible = trial;
+            answer.stored = 0.5 * bound / range * length * length;
             return answer;
         }
         const Vec3 direction = trial / length;
         answer.force = bound * direction;
         answer.tangent = bound / length * (Mat3::Identity() - direction * direction.transpose());
         answer.history.reversible = range * direction;
+        answer.stored = 0.5 * bound * range;
         answer.dissipated = bound * (length - range);
         answer.sliding = true;
         return answer;

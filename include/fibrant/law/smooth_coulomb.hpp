@@ -40,11 +40,13 @@ public:
             answer.force = secant * trial;
             answer.tangent = secant * Mat3::Identity() + (along - secant) * direction * direction.transpose();
             answer.history.reversible = trial;
+            answer.stored = bound * range * y * y * (1.0 - y / 3.0);
             return answer;
         }
         answer.force = bound * direction;
         answer.tangent = bound / length * (Mat3::Identity() - direction * direction.transpose());
         answer.history.reversible = range * direction;
+        answer.stored = bound * range * 2.0 / 3.0;
         answer.dissipated = bound * (length - range);
         answer.sliding = true;
         return answer;

@@ -3,6 +3,7 @@
 /// @file Runs a loading on a scene with a model: steps that are cut, restored and grown again.
 
 #include <fibrant/observe/observer.hpp>
+#include <fibrant/simulation/energy_account.hpp>
 #include <fibrant/simulation/increment_file.hpp>
 #include <fibrant/simulation/mean_motion.hpp>
 #include <fibrant/simulation/position.hpp>
@@ -142,9 +143,7 @@ public:
         if (before.size() > state_.size() || before != state_.head(before.size()))
             core::refuse("Simulator.state", "another", "that of the run to go on from: use Assembly::begin_at");
         contacts_.resume(other.contacts().accepted_memory().records(), other.contacts().accepted_zones());
-        contacts_work_ = energy_.contact = other.contacts().figures(before).work;
-        energy_.elastic = equilibrium_.elastic_energy(state_);
-        energy_.external = energy_.elastic + energy_.contact;
+        energy_.start(equilibrium_.elastic_energy(state_), other.contacts().figures(before).work);
     }
 
 private:
@@ -204,7 +203,6 @@ private:
             }
             contacts_.allow_penetration(stage.allowed_penetration.value_or(parameters_.contact.stiffness.allowed_penetration));
             const std::vector<double> amplitudes = amplitudes_at(stage, progress, position_, channels_, amplitudes_), change = difference(amplitudes, amplitudes_);
-            const double contact_before = contacts_work_;
             Vector trial = state_;
             move_tools(amplitudes);
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping, position_.holding);
@@ -223,15 +221,16 @@ private:
                 continue;
             }
             if (attempt.converged) {
-                account(trial, increment, contact_before, stage.forced_orders);
+                energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders);
+                increment.energy = energy_.balance();
                 if (stage.damping_carried) motion_.learn(mesh_, state_, trial, change);
                 state_ = trial;
                 equilibrium_.ties().accept();
-                mesh_.rewind(state_, {&last_external_, &last_damping_});
+                energy_.rewind(mesh_, state_);
                 amplitudes_ = amplitudes;
                 increment.residual = attempt.residual;
                 increment.displacement = attempt.displacement;
-                increment.damping = attempt.force_scale > 0.0 ? equilibrium_.norm(last_damping_) / attempt.force_scale : 0.0;
+                increment.damping = attempt.force_scale > 0.0 ? equilibrium_.norm(energy_.damping()) / attempt.force_scale : 0.0;
                 increment.fraction = position_.fraction;
                 position_.progress = progress;
                 break;
@@ -260,44 +259,12 @@ private:
         position_.stage_over = reached && !held;
         position_.adapt_damping(stage, increment, attempt_newton / static_cast<double>(parameters_.iteration.newton_limit));
         contacts_.accept(state_);
-        if constexpr (HasSolid<M>) energy_.released += accept_solid();
+        if constexpr (HasSolid<M>)
+            if (equilibrium_.solid().accept(state_) > 0) energy_.release(equilibrium_.elastic_energy(state_));  // bonds that had too much
         increment.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         report.counts += increment.counts;
         report.increments.push_back(increment);
         return true;
-    }
-
-    /// Energy balance of an increment that has converged.
-    void account(const Vector& trial, IncrementReport& increment, double contact_before, bool forced) {
-        const double error_before = energy_.error();
-        const Vector external = equilibrium_.external() + equilibrium_.reaction();
-        if (last_external_.size() != external.size()) last_external_ = Vector::Zero(external.size());
-        energy_.external += 0.5 * (trial - state_).dot(external + last_external_);
-        last_external_ = external;
-        const contact::ContactFigures now = contacts_.figures(trial);
-        energy_.dissipated += now.dissipated;
-        const Vector damping = equilibrium_.damping_force(trial);
-        if (last_damping_.size() != damping.size()) last_damping_ = Vector::Zero(damping.size());
-        energy_.damped += 0.5 * (trial - state_).dot(damping + last_damping_);
-        last_damping_ = damping;
-        if constexpr (HasTools<M>) energy_.external += contacts_.tools().half_work(), contacts_.tools().stand_back(true);
-        contacts_.evaluate(state_);  // the same contact elements, where the increment started
-        energy_.rearranged += contacts_.figures(state_).work - contact_before;
-        if constexpr (HasTools<M>) energy_.external += contacts_.tools().half_work(), contacts_.tools().stand_back(false);
-        contacts_.evaluate(trial);
-        energy_.contact = contacts_work_ = now.work;
-        energy_.elastic = equilibrium_.elastic_energy(trial);
-        if (forced) energy_.released += energy_.error() - error_before;  // a leap has no balance to check
-        increment.energy = energy_;
-    }
-
-    /// Breaks bonds that have had too much. @returns the energy that they held
-    double accept_solid() {
-        if constexpr (HasSolid<M>) {
-            const double before = energy_.elastic;
-            if (equilibrium_.solid().accept(state_) > 0) return before - (energy_.elastic = equilibrium_.elastic_energy(state_));
-        }
-        return 0.0;
     }
 
     template <class Observer>
@@ -317,7 +284,7 @@ private:
             report.contact = report.increments.back().contact;
             report.residual = report.increments.back().residual;
         }
-        report.energy = energy_;
+        report.energy = energy_.balance();
         report.seconds = clock_.seconds();
         report.wall_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
@@ -327,8 +294,7 @@ private:
         file.put(std::string(checkpoint_format));
         file.put(outline_identity(mesh_)), file.put(fibre_identity(mesh_)), file.put(channel_identity(channels_)), file.put(loading_identity(stages));
         file.put(state_);
-        file.put(last_external_), file.put(last_damping_);
-        file.put(energy_), file.put(contacts_work_);
+        energy_.each([&](const auto& value) { file.put(value); });
         put_memory(file, contacts_.accepted_memory().records(), contacts_.accepted_zones());
         for (const double amplitude : amplitudes_) file.put(amplitude);
         position_.each([&](const auto& value) { file.put(value); });
@@ -351,8 +317,10 @@ private:
         const bool stages = file.get<std::uint64_t>() == loading;
         file.expect((fibres && channels) || !whole, "the set of fibres and channels"), file.expect(stages || !whole, "the loading");
         state_ = file.get_vector();
-        last_external_ = file.get_vector(), last_damping_ = file.get_vector();
-        energy_ = file.get<EnergyBalance>(), contacts_work_ = file.get<double>();
+        energy_.each([&](auto& value) {
+            if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vector>) value = file.get_vector();
+            else value = file.get<EnergyBalance>();
+        });
         std::vector<typename Contacts::Memory::Record> records;
         std::vector<contact::Zone> zones;
         get_memory(file, records, zones);
@@ -396,9 +364,7 @@ private:
     std::vector<Index> tool_channels_;
     Position position_;
     MeanMotion motion_;
-    EnergyBalance energy_;
-    double contacts_work_ = 0.0;
-    Vector last_external_, last_damping_;
+    EnergyAccount energy_;
     core::StageClock clock_;
 };
 

@@ -26,8 +26,8 @@ template <Model M>
 StoredState<M> read_state(const std::string& path, const beam::Mesh<typename M::Beam>& mesh) {
     CheckpointReader file = read_from_state(path, mesh);
     StoredState<M> stored{.state = file.get_vector()};
-    for (int k = 0; k < 2; ++k) file.get_vector();  // forces of the last increment
-    file.get<EnergyBalance>(), file.get<double>();
+    for (int k = 0; k < 3; ++k) file.get_vector();  // forces of the last increment
+    file.get<EnergyBalance>();
     get_memory(file, stored.records, stored.zones);
     return stored;
 }
@@ -40,8 +40,8 @@ void write_state(const std::string& path, const beam::Mesh<typename M::Beam>& me
     file.put(outline_identity(mesh)), file.put(fibre_identity(mesh));
     for (int k = 0; k < 2; ++k) file.put(std::uint64_t{0});
     file.put(stored.state);
-    for (int k = 0; k < 2; ++k) file.put(Vector(Vector::Zero(stored.state.size())));
-    file.put(EnergyBalance{}), file.put(0.0);
+    for (int k = 0; k < 3; ++k) file.put(Vector(Vector::Zero(stored.state.size())));
+    file.put(EnergyBalance{});
     put_memory(file, stored.records, stored.zones);
     file.write(path);
 }

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Keeps the energy balance of a run, increment by increment.
+
+#include <fibrant/core/types.hpp>
+#include <fibrant/simulation/report.hpp>
+
+namespace fibrant::simulation {
+
+/// Books what an increment took, stored and lost.
+///
+/// Loads and supports work by trapezia: their forces vary linearly from the state that an increment starts from to that which it
+/// ends with. Contact elements are renewed in between, turned and weighed anew with the fibres. The forces of those that carry the
+/// end are therefore not those that the start was in balance with, and what contact stores and takes, which is booked on the
+/// elements of the end, is of a path that begins with a jump of forces. Along a path without it renewal works as well, by half of that
+/// jump: counted as rearranged with what the elements store at once, it leaves an error of second order.
+class EnergyAccount {
+public:
+    const EnergyBalance& balance() const noexcept { return balance_; }
+    /// Force of the damping at the end of the last increment [force].
+    const Vector& damping() const noexcept { return damping_; }
+
+    /// Energies stored at the start count as work done before.
+    void start(double elastic, double contact) {
+        balance_.elastic = elastic, balance_.contact = contact;
+        balance_.external = elastic + contact;
+    }
+
+    /// An increment that has converged; contacts are evaluated at its end, before and after.
+    /// @param leap  it starts from an overlap that is imposed: it has no balance to check
+    template <class Equilibrium, class Contacts>
+    void book(const Equilibrium& equilibrium, Contacts& contacts, const Vector& from, const Vector& to, bool leap) {
+        const double error_before = balance_.error();
+        const Vector way = to - from;
+        balance_.external += trapezium(way, external_, equilibrium.external() + equilibrium.reaction());
+        balance_.damped += trapezium(way, damping_, equilibrium.damping_force(to));
+        if constexpr (requires { contacts.tools(); }) balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(true);
+        const contact::ContactFigures end = contacts.figures(to);
+        contacts.evaluate(from, true);  // the same contact elements, where the increment started
+        balance_.rearranged += contacts.figures(from).work - balance_.contact;
+        Vector renewed = Vector::Zero(to.size());
+        contacts.add_forces(renewed);
+        if (contact_.size() != to.size()) contact_ = Vector::Zero(to.size());
+        if (!leap) balance_.rearranged -= 0.5 * way.dot(contact_ - renewed);
+        if constexpr (requires { contacts.tools(); }) balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(false);
+        contacts.evaluate(to);
+        contact_.setZero();
+        contacts.add_forces(contact_);
+        balance_.dissipated += end.dissipated;
+        balance_.contact = end.work;
+        balance_.elastic = equilibrium.elastic_energy(to);
+        if (leap) balance_.released += balance_.error() - error_before;
+    }
+
+    /// Bonds have let go since: this is stored now.
+    void release(double elastic) {
+        balance_.released += balance_.elastic - elastic;
+        balance_.elastic = elastic;
+    }
+
+    /// Follows vectors that are told in another way from now on.
+    template <class Mesh>
+    void rewind(const Mesh& mesh, Vector& state) {
+        mesh.rewind(state, {&external_, &damping_, &contact_});
+    }
+
+    /// All that a checkpoint needs: vectors first.
+    void each(auto&& see) { see(external_), see(damping_), see(contact_), see(balance_); }
+
+private:
+    /// Half of the work of a force on a way, and of that which it was before. @param last  becomes the force
+    static double trapezium(const Vector& way, Vector& last, const Vector& force) {
+        if (last.size() != force.size()) last = Vector::Zero(force.size());
+        const double work = 0.5 * way.dot(force + last);
+        last = force;
+        return work;
+    }
+
+    EnergyBalance balance_;
+    Vector external_, damping_, contact_;  ///< forces at the end of the last increment [force]
+};
+
+}  // namespace fibrant::simulation
