@@ -21,9 +21,11 @@
 #include <fibrant/scene/tool.hpp>
 
 #include <fibrant/beam/beam_element.hpp>
+#include <fibrant/beam/centre_weights.hpp>
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/beam/kirchhoff_cable.hpp>
 #include <fibrant/beam/mesh.hpp>
+#include <fibrant/beam/on_centreline.hpp>
 #include <fibrant/beam/quaternion.hpp>
 #include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/beam/section_law.hpp>

@@ -15,11 +15,12 @@ namespace chain_system_test {
 
 using Rough = test::PressedFibres<law::RegularisedCoulomb>;
 using Smooth = test::PressedFibres<law::Frictionless>;
+using Centred = test::PressedFibres<law::Frictionless, beam::OnCentreline<beam::DirectorBeam<3>>>;
 
 // Sums of some tens of entries, the largest of which are axial stiffnesses: relative to the whole.
 constexpr double rounding = 1e-13;
 
-TEST_CASE_TEMPLATE("the product is that of the matrix of all terms, held components included", Pressed, Smooth, Rough) {
+TEST_CASE_TEMPLATE("the product is that of the matrix of all terms, held components included", Pressed, Smooth, Rough, Centred) {
     const Pressed fibres(true);
     REQUIRE(fibres.active() > 5);
     const auto& system = fibres.equilibrium.system();
@@ -36,7 +37,7 @@ TEST_CASE_TEMPLATE("the product is that of the matrix of all terms, held compone
     }
 }
 
-TEST_CASE_TEMPLATE("bands of fibres are those of their terms, with their own part of every contact", Pressed, Smooth, Rough) {
+TEST_CASE_TEMPLATE("bands of fibres are those of their terms, with their own part of every contact", Pressed, Smooth, Rough, Centred) {
     const Pressed fibres(true);
     const auto& system = fibres.equilibrium.system();
     std::vector<Matrix> expected;

@@ -13,6 +13,7 @@ namespace equilibrium_test {
 
 using Rough = test::PressedFibres<law::RegularisedCoulomb>;
 using Smooth = test::PressedFibres<law::Frictionless>;
+using Centred = test::PressedFibres<law::Frictionless, beam::OnCentreline<beam::DirectorBeam<3>>>;
 
 /// Largest difference between K x and central differences of the residual, relative to K x, over some random x.
 template <class Pressed, class Directions>
@@ -33,8 +34,8 @@ double derivative_error(Pressed& fibres, const Directions& within) {
 }
 const auto everywhere = [](const Vector& x) { return x; };
 
-TEST_CASE("the tangent is the derivative of the residual, with contacts active at frozen normals") {
-    Smooth fibres(false);
+TEST_CASE_TEMPLATE("the tangent is the derivative of the residual, with contacts active at frozen normals", Pressed, Smooth, Centred) {
+    Pressed fibres(false);
     REQUIRE(fibres.active() > 5);
     const double error = derivative_error(fibres, everywhere);
     std::printf("tangent against differences: %.1e, %td active contacts\n", error, fibres.active());

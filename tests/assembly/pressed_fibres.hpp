@@ -4,6 +4,7 @@
 
 #include <fibrant/assembly/equilibrium.hpp>
 #include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/on_centreline.hpp>
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
@@ -14,10 +15,11 @@
 
 namespace fibrant::test {
 
-/// Two parallel fibres and one that crosses both, overlapping by some percent of a radius; sections are ellipses.
-template <law::FrictionLaw Friction>
+/// Two parallel fibres and one that crosses both, overlapping by some percent of a radius; sections are ellipses where contact sees them.
+template <law::FrictionLaw Friction, beam::BeamElement B = beam::DirectorBeam<3>>
 struct PressedFibres {
-    using Beam = beam::DirectorBeam<3>;
+    using Beam = B;
+    static constexpr double flatness = beam::TouchedOnCentreline<B> ? 1.0 : 0.8;
     using Contacts = contact::ContactSet<Beam, proximity::BruteSearch, law::RegularisedPenalty, Friction>;
     using Equilibrium = assembly::Equilibrium<Beam, Contacts>;
     static constexpr double radius = 0.02;
@@ -59,14 +61,15 @@ struct PressedFibres {
 private:
     static scene::Assembly scene(bool held, const Vec3& moment) {
         scene::Assembly assembly;
-        const scene::CrossSection section = scene::elliptical(radius, 0.8 * radius);
+        const scene::CrossSection section = scene::elliptical(radius, flatness * radius);
         const scene::ElasticMaterial material{7300.0, 0.3};
         const double depth = 0.04 * radius;
         const auto add = [&](const Vec3& from, const Vec3& to) {
             assembly.add({.from = from, .to = to, .section = section, .material = material, .elements = 4, .director = Vec3::UnitZ()});
         };
         add({-0.4, 0, 0}, {0.4, 0, 0});
-        add({-0.4, 1.6 * radius - depth, 0}, {0.4, 1.6 * radius - depth, 0.002});  // semi-axes across: 0.8 r
+        const double apart = 2.0 * flatness * radius - depth;
+        add({-0.4, apart, 0}, {0.4, apart, 0.002});
         add({0.03, -0.4, 2.0 * radius - depth}, {-0.02, 0.4, 2.0 * radius - depth});
         if (held) {
             assembly.clamp(scene::first_end(0));

@@ -426,6 +426,22 @@ TEST_CASE("accepting a state brings the stiffness of its zones to the target of 
     CHECK(contacts.zones()[0].stiffness == doctest::Approx(3.0 * before).epsilon(1e-12));
 }
 
+using Centred = beam::OnCentreline<Beam>;
+using Sliding = beam::OnCentreline<Beam, beam::FrictionLever::dropped>;
+static_assert(beam::BeamElement<Centred> && beam::BeamElement<Sliding>);
+static_assert(sizeof(contact::ContactElement<Centred, RegularisedPenalty, Frictionless>) + 12 * sizeof(double) == sizeof(BareElement), "a weight a node and side");
+static_assert(sizeof(contact::ContactElement<Sliding, RegularisedPenalty, RegularisedCoulomb>) < sizeof(Element<RegularisedPenalty, RegularisedCoulomb>));
+static_assert(!beam::LeverNeeded<Beam> && beam::LeverNeeded<Centred> && !beam::LeverNeeded<Sliding>);
+
+TEST_CASE("contact on centrelines refuses a section that is not round") {
+    scene::Assembly assembly;
+    scene::FibreSpecification fibre = straight_fibre(Vec3::Zero(), Vec3::UnitX(), r, 4);
+    fibre.section = scene::elliptical(r, 0.5 * r);
+    assembly.add(fibre);
+    const Centred beam;
+    CHECK_THROWS_WITH_AS((beam::Mesh<Centred>(assembly, beam)), doctest::Contains("OnCentreline.rest: semi_axis_2 = 0.01"), std::invalid_argument);
+}
+
 TEST_CASE("what a contact element costs in memory") {
     std::printf("contact element: %zu bytes frictionless, %zu with friction, %zu frictionless with a limited gap\n",
                 sizeof(Element<RegularisedPenalty, Frictionless>), sizeof(Element<RegularisedPenalty, RegularisedCoulomb>),

@@ -16,6 +16,10 @@ namespace contact_crossed_fibres_test {
 using test::Rough;
 using test::Smooth;
 
+struct Centred : Smooth {
+    using Beam = beam::OnCentreline<beam::DirectorBeam<3>>;
+};
+
 const double r = 0.0201;
 
 struct Case {
@@ -121,6 +125,20 @@ TEST_CASE("two crossed fibres push each other apart as the rods of the reference
             CHECK(each->report.contact.active == 1);
             CHECK(each->report.contact.greatest_penetration < 2e-3 * r);  // the greatest force meets the cap of the stiffness
         }
+    }
+}
+
+TEST_CASE("contact on centrelines needs no relief: the force of the reference is on the line") {
+    for (const Case& c : cases) {
+        CAPTURE(c.length);
+        CAPTURE(c.strain);
+        CAPTURE(c.approach);
+        Crossing<Centred> crossing(c, 90.0, Pinch::kept, test::tight_parameters<Centred>(1e-3 * r));
+        REQUIRE(crossing.press());
+        const double force = crossing.support(0).z();
+        std::printf("centrelines: L/r %3.0f, stretch %.3f, u %.5f: error %+.2e, lost %.2e r\n", c.length / r, c.strain, c.approach, force / c.force - 1.0, crossing.lost() / r);
+        CHECK(std::abs(force / c.force - 1.0) < 3e-5);  // penetration and mesh
+        CHECK((crossing.support(0) + crossing.support(1)).norm() < 1e-6 * c.force);
     }
 }
 

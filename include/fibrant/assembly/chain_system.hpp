@@ -110,6 +110,13 @@ public:
                             left * weights[core::at(b * B::vectors_per_node + w)] * stiffness;
             }
     }
+    /// The same of a particle of the centreline.
+    void add_rank_one(Index fibre, Index first_unknown, const beam::CentreWeights<B::nodes, B::vectors_per_node>& centre, const Mat3& stiffness) {
+        const Index node = first_unknown / block - first_node_[core::at(fibre)];
+        for (Index a = 0; a < B::nodes; ++a)
+            for (Index b = 0; b <= a; ++b)
+                row(fibre, node + a).template block<3, 3>(0, (reach - (a - b)) * block) += centre[core::at(a)] * centre[core::at(b)] * stiffness;
+    }
     /// The same of a particle whose section turns: J^T stiffness J with the derivatives J of its place.
     void add_rank_one(Index fibre, Index first_unknown, const beam::Particle<B>& particle, const Mat3& stiffness)
         requires beam::TurningSections<B>
@@ -182,6 +189,10 @@ public:
                 each_pair(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
                     blocks.block<3, 3>((node + a) * block + 3 * v, (a - b) * block + 3 * w) += product;
                 });
+            } else if constexpr (beam::TouchedOnCentreline<B>) {
+                for (Index a = 0; a < B::nodes; ++a)
+                    for (Index b = 0; b <= a; ++b)
+                        blocks.block<3, 3>((node + a) * block, (a - b) * block) += weights[core::at(a)] * weights[core::at(b)] * stiffness;
             } else {
             for (Index a = 0; a < B::nodes; ++a)
                 for (Index b = 0; b <= a; ++b)
@@ -239,15 +250,16 @@ public:
     /// Points [first, last) of them; from several threads at once.
     template <class Terms>
     void visit_couplings(Terms& terms, Index first, Index last) const {
-        std::array<Index, core::at(2 * vectors)> both{};
-        [[maybe_unused]] std::array<double, core::at(2 * vectors)> weights{};
+        constexpr Index stride = beam::TouchedOnCentreline<B> ? B::vectors_per_node : 1, weighted = vectors / stride;
+        std::array<Index, core::at(2 * weighted)> both{};
+        [[maybe_unused]] std::array<double, core::at(2 * weighted)> weights{};
         for (const Point& point : std::span<const Point>(points_).subspan(core::at(first), core::at(last - first))) {
-            for (Index k = 0; k < vectors; ++k) both[core::at(k)] = point.first_i / 3 + k, both[core::at(vectors + k)] = point.first_j / 3 + k;
+            for (Index k = 0; k < weighted; ++k) both[core::at(k)] = point.first_i / 3 + stride * k, both[core::at(weighted + k)] = point.first_j / 3 + stride * k;
             if constexpr (beam::TurningSections<B>) {
                 visit_turning(point, both, terms);
             } else {
-                for (Index k = 0; k < vectors; ++k)
-                    weights[core::at(k)] = -point.weights_i[core::at(k)], weights[core::at(vectors + k)] = point.weights_j[core::at(k)];
+                for (Index k = 0; k < weighted; ++k)
+                    weights[core::at(k)] = -point.weights_i[core::at(k)], weights[core::at(weighted + k)] = point.weights_j[core::at(k)];
                 terms.point(PointTerm{both, weights, point.stiffness});
             }
         }

@@ -19,7 +19,8 @@ namespace fibrant::assembly {
 /// are at hand, and so are the forces that they pass on. Every element has its own sums, in a fixed order.
 ///
 /// @tparam Vectors  of an element
-/// @tparam Weights  scalars, or a particle whose section turns: then (J^T K J) with the derivatives J of its place
+/// @tparam Weights  scalars, of all vectors or of each `stride`-th of them, or a particle whose section turns: then (J^T K J) with the
+///                  derivatives J of its place
 template <int Vectors, class Weights = std::array<double, core::at(Vectors)>>
 class PointProduct {
 public:
@@ -61,10 +62,10 @@ public:
 
     /// Motions of the particles of sides [first, last) in x. To be called for all sides before `add_forces`.
     void find_motions(std::pair<Index, Index> range, const Vector& x) const {
-        std::array<Padded, core::at(Vectors)> values;
+        std::array<Padded, weighted> values;
         for (Index s = range.first; s < range.second;) {
             const std::int32_t start = sides_[core::at(s)].first;
-            for (std::size_t a = 0; a < values.size(); ++a) values[a] << x.segment<3>(start + 3 * static_cast<Index>(a)).array(), 0.0;
+            for (std::size_t a = 0; a < values.size(); ++a) values[a] << x.segment<3>(start + 3 * stride * static_cast<Index>(a)).array(), 0.0;
             for (; s < range.second && sides_[core::at(s)].first == start; ++s) {
                 const Weights& weights = weights_[core::at(s)];
                 if constexpr (turning) {
@@ -77,7 +78,7 @@ public:
                     even += weights[a] * values[a];
                     odd += weights[a + 1] * values[a + 1];
                 }
-                if constexpr (Vectors % 2 == 1) even += weights.back() * values.back();
+                if constexpr (weighted % 2 == 1) even += weights.back() * values.back();
                 motion_[core::at(s)] = even + odd;
                 }
             }
@@ -86,7 +87,7 @@ public:
 
     /// Adds to y the forces on sides [first, last).
     void add_forces(std::pair<Index, Index> range, Vector& y) const {
-        std::array<Padded, core::at(Vectors)> forces;
+        std::array<Padded, weighted> forces;
         for (Index s = range.first; s < range.second;) {
             const std::int32_t start = sides_[core::at(s)].first;
             forces.fill(Padded::Zero());
@@ -105,7 +106,7 @@ public:
                     for (std::size_t a = 0; a < forces.size(); ++a) forces[a] += weights[a] * force;
                 }
             }
-            for (std::size_t a = 0; a < forces.size(); ++a) y.segment<3>(start + 3 * static_cast<Index>(a)) += forces[a].template head<3>().matrix();
+            for (std::size_t a = 0; a < forces.size(); ++a) y.segment<3>(start + 3 * stride * static_cast<Index>(a)) += forces[a].template head<3>().matrix();
         }
     }
 
@@ -128,6 +129,11 @@ private:
 #endif
     }
     static constexpr bool turning = requires(const Weights& weights) { weights.slope(Index{}); };
+    static constexpr Index stride = [] {
+        if constexpr (requires { Weights::stride; }) return Weights::stride;
+        else return 1;
+    }();
+    static constexpr std::size_t weighted = core::at(Vectors / stride);  // vectors that count
     struct Side {
         std::int32_t first;    // unknown of the element
         std::int32_t partner;  // slot of the other side

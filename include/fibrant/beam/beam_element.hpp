@@ -2,6 +2,7 @@
 #pragma once
 /// @file What a beam element owes: energy, force and tangent, with stresses that Newton may treat as independent.
 
+#include <fibrant/beam/centre_weights.hpp>
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/types.hpp>
 #include <fibrant/scene/cross_section.hpp>
@@ -33,6 +34,11 @@ concept TurningSections = requires(typename B::Particle particle, const ElementV
     particle.follow(y);                           // its derivatives are those of this state from now on
     { particle.slope(Index{}) } -> std::same_as<Mat3>;  // derivative of the place by a nodal vector
 };
+/// Contact acts on the beam's centreline and leaves its sections alone, though it knows them: contact takes the radius off.
+template <class B>
+concept TouchedOnCentreline = requires(double xi) {
+    { B::centre_weights(xi) } -> std::same_as<CentreWeights<B::nodes, B::vectors_per_node>>;
+};
 namespace detail {
 template <class B>
 struct ParticleOf {
@@ -42,8 +48,12 @@ template <TurningSections B>
 struct ParticleOf<B> {
     using Type = typename B::Particle;
 };
+template <TouchedOnCentreline B>
+struct ParticleOf<B> {
+    using Type = CentreWeights<B::nodes, B::vectors_per_node>;
+};
 }  // namespace detail
-/// What places a particle of a section: weights of the nodal vectors, unless its sections turn.
+/// What places a particle that touches: weights of the nodal vectors, unless its sections turn or are not touched.
 template <class B>
 using Particle = typename detail::ParticleOf<B>::Type;
 
@@ -84,7 +94,7 @@ concept BeamElement = core::Policy<B> && requires {
     { B::shape_derivative(xi)[0] } -> std::convertible_to<double>;
     { B::centreline_weights(xi) } -> std::same_as<ElementWeights<B>>;
     { B::centreline_derivative_weights(xi) } -> std::same_as<ElementWeights<B>>;
-    { B::particle_weights(xi, xi, xi) } -> std::same_as<Particle<B>>;
+    requires TouchedOnCentreline<B> || std::same_as<decltype(B::particle_weights(xi, xi, xi)), Particle<B>>;
 };
 
 }  // namespace fibrant::beam

@@ -49,6 +49,10 @@ void spread(const std::array<double, Vectors>& weights, const Vec3& value, Index
     for (std::size_t a = 0; a < weights.size(); ++a)
         forces.segment<3>(first_unknown + 3 * static_cast<Index>(a)) += weights[a] * value;
 }
+template <int Nodes, int Vectors>
+void spread(const CentreWeights<Nodes, Vectors>& centre, const Vec3& value, Index first_unknown, Vector& forces) noexcept {
+    for (std::size_t node = 0; node < centre.size(); ++node) forces.segment<3>(first_unknown + 3 * Vectors * static_cast<Index>(node)) += centre[node] * value;
+}
 template <class Turning>
     requires requires(const Turning& particle) { particle.slope(Index{}); }
 void spread(const Turning& particle, const Vec3& value, Index first_unknown, Vector& forces) noexcept {
@@ -185,6 +189,12 @@ public:
         Vec3 sum = Vec3::Zero();
         for (std::size_t a = 0; a < weights.size(); ++a)
             sum += weights[a] * state.segment<3>(first_unknown + 3 * static_cast<Index>(a));
+        return sum;
+    }
+    /// Place of a particle of the centreline.
+    static Vec3 point(const Vector& state, Index first_unknown, const CentreWeights<B::nodes, B::vectors_per_node>& centre) noexcept {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t node = 0; node < centre.size(); ++node) sum += centre[node] * state.segment<3>(first_unknown + 3 * B::vectors_per_node * static_cast<Index>(node));
         return sum;
     }
     /// Place of a particle whose section turns.

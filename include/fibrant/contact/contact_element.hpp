@@ -3,6 +3,7 @@
 /// @file A contact element: a pair of material particles, the normal between them, and what its laws make it carry.
 
 #include <fibrant/beam/mesh.hpp>
+#include <fibrant/beam/on_centreline.hpp>
 #include <fibrant/law/friction_law.hpp>
 #include <fibrant/law/normal_law.hpp>
 
@@ -33,6 +34,7 @@ struct FrictionState {};
 template <beam::BeamElement B, law::FrictionLaw Friction>
     requires core::Active<Friction>
 struct FrictionState<B, Friction> {
+    static_assert(!beam::LeverNeeded<B>, "friction on centrelines has no lever: FrictionLever::dropped says that this is meant");
     typename Friction::History history;        ///< of the last accepted state, turned with the fibres
     beam::Particle<B> weights_i{}, weights_j{};  ///< of the pair of particles whose slip is counted
     double bound = -1.0;                       ///< R_N that bounds friction until normals are renewed; < 0: the present one [force]

@@ -13,14 +13,17 @@ namespace fibrant::contact {
 /// @param first      first unknown of the element that holds u
 /// @param direction  unit
 /// @param end        the contact is with the rounded end of the fibre
-/// @returns radius of the cap that stands for the particle, 0 on the contour; the radius of a beam that knows its centreline
-///          only [length]
+/// @returns radius of the cap that stands for the particle, 0 on the contour; the radius of a beam that is touched on its
+///          centreline [length]
 template <class B>
 double support_weights(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, Index first, const Vec3& direction,
                        bool end, beam::Particle<B>& weights) {
     const double xi = mesh.locate(fibre, u).second;
     if constexpr (beam::CentrelineOnly<B>) {
         weights = B::centreline_weights(xi);
+        return mesh.fibre(fibre).section.radius();
+    } else if constexpr (beam::TouchedOnCentreline<B>) {
+        weights = B::centre_weights(xi);
         return mesh.fibre(fibre).section.radius();
     } else {
         const auto [g_1, g_2] = beam::Mesh<B>::element_directors(state, first, xi);
@@ -34,13 +37,13 @@ double support_weights(const beam::Mesh<B>& mesh, const Vector& state, Index fib
 /// Second derivative of a gap by the directors of a section: its support distance is convex in them, so this part of the
 /// tangent is positive. Without it a section between two contacts would tip over like a pencil on its point.
 /// Calls add(first unknown, weights on the nodal vectors, stiffness) of a rank-one term R_N / h (m m^T) (x) N N^T.
-/// Nothing where sections keep their shape: what the particle gains by moving around a round section it loses by turning back.
+/// Nothing where sections keep their shape or feel nothing: what the particle gains by moving around a round section it loses by turning back.
 /// @param end  the contact is with the rounded end of the fibre, whose particle is the centre
 template <class B, class Add>
 void section_stiffness_term([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] const Vector& state, [[maybe_unused]] Index fibre,
                             [[maybe_unused]] double u, [[maybe_unused]] Index first, [[maybe_unused]] const Vec3& normal,
                             [[maybe_unused]] double reaction, [[maybe_unused]] bool end, [[maybe_unused]] const Add& add) {
-    if constexpr (!beam::CentrelineOnly<B> && !beam::TurningSections<B>) {
+    if constexpr (!beam::CentrelineOnly<B> && !beam::TurningSections<B> && !beam::TouchedOnCentreline<B>) {
     if (reaction == 0.0 || end) return;
     const double xi = mesh.locate(fibre, u).second;
     const beam::ElementWeights<B> w_1 = beam::director_weights<B>(xi, 1), w_2 = beam::director_weights<B>(xi, 2);
