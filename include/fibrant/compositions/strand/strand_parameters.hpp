@@ -92,38 +92,48 @@ struct StrandParameters {
     }
 };
 
-/// Layers of 6, 12, 18, ... wires of the core's lay until there are `wires` in all, just not touching each other.
-/// @param wires   7, 19, 37, 61, 91, ...
-/// @param radius  of the outer wires; the core is thicker, so that each layer has room
-inline StrandParameters regular_strand(Index wires, double radius, double lay_angle_deg, bool alternate) {
-    StrandParameters parameters;
+/// Which angle wires of a layer have to the axis, the layers being counted from 0.
+enum class Lay {
+    equal_angle,  ///< that of the outermost layer
+    equal_pitch,  ///< such that all layers go round once on the length on which the outermost does
+};
+
+/// Layers of 6, 12, 18, ... wires until there are `wires` in all, just not touching each other.
+/// @param wires          7, 19, 37, 61, 91, ...
+/// @param radius         of the outer wires; the core is thicker, so that each layer has room
+/// @param lay_angle_deg  of the outermost layer, with the hand of the innermost
+/// @param alternate      every second layer has the other hand
+inline StrandParameters regular_strand(Index wires, double radius, double lay_angle_deg, bool alternate, Lay lay = Lay::equal_angle) {
     core::require_positive("regular_strand.radius", radius);
-    Index sum = 1;
-    for (Index layer = 1; sum < wires; ++layer) {
-        Layer next;
-        next.wires = 6 * layer;
-        next.radius = radius;
-        next.lay_angle_deg = alternate && layer % 2 == 0 ? -lay_angle_deg : lay_angle_deg;
-        parameters.layers.push_back(next);
-        sum += next.wires;
-    }
-    if (sum != wires) core::refuse("regular_strand.wires", std::to_string(wires), "1 + 6 + 12 + ...: 1, 7, 19, 37, 61, 91");
-    parameters.core_radius = radius;
+    Index layers = 0;
+    for (Index sum = 1; sum < wires; sum += 6 * layers) ++layers;
+    if (wires != 1 + 3 * layers * (layers + 1)) core::refuse("regular_strand.wires", std::to_string(wires), "1 + 6 + 12 + ...: 1, 7, 19, 37, 61, 91");
+    const double tangent = std::tan(lay_angle_deg * std::numbers::pi / 180.0);
+    StrandParameters parameters;
     // Room for the wires of the first layer comes from the core, for those of the others from a clearance below them.
-    for (std::size_t k = 0; k < parameters.layers.size(); ++k) {
-        const auto room = [&](double more) {
-            StrandParameters trial = parameters;
-            (k == 0 ? trial.core_radius : trial.layers[k].clearance) += more;
-            return trial.neighbour_gap(k);
-        };
-        double low = 0.0, high = radius;
-        if (room(0.0) >= 0.0) continue;
-        for (int n = 0; n < 60; ++n) {
-            const double middle = 0.5 * (low + high);
-            (room(middle) < 0.0 ? low : high) = middle;
+    const auto build = [&](double pitch) {
+        parameters.core_radius = radius, parameters.layers.clear();
+        for (Index k = 0; k < layers; ++k) {
+            parameters.layers.push_back({.wires = 6 * (k + 1), .radius = radius, .lay_angle_deg = lay_angle_deg});
+            const auto room = [&](double more) {
+                (k == 0 ? parameters.core_radius : parameters.layers.back().clearance) = (k == 0 ? radius : 0.0) + more;
+                const double angle = lay == Lay::equal_angle ? lay_angle_deg : std::atan(2.0 * std::numbers::pi * parameters.helix_radius(core::at(k)) / pitch) * 180.0 / std::numbers::pi;
+                parameters.layers.back().lay_angle_deg = alternate && k % 2 == 1 ? -angle : angle;
+                return parameters.neighbour_gap(core::at(k));
+            };
+            double low = 0.0, high = radius;
+            if (room(0.0) >= 0.0) continue;
+            for (int n = 0; n < 60; ++n) {
+                const double middle = 0.5 * (low + high);
+                (room(middle) < 0.0 ? low : high) = middle;
+            }
+            room(high);
         }
-        (k == 0 ? parameters.core_radius : parameters.layers[k].clearance) += high;
-    }
+    };
+    double pitch = layers > 0 ? 2.0 * std::numbers::pi * radius * 2.0 * static_cast<double>(layers) / tangent : 1.0;
+    build(pitch);
+    for (int n = 0; n < 40 && lay == Lay::equal_pitch && layers > 0; ++n)  // the outermost helix hardly changes with the pitch
+        build(pitch = 2.0 * std::numbers::pi * parameters.helix_radius(core::at(layers - 1)) / tangent);
     return parameters;
 }
 
