@@ -12,29 +12,49 @@ namespace fibrant::compositions::strand {
 /// Channel of the bending; its amplitude is the angle between the two plates [radian].
 inline const std::string bend = "bend";
 
-/// Place of the far plate's centre when the core is an arc of its own length, the near one at the origin [length].
-inline Vec3 far_centre(double length, double angle) {
-    if (std::abs(angle) < 1e-4) return length * Vec3(0.5 * angle, 0.0, 1.0 - angle * angle / 6.0);
-    return length / angle * Vec3(1.0 - std::cos(angle), 0.0, std::sin(angle));
+/// Place of a point of an arc, from where its middle is, at a part of its length in [-1/2, 1/2]; straight it lies along z [length].
+inline Vec3 arc_point(double length, double angle, double part) {
+    const double turn = part * angle, small = turn * turn;
+    if (std::abs(turn) < 1e-4) return part * length * Vec3(0.5 * turn, 0.0, 1.0 - small / 6.0);
+    return part * length / turn * Vec3(1.0 - std::cos(turn), 0.0, std::sin(turn));
 }
 
-/// Wires are held in the planes of both plates, and their sections turn with them; along the strand all of them at the near plate, and the
-/// core alone at the far one: the others may slide through it. The far plate turns about y, and its centre goes where the end of
-/// an arc does whose length is that of the strand.
-inline scene::Assembly bent_strand(const StrandParameters& parameters) {
+/// Its derivative by the angle [length].
+inline Vec3 arc_velocity(double length, double angle, double part) {
+    const double turn = part * angle;
+    if (std::abs(turn) < 1e-4) return part * part * length * Vec3(0.5, 0.0, -turn / 3.0);
+    const double sine = std::sin(turn), cosine = std::cos(turn);
+    return part * part * length / turn * Vec3(sine - (1.0 - cosine) / turn, 0.0, cosine - sine / turn);
+}
+
+/// Where the wires of the layers are held along the strand; elsewhere they may slide through the plates. The core is held at both.
+enum class Anchor {
+    near_plate,   ///< all sliding is at the far plate
+    both_plates,  ///< none: ends of a socketed strand
+};
+
+/// How a strand is held and drawn while it is bent.
+struct Bending {
+    Anchor anchor = Anchor::both_plates;
+    double strain = 0.0;  ///< the arc between the plates is longer than the strand by this, from the first increment on [1], > -1
+};
+
+/// Wires are held in the planes of both plates, and their sections turn with them: one by half of the angle about y, the other back, and
+/// their centres go where the ends of an arc do whose middle stays. So nothing moves far, which keeps the contact search short.
+inline scene::Assembly bent_strand(const StrandParameters& parameters, const Bending& bending = {}) {
     scene::Assembly assembly = wires_of(parameters);
-    const double length = parameters.length;
-    const auto turned = [](double angle) { return Mat3(Eigen::AngleAxisd(angle, Vec3::UnitY())); };
-    for (Index fibre = 0; fibre < parameters.wires(); ++fibre)
+    core::require(bending.strain > -1.0, "Bending.strain", bending.strain, "> -1");
+    const double length = parameters.length, arc = (1.0 + bending.strain) * length;
+    for (Index fibre = 0; fibre < parameters.wires(); ++fibre) {
         for (const double end : {0.0, 1.0}) {
+            const bool slides = fibre > 0 && bending.anchor == Anchor::near_plate && end > 0.0;
+            const double part = end - 0.5;
             scene::Hold hold;
             hold.at = {fibre, end}, hold.channel = bend;
-            if (end > 0.0) {
-                hold.rotation = turned;
-                hold.pivot = Vec3(0, 0, length);
-                hold.path = [=](double angle) { return Vec3(far_centre(length, angle) - Vec3(0, 0, length)); };
-                if (fibre > 0) hold.directions = Vec3(1, 1, 0).asDiagonal();
-            }
+            hold.rotation = [=](double angle) { return Mat3(Eigen::AngleAxisd(part * angle, Vec3::UnitY())); };
+            hold.pivot = Vec3(0, 0, end * length);
+            hold.path = [=](double angle) { return Vec3(arc_point(arc, angle, part) - Vec3(0, 0, part * length)); };
+            if (slides) hold.directions = Vec3(1, 1, 0).asDiagonal();
             assembly.hold(hold);
             hold.path = {};
             // A director has no place: it only turns. Its own stretch is free, as in Assembly::clamp.
@@ -44,41 +64,80 @@ inline scene::Assembly bent_strand(const StrandParameters& parameters) {
             hold.vector = scene::NodeVector::director_2, hold.directions = Vec3(1, 0, 1).asDiagonal();
             assembly.hold(hold);
         }
+    }
     return assembly;
 }
 
 /// What bending takes.
 struct BendingState {
-    double angle = 0.0;     ///< between the plates [radian]
-    double moment = 0.0;    ///< about y, at the far plate's centre [force * length]
-    double tension = 0.0;   ///< of the core and all wires along the far plate's normal [force]
+    double angle = 0.0;    ///< between the plates [radian]
+    double moment = 0.0;   ///< work for each radian: half of what both plates exert about y, and what the forces on them do as their centres move [force * length]
+    double at_plate = 0.0; ///< about y, at the far plate's centre alone [force * length]
+    double tension = 0.0;  ///< of the core and all wires along the far plate's normal [force]
 };
 
 template <simulation::Model M>
-BendingState measure_bending(const simulation::Simulator<M>& simulator, const StrandParameters& parameters) {
+BendingState measure_bending(const simulation::Simulator<M>& simulator, const StrandParameters& parameters, const Bending& bending = {}) {
+    const double arc = (1.0 + bending.strain) * parameters.length;
+    const Vec3 middle(0.0, 0.0, 0.5 * parameters.length);
     BendingState state;
     state.angle = simulator.amplitude(bend);
-    std::vector<scene::Station> ends;
-    for (Index fibre = 0; fibre < parameters.wires(); ++fibre) ends.push_back(scene::last_end(fibre));
-    const simulation::Wrench wrench = simulation::support_wrench(simulator, ends, far_centre(parameters.length, state.angle));
-    state.moment = wrench.moment.y();
-    state.tension = wrench.force.dot(Vec3(std::sin(state.angle), 0.0, std::cos(state.angle)));
+    for (const double end : {0.0, 1.0}) {
+        std::vector<scene::Station> sections;
+        for (Index fibre = 0; fibre < parameters.wires(); ++fibre) sections.push_back({fibre, end});
+        const double part = end - 0.5;
+        const simulation::Wrench wrench = simulation::support_wrench(simulator, sections, middle + arc_point(arc, state.angle, part));
+        state.moment += part * wrench.moment.y() + wrench.force.dot(arc_velocity(arc, state.angle, part));
+        state.at_plate = wrench.moment.y();
+        state.tension = wrench.force.dot(Vec3(std::sin(part * state.angle), 0.0, std::cos(part * state.angle)));
+    }
     return state;
 }
 
-/// Sum of E I of all wires: a strand whose wires slide freely is about as stiff [force * length^2].
+/// How far a wire has gone outwards from the layer it belongs to, at most: its distance from the core's line, which goes straight on beyond
+/// the plates, over the radius of its helix [length].
+template <simulation::Model M>
+double furthest_from_layer(const simulation::Simulator<M>& simulator, const StrandParameters& parameters) {
+    const auto& mesh = simulator.mesh();
+    const auto place = [&](Index fibre, Index node) { return simulator.value({fibre, static_cast<double>(node) / static_cast<double>(mesh.node_count(fibre) - 1)}); };
+    const Index nodes = mesh.node_count(0);
+    double most = 0.0;
+    Index fibre = 1;
+    for (std::size_t k = 0; k < parameters.layers.size(); ++k)
+        for (Index wire = 0; wire < parameters.layers[k].wires; ++wire, ++fibre)
+            for (Index n = 0; n < mesh.node_count(fibre); ++n) {
+                const Vec3 at = place(fibre, n);
+                double least = std::numeric_limits<double>::infinity();
+                for (Index m = 0; m + 1 < nodes; ++m) {
+                    const Vec3 from = place(0, m), along = place(0, m + 1) - from;
+                    double t = (at - from).dot(along) / along.squaredNorm();
+                    if (m > 0) t = std::max(t, 0.0);
+                    if (m + 2 < nodes) t = std::min(t, 1.0);
+                    least = std::min(least, (at - from - t * along).norm());
+                }
+                most = std::max(most, least - parameters.helix_radius(k));
+            }
+    return most;
+}
+
+/// Of wires that bend each by itself, as helical springs: over a turn, sin^2 / 2 of the moment twists a wire and the rest bends it, and there
+/// is 1 / cos of wire on a length of axis. So E I cos / (1 + nu sin^2 / 2) of the lay angle (Costello) [force * length^2].
 inline double loose_stiffness(const StrandParameters& parameters) {
     double sum = std::pow(parameters.core_radius, 4);
-    for (const Layer& layer : parameters.layers) sum += static_cast<double>(layer.wires) * std::pow(layer.radius, 4);
+    for (const Layer& layer : parameters.layers) {
+        const double lay = layer.lay_angle_deg * std::numbers::pi / 180.0, twisting = 0.5 * std::pow(std::sin(lay), 2);
+        sum += static_cast<double>(layer.wires) * std::pow(layer.radius, 4) * std::cos(lay) / (1.0 + parameters.material.poisson_ratio * twisting);
+    }
     return 0.25 * std::numbers::pi * parameters.material.young_modulus * sum;
 }
 
 /// E I of a strand whose sections stay plane: none is stiffer [force * length^2].
 inline double solid_stiffness(const StrandParameters& parameters) {
-    double sum = loose_stiffness(parameters);
+    const double wire = 0.25 * std::numbers::pi * parameters.material.young_modulus;
+    double sum = wire * std::pow(parameters.core_radius, 4);
     for (std::size_t k = 0; k < parameters.layers.size(); ++k) {
         const double radius = parameters.layers[k].radius, a = parameters.helix_radius(k);
-        sum += 0.5 * static_cast<double>(parameters.layers[k].wires) * parameters.material.young_modulus * std::numbers::pi * radius * radius * a * a;
+        sum += static_cast<double>(parameters.layers[k].wires) * wire * (std::pow(radius, 4) + 2.0 * radius * radius * a * a);
     }
     return sum;
 }
