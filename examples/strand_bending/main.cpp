@@ -10,7 +10,9 @@
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/float_block_cholesky.hpp>
 
-#include <limits>
+#include <algorithm>
+#include <cmath>
+#include <ctime>
 
 using namespace fibrant;
 namespace strand = compositions::strand;
@@ -23,65 +25,85 @@ struct Strand {
     using Solver = solver::FloatBlockCholesky;
 };
 
+strand::Anchor anchor_of(const std::string& name) {
+    if (name == "near_plate") return strand::Anchor::near_plate;
+    if (name != "both_plates") core::refuse("loading.anchor", name, "near_plate or both_plates");
+    return strand::Anchor::both_plates;
+}
+
+strand::Lay lay_of(const std::string& name) {
+    if (name == "equal_angle") return strand::Lay::equal_angle;
+    if (name != "equal_pitch") core::refuse("strand.lay", name, "equal_angle or equal_pitch");
+    return strand::Lay::equal_pitch;
+}
+
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
 bool solve(example::TomlReader& file, const example::Output& output) {
-    Index wires = 7, elements = 20, increments = 30;
-    double radius = core::unset, lay = core::unset, length = core::unset, angle = 90.0, mu = 0.1, depth = 0.02, reversible = 0.1;
-    double damping = 0.0, rest_share = 1e-4, overshoot = std::numeric_limits<double>::infinity();
+    Index wires = 7, elements = 0, increments = 30;
+    double radius = core::unset, lay_angle = core::unset, turns = 1.0, length = 0.0, angle = 90.0, mu = 0.1, depth = 0.02, reversible = 0.1;
     double young_modulus = core::unset, poisson_ratio = core::unset;
     bool alternate = true;
+    std::string anchor = "both_plates", lay = "equal_pitch";
+    strand::Bending bending;
     file.require("strand", "wires", wires);
     file.require("strand", "radius", radius);
-    file.require("strand", "lay_angle_deg", lay);
-    file.require("strand", "length", length);
+    file.require("strand", "lay_angle_deg", lay_angle);
+    file.read("strand", "lay", lay);
     file.read("strand", "alternate", alternate);
+    file.read("strand", "turns", turns);
+    file.read("strand", "length", length);
     file.read("strand", "elements", elements);
     file.require("material", "young_modulus", young_modulus);
     file.require("material", "poisson_ratio", poisson_ratio);
     file.read("contact", "friction_coefficient", mu);
     file.read("contact", "reversible_displacement_over_radius", reversible);
     file.read("contact", "allowed_penetration_over_radius", depth);
+    file.read("loading", "anchor", anchor);
+    file.read("loading", "strain", bending.strain);
     file.read("loading", "angle_deg", angle);
     file.read("loading", "increments", increments);
-    file.read("loading", "damping", damping);
-    file.read("loading", "rest_share", rest_share);
-    file.read("solver", "overshoot", overshoot);
     file.refuse_unknown();
-    strand::StrandParameters parameters = strand::regular_strand(wires, radius, lay, alternate);
-    parameters.length = length, parameters.elements = elements, parameters.material = {young_modulus, poisson_ratio};
+    bending.anchor = anchor_of(anchor);
+    strand::StrandParameters parameters = strand::regular_strand(wires, radius, lay_angle, alternate, lay_of(lay));
+    parameters.material = {young_modulus, poisson_ratio};
+    parameters.length = length > 0.0 ? length : turns * parameters.pitch(parameters.layers.size() - 1);
+    // Sixteen a turn follow a helix, and layers of opposite hands cross each other on a length of some three diameters.
+    parameters.elements = elements > 0 ? elements : static_cast<Index>(std::ceil(std::max(16.0 * turns, parameters.length / (5.0 * radius))));
 
     simulation::ModelParameters<Strand> model;
     model.normal.regularisation_depth = 0.5 * depth * radius;
     model.friction = {.friction_coefficient = mu, .reversible_displacement = reversible * radius};
     model.contact.stiffness.allowed_penetration = depth * radius;
-    model.iteration.newton_limit = 30, model.iteration.overshoot = overshoot;
-    model.iteration.margin = 4.0, model.iteration.largest_margin = 8.0;  // ends swing far
-    simulation::Simulator<Strand> simulator(strand::bent_strand(parameters), model);
+    model.iteration.newton_limit = 30;
+    model.iteration.margin = 1.0;  // an increment moves the ends of a long strand by more than a radius
+    simulation::Simulator<Strand> simulator(strand::bent_strand(parameters, bending), model);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
-        const strand::BendingState state = strand::measure_bending(simulator, parameters);
-        return {{"angle_deg", state.angle * 180.0 / std::numbers::pi}, {"moment", state.moment}, {"tension", state.tension}};
+        const strand::BendingState state = strand::measure_bending(simulator, parameters, bending);
+        return {{"angle_deg", state.angle * 180.0 / std::numbers::pi}, {"moment", state.moment}, {"moment_at_plate", state.at_plate}, {"tension", state.tension},
+                {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius}, {"processor_seconds", processor_seconds()}};
     });
     simulation::Loading<Strand> loading;
-    loading.stages.resize(1);
     const double full = angle * std::numbers::pi / 180.0;
-    loading.stages[0].ramps = {{strand::bend, full}};
-    loading.stages[0].increments = increments;
-    loading.stages[0].most_increments = 20 * increments;
-    if (damping > 0.0) {  // wires that buckle creep instead of leaping; at the end nothing is held any more
-        loading.stages[0].damping = damping, loading.stages[0].damping_decay = 0.5;
-        loading.stages.push_back(loading.stages[0]);
-        loading.stages[1].name = "rest", loading.stages[1].ramps = {}, loading.stages[1].increments = 1;
-        loading.stages[1].damping_share = rest_share, loading.stages[1].damping_goes_on = true;
-        loading.stages[1].until = simulation::until_settled(1e-3 * radius, 2.0 * depth * radius, rest_share);
+    if (bending.strain != 0.0) {
+        loading.stages.emplace_back();
+        loading.stages.back().name = "drawing";
     }
+    loading.stages.emplace_back();
+    loading.stages.back().ramps = {{strand::bend, full}};
+    loading.stages.back().increments = increments, loading.stages.back().most_increments = 20 * increments;
     loading.checkpoint = output.checkpoint(), loading.resume = output.resume;
     const simulation::Report report = simulator.run(loading, recorder);
-    const strand::BendingState state = strand::measure_bending(simulator, parameters);
+    const strand::BendingState state = strand::measure_bending(simulator, parameters, bending);
     example::write_pictures(output, simulator.snapshot(), -90.0, 10.0);
     example::write_summary(output, report, radius, {{"wires", static_cast<double>(wires)}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
-                           {"angle_deg", state.angle * 180.0 / std::numbers::pi}, {"moment", state.moment},
-                           {"moment_of_loose_wires", strand::loose_stiffness(parameters) * full / length},
-                           {"moment_of_a_solid", strand::solid_stiffness(parameters) * full / length},
-                           {"dissipated", report.energy.dissipated}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()}});
+                           {"length_over_radius", parameters.length / radius}, {"angle_deg", state.angle * 180.0 / std::numbers::pi},
+                           {"moment", state.moment}, {"moment_at_plate", state.at_plate},
+                           {"moment_of_loose_wires", strand::loose_stiffness(parameters) * full / parameters.length},
+                           {"moment_of_a_solid", strand::solid_stiffness(parameters) * full / parameters.length},
+                           {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius},
+                           {"dissipated", report.energy.dissipated}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()},
+                           {"processor_seconds", processor_seconds()}});
     return report.converged;
 }
 
