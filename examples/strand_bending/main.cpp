@@ -68,8 +68,8 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     strand::StrandParameters parameters = strand::regular_strand(wires, radius, lay_angle, alternate, lay_of(lay));
     parameters.material = {young_modulus, poisson_ratio};
     parameters.length = length > 0.0 ? length : turns * parameters.pitch(parameters.layers.size() - 1);
-    // Sixteen a turn follow a helix, and layers of opposite hands cross each other on a length of some three diameters.
-    parameters.elements = elements > 0 ? elements : static_cast<Index>(std::ceil(std::max(16.0 * turns, parameters.length / (5.0 * radius))));
+    // Sixteen a turn follow a helix; wires of opposite hands cross each other every two diameters, and hardly bend in between.
+    parameters.elements = elements > 0 ? elements : static_cast<Index>(std::ceil(std::max(16.0 * turns, parameters.length / (7.0 * radius))));
 
     simulation::ModelParameters<Strand> model;
     model.normal.regularisation_depth = 0.5 * depth * radius;
