@@ -2,9 +2,16 @@
 #pragma once
 /// @file Tension ratio of a fibre that slides around a cylinder, friction acting at its surface.
 
+#include <fibrant/core/types.hpp>
+
 #include <cmath>
+#include <numbers>
 
 namespace fibrant::test {
+
+/// Angle that a fibre turns through, clockwise in the plane of x and y, by the forces on its two ends [radian]. It is more than half a turn where the
+/// lines of the two forces meet above the cylinder: bending keeps the free parts further away from the axis the slacker they are.
+inline double turned_angle(const Vec3& slack, const Vec3& taut) { return std::numbers::pi - std::atan2(slack.cross(taut).z(), slack.dot(taut)); }
 
 struct Capstan {
     double fibre_radius, radius;  ///< of the fibre, of the cylinder [length]

@@ -217,7 +217,7 @@ TEST_CASE("a rod drawn half a turn around a rigid cylinder is held back as the r
     CAPTURE(report.reason);
     REQUIRE(report.converged);
     const auto [slack, taut] = tensions();
-    const double turned = pi - std::atan2(slack.cross(taut).norm(), slack.dot(taut)), ratio = taut.norm() / slack.norm();
+    const double turned = test::turned_angle(slack, taut), ratio = taut.norm() / slack.norm();
     const double expected = test::capstan_ratio({r, R, test::ReferenceRod::bending(), mu}, slack.norm(), turned);
     std::printf("capstan: ratio %.5f, %.5f expected over %.2f degrees\n", ratio, expected, turned * 180.0 / pi);
     CHECK(ratio == doctest::Approx(expected).epsilon(5e-3));  // points come on and go off the guide one by one

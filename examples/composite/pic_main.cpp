@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// A woven fabric is settled, put between two layers of matrix, bonded to them, and bent, twisted, drawn or sheared.
+//   composite SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
+#include "output.hpp"
+#include "scene_file.hpp"
+
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/connection/bonded_solid.hpp>
+#include <fibrant/connection/rigid_bodies.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/solver/solid_pcg.hpp>
+
+using namespace fibrant;
+namespace cloth = compositions::weave;
+namespace parts = compositions::composite;
+
+struct Dry {
+    using Beam = beam::DirectorBeam<>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::LimitedGap<law::RegularisedPenalty>;
+    using Friction = law::RegularisedCoulomb;
+    using Solver = solver::TwoLevelPcg;
+};
+struct Composite : Dry {
+    using Solid = connection::BondedSolid<solid::Hexahedron<solid::EnhancedStrains, solid::NeoHookean>, connection::NeverDebonds>;
+    using Connections = connection::RigidBodies;
+    using Solver = solver::SolidPcg;
+};
+
+/// Settles the fabric, or takes it from where an earlier run left it.
+void settle(simulation::Simulator<Dry>& dry, const composite::Scene& scene, const example::Output& output) {
+    auto loading = cloth::settling<Dry>(scene.weave.fabric, scene.weave.settle);
+    loading.checkpoint = scene.settled.empty() ? (output.folder / "settled.bin").string() : scene.settled;
+    loading.checkpoint_seconds = 1e9, loading.resume = true;
+    weave::ProgressPrinter progress(cloth::smallest_radius(scene.weave.fabric), output.quiet);
+    const simulation::Report report = dry.run(loading, progress);
+    if (!report.converged) throw std::runtime_error("the fabric did not settle: " + report.reason);
+}
+
+bool solve(example::TomlReader& file, const example::Output& output) {
+    const composite::Scene scene = composite::read_scene(file, output.scene.string());
+    const cloth::FabricParameters& fabric = scene.weave.fabric;
+    const scene::Assembly flat = cloth::flat_fabric(fabric, scene.weave.settle.tension_strain);
+    auto dry_parameters = cloth::model_parameters<Dry>(fabric, scene.weave.settle);
+    dry_parameters.iteration = scene.weave.iteration;
+    simulation::Simulator<Dry> dry(flat, dry_parameters);
+    settle(dry, scene, output);
+
+    // The layers, and the edges that move.
+    const solid::Layers layers = parts::layers_of(dry.snapshot(), fabric, scene.matrix);
+    const parts::Composite composite = parts::composite_of(fabric, dry.state(), flat, layers, scene.matrix, scene.load);
+    auto parameters = cloth::model_parameters<Composite>(fabric, scene.weave.settle);
+    parameters.friction.friction_coefficient = scene.weave.settle.friction_coefficient;
+    parameters.iteration = scene.weave.iteration, parameters.iteration.margin = 1.0, parameters.iteration.largest_margin = 8.0;  // edges swing far
+    parameters.iteration.overshoot = scene.overshoot;
+    parameters.solver.carried = scene.carried;
+    parameters.solid.bonding_factor = scene.matrix.bonding_factor, parameters.solid.section_factor = scene.matrix.section_factor;
+    simulation::Simulator<Composite> simulator(composite.assembly, parameters);
+    simulator.go_on_from(dry);
+    const auto& solid = simulator.equilibrium().solid();
+    if (!output.quiet)
+        std::printf("matrix: %td nodes, %td cells, %td bonds; grid columns %td, pores %td of %td, clipped %td\n", solid.nodes(), solid.cells(),
+                    core::count(solid.bonds()), layers.columns, layers.filled, layers.met + layers.filled, layers.clipped);
+
+    composite::Watch watch(output);
+    const auto point = [&](const simulation::Wrench& edge) { return composite::curve_point(scene.load, simulator.amplitude(parts::load_channel), edge); };
+    example::Recorder recorder(output, cloth::smallest_radius(fabric), [&] {
+        const simulation::Wrench edge = parts::edge_wrench(simulator, composite);
+        return watch.columns(point(edge), edge);
+    });
+    auto loading = parts::loading_of<Composite>(fabric, scene.weave.settle, scene.load);
+    loading.checkpoint = output.checkpoint(), loading.checkpoint_seconds = 20.0, loading.resume = output.resume; loading.smallest_fraction = 1.0;
+    const simulation::Report report = simulator.run(loading, watch, recorder);
+    watch.write_curve(output.scene.stem().string());
+    composite::write_pictures(output, simulator.snapshot(), fabric);
+    composite::write_summary(output, simulator, report, point(parts::edge_wrench(simulator, composite)), cloth::smallest_radius(fabric));
+    return report.converged;
+}
+
+int main(int argc, char** argv) {
+    return example::run(argc, argv, "composite", "A woven fabric between two layers of matrix, bent, twisted, drawn or sheared.", solve);
+}
