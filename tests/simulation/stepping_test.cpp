@@ -297,7 +297,7 @@ TEST_CASE("one fibre of many that goes too far is held alone: increments stay, a
     loading.stages = {{.name = "push", .increments = 4, .ramps = {{"load", 1.0}}, .damping = 1e-3 * stiffness, .largest_displacement = 0.02 * rod.length},
                       {.name = "rest", .increments = 1, .damping = 1e-3 * stiffness, .damping_goes_on = true, .damping_decay = 0.5,
                        .largest_displacement = 0.02 * rod.length, .until = simulation::until_settled(1e-4 * rod.radius, 0.0)}};
-    const double push = 0.1;  // each tip goes by a thirtieth of the length, and by a hundred times that if nothing holds it
+    const double push = 0.1;  // each tip goes by a thirtieth of the length, and that of the soft one by tenfold if nothing holds it
     Simulator<Smooth> alone(rod.row(push), test::tight_parameters<Smooth>(rod.radius));
     Record<Smooth> calm(alone);
     REQUIRE(alone.run(loading, calm).converged);

@@ -96,33 +96,13 @@ public:
                 row(fibre, element * (B::nodes - 1) + a).template block<block, block>(0, (reach - (a - b)) * block) +=
                     stiffness.template block<block, block>(a * block, b * block);
     }
-    /// Adds (w w^T) (x) stiffness on the vectors of one element.
+    /// Adds (w w^T) (x) stiffness on the vectors of one element; of a particle whose section turns J^T stiffness J with the derivatives J
+    /// of its place.
     /// @param first_unknown  of the element
-    void add_rank_one(Index fibre, Index first_unknown, const beam::ElementWeights<B>& weights, const Mat3& stiffness) {
+    template <class Weights>
+    void add_rank_one(Index fibre, Index first_unknown, const Weights& weights, const Mat3& stiffness) {
         const Index node = first_unknown / block - first_node_[core::at(fibre)];
-        for (Index a = 0; a < B::nodes; ++a)
-            for (Index v = 0; v < B::vectors_per_node; ++v) {
-                const double left = weights[core::at(a * B::vectors_per_node + v)];
-                if (left == 0.0) continue;
-                for (Index b = 0; b <= a; ++b)
-                    for (Index w = 0; w < B::vectors_per_node; ++w)
-                        row(fibre, node + a).template block<3, 3>(3 * v, (reach - (a - b)) * block + 3 * w) +=
-                            left * weights[core::at(b * B::vectors_per_node + w)] * stiffness;
-            }
-    }
-    /// The same of a particle of the centreline.
-    void add_rank_one(Index fibre, Index first_unknown, const beam::CentreWeights<B::nodes, B::vectors_per_node>& centre, const Mat3& stiffness) {
-        const Index node = first_unknown / block - first_node_[core::at(fibre)];
-        for (Index a = 0; a < B::nodes; ++a)
-            for (Index b = 0; b <= a; ++b)
-                row(fibre, node + a).template block<3, 3>(0, (reach - (a - b)) * block) += centre[core::at(a)] * centre[core::at(b)] * stiffness;
-    }
-    /// The same of a particle whose section turns: J^T stiffness J with the derivatives J of its place.
-    void add_rank_one(Index fibre, Index first_unknown, const beam::Particle<B>& particle, const Mat3& stiffness)
-        requires beam::TurningSections<B>
-    {
-        const Index node = first_unknown / block - first_node_[core::at(fibre)];
-        each_pair(particle, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
+        each_pair(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
             row(fibre, node + a).template block<3, 3>(3 * v, (reach - (a - b)) * block + 3 * w) += product;
         });
     }
@@ -185,23 +165,9 @@ public:
         pairs_.add_own(pairs_.sides(first_node_[core::at(fibre)], first_node_[core::at(fibre + 1)]),
                        [&](std::int32_t first, const beam::Particle<B>& weights, const Mat3& stiffness) {
             const Index node = (first - first_unknown(fibre)) / block;
-            if constexpr (beam::TurningSections<B>) {
-                each_pair(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
-                    blocks.block<3, 3>((node + a) * block + 3 * v, (a - b) * block + 3 * w) += product;
-                });
-            } else if constexpr (beam::TouchedOnCentreline<B>) {
-                for (Index a = 0; a < B::nodes; ++a)
-                    for (Index b = 0; b <= a; ++b)
-                        blocks.block<3, 3>((node + a) * block, (a - b) * block) += weights[core::at(a)] * weights[core::at(b)] * stiffness;
-            } else {
-            for (Index a = 0; a < B::nodes; ++a)
-                for (Index b = 0; b <= a; ++b)
-                    for (Index v = 0; v < B::vectors_per_node; ++v)
-                        for (Index w = 0; w < B::vectors_per_node; ++w) {
-                            const double scale = weights[core::at(a * B::vectors_per_node + v)] * weights[core::at(b * B::vectors_per_node + w)];
-                            blocks.block<3, 3>((node + a) * block + 3 * v, (a - b) * block + 3 * w) += scale * stiffness;
-                        }
-            }
+            each_pair(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
+                blocks.block<3, 3>((node + a) * block + 3 * v, (a - b) * block + 3 * w) += product;
+            });
         });
         const scene::Chain& chain = layout_.chains[core::at(fibre)];
         for (auto held = std::lower_bound(supports_.begin(), supports_.end(), std::pair<Index, double>(chain.first_vector, 0.0));
@@ -266,9 +232,28 @@ public:
     }
 
 private:
-    /// see(node, vector, node, vector, block) of J^T stiffness J, in the lower half.
+    /// see(node, vector, node, vector, block) of (w w^T) (x) stiffness, in the lower half.
     template <class See>
-    static void each_pair(const beam::Particle<B>& particle, const Mat3& stiffness, const See& see) {
+    static void each_pair(const beam::ElementWeights<B>& weights, const Mat3& stiffness, const See& see) {
+        for (Index a = 0; a < B::nodes; ++a)
+            for (Index v = 0; v < B::vectors_per_node; ++v) {
+                const double left = weights[core::at(a * B::vectors_per_node + v)];
+                if (left == 0.0) continue;
+                for (Index b = 0; b <= a; ++b)
+                    for (Index w = 0; w < B::vectors_per_node; ++w) see(a, v, b, w, Mat3(left * weights[core::at(b * B::vectors_per_node + w)] * stiffness));
+            }
+    }
+    /// The same of a particle of the centreline.
+    template <class See>
+    static void each_pair(const beam::CentreWeights<B::nodes, B::vectors_per_node>& centre, const Mat3& stiffness, const See& see) {
+        for (Index a = 0; a < B::nodes; ++a)
+            for (Index b = 0; b <= a; ++b) see(a, 0, b, 0, Mat3(centre[core::at(a)] * centre[core::at(b)] * stiffness));
+    }
+    /// The same of J^T stiffness J.
+    template <class See>
+    static void each_pair(const beam::Particle<B>& particle, const Mat3& stiffness, const See& see)
+        requires beam::TurningSections<B>
+    {
         for (Index a = 0; a < B::nodes; ++a)
             for (Index v = 0; v < B::vectors_per_node; ++v) {
                 const Mat3 left = particle.slope(a * B::vectors_per_node + v).transpose() * stiffness;

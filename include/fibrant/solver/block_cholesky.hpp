@@ -318,13 +318,13 @@ private:
         }
     }
 
+    struct Scratch {
+        RealMatrix inverse, rows;
+    };
     /// Cholesky of the columns [first, last) of a front, the upper part of `panel`, and what it makes of the rows below.
     ///
     /// By halves, so that most is done by wide products. Below the narrowest diagonal blocks the rows are multiplied by
     /// the inverse, which is faster than a solution and as good: these blocks are small.
-    struct Scratch {
-        RealMatrix inverse, rows;
-    };
     void eliminate(Panel& panel, Index first, Index last, const RealVector& scale, Scratch& scratch, Pivots& pivots) const {
         constexpr Index narrow = 24, strip = 768;
         const Index width = last - first, n = panel.rows();

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Strands with friction, bent to 90 degrees: what holds for any of them.
-#include <fibrant/beam/director_beam.hpp>
-#include <fibrant/compositions/strand/bending.hpp>
-#include <fibrant/law/regularised_coulomb.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/float_block_cholesky.hpp>
+#include <compositions/strand/bent_strand.hpp>
 
 #include <doctest/doctest.h>
 
@@ -18,13 +13,7 @@ namespace bending_long_test {
 
 namespace strand = compositions::strand;
 
-struct Rough {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::DoubleBlockCholesky;
-};
+using Rough = test::RoughStrand;
 
 struct Bent {
     simulation::Report report;
@@ -33,15 +22,6 @@ struct Bent {
     double furthest = 0.0;  ///< from its layer
 
     double over_loose(std::size_t k) const { return states[k].moment / (strand::loose_stiffness(parameters) * states[k].angle / parameters.length); }
-    /// What the moments after all increments have done, by the trapezium rule.
-    double work() const {
-        double sum = 0.0;
-        for (std::size_t k = 0; k < states.size(); ++k) {
-            const double before = k > 0 ? states[k - 1].moment : 0.0, from = k > 0 ? states[k - 1].angle : 0.0;
-            sum += 0.5 * (before + states[k].moment) * (states[k].angle - from);
-        }
-        return sum;
-    }
 };
 
 /// To 90 degrees in thirty increments.
@@ -88,7 +68,7 @@ void check(const Bent& smooth, const Bent& rough, double near_loose) {
         for (std::size_t k = 0; k < 30; ++k) CHECK(bent->over_loose(k) < solid);
         // Nothing presses wires together but bending itself: they are springs side by side, and hundredths come from where they touch.
         for (std::size_t k = 0; k < 30; ++k) CHECK(std::abs(bent->over_loose(k) - 1.0) < near_loose);
-        CHECK(std::abs(bent->work() / bent->report.energy.external - 1.0) < 2e-3);  // of thirty increments
+        CHECK(std::abs(test::work_of(bent->states) / bent->report.energy.external - 1.0) < 2e-3);  // of thirty increments
         CHECK(bent->report.contact.greatest_penetration < 0.03);
         double last = 0.0;
         for (const simulation::IncrementReport& increment : bent->report.increments) {

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Strands bent between two plates: loose ones are springs, drawn ones rub as Coulomb's law says.
-#include <fibrant/beam/director_beam.hpp>
-#include <fibrant/compositions/strand/bending.hpp>
-#include <fibrant/law/regularised_coulomb.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/float_block_cholesky.hpp>
+#include <compositions/strand/bent_strand.hpp>
 
 #include <doctest/doctest.h>
 
@@ -18,13 +13,7 @@ namespace bending_test {
 
 namespace strand = compositions::strand;
 
-struct Rough {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::DoubleBlockCholesky;
-};
+using Rough = test::RoughStrand;
 
 constexpr double r = 1.0, mu = 0.1, lay_angle_deg = 17.0;
 
@@ -93,12 +82,7 @@ TEST_CASE("wires that nothing presses together bend like springs, with friction 
         std::printf("friction %.1f: moment %.4f, expected %.4f; work %.6f, that of the moments %.6f\n", friction, path.states.back().moment, expected, path.report.energy.external,
                     0.5 * expected * angle);
         CHECK(std::abs(path.states.back().moment / expected - 1.0) < 1e-3);  // the strand is one turn long: its ends are held
-        double work = 0.0;
-        for (std::size_t k = 0; k < path.states.size(); ++k) {
-            const double before = k > 0 ? path.states[k - 1].moment : 0.0, from = k > 0 ? path.states[k - 1].angle : 0.0;
-            work += 0.5 * (before + path.states[k].moment) * (path.states[k].angle - from);
-        }
-        CHECK(std::abs(path.report.energy.external / work - 1.0) < 1e-4);
+        CHECK(std::abs(path.report.energy.external / test::work_of(path.states) - 1.0) < 1e-4);
     }
 }
 
