@@ -108,7 +108,7 @@ void write_summary(const example::Output& output, const Simulator& simulator, co
                            {"elastic_before_load", before.elastic}, {"external_before_load", before.external}, {"dissipated_before_load", before.dissipated},
                            {"elastic", report.energy.elastic}, {"external", report.energy.external}, {"dissipated", report.energy.dissipated},
                            {"damped", report.energy.damped}, {"energy_error", report.energy.error()},
-                           {"cpu_seconds", weave::cpu_seconds()}, {"peak_memory_bytes", number(weave::peak_memory_bytes())}});
+                           {"cpu_seconds", example::cpu_seconds()}, {"peak_memory_bytes", number(example::peak_memory_bytes())}});
 }
 
 }  // namespace composite

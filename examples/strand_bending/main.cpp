@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 using namespace fibrant;
 namespace strand = compositions::strand;
@@ -36,8 +35,6 @@ strand::Lay lay_of(const std::string& name) {
     if (name != "equal_pitch") core::refuse("strand.lay", name, "equal_angle or equal_pitch");
     return strand::Lay::equal_pitch;
 }
-
-double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 bool solve(example::TomlReader& file, const example::Output& output) {
     Index wires = 7, elements = 0, increments = 30;
@@ -81,7 +78,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const strand::BendingState state = strand::measure_bending(simulator, parameters, bending);
         return {{"angle_deg", state.angle * 180.0 / std::numbers::pi}, {"moment", state.moment}, {"moment_at_plate", state.at_plate}, {"tension", state.tension},
-                {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius}, {"processor_seconds", processor_seconds()}};
+                {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius}, {"processor_seconds", example::cpu_seconds()}};
     });
     simulation::Loading<Strand> loading;
     const double full = angle * std::numbers::pi / 180.0;
@@ -103,7 +100,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
                            {"moment_of_a_solid", strand::solid_stiffness(parameters) * full / parameters.length},
                            {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius},
                            {"dissipated", report.energy.dissipated}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()},
-                           {"processor_seconds", processor_seconds()}});
+                           {"processor_seconds", example::cpu_seconds()}});
     return report.converged;
 }
 

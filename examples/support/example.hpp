@@ -2,7 +2,7 @@
 #pragma once
 /// @file What the examples that read a scene file have in common: the command line, progress, tables, pictures and a summary.
 
-#include "memory.hpp"
+#include "process.hpp"
 #include "toml_reader.hpp"
 
 #include <fibrant/observe/csv_writer.hpp>

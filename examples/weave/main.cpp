@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The initial state of a woven fabric at the scale of its fibres, found from flat, interpenetrating tows.
 //   weave SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
-#include "../support/memory.hpp"
+#include "../support/process.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
 
@@ -70,8 +70,8 @@ bool settle(const weave::Scene& scene, const Options& options, Index threads) {
     summary.threads = threads;
     weave::write_measures(folder, snapshot, scene.fabric, crimp);
     if (scene.pictures) weave::write_pictures(folder, snapshot, scene.fabric, scene.unit);
-    summary.cpu_seconds = weave::cpu_seconds();
-    summary.peak_memory_bytes = weave::peak_memory_bytes();
+    summary.cpu_seconds = example::cpu_seconds();
+    summary.peak_memory_bytes = example::peak_memory_bytes();
     weave::write_summary(folder, summary);
     if (!options.quiet) weave::print(summary, options.output);
     return summary.converged && summary.clean;

@@ -11,8 +11,6 @@
 #include <fibrant/observe/vtk_writer.hpp>
 #include <fibrant/simulation/report.hpp>
 
-#include <sys/resource.h>
-
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -25,23 +23,6 @@ namespace weave {
 namespace cloth = fibrant::compositions::weave;
 namespace observe = fibrant::observe;
 using fibrant::Index;
-
-/// Processor time of this process, all threads [second].
-inline double cpu_seconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& time) {
-        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-    };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-/// Greatest resident memory so far [byte]; Linux counts it in kilobytes.
-inline std::int64_t peak_memory_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
-}
 
 /// Seconds as "1:02:03" or "2:03".
 inline std::string clock_text(double seconds) {

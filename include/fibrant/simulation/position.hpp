@@ -99,6 +99,7 @@ std::vector<double> amplitudes_at(const Stage<M>& stage, double progress, const 
     return amplitudes;
 }
 
+/// a - b, entry by entry; both have the same size.
 inline std::vector<double> difference(std::vector<double> a, const std::vector<double>& b) {
     for (std::size_t k = 0; k < a.size(); ++k) a[k] -= b[k];
     return a;
