@@ -60,6 +60,7 @@ inline Scene read_scene(example::TomlReader& file, const std::string& path) {
     file.read("load", "rest_share", load.rest_share);
     file.read("load", "damping", load.damping);
     file.read("load", "patches_across", load.patches_across);
+    file.read("load", "one_by_one", load.one_by_one);
     file.read("load", "driven", load.driven);
     file.read("load", "settled", scene.settled);
     file.read("solver", "overshoot", scene.overshoot);

@@ -8,9 +8,11 @@
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/connection/bonded_solid.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>
+#include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/solver/float_block_cholesky.hpp>
 #include <fibrant/solver/solid_pcg.hpp>
 
 #include <doctest/doctest.h>
@@ -304,6 +306,71 @@ TEST_CASE("a bar of matrix and fibre drawn by a body shares the force by E A, an
     wrong = drawn.assembly;
     wrong.hold(hold), wrong.connect({.nodes = {{0, 5}}, .body = 0});
     CHECK(test::refusal([&] { Simulator(wrong, parameters(1e6)); }).starts_with("connection"));
+}
+
+/// Fibres alone, with the edges of a composite.
+struct Dry {
+    using Beam = beam::DirectorBeam<3>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::RegularisedPenalty;
+    using Friction = law::Frictionless;
+    using Connections = connection::RigidBodies;
+    using Solver = solver::FloatBlockCholesky;
+};
+
+TEST_CASE("edges that turn take along every fibre end, or the mean of each tow's: then its ends keep their places beside each other") {
+    compositions::weave::FabricParameters fabric;
+    fabric.pattern = compositions::weave::Pattern{};
+    fabric.warp_tows = fabric.weft_tows = 2;
+    fabric.warp = fabric.weft = {7, radius, 0.05, {fibre_modulus, 0.3}};
+    fabric.warp_spacing = fabric.weft_spacing = fabric.overhang = 0.88;
+    fabric.elements = 4;
+    const scene::Assembly flat = compositions::weave::flat_fabric(fabric, 1e-3);
+    composite::LoadParameters load;
+    load.load = composite::LoadCase::twisting, load.angle_deg = 40.0;
+    for (const bool one_by_one : {true, false}) {
+        CAPTURE(one_by_one);
+        load.one_by_one = one_by_one;
+        composite::Composite scene;
+        for (const scene::Group& group : flat.groups()) scene.assembly.add_group(group.name, group.parent);
+        for (Index f = 0; f < fabric.fibres(); ++f) {
+            scene::FibreSpecification fibre = flat.fibres()[core::at(f)];
+            if (fabric.place(f).family == compositions::weave::Family::weft) fibre.from.z() += 10.0, fibre.to.z() += 10.0;  // out of reach
+            scene.assembly.add(fibre);
+        }
+        scene.length = fabric.fibre_length(compositions::weave::Family::warp);
+        composite::tie_edges(scene, fabric, {}, load);
+        simulation::ModelParameters<Dry> dry;
+        dry.normal = parameters(1.0).normal, dry.contact = parameters(1.0).contact, dry.iteration = parameters(1.0).iteration;
+        simulation::Loading<Dry> loading;
+        loading.stages.resize(1);
+        loading.stages[0].ramps = {{composite::load_channel, 1.0}};
+        loading.stages[0].increments = 4;
+        loading.stages[0].damping = 1e-3;  // single fibres hang on nothing else
+        simulation::Simulator<Dry> simulator(scene.assembly, dry);
+        const observe::Snapshot before = simulator.snapshot();
+        const auto report = simulator.run(loading);
+        REQUIRE_MESSAGE(report.converged, report.reason);
+        const observe::Snapshot after = simulator.snapshot();
+        CHECK(simulator.equilibrium().ties().misfit() <= 1e-10);
+        for (const bool east : {false, true}) {
+            const Mat3 turn = core::rotation(Vec3((east ? 0.5 : -0.5) * load.angle_deg * std::acos(-1.0) / 180.0, 0, 0));
+            const auto end = [&](const observe::Snapshot& snapshot, Index f) {
+                const auto& line = snapshot.fibres[core::at(f)].position;
+                return Vec3(east ? line.back() : line.front());
+            };
+            double turned = 0.0, kept = 0.0;  // of places beside the tow's first fibre: how far they are from either
+            for (Index tow = 0; tow < 2; ++tow)
+                for (Index k = 1; k < 7; ++k) {
+                    const Index first = fabric.fibre(compositions::weave::Family::warp, tow, 0), other = fabric.fibre(compositions::weave::Family::warp, tow, k);
+                    const Vec3 was = end(before, other) - end(before, first), is = end(after, other) - end(after, first);
+                    turned = std::max(turned, (is - turn * was).norm()), kept = std::max(kept, (is - was).norm());
+                }
+            // Round fibres side by side roll on each other without friction; the farthest places are four radii apart, and turn by 20 degrees.
+            if (one_by_one) CHECK(turned <= 1e-9 * radius);
+            else CHECK(kept <= 0.1 * turned);
+        }
+    }
 }
 
 TEST_CASE("a matrix a million times as stiff as the fibres, and one a million times as soft, is bent as any") {

@@ -66,6 +66,8 @@ struct LoadParameters {
     double damping = 1e-3;            ///< the same spring under load [1], >= 0
     Index patches_across = 0;         ///< of a layer's face, whose means the bodies take along, >= 0; 0: as many as warp tows. A corner of a
                                       ///< face is held the less the more cells a patch has
+    bool one_by_one = false;          ///< bodies take along every fibre end, and not the mean of each tow's: between cells that are held finely,
+                                      ///< ends that only share a mean are pushed out of the face, and crush the cells about them
 
     void validate() const {
         core::require_finite("LoadParameters.strain", strain);

@@ -126,8 +126,8 @@ inline std::vector<std::vector<scene::SolidNode>> face_patches(const solid::Laye
     return patches;
 }
 
-/// Two bodies (Durville, sections 15.3.4 and 15.4.3): each takes along the mean of the fibre ends of every warp tow, and of the
-/// nodes of every patch of the layers' faces; single ends and nodes move as they like. The load prescribes one coordinate of
+/// Two bodies (Durville, sections 15.3.4 and 15.4.3): each takes along the mean of the fibre ends of every warp tow, or every end, and
+/// the mean of the nodes of every patch of the layers' faces; single ends and nodes move as they like. The load prescribes one coordinate of
 /// both; the east body's other displacements are free, and all other turns are held.
 inline void tie_edges(Composite& composite, const FabricParameters& fabric, const solid::Layers& layers, const LoadParameters& load) {
     using scene::Coordinate;
@@ -150,7 +150,7 @@ inline void tie_edges(Composite& composite, const FabricParameters& fabric, cons
         (is_east ? composite.east_body : composite.west_body) = number;
         const weave::Edge edge = is_east ? weave::Edge::east : weave::Edge::west;
         for (Index tow = 0; tow < fabric.warp_tows; ++tow)  // a fibre's turn about itself: nothing else may hold it
-            weave::connect_tow_end(composite.assembly, fabric, edge, tow, number, {.spin = !is_east});
+            weave::connect_tow_end(composite.assembly, fabric, edge, tow, number, {.spin = !is_east}, load.one_by_one);
         for (Index layer = 0; layer < core::count(layers.list); ++layer)
             for (const auto& patch : face_patches(layers.list[core::at(layer)], layer, is_east, patches))
                 if (!patch.empty()) composite.assembly.connect({.nodes = patch, .body = number});
