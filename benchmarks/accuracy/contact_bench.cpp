@@ -4,13 +4,12 @@
 // run at smaller and smaller penetrations, with a penalty alone and with multipliers; the crossing also on finer and finer meshes, with
 // multipliers. Prints CSV, a line a run, and writes log-log plots.
 // usage: benchmark_accuracy_contact_bench [directory of the plots [repeats]]; default . and 3
-#include "rods.hpp"
+#include "sweep.hpp"
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
 #include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/compositions/strand/strand.hpp>
 #include <fibrant/law/augmented.hpp>
-#include <fibrant/observe/svg_plot.hpp>
 
 #include <algorithm>
 #include <array>
@@ -49,11 +48,6 @@ simulation::ModelParameters<M> allowing(double penetration) {
     all.iteration.newton_limit = 40;
     return all;
 }
-
-struct Sample {
-    double error = 0.0, seconds = 0.0;
-    simulation::Report report;
-};
 
 /// 200 radii long, stretched by 0.002, the clamps two radii closer than where the fibres would touch (crossed_fibres.json).
 template <simulation::Model M>
@@ -109,27 +103,6 @@ Sample stretched_strand(double penetration) {
     return sample;
 }
 
-/// @param run  run(value), value a penetration over the radius or a number of elements
-template <class Run, class Values>
-void sweep(const char* scene, const char* policy, const Values& values, const Run& run, int repeats, observe::LogLogPlot& plot) {
-    std::vector<std::pair<double, double>> points;
-    for (const auto value : values) {
-        std::vector<double> times;
-        Sample sample;
-        for (int k = 0; k < repeats; ++k) {
-            sample = run(value);
-            times.push_back(sample.seconds);
-        }
-        const double seconds = median(times);
-        std::printf("%s,%s,%g,%.3e,%.3e,%.2e,%ld,%ld,%d\n", scene, policy, static_cast<double>(value), sample.error, seconds, sample.report.contact.greatest_penetration / r,
-                    static_cast<long>(sample.report.counts.newton), static_cast<long>(sample.report.counts.contact_passes), sample.report.converged ? 1 : 0);
-        std::fflush(stdout);
-        if (sample.report.converged) points.emplace_back(seconds, sample.error);
-    }
-    plot.x_label = "CPU time [s]", plot.y_label = "error of the force";
-    plot.lines.push_back({policy, points});
-}
-
 using Director = beam::DirectorBeam<3>;
 using Rod = beam::RigidSectionRod;
 using Cable = beam::KirchhoffCable;
@@ -139,7 +112,7 @@ using Cable = beam::KirchhoffCable;
 int main(int argc, char** argv) {
     const std::filesystem::path directory = argc > 1 ? argv[1] : ".";
     const int repeats = argc > 2 ? std::max(1, std::atoi(argv[2])) : 3;
-    std::printf("scene,policy,allowed_over_radius or elements,error,seconds,penetration_over_radius,newton,contact_passes,converged\n");
+    print_sweep_header();  // value: allowed penetration over the radius, or elements
     observe::LogLogPlot crossed, meshes, wires;
     crossed.title = "crossed fibres, less and less penetration", meshes.title = "crossed fibres, multipliers, finer and finer meshes", wires.title = "strand 1 + 6";
     const std::array penetrations{1e-1, 1e-2, 1e-3, 1e-4, 1e-5};
@@ -164,6 +137,7 @@ int main(int argc, char** argv) {
     refine.operator()<Held<Cable>>("cable");
     stretch.operator()<Policy<Director>>("director, penalty");
     stretch.operator()<Held<Director>>("director, multipliers");
+    for (observe::LogLogPlot* plot : {&crossed, &meshes, &wires}) plot->y_label = "error of the force";
     observe::write_file(directory / "accuracy_crossing.svg", observe::log_log_svg(crossed));
     observe::write_file(directory / "accuracy_crossing_meshes.svg", observe::log_log_svg(meshes));
     observe::write_file(directory / "accuracy_strand.svg", observe::log_log_svg(wires));

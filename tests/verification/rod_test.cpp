@@ -165,9 +165,14 @@ TEST_CASE("two crossed rods push each other apart as the rods of the reference d
     } cases[] = {{1.005, 0.0, 0.0402, 0.00434436794292}, {4.02, 0.002, 0.1608, 0.00260312107061}, {1.005, 0.0, 0.1608, 0.0618080596752}};
     for (const auto& c : cases)
         for (const double angle : {90.0, 35.0}) {
-            if (angle < 90.0 && c.u > 0.1 * c.length) continue;  // not yet: its contact passes do not settle
             const test::Pressed pressed = test::pressed_fibres<Model>(c.length, c.strain, c.u, angle, 48);
-            std::printf("crossed, L %g, stretch %g, u %g, %g degrees: error %+.2e, lost %.2e r\n", c.length, c.strain, c.u, angle, pressed.force / c.force - 1.0, pressed.lost / 0.0201);
+            std::printf("crossed, L %g, stretch %g, u %g, %g degrees: error %+.2e, lost %.2e r, %td contacts\n", c.length, c.strain, c.u, angle, pressed.force / c.force - 1.0, pressed.lost / 0.0201, pressed.active);
+            if (angle < 90.0 && c.u > 0.1 * c.length) {
+                // Here r kappa nears sin^2 (angle / 2), and the fibres touch on both sides of the middle: no force on a point any more, as the reference has it.
+                CHECK(std::abs(pressed.force / c.force - 1.0) < 1e-2);
+                CHECK(pressed.active > 1);
+                continue;
+            }
             CHECK(std::abs(pressed.force / c.force - 1.0) < 2.5e-3);  // second order: 1/48^2 and a little
             CHECK(pressed.unbalance < 1e-6);
             CHECK(pressed.active == 1);

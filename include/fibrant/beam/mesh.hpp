@@ -251,6 +251,15 @@ public:
                           point(state, first, B::centreline_derivative_weights(-1.0)));
         }
     }
+    /// The same as it is felt over an element: straight elements have all of their bend between them [length].
+    Vec3 mean_second_derivative(const Vector& state, Index f, double u) const noexcept {
+        if constexpr (B::nodes > 2 || requires { B::centreline_bend_weights(0.0); }) {
+            return second_derivative(state, f, u);
+        } else {
+            const double last = static_cast<double>(node_count(f) - 1), middle = std::clamp(u, 0.5, std::max(0.5, last - 0.5));
+            return derivative(state, f, std::min(last, middle + 0.5)) - derivative(state, f, middle - 0.5);
+        }
+    }
     /// Its greatest size in element e [length].
     double greatest_bend(const Vector& state, Index f, Index e) const noexcept {
         if constexpr (requires { B::centreline_bend_weights(0.0); }) {

@@ -108,7 +108,7 @@ double crossing_angle_deg(const beam::Mesh<B>& mesh, const Vector& state, const 
     const Vec3 x_i = mesh.position(state, zone.fibre_i, zone.closest_i), x_j = mesh.position(state, zone.fibre_j, zone.closest_j);
     const Vec3 centres = x_j - x_i;
     const auto bend = [&](Index fibre, double u, const Vec3& derivative, const Vec3& tangent) {
-        const Vec3 second = mesh.second_derivative(state, fibre, u);
+        const Vec3 second = mesh.mean_second_derivative(state, fibre, u);
         return centres.dot(second - second.dot(tangent) * tangent) / derivative.squaredNorm();
     };
     const double bend_i = bend(zone.fibre_i, zone.closest_i, d_i, t_i), bend_j = bend(zone.fibre_j, zone.closest_j, d_j, t_j);

@@ -42,12 +42,10 @@ inline scene::Assembly wires_of(const StrandParameters& parameters) {
     return assembly;
 }
 
-/// The strand between two plates that hold every wire along the axis and around it, and its turn about itself. Wires may move
+/// Two plates, at z = 0 and z = length, that hold every fibre along the axis and around it, and its turn about itself. Fibres may move
 /// towards the axis and tilt, so that the plates hardly disturb the state in between.
-inline scene::Assembly straight_strand(const StrandParameters& parameters) {
-    scene::Assembly assembly = wires_of(parameters);
-    const double length = parameters.length;
-    for (Index fibre = 0; fibre < parameters.wires(); ++fibre)
+inline void hold_between_plates(scene::Assembly& assembly, double length) {
+    for (Index fibre = 0; fibre < core::count(assembly.fibres()); ++fibre)
         for (const double end : {0.0, 1.0}) {
             const scene::FibreSpecification& wire = assembly.fibres()[core::at(fibre)];
             const Vec3 place = wire.curve ? wire.curve(end) : Vec3(0, 0, end * length);
@@ -60,7 +58,7 @@ inline scene::Assembly straight_strand(const StrandParameters& parameters) {
             scene::Hold around;
             around.at = {fibre, end}, around.channel = twist, around.rotation = turned;
             const Vec3 aside = Vec3::UnitZ().cross(place);
-            around.directions = fibre == 0 ? Mat3(Vec3(1, 1, 0).asDiagonal()) : Mat3(aside.normalized() * aside.normalized().transpose());
+            around.directions = aside.norm() < 1e-9 * length ? Mat3(Vec3(1, 1, 0).asDiagonal()) : Mat3(aside.normalized() * aside.normalized().transpose());
             assembly.hold(around);
             // About itself: both off-axis components, as Assembly::hold_axial_rotation does.
             around.axes = scene::Axes::section;
@@ -69,6 +67,12 @@ inline scene::Assembly straight_strand(const StrandParameters& parameters) {
             around.vector = scene::NodeVector::director_2, around.directions = Vec3(1, 0, 0).asDiagonal();
             assembly.hold(around);
         }
+}
+
+/// The strand between two plates that hold its wires.
+inline scene::Assembly straight_strand(const StrandParameters& parameters) {
+    scene::Assembly assembly = wires_of(parameters);
+    hold_between_plates(assembly, parameters.length);
     return assembly;
 }
 
@@ -80,8 +84,9 @@ struct StrandState {
     double rotation = 0.0;  ///< of the middle half, a length at rest, mean of the wires [radian / length]
 };
 
-template <simulation::Model M>
-StrandState measure(const simulation::Simulator<M>& simulator, const StrandParameters& parameters) {
+/// @param parameters  of a strand, or of what else has wires of so many elements between two plates, the first of them straight
+template <simulation::Model M, class Parameters>
+StrandState measure(const simulation::Simulator<M>& simulator, const Parameters& parameters) {
     std::vector<scene::Station> ends;
     for (Index fibre = 0; fibre < parameters.wires(); ++fibre) ends.push_back(scene::last_end(fibre));
     const simulation::Wrench wrench = simulation::support_wrench(simulator, ends);

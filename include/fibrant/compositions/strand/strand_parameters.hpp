@@ -31,13 +31,10 @@ struct Layer {
     }
 };
 
-/// A straight strand along z, its first end at z = 0. Wires are free of stress as they lie.
-struct StrandParameters {
+/// How wires lie in a strand, whatever line its core follows.
+struct StrandSection {
     double core_radius = core::unset;  ///< [length], > 0
     std::vector<Layer> layers;         ///< from the inside
-    scene::ElasticMaterial material;
-    double length = core::unset;       ///< along the axis [length], > 0
-    Index elements = 40;               ///< along each wire, >= 2
 
     /// Radius of the helix of a layer's centrelines [length].
     double helix_radius(std::size_t layer) const noexcept {
@@ -72,12 +69,22 @@ struct StrandParameters {
         for (const Layer& layer : layers) sum += layer.wires;
         return sum;
     }
-    /// Sum of E A of all wires [force].
-    double metal_stiffness() const noexcept {
-        double area = core_radius * core_radius;
-        for (const Layer& layer : layers) area += static_cast<double>(layer.wires) * layer.radius * layer.radius;
-        return material.young_modulus * std::numbers::pi * area;
+    /// Of all wires [length^2].
+    double area() const noexcept {
+        double sum = core_radius * core_radius;
+        for (const Layer& layer : layers) sum += static_cast<double>(layer.wires) * layer.radius * layer.radius;
+        return std::numbers::pi * sum;
     }
+};
+
+/// A straight strand along z, its first end at z = 0. Wires are free of stress as they lie.
+struct StrandParameters : StrandSection {
+    scene::ElasticMaterial material;
+    double length = core::unset;  ///< along the axis [length], > 0
+    Index elements = 40;          ///< along each wire, >= 2
+
+    /// Sum of E A of all wires [force].
+    double metal_stiffness() const noexcept { return material.young_modulus * area(); }
 
     void validate() const {
         core::require_positive("StrandParameters.core_radius", core_radius);

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+// How fast does the error of a scene in contact fall as it is refined, and which policy reaches a given error soonest? A fibre drawn half a turn around a cylinder with friction
+// (finer and finer points), a strand of a core and six wires and two rods wound around each other (finer and finer meshes), and an overhand knot (meshes, and thinner rods).
+// Prints CSV, a line a run and one with the orders of each policy, and writes log-log plots of error against CPU time.
+// usage: benchmark_accuracy_contact_scenes_bench [directory of the plots [repeats [scene]]]; default ., 1 and all of capstan, strand, two_ply, knot
+#include "../../tests/verification/capstan_reference.hpp"
+#include "sweep.hpp"
+
+#include <fibrant/beam/on_centreline.hpp>
+#include <fibrant/beam/rigid_section_rod.hpp>
+#include <fibrant/compositions/knot/overhand_knot.hpp>
+#include <fibrant/compositions/strand/strand.hpp>
+#include <fibrant/compositions/two_ply/two_ply.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
+#include <fibrant/law/augmented.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+using namespace fibrant;
+using namespace fibrant::benchmarks;
+namespace strand = compositions::strand;
+namespace two_ply = compositions::two_ply;
+namespace knot = compositions::knot;
+
+namespace {
+
+const double pi = std::numbers::pi;
+
+using Director = beam::DirectorBeam<3>;
+using Rod = beam::RigidSectionRod;
+
+template <beam::BeamElement B>
+struct Drawn : Policy<B, law::RegularisedCoulomb> {
+    using Tools = contact::RigidTools;
+};
+template <beam::BeamElement B>
+struct Held : Policy<B> {
+    using Normal = law::Augmented<law::RegularisedPenalty>;
+};
+
+template <simulation::Model M>
+simulation::Loading<M> stage(std::vector<simulation::Ramp> ramps, Index increments) {
+    simulation::Loading<M> loading;
+    loading.stages.emplace_back();
+    loading.stages.back().ramps = std::move(ramps), loading.stages.back().increments = increments;
+    return loading;
+}
+
+/// Wound on a rigid cylinder of 25 radii without friction, then drawn with mu = 0.15 until all of it slides (capstan.json, for the forces as they are).
+/// @param points  of contact, for each half turn
+template <simulation::Model M>
+Sample capstan(Index points) {
+    const double R = 0.5, rho = R + r, half = 2.0, travel = 0.06, tension = 0.03, mu = 0.15, allowed = 1e-2 * r;
+    constexpr Index intervals = M::Beam::nodes - 1;
+    const Index elements = 2 / intervals * static_cast<Index>(std::ceil(half * static_cast<double>(points) / (pi * rho)));
+    scene::Assembly assembly;
+    scene::FibreSpecification fibre = along_z(1.0, elements);
+    fibre.from = Vec3(-half, rho, 0), fibre.to = Vec3(half, rho, 0), fibre.director = Vec3::UnitZ();
+    assembly.add(fibre);
+    scene::Tool guide;
+    guide.shape = scene::ToolShape::cylinder, guide.radius = R, guide.channel = "ends";
+    assembly.add(guide);
+    for (const double side : {-1.0, 1.0}) {
+        scene::Hold end;
+        end.at = side < 0.0 ? scene::first_end(0) : scene::last_end(0);
+        end.channel = "ends";
+        end.path = [=](double amplitude) {
+            const double angle = 0.5 * pi * std::min(amplitude, 1.0), drawn = side * travel * std::max(0.0, amplitude - 1.0);
+            const double free = half * (1.0 + tension * std::min(1.0, 20.0 * amplitude)) - rho * angle;
+            return Vec3(side * (rho * std::sin(angle) + free * std::cos(angle) - half), rho * std::cos(angle) - free * std::sin(angle) - rho - drawn, 0.0);
+        };
+        assembly.hold(end);
+    }
+    const Mat3 across = Vec3(0, 0, 1).asDiagonal();
+    for (Index k = 0; k <= intervals * elements; ++k) assembly.hold_position({0, static_cast<double>(k) / static_cast<double>(intervals * elements)}, across);
+    assembly.hold_axial_rotation(scene::first_end(0));
+    simulation::ModelParameters<M> all;
+    all.normal.regularisation_depth = 0.1 * allowed;
+    all.contact.stiffness.allowed_penetration = allowed;
+    all.friction = {.friction_coefficient = 0.0, .reversible_displacement = 0.02 * r};
+    all.iteration.contact_tolerance = 2e-3;
+    all.iteration.margin = 2.0, all.iteration.largest_margin = 20.0;
+    Sample sample;
+    const double start = processor_time();
+    simulation::Simulator<M> simulator(assembly, all);
+    sample.report = simulator.run(stage<M>({{"ends", 1.0}}, 30));
+    if (!sample.report.converged) return sample;
+    simulation::Loading<M> draw = stage<M>({{"ends", 2.0}}, 24);
+    draw.stages[0].friction.emplace(law::RegularisedCoulomb::Parameters{mu, 0.02 * r});
+    // One point comes on or goes off the guide at a time: the error of a single state is by chance, so the root of the mean square over the last quarter is taken.
+    double squares = 0.0;
+    int states = 0;
+    struct Watch {
+        const simulation::Simulator<M>* simulator;
+        double *squares, rho;
+        int* states;
+        void reported(const simulation::IncrementReport& increment) {
+            if (increment.progress < 0.75) return;
+            const Vec3 slack = simulator->reaction(scene::first_end(0)), taut = simulator->reaction(scene::last_end(0));
+            const double expected = test::capstan_ratio({r, rho - r, bending, 0.15}, slack.norm(), test::turned_angle(slack, taut));
+            *squares += std::pow(taut.norm() / slack.norm() / expected - 1.0, 2), ++*states;
+        }
+        bool due(Index) const { return false; }
+        void accepted(const observe::Snapshot&) const {}
+    } watch{&simulator, &squares, rho, &states};
+    sample.report = simulator.run(draw, watch);
+    sample.seconds = processor_time() - start;
+    sample.error = std::sqrt(squares / std::max(1, states));
+    return sample;
+}
+
+template <simulation::Model M>
+simulation::ModelParameters<M> tight(double penetration) {
+    simulation::ModelParameters<M> all;
+    if constexpr (law::Augmenting<typename M::Normal>) {
+        all.normal = {.law = {.regularisation_depth = 1e-3 * r}, .largest_penetration = penetration};
+        all.contact.stiffness.allowed_penetration = 1e-2 * r, all.contact.stiffness.initial_fraction = 0.2;
+        all.iteration.multiplier_limit = 40;
+    } else {
+        all.normal = {.regularisation_depth = 0.1 * penetration};
+        all.contact.stiffness.allowed_penetration = penetration;
+    }
+    all.iteration.contact_tolerance = 1e-3;
+    return all;
+}
+
+/// Lay of 10 degrees, stretched by 0.002 between ends that do not turn (strand_1_6.json, director or rigid sections).
+template <simulation::Model M>
+Sample stretched(Index elements) {
+    strand::StrandParameters parameters;
+    parameters.core_radius = 0.0215, parameters.layers = {{.wires = 6, .radius = r, .lay_angle_deg = 10.0}};
+    parameters.material = {young, 0.3};
+    parameters.length = 1.48236252744, parameters.elements = elements;
+    simulation::ModelParameters<M> all = tight<M>(1e-5 * r);
+    all.iteration.step_tolerance = all.iteration.residual_tolerance = 1e-6, all.iteration.linear_tolerance = 1e-8;
+    all.iteration.normal_tolerance = all.iteration.normal_step_tolerance = all.iteration.contact_tolerance = 1e-4;
+    all.iteration.newton_limit = 40;
+    Sample sample;
+    const double start = processor_time();
+    simulation::Simulator<M> simulator(strand::straight_strand(parameters), all);
+    sample.report = simulator.run(stage<M>({{strand::stretch, 0.002}, {strand::twist, 0.0}}, 2));
+    sample.seconds = processor_time() - start;
+    sample.error = std::abs(strand::measure(simulator, parameters).force / (std::is_same_v<typename M::Beam, Rod> ? 0.12741157635 : 0.12578578517) - 1.0);
+    return sample;
+}
+
+/// 100 radii long, pulled by 0.02 N, turned by one and a quarter turns: torque of Kirchhoff's helices of the angle, radius and twist in the middle (two_ply.json).
+template <simulation::Model M>
+Sample wound(Index elements) {
+    const two_ply::TwoPlyParameters parameters{.radius = r, .length = 2.0, .material = {young, 0.3}, .elements = elements, .force = 0.02};
+    Sample sample;
+    const double start = processor_time();
+    simulation::Simulator<M> simulator(two_ply::straight_rods(parameters), tight<M>(law::Augmenting<typename M::Normal> ? 1e-4 * r : 1e-3 * r));
+    sample.report = simulator.run(stage<M>({{two_ply::pull, 1.0}}, 2));
+    if (sample.report.converged) sample.report = simulator.run(stage<M>({{two_ply::turn, 1.25}}, 15));
+    sample.seconds = processor_time() - start;
+    const two_ply::TwoPlyState state = two_ply::measure(simulator, parameters);
+    sample.error = std::abs(state.torque / two_ply::HelixTheory(parameters, state.helix_angle, state.radius, state.twist).torque - 1.0);
+    return sample;
+}
+
+enum class Of { pull, balance };
+/// Tied and let go: its pull against F R^2 / E I = 1/2 + (3 sigma / pi) (r / R)^1/2, or what F e = W + 2 r P misses, which holds at any r / R.
+Sample settled_knot(double slenderness, Index elements, Of of) {
+    using M = Policy<Director>;
+    const knot::KnotParameters parameters{.radius = r, .loop_radius = r / slenderness, .tail = 3.0 * r / slenderness, .material = {young, 0.3}, .elements = elements};
+    simulation::ModelParameters<M> all;
+    all.normal = {.regularisation_depth = 1e-3 * r};
+    all.contact.stiffness.allowed_penetration = 1e-2 * r;
+    all.contact.stiffness.initial_fraction = knot::initial_stiffness_fraction(parameters), all.contact.stiffness.floor_fraction = 1e-6;
+    all.contact.detection.self_contact = true;
+    all.iteration.newton_limit = 30;
+    simulation::Loading<M> loading = stage<M>({}, 2);
+    simulation::Stage<M>& settle = loading.stages[0];
+    settle.damping = 10.0 * bending / std::pow(parameters.loop_radius, 3) / static_cast<double>(elements);
+    settle.damping_decay = 0.5, settle.damping_share = 1e-4;
+    settle.until = simulation::until_settled(0.05 * r, 0.02 * r);
+    settle.most_increments = 80;
+    Sample sample;
+    const double start = processor_time();
+    simulation::Simulator<M> simulator(knot::tied_rod(parameters), all);
+    sample.report = simulator.run(loading);
+    sample.seconds = processor_time() - start;
+    const knot::KnotState state = knot::measure(simulator, parameters);
+    const double R = state.shortening / (2.0 * pi);
+    sample.error = std::abs(of == Of::balance ? state.virial : state.force * R * R / bending / knot::loose_force(3, r / R) - 1.0);
+    return sample;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::filesystem::path directory = argc > 1 ? argv[1] : ".";
+    const int repeats = argc > 2 ? std::max(1, std::atoi(argv[2])) : 1;
+    const std::string only = argc > 3 ? argv[3] : "";
+    print_sweep_header();  // value: points a half turn; elements a wire, a rod; elements, R / r
+    const auto wanted = [&](const char* scene) { return only.empty() || only == scene; };
+    const auto write = [&](observe::LogLogPlot& plot, const char* title, const char* error, const char* file) {
+        plot.title = title, plot.y_label = error;
+        observe::write_file(directory / file, observe::log_log_svg(plot));
+    };
+    if (wanted("capstan")) {
+        observe::LogLogPlot plot;
+        const std::array<Index, 4> points{18, 36, 72, 144};
+        sweep("capstan", "director", points, capstan<Drawn<Director>>, repeats, plot);
+        sweep("capstan", "rod", points, capstan<Drawn<Rod>>, repeats, plot);
+        write(plot, "drawn half a turn around a cylinder, mu = 0.15", "error of the tension ratio", "accuracy_capstan.svg");
+    }
+    if (wanted("strand")) {
+        observe::LogLogPlot plot;
+        const std::array<Index, 4> coarse{6, 12, 24, 48}, fine{12, 24, 48, 96};
+        sweep("strand", "director", coarse, stretched<Held<Director>>, repeats, plot);
+        sweep("strand", "director, 2 nodes", fine, stretched<Held<beam::DirectorBeam<2>>>, repeats, plot);
+        sweep("strand", "rod", fine, stretched<Held<Rod>>, repeats, plot);
+        write(plot, "strand 1 + 6, multipliers, finer and finer meshes", "error of the force", "accuracy_strand_meshes.svg");
+    }
+    if (wanted("two_ply")) {
+        observe::LogLogPlot plot;
+        const std::array<Index, 4> coarse{20, 40, 80, 160}, fine{40, 80, 160, 320};
+        sweep("two_ply", "director, multipliers", coarse, wound<Held<Director>>, repeats, plot);
+        sweep("two_ply", "director, penalty", coarse, wound<Policy<Director>>, repeats, plot);
+        sweep("two_ply", "2 nodes, multipliers", fine, wound<Held<beam::DirectorBeam<2>>>, repeats, plot);
+        write(plot, "two rods wound around each other", "error of the torque", "accuracy_two_ply.svg");
+    }
+    if (wanted("knot")) {
+        observe::LogLogPlot plot;
+        sweep("knot", "balance, r/R 0.01, meshes", std::array<Index, 4>{80, 120, 240, 480}, [](Index elements) { return settled_knot(0.01, elements, Of::balance); }, repeats, plot);
+        sweep("knot", "pull, thinner rods", std::array{50.0, 100.0, 200.0, 400.0},
+              [](double R) { return settled_knot(1.0 / R, static_cast<Index>(24.0 * std::sqrt(R)), Of::pull); }, repeats, plot);
+        write(plot, "overhand knot", "error", "accuracy_knot.svg");
+    }
+    return 0;
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What benchmarks of contact share: a policy that is run over a range of values, its line in a plot and its orders.
+
+#include "rods.hpp"
+
+#include <fibrant/observe/svg_plot.hpp>
+
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fibrant::benchmarks {
+
+struct Sample {
+    double error = 0.0, seconds = 0.0;
+    simulation::Report report;
+};
+
+inline void print_sweep_header() { std::printf("scene,policy,value,error,seconds,penetration_over_radius,newton,contact_passes,converged\n"); }
+
+/// Prints a line of CSV a value, the time a median of repeats, and one with the slopes of log error over log value and over log time.
+/// @param run  run(value) gives a Sample; value is a penetration over the radius, a number of elements or another thing that is refined
+template <class Run, class Values>
+void sweep(const char* scene, const char* policy, const Values& values, const Run& run, int repeats, observe::LogLogPlot& plot) {
+    std::vector<std::pair<double, double>> by_time, by_value;
+    for (const auto value : values) {
+        std::vector<double> times;
+        Sample sample;
+        for (int k = 0; k < repeats; ++k) {
+            sample = run(value);
+            times.push_back(sample.seconds);
+        }
+        const double seconds = median(times);
+        std::printf("%s,%s,%g,%.3e,%.3e,%.2e,%ld,%ld,%d\n", scene, policy, static_cast<double>(value), sample.error, seconds, sample.report.contact.greatest_penetration / r,
+                    static_cast<long>(sample.report.counts.newton), static_cast<long>(sample.report.counts.contact_passes), sample.report.converged ? 1 : 0);
+        std::fflush(stdout);
+        if (!sample.report.converged) continue;
+        by_time.emplace_back(seconds, sample.error);
+        by_value.emplace_back(static_cast<double>(value), sample.error);
+    }
+    std::printf("%s,%s,order by value and by time,%.2f,%.2f,,,,\n", scene, policy, observe::fitted_order(by_value), observe::fitted_order(by_time));
+    plot.x_label = "CPU time [s]";
+    plot.lines.push_back({policy, by_time});
+}
+
+}  // namespace fibrant::benchmarks
