@@ -203,7 +203,9 @@ inline std::vector<MatFibre> random_fibres(const MatParameters& parameters) {
         }
         const std::vector<Vec3> points = grid.pieces(fibre);
         const bool inside = std::all_of(points.begin(), points.end(), [&](const Vec3& x) {
-            return x.minCoeff() >= r && x.head<2>().maxCoeff() <= parameters.width - r && x.z() <= parameters.height - r;
+            // Ends that were cut lie at the sides to the last bit, which is no reason to draw them anew.
+            const bool between = parameters.cut || (x.head<2>().minCoeff() >= r && x.head<2>().maxCoeff() <= parameters.width - r);
+            return between && x.z() >= r && x.z() <= parameters.height - r;
         });
         if (!inside || (reach > 0.0 && !grid.free(points))) continue;
         grid.add(points);
