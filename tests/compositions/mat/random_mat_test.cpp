@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 using namespace fibrant;
 
@@ -107,6 +108,68 @@ TEST_CASE("fibres of a mat are inside their box and apart from each other, the s
         // A chord of a piece is 4 r long: its arc of 90 / 10 degrees rises by a fiftieth of that at most.
         CHECK(nearest > 1.95 * 0.02);
     }
+}
+
+TEST_CASE("a mat that is cut at its sides has as much fibre there as inside, of all directions of the plane, and the length that was asked for") {
+    // Outside of the inner square are three quarters of the area, less the rim of a radius that no axis may reach. What is shorter than a
+    // tenth of a fibre is left out at the sides: s^2 / pi of each length of side for one fibre an area, a 150th of all that there is.
+    const double width = 1.6, shortest = 0.08, reached = (width - 0.02) * (width - 0.02), inner = 0.25 * width * width;
+    const double lost = 4.0 * (width - 0.02) * shortest * shortest / std::numbers::pi / 0.8;
+    const double expected = (reached - inner - lost) / (reached - lost);
+    const int boxes = 40;
+    double sum = 0.0, squares = 0.0, cosine = 0.0;
+    for (int seed = 1; seed <= boxes; ++seed) {
+        mat::MatParameters parameters{.radius = 0.01, .length = 0.8, .width = width, .height = 0.8, .fibres = 60, .cut = true, .tilt_deg = 0.0, .clearance = -2.0, .material = {7300.0, 0.3}};
+        parameters.seed = static_cast<std::uint64_t>(seed);
+        double length = 0.0, near_sides = 0.0;
+        for (const mat::MatFibre& fibre : mat::random_fibres(parameters)) {
+            CHECK(fibre.length >= shortest * (1.0 - 1e-9));
+            CHECK(fibre.length <= 0.8 * (1.0 + 1e-12));
+            length += fibre.length;
+            cosine += fibre.length * (2.0 * fibre.along.x() * fibre.along.x() - 1.0) / (48.0 * boxes);
+            for (const double t : {0.0, 1.0}) CHECK(std::min(fibre(t).head<2>().minCoeff(), width - fibre(t).head<2>().maxCoeff()) >= 0.01 * (1.0 - 1e-9));
+            for (int k = 0; k < 100; ++k) {
+                const Vec3 x = fibre((k + 0.5) / 100.0);
+                if (std::max(std::abs(x.x() - 0.5 * width), std::abs(x.y() - 0.5 * width)) > 0.25 * width) near_sides += fibre.length / 100.0;
+            }
+        }
+        CHECK(length == doctest::Approx(48.0).epsilon(1e-9));
+        sum += near_sides / length, squares += near_sides / length * near_sides / length;
+    }
+    const double share = sum / boxes, sigma = std::sqrt((squares / boxes - share * share) / (boxes - 1));
+    std::printf("cut mats: share near the sides %.4f, %.4f by the area, %.2f sigma of %.4f; mean cosine of twice the azimuth %.4f\n", share, expected, (share - expected) / sigma, sigma, cosine);
+    CHECK(std::abs(share - expected) < 3.0 * sigma);
+    CHECK(std::abs(cosine) < 3.0 * std::sqrt(0.5 / (60.0 * boxes)));  // of as many directions as there are lengths
+}
+
+TEST_CASE("stacked fibres touch a lid and a floor, are apart from each other, and lie as close as straight ones can") {
+    mat::MatParameters parameters{.radius = 0.02, .length = 1.2, .width = 1.5, .height = 2.0, .fibres = 60, .cut = true, .tilt_deg = 0.0, .material = {7300.0, 0.3}};
+    const mat::StackedMat tight = mat::stacked_fibres(parameters, 1.0), loose = mat::stacked_fibres(parameters, 1.1);
+    CHECK(loose.height == doctest::Approx(1.1 * tight.height).epsilon(1e-12));
+    const double reach = 2.02 * 0.02;  // two radii and the clearance
+    for (const mat::StackedMat* stacked : {&tight, &loose}) {
+        double nearest = 1e300, lowest = 1e300, highest = -1e300;
+        const auto& fibres = stacked->fibres;
+        for (std::size_t i = 0; i < fibres.size(); ++i) {
+            lowest = std::min(lowest, fibres[i].middle.z()), highest = std::max(highest, fibres[i].middle.z());
+            CHECK(fibres[i].along.z() == 0.0);
+            for (std::size_t j = 0; j < i; ++j)
+                nearest = std::min(nearest, proximity::segment_distance(fibres[i](0.0), fibres[i].length * fibres[i].along, fibres[j](0.0), fibres[j].length * fibres[j].along).squared);
+        }
+        CHECK(std::sqrt(nearest) >= reach * (1.0 - 1e-9));
+        CHECK(lowest >= 0.02 * (1.0 - 1e-9));
+        CHECK(highest <= stacked->height - 0.02 * (1.0 - 1e-9));
+        if (stacked == &tight) {  // what cannot be lower holds the lid and the floor apart: a chain of fibres each of which touches the next
+            CHECK(lowest == doctest::Approx(0.02).epsilon(1e-9));
+            CHECK(highest == doctest::Approx(stacked->height - 0.02).epsilon(1e-9));
+            CHECK(std::sqrt(nearest) == doctest::Approx(reach).epsilon(1e-9));
+        }
+    }
+    std::printf("stacked: %.4f of the box is fibre\n", parameters.volume_fraction(tight.height));
+    parameters.tilt_deg = 10.0;
+    CHECK(test::refusal([&] { mat::stacked_fibres(parameters, 1.0); }).find("MatParameters.tilt_deg = 10") == 0);
+    parameters.bend_deg = 20.0;
+    CHECK(test::refusal([&] { parameters.validate(); }).find("MatParameters.bend_deg = 20") == 0);
 }
 
 TEST_CASE("a box that is full, and what is not a mat, is refused by name") {

@@ -27,7 +27,7 @@ inline scene::Assembly boxed_mat(const MatParameters& parameters, const std::vec
     const Index group = assembly.add_group("mat");
     for (const MatFibre& fibre : fibres) {
         scene::FibreSpecification specification{.from = fibre(0.0), .to = fibre(1.0), .section = scene::circular(parameters.radius), .material = parameters.material,
-                                                .elements = parameters.elements, .group = group};
+                                                .elements = parameters.elements_of(fibre.length), .group = group};
         if (fibre.turn > 1e-9) specification.curve = fibre;
         assembly.add(specification);
     }

@@ -7,7 +7,10 @@
 #include <fibrant/proximity/segment_distance.hpp>
 #include <fibrant/scene/elastic_material.hpp>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -33,13 +36,16 @@ private:
     std::uint64_t state_;
 };
 
-/// Fibres in a box of width x width x height whose corner is the origin; all of each fibre is inside.
+/// Fibres in a box of width x width x height whose corner is the origin; all of each fibre is inside, or what the box's sides leave of it.
 struct MatParameters {
     double radius = core::unset;  ///< of a fibre [length], > 0
     double length = core::unset;  ///< of a fibre [length], > 0
     double width = core::unset;   ///< of the box along x and y [length], > 0
     double height = core::unset;  ///< of the box along z [length], > 0
-    Index fibres = 0;             ///< >= 1
+    Index fibres = 0;             ///< >= 1; of those that are cut, as many as have their length together
+    /// A sample punched out of a wider mat: fibres reach through the sides of the box and are cut there, so that places and directions
+    /// are as many at the sides as inside. What is shorter than a tenth of a fibre is left out. Straight fibres only.
+    bool cut = false;
     double bend_deg = 0.0;        ///< by which each fibre turns from one end to the other, a circle's arc at rest [degree], in [0, 180]
     double tilt_deg = 90.0;       ///< greatest angle to the plane of x and y; 90: all directions alike [degree], in [0, 90]
     double clearance = 0.02;      ///< least gap between two fibres [radius]; -2 or less: they may lie in each other
@@ -65,7 +71,12 @@ struct MatParameters {
         core::require_at_least("MatParameters.elements", elements, 1);
         core::require_at_least("MatParameters.draws", draws, fibres);
         core::require(2.0 * radius < height && 2.0 * radius < width, "MatParameters.radius", radius, "< half of height and width");
+        core::require(!cut || bend_deg == 0.0, "MatParameters.bend_deg", bend_deg, "0 where fibres are cut");
         material.validate();
+    }
+    /// Of a fibre that is shorter than others: at least as fine.
+    Index elements_of(double fibre_length) const {
+        return std::max<Index>(1, static_cast<Index>(std::ceil(static_cast<double>(elements) * fibre_length / length - 1e-9)));
     }
 };
 
@@ -86,7 +97,8 @@ struct MatFibre {
 /// A fibre of any place in the box, and of any direction within the tilt: equal parts of the sphere are equally likely.
 inline MatFibre drawn_fibre(const MatParameters& parameters, Draws& draw) {
     MatFibre fibre;
-    const double x = draw(0.0, parameters.width), y = draw(0.0, parameters.width), z = draw(0.0, parameters.height);
+    const double beyond = parameters.cut ? 0.5 * parameters.length : 0.0;
+    const double x = draw(-beyond, parameters.width + beyond), y = draw(-beyond, parameters.width + beyond), z = draw(0.0, parameters.height);
     fibre.middle = {x, y, z};
     const double up = std::sin(parameters.tilt_deg * std::numbers::pi / 180.0), sine = draw(-up, up), azimuth = draw(0.0, 2.0 * std::numbers::pi);
     const double cosine = std::sqrt(std::max(0.0, 1.0 - sine * sine));
@@ -148,6 +160,25 @@ private:
 
 }  // namespace detail
 
+/// What is left of a straight fibre between the sides of the box, a radius and the clearance from them; length 0 if nothing is.
+inline MatFibre cut_at_sides(const MatParameters& parameters, const MatFibre& fibre) {
+    const double low = (1.0 + std::max(0.0, parameters.clearance)) * parameters.radius, high = parameters.width - low;
+    double from = -0.5 * fibre.length, to = 0.5 * fibre.length;
+    for (int axis = 0; axis < 2; ++axis) {
+        const double slope = fibre.along[axis], x = fibre.middle[axis];
+        if (std::abs(slope) < 1e-12) {
+            if (x < low || x > high) to = from;
+            continue;
+        }
+        const double a = (low - x) / slope, b = (high - x) / slope;
+        from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
+    }
+    MatFibre piece = fibre;
+    piece.length = std::max(0.0, to - from);
+    piece.middle += 0.5 * (from + to) * fibre.along;
+    return piece;
+}
+
 /// Fibres one by one (random sequential addition): one that leaves the box or is too close to an earlier one is drawn anew.
 /// @throws std::invalid_argument if the box is full before all have found a place
 inline std::vector<MatFibre> random_fibres(const MatParameters& parameters) {
@@ -156,19 +187,88 @@ inline std::vector<MatFibre> random_fibres(const MatParameters& parameters) {
     std::vector<MatFibre> fibres;
     const double reach = (2.0 + parameters.clearance) * parameters.radius, r = parameters.radius;
     detail::PieceGrid grid(parameters, std::max(reach, 0.0));
-    for (Index tries = 0; core::count(fibres) < parameters.fibres; ++tries) {
+    // Where fibres are cut, the length that is still to come: never less than a tenth of a fibre, but nothing.
+    const double shortest = 0.1 * parameters.length;
+    double missing = static_cast<double>(parameters.fibres) * parameters.length;
+    const auto full = [&] { return parameters.cut ? !(missing > 0.0) : core::count(fibres) >= parameters.fibres; };
+    for (Index tries = 0; !full(); ++tries) {
         if (tries >= parameters.draws)
             core::refuse("MatParameters.fibres", std::to_string(parameters.fibres), "at most " + std::to_string(fibres.size()) + ", which are all that " + std::to_string(tries) + " draws found a place for");
-        const MatFibre fibre = drawn_fibre(parameters, draw);
+        MatFibre fibre = drawn_fibre(parameters, draw);
+        if (parameters.cut) {
+            fibre = cut_at_sides(parameters, fibre);
+            if (fibre.length >= missing) fibre.length = missing;
+            else if (fibre.length > missing - shortest) fibre.length = missing - shortest;
+            if (fibre.length < (1.0 - 1e-9) * shortest) continue;
+        }
         const std::vector<Vec3> points = grid.pieces(fibre);
         const bool inside = std::all_of(points.begin(), points.end(), [&](const Vec3& x) {
-            return x.minCoeff() >= r && x.head<2>().maxCoeff() <= parameters.width - r && x.z() <= parameters.height - r;
+            // Ends that were cut lie at the sides to the last bit, which is no reason to draw them anew.
+            const bool between = parameters.cut || (x.head<2>().minCoeff() >= r && x.head<2>().maxCoeff() <= parameters.width - r);
+            return between && x.z() >= r && x.z() <= parameters.height - r;
         });
         if (!inside || (reach > 0.0 && !grid.free(points))) continue;
         grid.add(points);
         fibres.push_back(fibre);
+        missing = fibre.length == missing ? 0.0 : missing - fibre.length;
     }
     return fibres;
+}
+
+/// A flat mat of straight fibres that lie on each other as close as rigid ones can.
+struct StackedMat {
+    std::vector<MatFibre> fibres;
+    double height = 0.0;  ///< of the box that they fill [length]
+};
+
+/// Horizontal fibres of random places and directions, laid one by one in the lowest gap that takes them as they are. All are then let
+/// down as far as straight fibres go, and lifted as far as they go below a lid that leaves `slack` times the height that they need; each
+/// lies half way. As what keeps two fibres apart is linear in their heights, half way is apart too.
+/// @param slack  >= 1
+inline StackedMat stacked_fibres(const MatParameters& parameters, double slack) {
+    core::require(slack >= 1.0, "stacked_fibres.slack", slack, ">= 1");
+    core::require(parameters.tilt_deg == 0.0, "MatParameters.tilt_deg", parameters.tilt_deg, "0 where fibres are stacked");
+    core::require(parameters.bend_deg == 0.0, "MatParameters.bend_deg", parameters.bend_deg, "0 where fibres are stacked");
+    MatParameters through = parameters;
+    through.clearance = -2.0;
+    StackedMat mat;
+    mat.fibres = random_fibres(through);
+    std::vector<MatFibre>& fibres = mat.fibres;
+    const double r = parameters.radius, reach = (2.0 + std::max(0.0, parameters.clearance)) * r;
+    /// Least difference of heights of two fibres; 0 if they pass each other at the same height.
+    const auto rise = [&](const MatFibre& a, const MatFibre& b) {
+        const auto flat = [](const Vec3& x) { return Vec3(x.x(), x.y(), 0.0); };
+        const double squared = proximity::segment_distance(flat(a(0.0)), a.length * a.along, flat(b(0.0)), b.length * b.along).squared;
+        return std::sqrt(std::max(0.0, reach * reach - squared));
+    };
+    std::vector<std::array<double, 2>> taken;
+    for (std::size_t k = 0; k < fibres.size(); ++k) {
+        taken.clear();
+        for (std::size_t j = 0; j < k; ++j)
+            if (const double apart = rise(fibres[k], fibres[j]); apart > 0.0) taken.push_back({fibres[j].middle.z() - apart, fibres[j].middle.z() + apart});
+        std::sort(taken.begin(), taken.end());
+        double z = r;
+        for (const auto& [from, to] : taken)
+            if (from < z) z = std::max(z, to);
+        fibres[k].middle.z() = z;
+    }
+    std::stable_sort(fibres.begin(), fibres.end(), [](const MatFibre& a, const MatFibre& b) { return a.middle.z() < b.middle.z(); });
+    struct Crossing {
+        std::size_t below, above;
+        double rise;  // [length]
+    };
+    std::vector<Crossing> crossings;
+    for (std::size_t above = 0; above < fibres.size(); ++above)
+        for (std::size_t below = 0; below < above; ++below)
+            if (const double apart = rise(fibres[above], fibres[below]); apart > 0.0) crossings.push_back({below, above, apart});
+    std::vector<double> low(fibres.size(), r), high(fibres.size());
+    for (const Crossing& crossing : crossings) low[crossing.above] = std::max(low[crossing.above], low[crossing.below] + crossing.rise);
+    mat.height = slack * (*std::max_element(low.begin(), low.end()) + r);
+    std::fill(high.begin(), high.end(), mat.height - r);
+    std::stable_sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.below > b.below; });
+    for (const Crossing& crossing : crossings) high[crossing.below] = std::min(high[crossing.below], high[crossing.above] - crossing.rise);
+    for (std::size_t k = 0; k < fibres.size(); ++k) fibres[k].middle.z() = 0.5 * (low[k] + high[k]);
+    return mat;
 }
 
 /// Expected number of pairs, among n straight fibres without bulk, that are nearer than `distance` in a periodic box (Onsager's
