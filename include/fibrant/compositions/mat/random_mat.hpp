@@ -4,6 +4,7 @@
 
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/types.hpp>
+#include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/proximity/segment_distance.hpp>
 #include <fibrant/scene/elastic_material.hpp>
 
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -235,38 +237,58 @@ inline StackedMat stacked_fibres(const MatParameters& parameters, double slack) 
     mat.fibres = random_fibres(through);
     std::vector<MatFibre>& fibres = mat.fibres;
     const double r = parameters.radius, reach = (2.0 + std::max(0.0, parameters.clearance)) * r;
-    /// Least difference of heights of two fibres; 0 if they pass each other at the same height.
-    const auto rise = [&](const MatFibre& a, const MatFibre& b) {
-        const auto flat = [](const Vec3& x) { return Vec3(x.x(), x.y(), 0.0); };
-        const double squared = proximity::segment_distance(flat(a(0.0)), a.length * a.along, flat(b(0.0)), b.length * b.along).squared;
-        return std::sqrt(std::max(0.0, reach * reach - squared));
+    // Which of them cross in plan, and how much higher one then lies than the other: what is near is found by the search.
+    struct Crossing {
+        std::size_t below, above;
+        double rise;  // [length]
     };
+    std::vector<std::array<Vec3, 2>> plan;
+    for (const MatFibre& fibre : fibres) {
+        plan.push_back({fibre(0.0), fibre(1.0)});
+        for (Vec3& end : plan.back()) end.z() = 0.0;
+    }
+    std::vector<proximity::Centreline> lines;
+    for (const auto& ends : plan) lines.push_back({.points = ends, .radius = 0.5 * reach});
+    std::vector<Crossing> crossings;
+    for (const auto& [i, j] : proximity::GridSearch().pairs(lines, 0.0)) {  // of lines of one segment each
+        const std::size_t first = core::at(i), second = core::at(j);
+        const double squared = proximity::segment_distance(plan[first][0], plan[first][1] - plan[first][0], plan[second][0], plan[second][1] - plan[second][0]).squared;
+        if (squared < reach * reach) crossings.push_back({first, second, std::sqrt(reach * reach - squared)});
+    }
+    const auto by_above = [](const Crossing& x, const Crossing& y) { return x.above < y.above; };
+    std::stable_sort(crossings.begin(), crossings.end(), by_above);
     std::vector<std::array<double, 2>> taken;
+    auto crossing = crossings.begin();
     for (std::size_t k = 0; k < fibres.size(); ++k) {
         taken.clear();
-        for (std::size_t j = 0; j < k; ++j)
-            if (const double apart = rise(fibres[k], fibres[j]); apart > 0.0) taken.push_back({fibres[j].middle.z() - apart, fibres[j].middle.z() + apart});
+        for (; crossing != crossings.end() && crossing->above == k; ++crossing) {
+            const double z = fibres[crossing->below].middle.z();
+            taken.push_back({z - crossing->rise, z + crossing->rise});
+        }
         std::sort(taken.begin(), taken.end());
         double z = r;
         for (const auto& [from, to] : taken)
             if (from < z) z = std::max(z, to);
         fibres[k].middle.z() = z;
     }
-    std::stable_sort(fibres.begin(), fibres.end(), [](const MatFibre& a, const MatFibre& b) { return a.middle.z() < b.middle.z(); });
-    struct Crossing {
-        std::size_t below, above;
-        double rise;  // [length]
-    };
-    std::vector<Crossing> crossings;
-    for (std::size_t above = 0; above < fibres.size(); ++above)
-        for (std::size_t below = 0; below < above; ++below)
-            if (const double apart = rise(fibres[above], fibres[below]); apart > 0.0) crossings.push_back({below, above, apart});
+    // From below, each fibre's rank in height in the place of its number.
+    std::vector<std::size_t> order(fibres.size()), rank(fibres.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return fibres[x].middle.z() < fibres[y].middle.z(); });
+    std::vector<MatFibre> sorted;
+    for (const std::size_t k : order) rank[k] = sorted.size(), sorted.push_back(fibres[k]);
+    fibres.swap(sorted);
+    for (Crossing& one : crossings) {
+        const auto [below, above] = std::minmax(rank[one.below], rank[one.above]);
+        one.below = below, one.above = above;
+    }
+    std::stable_sort(crossings.begin(), crossings.end(), by_above);
     std::vector<double> low(fibres.size(), r), high(fibres.size());
-    for (const Crossing& crossing : crossings) low[crossing.above] = std::max(low[crossing.above], low[crossing.below] + crossing.rise);
+    for (const Crossing& one : crossings) low[one.above] = std::max(low[one.above], low[one.below] + one.rise);
     mat.height = slack * (*std::max_element(low.begin(), low.end()) + r);
     std::fill(high.begin(), high.end(), mat.height - r);
-    std::stable_sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.below > b.below; });
-    for (const Crossing& crossing : crossings) high[crossing.below] = std::min(high[crossing.below], high[crossing.above] - crossing.rise);
+    std::stable_sort(crossings.begin(), crossings.end(), [](const Crossing& x, const Crossing& y) { return x.below > y.below; });
+    for (const Crossing& one : crossings) high[one.below] = std::min(high[one.below], high[one.above] - one.rise);
     for (std::size_t k = 0; k < fibres.size(); ++k) fibres[k].middle.z() = 0.5 * (low[k] + high[k]);
     return mat;
 }
