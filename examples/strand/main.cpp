@@ -24,7 +24,7 @@ struct Strand {
 
 /// What is the same for a strand and a rope.
 struct Scene {
-    double radius = core::unset, lay = core::unset, length = core::unset, strain = 0.0, rotation = 0.0, mu = 0.0, sinking = 1e-5, reversible = 0.01;
+    double radius = core::unset, lay = core::unset, length = core::unset, strain = 0.0, rotation = 0.0, mu = 0.0, sinking = 1e-5, allowed = 1e-3, tolerance = 1e-4, reversible = 0.01;
     Index elements = 40, increments = 4;
     scene::ElasticMaterial material;
 };
@@ -35,11 +35,11 @@ bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters&
     simulation::ModelParameters<Strand> model;
     model.normal = {.law = {.regularisation_depth = 1e-4 * radius}, .largest_penetration = given.sinking * radius};
     model.friction = {.friction_coefficient = given.mu, .reversible_displacement = given.reversible * radius};
-    model.contact.stiffness.allowed_penetration = 1e-3 * radius;
+    model.contact.stiffness.allowed_penetration = given.allowed * radius;
     model.contact.stiffness.initial_fraction = 0.2;
     model.iteration.step_tolerance = model.iteration.residual_tolerance = 1e-6;
     model.iteration.normal_step_tolerance = model.iteration.normal_tolerance = 1e-5;
-    model.iteration.contact_tolerance = 1e-4;
+    model.iteration.contact_tolerance = given.tolerance;
     simulation::Simulator<Strand> simulator(assembly, model);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const strand::StrandState state = strand::measure(simulator, parameters);
@@ -80,6 +80,8 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     file.read("contact", "friction_coefficient", given.mu);
     file.read("contact", "reversible_displacement_over_radius", given.reversible);
     file.read("contact", "largest_penetration_over_radius", given.sinking);
+    file.read("contact", "allowed_penetration_over_radius", given.allowed);
+    file.read("contact", "tolerance_over_radius", given.tolerance);
     file.read("loading", "strain", given.strain);
     file.read("loading", "rotation", given.rotation);
     file.read("loading", "increments", given.increments);
