@@ -9,7 +9,9 @@
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/sparse_cholesky.hpp>
+#include <fibrant/solver/float_block_cholesky.hpp>
+
+#include <algorithm>
 
 using namespace fibrant;
 namespace strand = compositions::strand;
@@ -19,12 +21,12 @@ struct Strand {
     using Proximity = proximity::GridSearch;
     using Normal = law::Augmented<law::RegularisedPenalty>;
     using Friction = law::RegularisedCoulomb;
-    using Solver = solver::SparseCholesky;
+    using Solver = solver::FloatBlockCholesky;
 };
 
 /// What is the same for a strand and a rope.
 struct Scene {
-    double radius = core::unset, lay = core::unset, length = core::unset, strain = 0.0, rotation = 0.0, mu = 0.0, sinking = 1e-5, allowed = 1e-3, tolerance = 1e-4, reversible = 0.01;
+    double radius = core::unset, lay = core::unset, length = core::unset, strain = 0.0, rotation = 0.0, mu = 0.0, sinking = 1e-5, allowed = 1e-3, depth = 0.1, tolerance = 1e-4, reversible = 0.01;
     Index elements = 40, increments = 4;
     scene::ElasticMaterial material;
 };
@@ -33,13 +35,13 @@ template <class Parameters>
 bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters& parameters, const example::Output& output, std::vector<std::pair<std::string, double>> figures) {
     const double radius = given.radius;
     simulation::ModelParameters<Strand> model;
-    model.normal = {.law = {.regularisation_depth = 1e-4 * radius}, .largest_penetration = given.sinking * radius};
+    model.normal = {.law = {.regularisation_depth = given.depth * given.allowed * radius}, .largest_penetration = given.sinking * radius};
     model.friction = {.friction_coefficient = given.mu, .reversible_displacement = given.reversible * radius};
     model.contact.stiffness.allowed_penetration = given.allowed * radius;
     model.contact.stiffness.initial_fraction = 0.2;
-    model.iteration.step_tolerance = model.iteration.residual_tolerance = 1e-6;
-    model.iteration.normal_step_tolerance = model.iteration.normal_tolerance = 1e-5;
-    model.iteration.contact_tolerance = given.tolerance;
+    model.iteration.step_tolerance = model.iteration.residual_tolerance = std::min(0.01 * given.tolerance, 1e-5);
+    model.iteration.normal_step_tolerance = model.iteration.normal_tolerance = 0.1 * given.tolerance;
+    model.iteration.contact_tolerance = given.tolerance, model.iteration.newton_limit = 30;
     simulation::Simulator<Strand> simulator(assembly, model);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const strand::StrandState state = strand::measure(simulator, parameters);
@@ -81,6 +83,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     file.read("contact", "reversible_displacement_over_radius", given.reversible);
     file.read("contact", "largest_penetration_over_radius", given.sinking);
     file.read("contact", "allowed_penetration_over_radius", given.allowed);
+    file.read("contact", "regularisation_over_allowed", given.depth);
     file.read("contact", "tolerance_over_radius", given.tolerance);
     file.read("loading", "strain", given.strain);
     file.read("loading", "rotation", given.rotation);
