@@ -31,18 +31,9 @@ struct Held : Policy<B> {
     using Normal = law::Augmented<law::RegularisedPenalty>;
 };
 
-/// What the law may leave between surfaces that touch: the penalty is adapted to it, or is a soft one that multipliers complete.
 template <simulation::Model M>
 simulation::ModelParameters<M> allowing(double penetration) {
-    simulation::ModelParameters<M> all;
-    if constexpr (law::Augmenting<typename M::Normal>) {
-        all.normal = {.law = {.regularisation_depth = 1e-3 * r}, .largest_penetration = penetration};
-        all.contact.stiffness.allowed_penetration = 1e-2 * r, all.contact.stiffness.initial_fraction = 0.2;
-        all.iteration.multiplier_limit = 40;
-    } else {
-        all.normal = {.regularisation_depth = 0.1 * penetration};
-        all.contact.stiffness.allowed_penetration = penetration;
-    }
+    simulation::ModelParameters<M> all = sinking_by<M>(penetration);
     all.iteration.step_tolerance = 1e-6, all.iteration.residual_tolerance = 1e-6, all.iteration.linear_tolerance = 1e-8;
     all.iteration.normal_tolerance = 1e-4, all.iteration.normal_step_tolerance = 1e-4, all.iteration.contact_tolerance = 1e-4;
     all.iteration.newton_limit = 40;

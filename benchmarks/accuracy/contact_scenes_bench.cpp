@@ -4,6 +4,7 @@
 // Prints CSV, a line a run and one with the orders of each policy, and writes log-log plots of error against CPU time.
 // usage: benchmark_accuracy_contact_scenes_bench [directory of the plots [repeats [scene]]]; default ., 1 and all of capstan, strand, two_ply, knot
 #include "../../tests/verification/capstan_reference.hpp"
+#include "../../tests/verification/capstan_scene.hpp"
 #include "sweep.hpp"
 
 #include <fibrant/beam/on_centreline.hpp>
@@ -55,30 +56,11 @@ simulation::Loading<M> stage(std::vector<simulation::Ramp> ramps, Index incremen
 /// @param points  of contact, for each half turn
 template <simulation::Model M>
 Sample capstan(Index points) {
-    const double R = 0.5, rho = R + r, half = 2.0, travel = 0.06, tension = 0.03, mu = 0.15, allowed = 1e-2 * r;
+    const test::CapstanScene given{.fibre = r};
+    const double rho = given.cylinder + given.fibre, mu = 0.15, allowed = 1e-2 * r;
     constexpr Index intervals = M::Beam::nodes - 1;
-    const Index elements = 2 / intervals * static_cast<Index>(std::ceil(half * static_cast<double>(points) / (pi * rho)));
-    scene::Assembly assembly;
-    scene::FibreSpecification fibre = along_z(1.0, elements);
-    fibre.from = Vec3(-half, rho, 0), fibre.to = Vec3(half, rho, 0), fibre.director = Vec3::UnitZ();
-    assembly.add(fibre);
-    scene::Tool guide;
-    guide.shape = scene::ToolShape::cylinder, guide.radius = R, guide.channel = "ends";
-    assembly.add(guide);
-    for (const double side : {-1.0, 1.0}) {
-        scene::Hold end;
-        end.at = side < 0.0 ? scene::first_end(0) : scene::last_end(0);
-        end.channel = "ends";
-        end.path = [=](double amplitude) {
-            const double angle = 0.5 * pi * std::min(amplitude, 1.0), drawn = side * travel * std::max(0.0, amplitude - 1.0);
-            const double free = half * (1.0 + tension * std::min(1.0, 20.0 * amplitude)) - rho * angle;
-            return Vec3(side * (rho * std::sin(angle) + free * std::cos(angle) - half), rho * std::cos(angle) - free * std::sin(angle) - rho - drawn, 0.0);
-        };
-        assembly.hold(end);
-    }
-    const Mat3 across = Vec3(0, 0, 1).asDiagonal();
-    for (Index k = 0; k <= intervals * elements; ++k) assembly.hold_position({0, static_cast<double>(k) / static_cast<double>(intervals * elements)}, across);
-    assembly.hold_axial_rotation(scene::first_end(0));
+    const Index elements = 2 / intervals * static_cast<Index>(std::ceil(given.half * static_cast<double>(points) / (pi * rho)));
+    const scene::Assembly assembly = given.assembly(along_z(1.0, elements), intervals * elements);
     simulation::ModelParameters<M> all;
     all.normal.regularisation_depth = 0.1 * allowed;
     all.contact.stiffness.allowed_penetration = allowed;
@@ -116,15 +98,7 @@ Sample capstan(Index points) {
 
 template <simulation::Model M>
 simulation::ModelParameters<M> tight(double penetration) {
-    simulation::ModelParameters<M> all;
-    if constexpr (law::Augmenting<typename M::Normal>) {
-        all.normal = {.law = {.regularisation_depth = 1e-3 * r}, .largest_penetration = penetration};
-        all.contact.stiffness.allowed_penetration = 1e-2 * r, all.contact.stiffness.initial_fraction = 0.2;
-        all.iteration.multiplier_limit = 40;
-    } else {
-        all.normal = {.regularisation_depth = 0.1 * penetration};
-        all.contact.stiffness.allowed_penetration = penetration;
-    }
+    simulation::ModelParameters<M> all = sinking_by<M>(penetration);
     all.iteration.contact_tolerance = 1e-3;
     return all;
 }

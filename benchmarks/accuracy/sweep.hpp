@@ -4,6 +4,7 @@
 
 #include "rods.hpp"
 
+#include <fibrant/law/augmented.hpp>
 #include <fibrant/observe/svg_plot.hpp>
 
 #include <cstdio>
@@ -17,6 +18,21 @@ struct Sample {
     double error = 0.0, seconds = 0.0;
     simulation::Report report;
 };
+
+/// What the law may leave between surfaces that touch: the penalty is adapted to it, or is a soft one that multipliers complete.
+template <simulation::Model M>
+simulation::ModelParameters<M> sinking_by(double penetration) {
+    simulation::ModelParameters<M> all;
+    if constexpr (law::Augmenting<typename M::Normal>) {
+        all.normal = {.law = {.regularisation_depth = 1e-3 * r}, .largest_penetration = penetration};
+        all.contact.stiffness.allowed_penetration = 1e-2 * r, all.contact.stiffness.initial_fraction = 0.2;
+        all.iteration.multiplier_limit = 40;
+    } else {
+        all.normal = {.regularisation_depth = 0.1 * penetration};
+        all.contact.stiffness.allowed_penetration = penetration;
+    }
+    return all;
+}
 
 inline void print_sweep_header() { std::printf("scene,policy,value,error,seconds,penetration_over_radius,newton,contact_passes,converged\n"); }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The rod of rigid sections in the reference problems, and in contact with friction.
 #include <verification/capstan_reference.hpp>
+#include <verification/capstan_scene.hpp>
 #include <verification/elements.hpp>
 
 #include <fibrant/beam/rigid_section_rod.hpp>
@@ -180,29 +181,10 @@ TEST_CASE("two crossed rods push each other apart as the rods of the reference d
 }
 
 TEST_CASE("a rod drawn half a turn around a rigid cylinder is held back as the reference says") {
-    const double r = 0.0201, R = 0.5, rho = R + r, half = 2.0, mu = 0.15, travel = 0.06, tension = 0.03;
+    const test::CapstanScene capstan;
+    const double r = capstan.fibre, R = capstan.cylinder, mu = 0.15;
     const Index elements = 96;
-    scene::Assembly assembly;
-    scene::FibreSpecification fibre = test::ReferenceRod{2.0 * half, elements}.specification();
-    fibre.from = Vec3(-half, rho, 0), fibre.to = Vec3(half, rho, 0), fibre.director = Vec3::UnitZ();
-    assembly.add(fibre);
-    scene::Tool guide;
-    guide.shape = scene::ToolShape::cylinder, guide.radius = R, guide.channel = "ends";
-    assembly.add(guide);
-    for (const double side : {-1.0, 1.0}) {
-        scene::Hold end;
-        end.at = side < 0.0 ? scene::first_end(0) : scene::last_end(0);
-        end.channel = "ends";
-        end.path = [=](double amplitude) {
-            const double angle = 0.5 * pi * std::min(amplitude, 1.0), drawn = side * travel * std::max(0.0, amplitude - 1.0);
-            const double free = half * (1.0 + tension * std::min(1.0, 20.0 * amplitude)) - rho * angle;
-            return Vec3(side * (rho * std::sin(angle) + free * std::cos(angle) - half), rho * std::cos(angle) - free * std::sin(angle) - rho - drawn, 0.0);
-        };
-        assembly.hold(end);
-    }
-    const Mat3 across = Vec3(0, 0, 1).asDiagonal();
-    for (Index k = 0; k <= elements; ++k) assembly.hold_position({0, static_cast<double>(k) / static_cast<double>(elements)}, across);
-    assembly.hold_axial_rotation(scene::first_end(0));
+    const scene::Assembly assembly = capstan.assembly(test::ReferenceRod{2.0 * capstan.half, elements}.specification(), elements);
     simulation::ModelParameters<Model> parameters;
     parameters.normal.regularisation_depth = 1e-3 * r;
     parameters.contact.stiffness.allowed_penetration = 1e-2 * r;
