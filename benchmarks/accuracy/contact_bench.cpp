@@ -8,8 +8,6 @@
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
 #include <fibrant/beam/rigid_section_rod.hpp>
-#include <fibrant/compositions/strand/strand.hpp>
-#include <fibrant/law/augmented.hpp>
 
 #include <algorithm>
 #include <array>
@@ -22,23 +20,8 @@
 
 using namespace fibrant;
 using namespace fibrant::benchmarks;
-namespace strand = compositions::strand;
 
 namespace {
-
-template <beam::BeamElement B>
-struct Held : Policy<B> {
-    using Normal = law::Augmented<law::RegularisedPenalty>;
-};
-
-template <simulation::Model M>
-simulation::ModelParameters<M> allowing(double penetration) {
-    simulation::ModelParameters<M> all = sinking_by<M>(penetration);
-    all.iteration.step_tolerance = 1e-6, all.iteration.residual_tolerance = 1e-6, all.iteration.linear_tolerance = 1e-8;
-    all.iteration.normal_tolerance = 1e-4, all.iteration.normal_step_tolerance = 1e-4, all.iteration.contact_tolerance = 1e-4;
-    all.iteration.newton_limit = 40;
-    return all;
-}
 
 /// 200 radii long, stretched by 0.002, the clamps two radii closer than where the fibres would touch (crossed_fibres.json).
 template <simulation::Model M>
@@ -74,26 +57,6 @@ Sample crossing(double penetration, Index elements) {
     return sample;
 }
 
-/// Lay of 10 degrees, stretched by 0.002 between ends that do not turn (strand_1_6.json, director).
-template <simulation::Model M>
-Sample stretched_strand(double penetration) {
-    strand::StrandParameters parameters;
-    parameters.core_radius = 0.0215, parameters.layers = {{.wires = 6, .radius = r, .lay_angle_deg = 10.0}};
-    parameters.material = {young, 0.3};
-    parameters.length = 1.48236252744, parameters.elements = 24;
-    Sample sample;
-    const double start = processor_time();
-    simulation::Simulator<M> simulator(strand::straight_strand(parameters), allowing<M>(penetration));
-    simulation::Loading<M> loading;
-    loading.stages.emplace_back();
-    loading.stages.back().ramps = {{strand::stretch, 0.002}, {strand::twist, 0.0}};
-    loading.stages.back().increments = 2;
-    sample.report = simulator.run(loading);
-    sample.seconds = processor_time() - start;
-    sample.error = std::abs(strand::measure(simulator, parameters).force / 0.12578578517 - 1.0);
-    return sample;
-}
-
 using Director = beam::DirectorBeam<3>;
 using Rod = beam::RigidSectionRod;
 using Cable = beam::KirchhoffCable;
@@ -115,7 +78,7 @@ int main(int argc, char** argv) {
         sweep("meshes", policy, numbers, [&](Index elements) { return crossing<M>(1e-5 * r, elements); }, repeats, meshes);
     };
     const auto stretch = [&]<simulation::Model M>(const char* policy) {
-        sweep("strand", policy, penetrations, [&](double p) { return stretched_strand<M>(p * r); }, repeats, wires);
+        sweep("strand", policy, penetrations, [&](double p) { return stretched_strand<M>(p * r, 24); }, repeats, wires);
     };
     cross.operator()<Policy<Director>>("director, penalty", 32);
     cross.operator()<Held<Director>>("director, multipliers", 32);

@@ -7,13 +7,10 @@
 #include "../../tests/verification/capstan_scene.hpp"
 #include "sweep.hpp"
 
-#include <fibrant/beam/on_centreline.hpp>
 #include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/compositions/knot/overhand_knot.hpp>
-#include <fibrant/compositions/strand/strand.hpp>
 #include <fibrant/compositions/two_ply/two_ply.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
-#include <fibrant/law/augmented.hpp>
 
 #include <algorithm>
 #include <array>
@@ -24,7 +21,6 @@
 
 using namespace fibrant;
 using namespace fibrant::benchmarks;
-namespace strand = compositions::strand;
 namespace two_ply = compositions::two_ply;
 namespace knot = compositions::knot;
 
@@ -39,11 +35,6 @@ template <beam::BeamElement B>
 struct Drawn : Policy<B, law::RegularisedCoulomb> {
     using Tools = contact::RigidTools;
 };
-template <beam::BeamElement B>
-struct Held : Policy<B> {
-    using Normal = law::Augmented<law::RegularisedPenalty>;
-};
-
 template <simulation::Model M>
 simulation::Loading<M> stage(std::vector<simulation::Ramp> ramps, Index increments) {
     simulation::Loading<M> loading;
@@ -96,40 +87,15 @@ Sample capstan(Index points) {
     return sample;
 }
 
-template <simulation::Model M>
-simulation::ModelParameters<M> tight(double penetration) {
-    simulation::ModelParameters<M> all = sinking_by<M>(penetration);
-    all.iteration.contact_tolerance = 1e-3;
-    return all;
-}
-
-/// Lay of 10 degrees, stretched by 0.002 between ends that do not turn (strand_1_6.json, sections of the director).
-template <simulation::Model M>
-Sample stretched(Index elements) {
-    strand::StrandParameters parameters;
-    parameters.core_radius = 0.0215, parameters.layers = {{.wires = 6, .radius = r, .lay_angle_deg = 10.0}};
-    parameters.material = {young, 0.3};
-    parameters.length = 1.48236252744, parameters.elements = elements;
-    simulation::ModelParameters<M> all = tight<M>(1e-5 * r);
-    all.iteration.step_tolerance = all.iteration.residual_tolerance = 1e-6, all.iteration.linear_tolerance = 1e-8;
-    all.iteration.normal_tolerance = all.iteration.normal_step_tolerance = all.iteration.contact_tolerance = 1e-4;
-    all.iteration.newton_limit = 40;
-    Sample sample;
-    const double start = processor_time();
-    simulation::Simulator<M> simulator(strand::straight_strand(parameters), all);
-    sample.report = simulator.run(stage<M>({{strand::stretch, 0.002}, {strand::twist, 0.0}}, 2));
-    sample.seconds = processor_time() - start;
-    sample.error = std::abs(strand::measure(simulator, parameters).force / 0.12578578517 - 1.0);
-    return sample;
-}
-
 /// 100 radii long, pulled by 0.02 N, turned by one and a quarter turns: torque of Kirchhoff's helices of the angle, radius and twist in the middle (two_ply.json).
 template <simulation::Model M>
 Sample wound(Index elements) {
     const two_ply::TwoPlyParameters parameters{.radius = r, .length = 2.0, .material = {young, 0.3}, .elements = elements, .force = 0.02};
+    simulation::ModelParameters<M> all = sinking_by<M>(law::Augmenting<typename M::Normal> ? 1e-4 * r : 1e-3 * r);
+    all.iteration.contact_tolerance = 1e-3;
     Sample sample;
     const double start = processor_time();
-    simulation::Simulator<M> simulator(two_ply::straight_rods(parameters), tight<M>(law::Augmenting<typename M::Normal> ? 1e-4 * r : 1e-3 * r));
+    simulation::Simulator<M> simulator(two_ply::straight_rods(parameters), all);
     sample.report = simulator.run(stage<M>({{two_ply::pull, 1.0}}, 2));
     if (sample.report.converged) sample.report = simulator.run(stage<M>({{two_ply::turn, 1.25}}, 15));
     sample.seconds = processor_time() - start;
@@ -188,8 +154,8 @@ int main(int argc, char** argv) {
     if (wanted("strand")) {
         observe::LogLogPlot plot;
         const std::array<Index, 4> coarse{6, 12, 24, 48}, fine{12, 24, 48, 96};
-        sweep("strand", "director", coarse, stretched<Held<Director>>, repeats, plot);
-        sweep("strand", "director, 2 nodes", fine, stretched<Held<beam::DirectorBeam<2>>>, repeats, plot);
+        sweep("strand", "director", coarse, [](Index elements) { return stretched_strand<Held<Director>>(1e-5 * r, elements); }, repeats, plot);
+        sweep("strand", "director, 2 nodes", fine, [](Index elements) { return stretched_strand<Held<beam::DirectorBeam<2>>>(1e-5 * r, elements); }, repeats, plot);
         write(plot, "strand 1 + 6, multipliers, finer and finer meshes", "error of the force", "accuracy_strand_meshes.svg");
     }
     if (wanted("two_ply")) {

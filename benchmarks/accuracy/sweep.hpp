@@ -1,18 +1,26 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file What benchmarks of contact share: a policy that is run over a range of values, its line in a plot and its orders.
+/// @file What benchmarks of contact share: how deep surfaces may be in each other, a strand that is stretched, and a policy that is run over a range of values.
 
 #include "rods.hpp"
 
+#include <fibrant/compositions/strand/strand.hpp>
 #include <fibrant/law/augmented.hpp>
 #include <fibrant/observe/svg_plot.hpp>
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace fibrant::benchmarks {
+
+/// Multipliers in the place of a penalty alone.
+template <beam::BeamElement B>
+struct Held : Policy<B> {
+    using Normal = law::Augmented<law::RegularisedPenalty>;
+};
 
 struct Sample {
     double error = 0.0, seconds = 0.0;
@@ -32,6 +40,37 @@ simulation::ModelParameters<M> sinking_by(double penetration) {
         all.contact.stiffness.allowed_penetration = penetration;
     }
     return all;
+}
+
+/// The same, solved until nothing but the law and the mesh is left of the error.
+template <simulation::Model M>
+simulation::ModelParameters<M> allowing(double penetration) {
+    simulation::ModelParameters<M> all = sinking_by<M>(penetration);
+    all.iteration.step_tolerance = 1e-6, all.iteration.residual_tolerance = 1e-6, all.iteration.linear_tolerance = 1e-8;
+    all.iteration.normal_tolerance = 1e-4, all.iteration.normal_step_tolerance = 1e-4, all.iteration.contact_tolerance = 1e-4;
+    all.iteration.newton_limit = 40;
+    return all;
+}
+
+/// Lay of 10 degrees, stretched by 0.002 between ends that do not turn (strand_1_6.json, director).
+template <simulation::Model M>
+Sample stretched_strand(double penetration, Index elements) {
+    namespace strand = compositions::strand;
+    strand::StrandParameters parameters;
+    parameters.core_radius = 0.0215, parameters.layers = {{.wires = 6, .radius = r, .lay_angle_deg = 10.0}};
+    parameters.material = {young, 0.3};
+    parameters.length = 1.48236252744, parameters.elements = elements;
+    Sample sample;
+    const double start = processor_time();
+    simulation::Simulator<M> simulator(strand::straight_strand(parameters), allowing<M>(penetration));
+    simulation::Loading<M> loading;
+    loading.stages.emplace_back();
+    loading.stages.back().ramps = {{strand::stretch, 0.002}, {strand::twist, 0.0}};
+    loading.stages.back().increments = 2;
+    sample.report = simulator.run(loading);
+    sample.seconds = processor_time() - start;
+    sample.error = std::abs(strand::measure(simulator, parameters).force / 0.12578578517 - 1.0);
+    return sample;
 }
 
 inline void print_sweep_header() { std::printf("scene,policy,value,error,seconds,penetration_over_radius,newton,contact_passes,converged\n"); }
