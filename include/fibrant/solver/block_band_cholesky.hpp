@@ -35,6 +35,8 @@ public:
     using Wide = Eigen::Array<double, Lanes, 1>;
     using Kept = Eigen::Array<float, Lanes, 1>;
 
+    static constexpr int lanes = Lanes;
+
     explicit BlockBandCholesky(const BandShape& shape = {}) : shape_{shape}, before_(core::at(shape.nodes)) {}
 
     const BandShape& shape() const noexcept { return shape_; }

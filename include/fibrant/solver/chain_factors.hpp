@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <variant>
@@ -19,27 +20,32 @@ class ChainFactors {
 public:
     static constexpr double least_pivot = 1e-12;  ///< over the diagonal entry: below it a chain counts as not held
     static constexpr double least_shift = 1e-6;   ///< of a chain that nothing holds, times its node blocks
+    static constexpr std::size_t lanes = 8;             ///< chains of equal shape that are solved together
 
-    /// Sorts the chains into packs of equal shape.
-    void analyse(const scene::DofLayout& layout) {
-        std::map<std::tuple<int, int, int>, std::vector<Index>> shapes;
+    /// Sorts the chains into packs of equal shape, and of one class each.
+    /// @param class_of  of each chain, from 0 to classes - 1; none: all are of one class
+    void analyse(const scene::DofLayout& layout, std::span<const int> class_of = {}, int classes = 1) {
+        std::map<std::tuple<int, int, int, int>, std::vector<Index>> kinds;
         for (Index c = 0; c < core::count(layout.chains); ++c) {
             const BandShape shape = shape_of(layout.chains[core::at(c)]);
-            shapes[{shape.nodes, shape.block, shape.reach}].push_back(c);
+            kinds[{class_of.empty() ? 0 : class_of[core::at(c)], shape.nodes, shape.block, shape.reach}].push_back(c);
         }
+        std::vector<Pack> before = std::move(packs_);
         packs_.clear();
-        for (const auto& entry : shapes) {
-            const std::vector<Index>& chains = entry.second;
+        first_pack_.assign(1, 0);
+        for (const auto& [kind, chains] : kinds) {
+            while (core::count(first_pack_) <= std::get<0>(kind)) first_pack_.push_back(core::count(packs_));
             std::size_t first = 0;
             while (first < chains.size()) {
                 const std::size_t left = chains.size() - first;
                 const std::size_t take = left >= lanes ? lanes : left > 2 ? left : 1;  // two lanes of eight are no gain
                 packs_.push_back({std::vector<Index>(chains.begin() + static_cast<std::ptrdiff_t>(first),
                                                      chains.begin() + static_cast<std::ptrdiff_t>(first + take)),
-                                  make(shape_of(layout.chains[core::at(chains[first])]), take > 1)});
+                                  take_or_make(before, shape_of(layout.chains[core::at(chains[first])]), take > 1)});
                 first += take;
             }
         }
+        while (core::count(first_pack_) <= classes) first_pack_.push_back(core::count(packs_));
     }
 
     /// Factors of the present values. A chain whose band is not positive definite is shifted until it is: `apply` is
@@ -73,6 +79,18 @@ public:
         }, grain(layout, core::count(packs_)));
     }
 
+    /// Calls body(pack, chains, factor) for the packs of one class, from several threads at once: their number, from 0 to packs() - 1, the
+    /// chains of the first lanes, and their BlockBandCholesky.
+    template <class Body>
+    void for_class(const scene::DofLayout& layout, int of, const Body& body) const {
+        const Index first = first_pack_[core::at(of)], last = first_pack_[core::at(of + 1)];
+        core::parallel_for(last - first, [&](Index p) {
+            const Pack& pack = packs_[core::at(first + p)];
+            std::visit([&](const auto& band) { body(first + p, pack.chains, band); }, pack.factor);
+        }, grain(layout, last - first));
+    }
+    Index packs() const noexcept { return core::count(packs_); }
+
     /// Bytes of the factors.
     std::size_t bytes() const {
         std::size_t sum = 0;
@@ -81,7 +99,6 @@ public:
     }
 
 private:
-    static constexpr std::size_t lanes = 8;
     template <int Block>
     using One = BlockBandCholesky<Block, 1>;
     template <int Block>
@@ -103,6 +120,18 @@ private:
             case 9: return several ? Factor(Several<9>(shape)) : Factor(One<9>(shape));
             default: return several ? Factor(Several<0>(shape)) : Factor(One<0>(shape));
         }
+    }
+
+    /// A factor of one of the packs of before, whose memory serves again, or a new one.
+    static Factor take_or_make(std::vector<Pack>& before, const BandShape& shape, bool several) {
+        for (; !before.empty(); before.pop_back()) {
+            const bool same = std::visit([&](const auto& band) { return band.shape() == shape && (band.lanes > 1) == several; }, before.back().factor);
+            if (!same) continue;
+            Factor factor = std::move(before.back().factor);
+            before.pop_back();
+            return factor;
+        }
+        return make(shape, several);
     }
 
     template <class System, int Block, int Lanes, class See>
@@ -167,7 +196,8 @@ private:
                 z[start[core::at(lane)] + k] = static_cast<double>(buffer[core::at(k)][lane]);
     }
 
-    std::vector<Pack> packs_;
+    std::vector<Pack> packs_;        // class by class
+    std::vector<Index> first_pack_;  // of each class, and their number
 };
 
 }  // namespace fibrant::solver

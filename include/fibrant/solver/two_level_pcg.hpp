@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Conjugate gradients with two levels: exact factors of every chain, and the rigid motions of clusters of chains.
+/// @file Conjugate gradients with two levels: sweeps over factored chains, and the rigid motions of clusters of chains.
 
-#include <fibrant/solver/chain_factors.hpp>
+#include <fibrant/solver/chain_sweeps.hpp>
 #include <fibrant/solver/conjugate_gradient.hpp>
 #include <fibrant/solver/rigid_coarse_space.hpp>
 #include <fibrant/solver/stabilised_biconjugate_gradient.hpp>
@@ -13,9 +13,9 @@
 
 namespace fibrant::solver {
 
-/// M^-1 = B^-1 + P (P^T A P)^-1 P^T: B the bands of the chains, P a RigidCoarseSpace.
+/// M^-1 = S^-1 + P (P^T A P)^-1 P^T: S = (B + L) B^-1 (B + L)^T the sweeps over chains (ChainSweeps), B their bands, P a RigidCoarseSpace.
 ///
-/// The factors take the stiff modes of single fibres exactly; what they leave is the bending of neighbours that contact
+/// The factors of B take the stiff modes of single fibres exactly; what they leave is the bending of neighbours that contact
 /// ties together, which the coarse space has. Forms no matrix but P^T A P. A solve that takes long goes on with a finer
 /// space: a quarter of the fibres in a cluster, or, where clusters are single chains, twice the stations. It is formed when
 /// first wanted, and kept until the next preparation; every solve begins with the coarser one, so that no solve depends on another.
@@ -39,7 +39,7 @@ public:
 
     template <assembly::LinearSystem System>
     void analyse(const System& system) {
-        work_->factors.analyse(system.layout());
+        work_->chains.analyse(system.layout());
         work_->coarse.analyse(system, parameters_.fibres_per_cluster, parameters_.elements_per_station);
     }
     template <assembly::LinearSystem System>
@@ -49,9 +49,9 @@ public:
         const assembly::HeldProjector held(layout);
         work.coarse.begin(layout);
         work.fine = Fine::none;
-        work.status = work.factors.prepare(system, [&](Index chain, const Matrix& band) { work.coarse.add_chain(layout, held, chain, band); });
+        work.status = work.chains.prepare(system, [&](Index chain, const Matrix& band) { work.coarse.add_chain(layout, held, chain, band); });
         if (work.status == SolveStatus::not_finite) return work.status;
-        work.ties.prepare(layout, [&](const Vector& r, Vector& z) { work.factors.apply(layout, r, z); });
+        work.ties.prepare(layout, [&](const Vector& r, Vector& z) { work.chains.apply_factors(layout, r, z); });
         const SolveStatus coarse = work.coarse.finish(system);
         if (coarse != SolveStatus::converged) work.status = coarse;
         return work.status;
@@ -92,7 +92,7 @@ public:
 private:
     enum class Fine : std::uint8_t { none, ready, useless };
     struct Work {
-        ChainFactors factors;
+        ChainSweeps chains;
         TiedChains ties;
         RigidCoarseSpace<> coarse, finer;
         Vector forces;  // r as chains that are tied see it
@@ -105,7 +105,7 @@ private:
         Work& work = *work_;
         const bool tied = !work.ties.empty();
         if (tied) work.forces = r, work.ties.project_forces(layout, work.forces);
-        work.factors.apply(layout, tied ? work.forces : r, z);
+        work.chains.apply(layout, tied ? work.forces : r, z);
         space.add_correction(layout, tied ? work.forces : r, z);
         if (tied) work.ties.project(layout, z);
     }
