@@ -27,7 +27,7 @@ Vector free_load(const scene::DofLayout& layout, unsigned seed) {
 }
 
 test::SyntheticSystem few_contacts(Index vectors_per_node, int points) {
-    return test::random_system({.chains = std::vector<scene::Chain>(24, {.nodes = 5, .vectors_per_node = vectors_per_node, .reach = 2}),
+    return test::random_system({.chains = std::vector<scene::Chain>(24, {.nodes = 5, .vectors_per_node = vectors_per_node, .reach = 4}),  // whole chains are bands
                                 .points = points, .held = 6, .radius = 0.1});
 }
 
@@ -66,6 +66,7 @@ TEST_CASE("a sweep forth and back is the inverse of (B + L) B^-1 (B + L)^T, for 
                 Matrix& to = p == q ? b : lower;
                 if (p == q || couplings.class_of()[core::at(p)] > couplings.class_of()[core::at(q)]) to.block<3, 3>(3 * i, 3 * j) = a.block<3, 3>(3 * i, 3 * j);
             }
+        INFO(vectors << " vectors a node");
         const Matrix m = (b + lower) * b.llt().solve(Matrix((b + lower).transpose()));
         for (const unsigned seed : {1u, 2u, 3u}) {
             const Vector r = free_load(layout, seed);
