@@ -102,13 +102,11 @@ void write_summary(const example::Output& output, const Simulator& simulator, co
     example::write_summary(output, report, radius, {{"fibres", number(simulator.mesh().fibre_count())},
                            {"unknowns", number(simulator.state().size())}, {"solid_unknowns", number(3 * solid.nodes())},
                            {"cells", number(solid.cells())}, {"bonds", number(solid.bonds().size())}, {point.x_name, point.x}, {point.y_name, point.y},
-                           {"linear_iterations", number(report.counts.linear_iterations)},
                            {"search_seconds", report.seconds[0]}, {"contact_seconds", report.seconds[1]}, {"assembly_seconds", report.seconds[2]},
                            {"preparation_seconds", report.seconds[3]}, {"solution_seconds", report.seconds[4]}, {"output_seconds", report.seconds[5]},
                            {"elastic_before_load", before.elastic}, {"external_before_load", before.external}, {"dissipated_before_load", before.dissipated},
                            {"elastic", report.energy.elastic}, {"external", report.energy.external}, {"dissipated", report.energy.dissipated},
-                           {"damped", report.energy.damped}, {"energy_error", report.energy.error()},
-                           {"cpu_seconds", example::cpu_seconds()}, {"peak_memory_bytes", number(example::peak_memory_bytes())}});
+                           {"damped", report.energy.damped}, {"energy_error", report.energy.error()}});
 }
 
 }  // namespace composite

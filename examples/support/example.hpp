@@ -140,7 +140,10 @@ inline void write_summary(const Output& output, const fibrant::simulation::Repor
         .add("contact_elements", report.contact.elements)
         .add("active_contacts", report.contact.active)
         .add("greatest_penetration_over_radius", report.contact.greatest_penetration / radius)
+        .add("linear_iterations", report.counts.linear_iterations)
         .add("wall_seconds", report.wall_seconds)
+        .add("cpu_seconds", cpu_seconds())
+        .add("peak_memory_bytes", peak_memory_bytes())
         .add("version", FIBRANT_VERSION);
     observe::write_file(output.folder / "summary.json", json.text() + "\n");
     if (!output.quiet) std::printf("%s\n", json.text().c_str());
