@@ -2,7 +2,7 @@
 #pragma once
 /// @file Small scenes with one number that goes over decades, and what their results are held to: for tests, and for the benchmark that draws them.
 
-#include <stability/small_scenes.hpp>
+#include "small_scenes.hpp"
 
 #include <array>
 #include <cmath>
