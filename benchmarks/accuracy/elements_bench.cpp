@@ -179,7 +179,7 @@ using Rough = Policy<beam::DirectorBeam<3>, law::RegularisedCoulomb>;
 }  // namespace
 
 int main(int argc, char** argv) {
-    const std::filesystem::path directory = argc > 1 ? argv[1] : ".";
+    const std::filesystem::path directory = folder(argc > 1 ? argv[1] : ".");
     const int repeats = argc > 2 ? std::max(1, std::atoi(argv[2])) : 5;
     Plots plots;
     std::printf("problem,policy,reference,elements,unknowns,error,seconds,converged\n");
