@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <filesystem>
 #include <vector>
 
 namespace fibrant::benchmarks {
@@ -23,6 +24,13 @@ inline double processor_time() {
 inline double time_now() {
     if (core::threads() == 1) return processor_time();
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Makes the folder that a benchmark writes to, with those above it.
+/// @throws std::filesystem::filesystem_error if it cannot be made
+inline std::filesystem::path folder(const std::filesystem::path& path) {
+    std::filesystem::create_directories(path);
+    return path;
 }
 
 /// Of at least one value.

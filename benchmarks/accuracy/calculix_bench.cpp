@@ -87,7 +87,7 @@ Sample calculix(const std::filesystem::path& folder, Index elements, double step
 }  // namespace
 
 int main(int argc, char** argv) {
-    const std::filesystem::path folder = argc > 1 ? argv[1] : ".";
+    const std::filesystem::path folder = benchmarks::folder(argc > 1 ? argv[1] : ".");
     const int repeats = argc > 2 ? std::max(1, std::atoi(argv[2])) : 5;
     const bool installed = std::system("command -v ccx > /dev/null 2>&1") == 0;
     std::printf("code,elements,error,seconds\n");

@@ -64,7 +64,7 @@ using Cable = beam::KirchhoffCable;
 }  // namespace
 
 int main(int argc, char** argv) {
-    const std::filesystem::path directory = argc > 1 ? argv[1] : ".";
+    const std::filesystem::path directory = folder(argc > 1 ? argv[1] : ".");
     const int repeats = argc > 2 ? std::max(1, std::atoi(argv[2])) : 3;
     print_sweep_header();  // value: allowed penetration over the radius, or elements
     observe::LogLogPlot crossed, meshes, wires;

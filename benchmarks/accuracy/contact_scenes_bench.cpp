@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 // How fast does the error of a scene in contact fall as it is refined, and which policy reaches a given error soonest? A fibre drawn half a turn around a cylinder with friction
-// (finer and finer points), a strand of a core and six wires and two rods wound around each other (finer and finer meshes), and an overhand knot (meshes, and thinner rods).
+// (finer and finer points) and one drawn to and fro between two others (smaller and smaller reversible displacements), both with two laws of friction, a strand of a core and six
+// wires and two rods wound around each other (finer and finer meshes), and an overhand knot (meshes, and thinner rods).
 // Prints CSV, a line a run and one with the orders of each policy, and writes log-log plots of error against CPU time.
-// usage: benchmark_accuracy_contact_scenes_bench [directory of the plots [repeats [scene]]]; default ., 1 and all of capstan, strand, two_ply, knot
-#include "../../tests/verification/capstan_reference.hpp"
-#include "../../tests/verification/capstan_scene.hpp"
+// usage: benchmark_accuracy_contact_scenes_bench [directory of the plots [repeats [scene]]]; default ., 1 and all of capstan, stick_slip, strand, two_ply, knot
+#include "drawn_fibres.hpp"
 #include "sweep.hpp"
 
 #include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/compositions/knot/overhand_knot.hpp>
 #include <fibrant/compositions/two_ply/two_ply.hpp>
-#include <fibrant/contact/contacts_with_tools.hpp>
 
 #include <algorithm>
 #include <array>
@@ -30,62 +29,6 @@ const double pi = std::numbers::pi;
 
 using Director = beam::DirectorBeam<3>;
 using Rod = beam::RigidSectionRod;
-
-template <beam::BeamElement B>
-struct Drawn : Policy<B, law::RegularisedCoulomb> {
-    using Tools = contact::RigidTools;
-};
-template <simulation::Model M>
-simulation::Loading<M> stage(std::vector<simulation::Ramp> ramps, Index increments) {
-    simulation::Loading<M> loading;
-    loading.stages.emplace_back();
-    loading.stages.back().ramps = std::move(ramps), loading.stages.back().increments = increments;
-    return loading;
-}
-
-/// Wound on a rigid cylinder of 25 radii without friction, then drawn with mu = 0.15 until all of it slides (capstan.json, for the forces as they are).
-/// @param points  of contact, for each half turn
-template <simulation::Model M>
-Sample capstan(Index points) {
-    const test::CapstanScene given{.fibre = r};
-    const double rho = given.cylinder + given.fibre, mu = 0.15, allowed = 1e-2 * r;
-    constexpr Index intervals = M::Beam::nodes - 1;
-    const Index elements = 2 / intervals * static_cast<Index>(std::ceil(given.half * static_cast<double>(points) / (pi * rho)));
-    const scene::Assembly assembly = given.assembly(along_z(1.0, elements), intervals * elements);
-    simulation::ModelParameters<M> all;
-    all.normal.regularisation_depth = 0.1 * allowed;
-    all.contact.stiffness.allowed_penetration = allowed;
-    all.friction = {.friction_coefficient = 0.0, .reversible_displacement = 0.02 * r};
-    all.iteration.contact_tolerance = 2e-3;
-    all.iteration.margin = 2.0, all.iteration.largest_margin = 20.0;
-    Sample sample;
-    const double start = processor_time();
-    simulation::Simulator<M> simulator(assembly, all);
-    sample.report = simulator.run(stage<M>({{"ends", 1.0}}, 30));
-    if (!sample.report.converged) return sample;
-    simulation::Loading<M> draw = stage<M>({{"ends", 2.0}}, 24);
-    draw.stages[0].friction.emplace(law::RegularisedCoulomb::Parameters{mu, 0.02 * r});
-    // One point comes on or goes off the guide at a time: the error of a single state is by chance, so the root of the mean square over the last quarter is taken.
-    double squares = 0.0;
-    int states = 0;
-    struct Watch {
-        const simulation::Simulator<M>* simulator;
-        double *squares, rho;
-        int* states;
-        void reported(const simulation::IncrementReport& increment) {
-            if (increment.progress < 0.75) return;
-            const Vec3 slack = simulator->reaction(scene::first_end(0)), taut = simulator->reaction(scene::last_end(0));
-            const double expected = test::capstan_ratio({r, rho - r, bending, 0.15}, slack.norm(), test::turned_angle(slack, taut));
-            *squares += std::pow(taut.norm() / slack.norm() / expected - 1.0, 2), ++*states;
-        }
-        bool due(Index) const { return false; }
-        void accepted(const observe::Snapshot&) const {}
-    } watch{&simulator, &squares, rho, &states};
-    sample.report = simulator.run(draw, watch);
-    sample.seconds = processor_time() - start;
-    sample.error = std::sqrt(squares / std::max(1, states));
-    return sample;
-}
 
 /// 100 radii long, pulled by 0.02 N, turned by one and a quarter turns: torque of Kirchhoff's helices of the angle, radius and twist in the middle (two_ply.json).
 template <simulation::Model M>
@@ -135,10 +78,10 @@ Sample settled_knot(double slenderness, Index elements, Of of) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    const std::filesystem::path directory = argc > 1 ? argv[1] : ".";
+    const std::filesystem::path directory = folder(argc > 1 ? argv[1] : ".");
     const int repeats = argc > 2 ? std::max(1, std::atoi(argv[2])) : 1;
     const std::string only = argc > 3 ? argv[3] : "";
-    print_sweep_header();  // value: points a half turn; elements a wire, a rod; elements, R / r
+    print_sweep_header();  // value: points a half turn; reversible displacement over the radius; elements a wire, a rod; elements, R / r
     const auto wanted = [&](const char* scene) { return only.empty() || only == scene; };
     const auto write = [&](observe::LogLogPlot& plot, const char* title, const char* error, const char* file) {
         plot.title = title, plot.y_label = error;
@@ -147,9 +90,23 @@ int main(int argc, char** argv) {
     if (wanted("capstan")) {
         observe::LogLogPlot plot;
         const std::array<Index, 4> points{18, 36, 72, 144};
-        sweep("capstan", "director", points, capstan<Drawn<Director>>, repeats, plot);
-        sweep("capstan", "rod", points, capstan<Drawn<Rod>>, repeats, plot);
+        sweep("capstan", "director", points, [](Index n) { return capstan<Drawn<Director>>(n); }, repeats, plot);
+        sweep("capstan", "rod", points, [](Index n) { return capstan<Drawn<Rod>>(n); }, repeats, plot);
+        sweep("capstan", "director, smooth law", points, [](Index n) { return capstan<Drawn<Director, law::SmoothCoulomb>>(n); }, repeats, plot);
+        sweep("capstan", "rod, smooth law", points, [](Index n) { return capstan<Drawn<Rod, law::SmoothCoulomb>>(n); }, repeats, plot);
         write(plot, "drawn half a turn around a cylinder, mu = 0.15", "error of the tension ratio", "accuracy_capstan.svg");
+    }
+    if (wanted("stick_slip")) {
+        observe::LogLogPlot plot;
+        const std::array ranges{0.1, 0.05, 0.02, 0.01, 0.005, 0.002};
+        const auto refine = [&]<simulation::Model M>(const char* policy, Index increments) {
+            sweep("stick_slip", policy, ranges, [&](double range) { return drawn_to_and_fro<M>(range * r, increments); }, repeats, plot);
+        };
+        refine.operator()<Policy<Director, law::RegularisedCoulomb>>("regularised, 8", 8);
+        refine.operator()<Policy<Director, law::SmoothCoulomb>>("smooth, 8", 8);
+        refine.operator()<Policy<Director, law::RegularisedCoulomb>>("regularised, 32", 32);
+        refine.operator()<Policy<Director, law::SmoothCoulomb>>("smooth, 32", 32);
+        write(plot, "drawn to and fro between two fibres, in 8 and in 32 steps", "error of a loop's work", "accuracy_stick_slip.svg");
     }
     if (wanted("strand")) {
         observe::LogLogPlot plot;

@@ -2,11 +2,16 @@
 // Which beam element reaches a given error soonest? Prints CSV, a line a mesh: the error in the figure that the reference gives, CPU time
 // of the whole run and unknowns; then the fitted orders, and what each element costs in one and the same scene of touching fibres. Writes a
 // log-log plot of each case.
-// usage: benchmark_accuracy_elements_bench [directory of the plots [repeats [cost]]]; default . and 5; anything for cost leaves meshes and plots out
+// usage: benchmark_accuracy_elements_bench [directory of the plots [repeats [cost]]]; default . and 5; `cost` leaves meshes and plots out, the name of a policy all others too, so that
+// its instructions can be counted (valgrind --tool=callgrind)
 #include "rods.hpp"
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
+#include <fibrant/beam/on_centreline.hpp>
 #include <fibrant/beam/rigid_section_rod.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
+#include <fibrant/law/augmented.hpp>
+#include <fibrant/law/smooth_coulomb.hpp>
 #include <fibrant/observe/svg_plot.hpp>
 
 #include <algorithm>
@@ -136,19 +141,23 @@ void sweep(const char* policy, const std::vector<std::string>& models, int first
 scene::Assembly layers() {
     scene::Assembly assembly;
     const double length = 1.2, pitch = 0.12;
+    const Index group = assembly.add_group("all");
     for (const bool upper : {false, true})
         for (int k = 0; k < 8; ++k) {
             const double aside = (k - 3.5) * pitch, z = upper ? 2.0 * r : 0.0;
             scene::FibreSpecification fibre = along_z(1.0, 20);
             fibre.from = upper ? Vec3(-0.5 * length, aside, z) : Vec3(aside, -0.5 * length, z), fibre.to = upper ? Vec3(0.5 * length, aside, z) : Vec3(aside, 0.5 * length, z);
-            fibre.director = Vec3::UnitZ();
+            fibre.director = Vec3::UnitZ(), fibre.group = group;
             const Index f = assembly.add(fibre);
             for (const double end : {0.0, 1.0}) assembly.clamp({f, end}, upper ? Vec3(0, 0, -r) : Vec3(Vec3::Zero()));
         }
     return assembly;
 }
+/// What the scene has besides, which most scenes do without.
+enum class With { nothing, itself, rule, checkpoint };
 template <simulation::Model M>
-void cost(const char* policy, int repeats) {
+void cost(const char* policy, int repeats, const std::string& only, With with = With::nothing) {
+    if (!only.empty() && only != policy) return;
     using B = typename M::Beam;
     using Element = contact::ContactElement<B, typename M::Normal, typename M::Friction>;
     std::vector<double> times;
@@ -157,16 +166,36 @@ void cost(const char* policy, int repeats) {
     bool converged = true;
     for (int k = 0; k < repeats; ++k) {
         const double start = processor_time();
-        simulation::Simulator<M> simulator(layers(), parameters<M>());
-        const simulation::Report report = simulator.run({.increments = 4});
+        simulation::ModelParameters<M> all = [] {
+            if constexpr (law::Augmenting<typename M::Normal>) {
+                simulation::ModelParameters<M> held;
+                const auto plain = parameters<Policy<B, typename M::Friction>>();
+                held.normal = {.law = plain.normal, .largest_penetration = 1e-4 * r};
+                held.contact = plain.contact, held.iteration = plain.iteration;
+                return held;
+            } else {
+                return parameters<M>();
+            }
+        }();
+        all.contact.detection.self_contact = with == With::itself;
+        scene::Assembly scene = layers();
+        if (with == With::rule) scene.add(scene::PairRule{0, 0, 1.0, 1.0});
+        simulation::Simulator<M> simulator(scene, all);
+        simulation::Loading<M> loading;
+        loading.increments = 4;
+        const std::filesystem::path file = std::filesystem::temp_directory_path() / "fibrant_elements_bench.bin";
+        if (with == With::checkpoint) loading.checkpoint = file.string();
+        const simulation::Report report = simulator.run(loading);
         times.push_back(processor_time() - start);
+        if (with == With::checkpoint) std::filesystem::remove(file);
         converged = converged && report.converged;
         unknowns = simulator.state().size(), active = report.contact.active, newton = report.counts.newton, force = report.contact.reaction_sum;
     }
     const double seconds = median(times);
-    std::printf("%s,%ld,%zu,%zu,%zu,%zu,%ld,%ld,%.6e,%.3f,%.3e,%d\n", policy, static_cast<long>(unknowns), sizeof(typename B::Rest) + sizeof(typename B::Stresses),
-                sizeof(typename assembly::ChainSystem<B>::Row), sizeof(Element), sizeof(typename assembly::ChainSystem<B>::Point), static_cast<long>(active),
-                static_cast<long>(newton), force, seconds, seconds / static_cast<double>(newton), converged ? 1 : 0);
+    std::printf("%s,%ld,%zu,%zu,%zu,%zu,%zu,%ld,%ld,%.6e,%.3f,%.3e,%d\n", policy, static_cast<long>(unknowns), sizeof(typename B::Rest) + sizeof(typename B::Stresses),
+                sizeof(typename assembly::ChainSystem<B>::Row), sizeof(Element), sizeof(contact::ContactRecord<typename M::Normal, typename M::Friction>), sizeof(typename assembly::ChainSystem<B>::Point),
+                static_cast<long>(active), static_cast<long>(newton), force, seconds, seconds / static_cast<double>(newton), converged ? 1 : 0);
+    std::fflush(stdout);
 }
 
 using Director = Policy<beam::DirectorBeam<3>>;
@@ -175,11 +204,18 @@ using Rod = Policy<beam::RigidSectionRod>;
 using Centred = Policy<beam::OnCentreline<beam::DirectorBeam<3>>>;
 using Cable = Policy<beam::KirchhoffCable>;
 using Rough = Policy<beam::DirectorBeam<3>, law::RegularisedCoulomb>;
+using Smooth = Policy<beam::DirectorBeam<3>, law::SmoothCoulomb>;
+struct Multiplied : Director {
+    using Normal = law::Augmented<law::RegularisedPenalty>;
+};
+struct WithTools : Director {
+    using Tools = contact::RigidTools;
+};
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const std::filesystem::path directory = argc > 1 ? argv[1] : ".";
+    const std::filesystem::path directory = folder(argc > 1 ? argv[1] : ".");
     const int repeats = argc > 2 ? std::max(1, std::atoi(argv[2])) : 5;
     Plots plots;
     std::printf("problem,policy,reference,elements,unknowns,error,seconds,converged\n");
@@ -190,12 +226,19 @@ int main(int argc, char** argv) {
     sweep<Cable>("cable", {"kirchhoff", "reissner"}, 2, false, repeats, plots);
     for (const auto& [name, plot] : plots) observe::write_file(directory / ("accuracy_" + name + ".svg"), observe::log_log_svg(plot));
     }
-    std::printf("policy,unknowns,bytes an element,bytes a row,bytes a contact,bytes a point,active,newton,reactions,seconds,seconds an iteration,converged\n");
-    cost<Rough>("director with friction", repeats);
-    cost<Director>("director", repeats);
-    cost<Centred>("director touched on its centreline", repeats);
-    cost<Director2>("director with 2 nodes", repeats);
-    cost<Rod>("rod", repeats);
-    cost<Cable>("cable", repeats);
+    const std::string only = argc > 3 && std::string(argv[3]) != "cost" ? argv[3] : "";
+    std::printf("policy,unknowns,bytes an element,bytes a row,bytes a contact,bytes of its record,bytes a point,active,newton,reactions,seconds,seconds an iteration,converged\n");
+    cost<Director>("director", repeats, only);
+    cost<Rough>("director with friction", repeats, only);
+    cost<Smooth>("director with smooth friction", repeats, only);
+    cost<Multiplied>("director with multipliers", repeats, only);
+    cost<Director>("director that may touch itself", repeats, only, With::itself);
+    cost<WithTools>("director with tools", repeats, only);
+    cost<Director>("director with a rule for pairs", repeats, only, With::rule);
+    cost<Director>("director with checkpoints", repeats, only, With::checkpoint);
+    cost<Centred>("director touched on its centreline", repeats, only);
+    cost<Director2>("director with 2 nodes", repeats, only);
+    cost<Rod>("rod", repeats, only);
+    cost<Cable>("cable", repeats, only);
     return 0;
 }

@@ -53,8 +53,9 @@ simulation::ModelParameters<M> allowing(double penetration) {
 }
 
 /// Lay of 10 degrees, stretched by 0.002 between ends that do not turn (strand_1_6.json, director).
+/// @param penalty  that stays as it is, over the stiffness of a section; 0: adapted
 template <simulation::Model M>
-Sample stretched_strand(double penetration, Index elements) {
+Sample stretched_strand(double penetration, Index elements, double penalty = 0.0) {
     namespace strand = compositions::strand;
     strand::StrandParameters parameters;
     parameters.core_radius = 0.0215, parameters.layers = {{.wires = 6, .radius = r, .lay_angle_deg = 10.0}};
@@ -62,7 +63,13 @@ Sample stretched_strand(double penetration, Index elements) {
     parameters.length = 1.48236252744, parameters.elements = elements;
     Sample sample;
     const double start = processor_time();
-    simulation::Simulator<M> simulator(strand::straight_strand(parameters), allowing<M>(penetration));
+    simulation::ModelParameters<M> all = allowing<M>(penetration);
+    if (penalty > 0.0) {
+        contact::StiffnessAdaptation& stiffness = all.contact.stiffness;
+        stiffness.initial_fraction = stiffness.floor_fraction = stiffness.cap_fraction = penalty;
+        if constexpr (law::Augmenting<typename M::Normal>) all.iteration.multiplier_limit = 1000;
+    }
+    simulation::Simulator<M> simulator(strand::straight_strand(parameters), all);
     simulation::Loading<M> loading;
     loading.stages.emplace_back();
     loading.stages.back().ramps = {{strand::stretch, 0.002}, {strand::twist, 0.0}};

@@ -19,6 +19,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <random>
 
 using namespace fibrant;
@@ -382,6 +383,29 @@ TEST_CASE("the order in which fibres are named changes no force") {
         CHECK((f.segment(3 * one.mesh.node_vector(static_cast<Index>(order[k]), 0), size) -
                g.segment(3 * other.mesh.node_vector(static_cast<Index>(k), 0), size)).norm() < 1e-8 * f.norm());
     }
+}
+
+TEST_CASE("a crossing that slides off the end of a fibre has the gap of a round end, without a leap") {
+    // Wires that cross between the plates that hold their ends went to and fro by 0.09 r where the gap leapt by as much.
+    const double angle = 40.0 * std::numbers::pi / 180.0, height = 1.95 * r;
+    const Vec3 along(std::cos(angle), std::sin(angle), 0.0);
+    double worst = 0.0;
+    for (int k = -20; k <= 100; ++k) {
+        const double beyond = 0.01 * k * r;  // where the lines cross
+        const Vec3 centre(beyond, 0.0, height);
+        scene::Assembly assembly;
+        assembly.add(straight_fibre({-1.0, 0, 0}, {0, 0, 0}, r, 12));
+        assembly.add(straight_fibre(centre - 0.5 * along, centre + 0.5 * along, r, 12));
+        const Mesh mesh(assembly, Beam{});
+        auto contacts = contacts_of(assembly, mesh);
+        const Vector rest = mesh.rest_state();
+        contacts.detect(rest, rest, 0.2 * r, false);
+        contacts.evaluate(rest);
+        REQUIRE(contacts.elements().size() == 1);
+        const double aside = std::max(0.0, beyond) * std::sin(angle);
+        worst = std::max(worst, std::abs(contacts.responses()[0].gap - (std::hypot(height, aside) - 2.0 * r)));
+    }
+    CHECK(worst < 1e-4 * r);
 }
 
 TEST_CASE("contacts remember their side when elements are made anew after fibres have passed through each other") {

@@ -4,6 +4,7 @@
 /// came of them that share no code with contact.
 
 #include <fibrant/beam/director_beam.hpp>
+#include <fibrant/law/augmented.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
@@ -27,6 +28,11 @@ struct StableModel {
     using Solver = solver::SparseCholesky;
 };
 
+/// Multipliers that complete the penalty.
+struct MultipliedModel : StableModel {
+    using Normal = law::Augmented<law::RegularisedPenalty>;
+};
+
 /// How an end is held.
 enum class Held { free, pinned, clamped };
 
@@ -44,6 +50,7 @@ struct SmallScene {
     std::vector<SmallFibre> fibres;
     double friction = 0.15;
     double allowed = 1e-2;      ///< penetration [radius of the thinnest fibre]
+    double penalty = 0.0;       ///< stiffness that stays as it is, over that of a section; 0: adapted to the penetration
     double spacing = 2.0;       ///< points an element
     double damping = 0.0;       ///< [force / length]
     Index increments = 4;
@@ -114,11 +121,17 @@ inline scene::Assembly assembly_of(const SmallScene& small) {
     return assembly;
 }
 
-inline simulation::ModelParameters<StableModel> parameters_of(const SmallScene& small) {
-    simulation::ModelParameters<StableModel> parameters;
+/// With multipliers `allowed` is what they leave.
+template <simulation::Model M>
+simulation::ModelParameters<M> parameters_of(const SmallScene& small) {
+    simulation::ModelParameters<M> parameters;
     const double r = small.radius();
-    parameters.normal.regularisation_depth = 0.1 * small.allowed * r;
-    parameters.contact.stiffness.allowed_penetration = small.allowed * r;
+    const typename StableModel::Normal::Parameters penalty{.regularisation_depth = 0.1 * small.allowed * r};
+    if constexpr (law::Augmenting<typename M::Normal>) parameters.normal = {.law = penalty, .largest_penetration = small.allowed * r}, parameters.iteration.multiplier_limit = 1000;
+    else parameters.normal = penalty;
+    contact::StiffnessAdaptation& stiffness = parameters.contact.stiffness;
+    stiffness.allowed_penetration = small.allowed * r;
+    if (small.penalty > 0.0) stiffness.initial_fraction = stiffness.floor_fraction = stiffness.cap_fraction = small.penalty;
     parameters.contact.spacing.points_per_element = small.spacing;
     parameters.friction = {.friction_coefficient = small.friction, .reversible_displacement = 0.02 * r};
     if (small.tight) {
@@ -130,11 +143,12 @@ inline simulation::ModelParameters<StableModel> parameters_of(const SmallScene& 
     return parameters;
 }
 
-inline SmallResult run(const SmallScene& small) {
-    simulation::Simulator<StableModel> simulator(assembly_of(small), parameters_of(small));
-    simulation::Loading<StableModel> loading;
+template <simulation::Model M = StableModel>
+SmallResult run(const SmallScene& small) {
+    simulation::Simulator<M> simulator(assembly_of(small), parameters_of<M>(small));
+    simulation::Loading<M> loading;
     for (const double amplitude : small.cycle) {
-        simulation::Stage<StableModel> stage;
+        simulation::Stage<M> stage;
         stage.ramps = {{"motion", amplitude, false}};
         stage.increments = small.increments;
         stage.damping = small.damping;

@@ -3,6 +3,7 @@
 // the code of contact.
 #include <stability/small_scenes.hpp>
 #include <stability/random_scenes.hpp>
+#include <stability/sweeps.hpp>
 
 #include <doctest/doctest.h>
 
@@ -87,6 +88,26 @@ TEST_CASE("neither the order of the fibres nor their directions matter") {
     REQUIRE(back.report.converged);
     CHECK(apart(three(), renamed, same, Vec3::Zero(), 1.0, order) < 1e-9);
     CHECK(apart(three(), back, same, Vec3::Zero(), 1.0, {}, true) < 1e-9);
+}
+
+TEST_CASE("a penalty of any stiffness over six decades is a spring in a row with the fibres; with multipliers it is none") {
+    std::printf("penalty over a section's stiffness,force over theory without it,over three springs,newton,with multipliers,newton,contact passes,deepest in radii\n");
+    for (const double penalty : penalties) {
+        CAPTURE(penalty);
+        const SmallScene scene = held_at(penalty);
+        const SmallResult alone = run(scene), multiplied = run<MultipliedModel>(scene);
+        CAPTURE(alone.report.reason);
+        CAPTURE(multiplied.report.reason);
+        CHECK(alone.report.converged);
+        CHECK(multiplied.report.converged);
+        const double hard = theory_force(scene, small_approach), spring = theory_force_on_penalty(scene);
+        std::printf("%g,%.6f,%.6f,%ld,%.6f,%ld,%ld,%.1e\n", penalty, alone.support[0].z() / hard, alone.support[0].z() / spring, static_cast<long>(alone.report.counts.newton),
+                    multiplied.support[0].z() / hard, static_cast<long>(multiplied.report.counts.newton), static_cast<long>(multiplied.report.counts.contact_passes),
+                    multiplied.report.contact.greatest_penetration / r);
+        CHECK(std::abs(alone.support[0].z() / spring - 1.0) < 3e-4);  // tension is 5e-5 of it
+        CHECK(std::abs(multiplied.support[0].z() / hard - 1.0) < 3e-4);
+        CHECK(multiplied.report.contact.greatest_penetration < 1e-6 * r);
+    }
 }
 
 TEST_CASE("degenerate geometries converge without a fibre in another one, or say why not") {
@@ -183,7 +204,7 @@ Cycle second_cycle(double allowed, Index increments, Index beginning) {
         for (const double end : {0.0, 1.0})
             assembly.clamp({fibre, end}, upper ? Vec3(0, 0, -r) : Vec3(0.6 * r, 0, 0), Vec3::Zero(), Vec3::Zero(), upper ? "press" : "drag");
     }
-    simulation::Simulator<StableModel> simulator(assembly, parameters_of(scene));
+    simulation::Simulator<StableModel> simulator(assembly, parameters_of<StableModel>(scene));
     simulation::Report report;
     const auto go = [&](const char* channel, double to, Index steps) {
         simulation::Stage<StableModel> stage;

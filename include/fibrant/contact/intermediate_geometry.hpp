@@ -187,8 +187,11 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         const Vec3 centres = mesh.position(state, j, pair.u_j) - mesh.position(state, i, pair.u_i);
         const double off_i = std::abs(centres.dot(mesh.derivative(state, i, pair.u_i).normalized()));
         const double off_j = std::abs(centres.dot(mesh.derivative(state, j, pair.u_j).normalized()));
-        pair.end_i = (pair.u_i <= 0.0 || pair.u_i >= end_i) && off_i > 0.25 * r;
-        pair.end_j = (pair.u_j <= 0.0 || pair.u_j >= end_j) && off_j > 0.25 * r;
+        // A fibre's line goes on beyond its end, its end does not: the gap across both tangents is less than that of a cap, by 0.1 r where lines part by a quarter
+        // of r. Then an end that slides to where the one kind begins would be sent back by the other for ever.
+        const double nearly_none = 0.01 * r;
+        pair.end_i = (pair.u_i <= 0.0 || pair.u_i >= end_i) && off_i > nearly_none;
+        pair.end_j = (pair.u_j <= 0.0 || pair.u_j >= end_j) && off_j > nearly_none;
         pairs.push_back(pair);
         return;
     }

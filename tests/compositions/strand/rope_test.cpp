@@ -41,6 +41,19 @@ TEST_CASE("a wire goes round its core at its lay angle, the core round the axis 
     CHECK(line.place(line.at_height(17.0)).z() == doctest::Approx(17.0).epsilon(1e-12));
 }
 
+TEST_CASE("in lang lay the outermost place of a wire leans with its strand, in ordinary lay against it") {
+    for (const double rope_lay : {14.6, -14.6})
+        for (const double wire_lay : {13.0, -13.0}) {
+            strand::RopeParameters rope = strand::rope_of_seven(1.0, wire_lay, rope_lay, 54.0, 0.02);
+            const strand::WireLine wire = rope.lines(1)[1], core = rope.lines(1)[0];  // at the height 0 it is outside its core
+            const Vec3 out = core.place(0.0).normalized(), around = Vec3::UnitZ().cross(out), slope = wire.at(0.0).derivative;
+            CHECK((wire.place(0.0) - core.place(0.0)).dot(out) == doctest::Approx(wire.distance).epsilon(1e-12));
+            // Its core's line is longer there by the bend: 1 + distance * curvature.
+            const double longer = 1.0 + wire.distance * std::pow(std::sin(rope_lay * degree), 2) / rope.layers[0].helix_radius;
+            CHECK(std::atan2(slope.dot(around), slope.z()) == doctest::Approx(rope_lay * degree + std::atan(std::tan(wire_lay * degree) / longer)).epsilon(1e-9));
+        }
+}
+
 TEST_CASE("the least distance of two wires is that of all their points") {
     const strand::RopeParameters rope = strand::rope_of_seven(1.0, -13.0, 14.6, 54.0, 0.02);
     const auto brute = [&](const strand::WireLine& one, const strand::WireLine& other) {
