@@ -232,6 +232,7 @@ private:
                 increment.displacement = attempt.displacement;
                 increment.damping = attempt.force_scale > 0.0 ? equilibrium_.norm(energy_.damping()) / attempt.force_scale : 0.0;
                 increment.fraction = position_.fraction;
+                increment.springs = position_.damping, increment.hardest_springs = position_.hardest();
                 position_.progress = progress;
                 break;
             }
