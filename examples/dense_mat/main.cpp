@@ -48,6 +48,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     file.read("mat", "seed", seed), file.read("mat", "seeds", seeds);
     file.read("contact", "friction_coefficient", levels.friction_coefficient);
     file.read("contact", "allowed_penetration_over_radius", levels.allowed_penetration);
+    file.read("contact", "softest_over_section", levels.softest);
     file.require("levels", "last", levels.last);
     file.read("levels", "ratio", levels.ratio), file.read("levels", "step", levels.step), file.read("levels", "damping", levels.damping);
     file.read("levels", "rest_share", levels.rest_share), file.read("levels", "rest_increments", levels.rest_increments);

@@ -18,6 +18,9 @@ struct LevelParameters {
     double gap_limit = 0.3;              ///< by which fibres that lie in each other part in an increment [radius], > 0
     double friction_coefficient = 0.2;   ///< of fibres on each other, once they are parted [1], >= 0
     double allowed_penetration = 0.05;   ///< [radius], > 0
+    /// Least stiffness of a contact, of that of a section: one that carries nothing while a mat rests is softened down to it, and takes several
+    /// increments to become as stiff as the next press needs [1], > 0.
+    double softest = 1e-6;
     double rest_share = 5e-4;            ///< at rest, springs hold no more than this of the forces [1], > 0,
     Index rest_increments = 20;          ///< or so many increments have gone by: a mat with friction creeps for long, >= 1
     /// Springs from every centre to its last place while fibres part, and while they are pressed, over what bends a fibre between
@@ -32,6 +35,7 @@ struct LevelParameters {
         core::require_positive("LevelParameters.gap_limit", gap_limit);
         core::require_not_negative("LevelParameters.friction_coefficient", friction_coefficient);
         core::require_positive("LevelParameters.allowed_penetration", allowed_penetration);
+        core::require_positive("LevelParameters.softest", softest);
         core::require_positive("LevelParameters.rest_share", rest_share);
         core::require_at_least("LevelParameters.rest_increments", rest_increments, 1);
         core::require_positive("LevelParameters.parting", parting);
@@ -51,7 +55,7 @@ simulation::ModelParameters<M> model_parameters(const MatParameters& parameters,
     if constexpr (core::Active<typename M::Friction>) model.friction = {.friction_coefficient = 0.0, .reversible_displacement = 0.05 * r};
     model.contact.stiffness.allowed_penetration = levels.allowed_penetration * r;
     // Between contacts a few radii apart a fibre is as stiff as its contacts: softer ones let fibres into each other for many increments.
-    model.contact.stiffness.initial_fraction = 0.03, model.contact.stiffness.floor_fraction = 1e-6;
+    model.contact.stiffness.initial_fraction = 0.03, model.contact.stiffness.floor_fraction = levels.softest;
     model.iteration.newton_limit = 30, model.iteration.overshoot = 0.5;
     return model;
 }
