@@ -91,6 +91,8 @@ public:
                                                                            {"greatest_penetration_over_radius", increment.contact.greatest_penetration / radius_},
                                                                            {"residual", increment.residual},
                                                                            {"damping_share", increment.damping},
+                                                                           {"springs", increment.springs},
+                                                                           {"hardest_springs", increment.hardest_springs},
                                                                            {"external_work", increment.energy.external},
                                                                            {"dissipated", increment.energy.dissipated},
                                                                            {"damped", increment.energy.damped},

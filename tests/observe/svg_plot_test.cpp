@@ -39,6 +39,18 @@ TEST_CASE("decades are equally far apart, and a power law is a straight line") {
     CHECK(page.find("M78 46L274 215L470 384") != std::string::npos);
 }
 
+TEST_CASE("within a decade its multiples are marked") {
+    LogLogPlot plot{"", "x", "y", {{"a", {{0.2, 3e2}, {0.4, 3e2 * 8.0}}}}};
+    const std::string page = observe::log_log_svg(plot);
+    CHECK(times(page, "class=\"g\"") == 3 + 3);  // 0.2, 0.3 and 0.4; two decades
+    CHECK(page.find(">0.2<") != std::string::npos);
+    CHECK(page.find(">0.4<") != std::string::npos);
+    CHECK(page.find(">1e2<") != std::string::npos);
+    // From side to side; a cube between the marks of 100 and 10,000.
+    CHECK(page.find("M78 ") != std::string::npos);
+    CHECK(page.find("L470 ") != std::string::npos);
+}
+
 TEST_CASE("a plot of nothing is refused") {
     CHECK(test::refusal([] { observe::log_log_svg({"", "", "", {{"a", {{1.0, 0.0}}}}}); }) == "LogLogPlot.lines = no point, but it must be a point with both numbers > 0");
 }

@@ -312,9 +312,12 @@ TEST_CASE("one fibre of many that goes too far is held alone: increments stay, a
         CHECK(record.increments[k].stage == "push");
         CHECK(record.increments[k].fraction == 1.0);
         CHECK(record.increments[k].displacement <= 0.02 * rod.length);
+        CHECK(record.increments[k].springs == 1.0);
         CHECK((record.states[k].head(first) - calm.states[k]).cwiseAbs().maxCoeff() < 1e-9 * rod.length);
     }
     CHECK(record.increments[4].stage == "rest");
+    CHECK(record.increments[0].hardest_springs >= 4.0);  // of the fibre that is held alone; the others' are those of the stage
+    CHECK(calm.increments[0].hardest_springs == 1.0);
     // In the end nothing holds the soft one either: a thirtieth of the length tenfold, as far as large deflections let it.
     Simulator<Smooth> direct(rod.row(push, 10.0), test::tight_parameters<Smooth>(rod.radius));
     REQUIRE(direct.run({.increments = 1}).converged);
@@ -326,6 +329,7 @@ TEST_CASE("one fibre of many that goes too far is held alone: increments stay, a
     loading.stages[0].most_increments = 400, loading.stages[1].most_increments = 400;
     REQUIRE(all.run(loading, cut).converged);
     CHECK(cut.increments[0].fraction < 1.0);
+    CHECK(cut.increments[0].springs >= 4.0);
 }
 
 TEST_CASE("what is driven further than the last increment moved is found by the first search all the same") {
@@ -401,6 +405,12 @@ TEST_CASE("a condition that never holds ends the run with a reason") {
     CHECK(!report.converged);
     CHECK(report.reason == "stage wait did not reach its end in 3 increments");
     CHECK(report.increments.size() == 3);
+    // Enough is enough, where a stage says so: of what goes on for ever.
+    loading.stages[0].enough_increments = 2;
+    Simulator<Smooth> patient(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
+    const Report enough = patient.run(loading);
+    CHECK(enough.converged);
+    CHECK(enough.increments.size() == 2);
 }
 
 TEST_CASE("a step too large is cut, and goes on from the same bits as if it had not been tried") {

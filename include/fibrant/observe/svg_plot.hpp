@@ -93,7 +93,7 @@ inline std::string plot_svg(const PlotFrame& plot) {
 
 }  // namespace detail
 
-/// The plot as a whole SVG file. Axes go by decades, and are as wide as the points ask for.
+/// The plot as a whole SVG file. Axes go by decades, or within one by its multiples, and are as wide as the points ask for.
 /// @throws std::invalid_argument if no point can be shown
 inline std::string log_log_svg(const LogLogPlot& plot) {
     double low_x = 1e300, high_x = -1e300, low_y = 1e300, high_y = -1e300;
@@ -110,6 +110,15 @@ inline std::string log_log_svg(const LogLogPlot& plot) {
     }
     if (low_x > high_x) core::refuse("LogLogPlot.lines", "no point", "a point with both numbers > 0");
     const auto decades = [](double low, double high) {
+        // Within one decade its multiples are marked, from the last before the points to the first behind them.
+        const double unit = std::pow(10.0, std::floor(low + 1e-9));
+        const double first = std::floor(std::pow(10.0, low) / unit + 1e-9), last = std::ceil(std::pow(10.0, high) / unit - 1e-9);
+        if (last > first && last <= 10.0) {
+            detail::PlotAxis axis{std::log10(first * unit), std::log10(last * unit), {}};
+            const Index digits = std::max<Index>(0, static_cast<Index>(-std::floor(low + 1e-9)));
+            for (double k = first; k <= last; k += 1.0) axis.ticks.emplace_back(std::log10(k * unit), rounded(k * unit, static_cast<int>(digits)));
+            return axis;
+        }
         detail::PlotAxis axis{std::floor(low), std::max(std::ceil(high), std::floor(low) + 1.0), {}};
         for (double k = axis.low; k <= axis.high; k += 1.0) axis.ticks.emplace_back(k, "1e" + rounded(k, 0));
         return axis;

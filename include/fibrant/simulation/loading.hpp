@@ -49,6 +49,8 @@ struct Stage {
     std::optional<typename M::Friction> friction{};
     /// Once the ramps are over: goes on, all else constant, until this is true. None: ends with the ramps.
     std::function<bool(const IncrementReport&)> until{};
+    /// Increments after which a stage whose ramps are over ends, be its `until` true or not, >= 1: what creeps for ever may do so no longer.
+    Index enough_increments = std::numeric_limits<Index>::max();
     Index most_increments = 100;                ///< of the whole stage, beyond which the run stops unconverged
 };
 
@@ -72,6 +74,7 @@ struct Loading {
         for (const Stage<M>& stage : stages) {
             core::require_at_least("Stage.increments", stage.increments, 1);
             core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);
+            core::require_at_least("Stage.enough_increments", stage.enough_increments, 1);
             core::require_not_negative("Stage.damping", stage.damping);
             core::require(stage.damping_decay > 0.0 && stage.damping_decay <= 1.0, "Stage.damping_decay", stage.damping_decay, "in (0, 1]");
             core::require(stage.damping_calm > 0.0, "Stage.damping_calm", stage.damping_calm, "> 0");

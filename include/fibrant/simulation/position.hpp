@@ -59,6 +59,9 @@ struct Position {
             for (double& factor : holding) factor = std::max(1.0, share * factor);
     }
 
+    /// Damping of the fibre that is held hardest, over that of the stage.
+    double hardest() const { return damping * (holding.empty() ? 1.0 : *std::max_element(holding.begin(), holding.end())); }
+
     template <class Body>
     void each(const Body& body) { each_of(*this, body); }
     template <class Body>

@@ -38,6 +38,9 @@ struct IncrementReport {
     double residual = 0;        ///< over loads, reactions and contact forces [1]
     double displacement = 0;    ///< greatest [length]
     double damping = 0;         ///< norm of the damping's force, over loads, reactions and contact forces [1]
+    /// Springs of the damping over those of the stage: of all fibres, and of the fibre that is held hardest. Cuts make them harder. Both are
+    /// 1 for increments from before a resume.
+    double springs = 1, hardest_springs = 1;
     contact::ContactFigures contact;
     EnergyBalance energy;
     double seconds = 0;         ///< wall time of the increment

@@ -232,6 +232,7 @@ private:
                 increment.displacement = attempt.displacement;
                 increment.damping = attempt.force_scale > 0.0 ? equilibrium_.norm(energy_.damping()) / attempt.force_scale : 0.0;
                 increment.fraction = position_.fraction;
+                increment.springs = position_.damping, increment.hardest_springs = position_.hardest();
                 position_.progress = progress;
                 break;
             }
@@ -256,7 +257,7 @@ private:
         // A state is at rest when the force of what holds it is no more than what the balance of forces may miss anyway.
         const bool reached = position_.progress >= 1.0 && (!stage.until || stage.until(increment));
         const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
-        position_.stage_over = reached && !held;
+        position_.stage_over = (reached && !held) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments);
         position_.adapt_damping(stage, increment, attempt_newton / static_cast<double>(parameters_.iteration.newton_limit));
         contacts_.accept(state_);
         if constexpr (HasSolid<M>)
