@@ -21,7 +21,7 @@ struct LevelParameters {
     /// Least stiffness of a contact, of that of a section: one that carries nothing while a mat rests is softened down to it, and takes several
     /// increments to become as stiff as the next press needs [1], > 0.
     double softest = 1e-6;
-    double rest_share = 5e-4;            ///< at rest, springs hold no more than this of the forces [1], > 0,
+    double rest_share = 5e-4;            ///< at rest, springs hold no more than this of the forces [1], > 0;
     Index rest_increments = 20;          ///< or so many increments have gone by: a mat with friction creeps for long, >= 1
     /// Springs from every centre to its last place while fibres part, and while they are pressed, over what bends a fibre between
     /// supports that are a tenth of its length apart [1], > 0. The latter go along with the mean motion, and are let go at each level.
