@@ -93,7 +93,8 @@ public:
             forces.fill(Padded::Zero());
             for (; s < range.second && sides_[core::at(s)].first == start; ++s) {
                 const Side& side = sides_[core::at(s)];
-                prefetch(&motion_[core::at(sides_[core::at(std::min(s + 12, range.second - 1))].partner)]);
+                // The other side of a pair may be anywhere.
+                core::prefetch(&motion_[core::at(sides_[core::at(std::min(s + 12, range.second - 1))].partner)]);
                 const Padded apart = motion_[core::at(s)] - motion_[core::at(side.partner)];
                 const double* k = side.stiffness.data();  // columns of three; what the fourth lane holds is not used
                 const Padded force = Unaligned(k) * apart[0] + Unaligned(k + 3) * apart[1] + Unaligned(k + 6) * apart[2];
@@ -122,12 +123,6 @@ public:
 private:
     using Padded = Eigen::Array<double, 4, 1>;
     using Unaligned = Eigen::Map<const Padded>;
-    /// The other side of a pair may be anywhere: its motion is asked for some steps ahead.
-    static void prefetch([[maybe_unused]] const void* address) noexcept {
-#if defined(__GNUC__)
-        __builtin_prefetch(address);
-#endif
-    }
     static constexpr bool turning = requires(const Weights& weights) { weights.slope(Index{}); };
     static constexpr Index stride = [] {
         if constexpr (requires { Weights::stride; }) return Weights::stride;

@@ -35,4 +35,11 @@ constexpr Index count(const Container& container) noexcept {
     return static_cast<Index>(container.size());
 }
 
+/// Asks for what a loop will read some steps ahead, from where no order says: a hint, of which nothing depends.
+inline void prefetch([[maybe_unused]] const void* address) noexcept {
+#if defined(__GNUC__)
+    __builtin_prefetch(address);
+#endif
+}
+
 }  // namespace fibrant::core

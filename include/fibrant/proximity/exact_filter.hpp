@@ -125,9 +125,7 @@ inline void keep_close(const SegmentTable& table, const SegmentRecord* records, 
     };
     for (std::size_t k = 0; k < candidates.size(); ++k) {
         const Candidate candidate = candidates[k];
-#if defined(__GNUC__)
-        if (k + ahead < candidates.size()) __builtin_prefetch(records + candidates[k + ahead].b);
-#endif
+        if (k + ahead < candidates.size()) core::prefetch(records + candidates[k + ahead].b);
         // No branch on what is as good as random: which of the two is first, and whether both are of one fibre.
         const SegmentRecord* two[2] = {records + candidate.a, records + candidate.b};
         const std::size_t second = two[0]->segment < two[1]->segment ? 1 : 0;

@@ -210,7 +210,8 @@ private:
                 for (std::size_t k = 0; k < fixed.count; ++k) forces[k] = Value::Zero();
                 for (; s < last && sides_[core::at(s)].first == start; ++s) {
                     const Side& side = sides_[core::at(s)];
-                    prefetch(&motion_[core::at(sides_[core::at(std::min(s + 12, last - 1))].partner)]);
+                    // The other side of a pair may be anywhere.
+                    core::prefetch(&motion_[core::at(sides_[core::at(std::min(s + 12, last - 1))].partner)]);
                     const Value& motion = motion_[core::at(side.partner)];
                     const Value force = side.stiffness[0] * motion[0] + side.stiffness[1] * motion[1] + side.stiffness[2] * motion[2];
                     const float* weights = weights_.data() + fixed.count * static_cast<std::size_t>(s);
@@ -246,12 +247,6 @@ private:
                 }
             }
         });
-    }
-    /// The other side of a pair may be anywhere: its motion is asked for some steps ahead.
-    static void prefetch([[maybe_unused]] const void* address) noexcept {
-#if defined(__GNUC__)
-        __builtin_prefetch(address);
-#endif
     }
     static constexpr std::size_t few = 9;
     struct Nine {
