@@ -5,7 +5,6 @@
 
 #include <fibrant/solver/chain_sweeps.hpp>
 #include <fibrant/solver/conjugate_gradient.hpp>
-#include <fibrant/solver/fibre_block_pcg.hpp>
 
 #include <doctest/doctest.h>
 
@@ -43,7 +42,7 @@ TEST_CASE("chains that a point couples are of different classes, and the classes
         ++neighbours[core::at(a)], ++neighbours[core::at(b)];
     }
     CHECK(couplings.classes() >= 2);
-    CHECK(couplings.classes() <= *std::ranges::max_element(neighbours) + 1);  // Brooks: as many as neighbours, and one
+    CHECK(couplings.classes() <= *std::ranges::max_element(neighbours) + 1);  // chain after chain: as many as neighbours, and one
 }
 
 TEST_CASE("a sweep forth and back is the inverse of (B + L) B^-1 (B + L)^T, for chains of any number of vectors, held ones too") {

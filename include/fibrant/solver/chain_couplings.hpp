@@ -201,10 +201,7 @@ private:
     }
 
     void subtract(Index chain, std::int32_t first, std::int32_t last, Line line) const {
-        with_count([&](auto fixed) {
-            std::vector<Value> many(fixed.count > few ? fixed.count : 0);
-            std::array<Value, few> some;
-            Value* forces = fixed.count > few ? many.data() : some.data();
+        with_particle([&](auto fixed, Value* forces) {
             for (std::int32_t s = first; s < last;) {
                 const std::int32_t start = sides_[core::at(s)].first;
                 for (std::size_t k = 0; k < fixed.count; ++k) forces[k] = Value::Zero();
@@ -229,10 +226,7 @@ private:
         }
     }
     void keep(std::int32_t first, std::int32_t last, Line line) {
-        with_count([&](auto fixed) {
-            std::vector<Value> many(fixed.count > few ? fixed.count : 0);
-            std::array<Value, few> some;
-            Value* values = fixed.count > few ? many.data() : some.data();
+        with_particle([&](auto fixed, Value* values) {
             for (std::int32_t s = first; s < last;) {
                 const std::int32_t start = sides_[core::at(s)].first;
                 for (std::size_t k = 0; k < fixed.count; ++k) {
@@ -248,18 +242,19 @@ private:
             }
         });
     }
-    static constexpr std::size_t few = 9;
     struct Nine {
         static constexpr std::size_t count = 9, stride = 1;
     };
     struct Any {
         std::size_t count, stride;
     };
-    /// The particles of elements with three nodes of three vectors have their loops unrolled.
+    /// body(count and stride of a particle's vectors, room for as many values); with three nodes of three vectors loops are unrolled.
     template <class Body>
-    void with_count(const Body& body) const {
-        if (weights_each_ == Nine::count && stride_ == Index{Nine::stride}) body(Nine{});
-        else body(Any{weights_each_, core::at(stride_)});
+    void with_particle(const Body& body) const {
+        std::array<Value, Nine::count> few;
+        if (weights_each_ == Nine::count && stride_ == Index{Nine::stride}) return body(Nine{}, few.data());
+        std::vector<Value> many(weights_each_ > few.size() ? weights_each_ : 0);
+        body(Any{weights_each_, core::at(stride_)}, many.empty() ? few.data() : many.data());
     }
 
     std::vector<Pair> pairs_;

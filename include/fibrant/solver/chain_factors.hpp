@@ -20,7 +20,7 @@ class ChainFactors {
 public:
     static constexpr double least_pivot = 1e-12;  ///< over the diagonal entry: below it a chain counts as not held
     static constexpr double least_shift = 1e-6;   ///< of a chain that nothing holds, times its node blocks
-    static constexpr std::size_t lanes = 8;             ///< chains of equal shape that are solved together
+    static constexpr std::size_t lanes = 8;       ///< chains of equal shape that are solved together
 
     /// Sorts the chains into packs of equal shape, and of one class each.
     /// @param class_of  of each chain, from 0 to classes - 1; none: all are of one class
@@ -90,6 +90,28 @@ public:
         }, grain(layout, last - first));
     }
     Index packs() const noexcept { return core::count(packs_); }
+
+    /// Values of the chains of a pack, a chain a lane; lanes beyond the chains repeat the first.
+    template <int Block, int Lanes>
+    static auto to_lanes(const scene::DofLayout& layout, const std::vector<Index>& chains, const BlockBandCholesky<Block, Lanes>& factor, const Vector& r) {
+        std::vector<typename BlockBandCholesky<Block, Lanes>::Kept> values(unknowns(factor.shape()));
+        std::array<Index, core::at(Lanes)> start{};
+        for (std::size_t lane = 0; lane < start.size(); ++lane) {
+            start[lane] = 3 * layout.chains[core::at(chains[lane < chains.size() ? lane : 0])].first_vector;
+        }
+        for (Index k = 0; k < core::count(values); ++k)
+            for (int lane = 0; lane < Lanes; ++lane) values[core::at(k)][lane] = static_cast<float>(r[start[core::at(lane)] + k]);
+        return values;
+    }
+    /// And back to where the chains have them.
+    template <class Kept>
+    static void from_lanes(const scene::DofLayout& layout, const std::vector<Index>& chains, const std::vector<Kept>& values, Vector& z) {
+        for (std::size_t lane = 0; lane < chains.size(); ++lane) {
+            double* to = z.data() + 3 * layout.chains[core::at(chains[lane])].first_vector;
+            for (std::size_t k = 0; k < values.size(); ++k) to[k] = static_cast<double>(values[k][static_cast<Index>(lane)]);
+        }
+    }
+    static std::size_t unknowns(const BandShape& shape) { return core::at(static_cast<Index>(shape.nodes) * shape.block); }
 
     /// Bytes of the factors.
     std::size_t bytes() const {
@@ -181,19 +203,9 @@ private:
     template <int Block, int Lanes>
     static void solve(const scene::DofLayout& layout, const std::vector<Index>& chains,
                       const BlockBandCholesky<Block, Lanes>& factor, const Vector& r, Vector& z) {
-        using Kept = typename BlockBandCholesky<Block, Lanes>::Kept;
-        const Index size = static_cast<Index>(factor.shape().nodes) * factor.shape().block;
-        std::vector<Kept> buffer(core::at(size));
-        std::array<Index, core::at(Lanes)> start{};
-        for (std::size_t lane = 0; lane < start.size(); ++lane) {
-            start[lane] = 3 * layout.chains[core::at(chains[lane < chains.size() ? lane : 0])].first_vector;
-        }
-        for (Index k = 0; k < size; ++k)
-            for (int lane = 0; lane < Lanes; ++lane) buffer[core::at(k)][lane] = static_cast<float>(r[start[core::at(lane)] + k]);
-        factor.solve(buffer.data());
-        for (Index k = 0; k < size; ++k)
-            for (int lane = 0; lane < static_cast<int>(chains.size()); ++lane)
-                z[start[core::at(lane)] + k] = static_cast<double>(buffer[core::at(k)][lane]);
+        auto values = to_lanes(layout, chains, factor, r);
+        factor.solve(values.data());
+        from_lanes(layout, chains, values, z);
     }
 
     std::vector<Pack> packs_;        // class by class

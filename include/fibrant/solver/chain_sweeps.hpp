@@ -37,41 +37,29 @@ public:
     /// z = M^-1 r, of an r that is zero outside the free directions of held vectors.
     void apply(const scene::DofLayout& layout, const Vector& r, Vector& z) {
         if (class_of_.empty()) return factors_.apply(layout, r, z);
-        const auto first = [&](Index chain) { return 3 * layout.chains[core::at(chain)].first_vector; };
         const int classes = couplings_.classes();
         values_.resize(core::at(factors_.packs()));
         for (int k = 0; k < classes; ++k)
-            factors_.for_class(layout, k, [&](Index pack, const std::vector<Index>& chains, const auto& factor) {
-                constexpr std::size_t stride = core::at(std::remove_cvref_t<decltype(factor)>::lanes);
-                std::vector<typename std::remove_cvref_t<decltype(factor)>::Kept> y(unknowns(factor));
-                for (std::size_t lane = 0; lane < stride; ++lane) {
-                    const double* from = r.data() + first(chains[lane < chains.size() ? lane : 0]);
-                    for (std::size_t i = 0; i < y.size(); ++i) y[i][static_cast<Index>(lane)] = static_cast<float>(from[i]);
-                }
-                const auto line = [&](std::size_t lane) { return ChainCouplings::Line{y.front().data() + lane, stride}; };
-                for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.subtract_earlier(chains[lane], line(lane));
+            factors_.for_class(layout, k, [&](Index pack, const auto& chains, const auto& factor) {
+                auto y = ChainFactors::to_lanes(layout, chains, factor, r);
+                for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.subtract_earlier(chains[lane], line(y, lane));
                 factor.solve(y.data());
-                for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.keep_for_later(chains[lane], line(lane));
-                std::vector<float>& kept = values_[core::at(pack)];
-                kept.assign(y.front().data(), y.front().data() + stride * y.size());
+                for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.keep_for_later(chains[lane], line(y, lane));
+                values_[core::at(pack)].assign(y.front().data(), y.front().data() + y.front().size() * core::count(y));
             });
         // B^-1 (B y - L^T z) = y - B^-1 L^T z
         for (int k = classes - 1; k >= 0; --k)
-            factors_.for_class(layout, k, [&](Index pack, const std::vector<Index>& chains, const auto& factor) {
-                constexpr std::size_t stride = core::at(std::remove_cvref_t<decltype(factor)>::lanes);
-                std::vector<typename std::remove_cvref_t<decltype(factor)>::Kept> change(unknowns(factor), std::remove_cvref_t<decltype(factor)>::Kept::Zero());
-                const auto line = [&](std::size_t lane) { return ChainCouplings::Line{change.front().data() + lane, stride}; };
+            factors_.for_class(layout, k, [&](Index pack, const auto& chains, const auto& factor) {
+                using Kept = typename std::remove_cvref_t<decltype(factor)>::Kept;
+                std::vector<Kept> values(ChainFactors::unknowns(factor.shape()), Kept::Zero());
                 bool later = false;
                 for (std::size_t lane = 0; lane < chains.size(); ++lane)
-                    if (couplings_.has_later(chains[lane])) couplings_.subtract_later(chains[lane], line(lane)), later = true;
-                if (later) factor.solve(change.data());
-                const float* y = values_[core::at(pack)].data();
-                for (std::size_t i = 0; i < stride * change.size(); ++i) change.front().data()[i] += y[i];
-                for (std::size_t lane = 0; lane < chains.size(); ++lane) {
-                    double* to = z.data() + first(chains[lane]);
-                    for (std::size_t i = 0; i < change.size(); ++i) to[i] = static_cast<double>(change[i][static_cast<Index>(lane)]);
-                    couplings_.keep_for_earlier(chains[lane], line(lane));
-                }
+                    if (couplings_.has_later(chains[lane])) couplings_.subtract_later(chains[lane], line(values, lane)), later = true;
+                if (later) factor.solve(values.data());
+                const std::vector<float>& y = values_[core::at(pack)];
+                for (std::size_t i = 0; i < y.size(); ++i) values.front().data()[i] += y[i];
+                ChainFactors::from_lanes(layout, chains, values, z);
+                for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.keep_for_earlier(chains[lane], line(values, lane));
             });
     }
     /// z = B^-1 r
@@ -81,9 +69,10 @@ public:
     bool sweeps() const noexcept { return !class_of_.empty(); }
 
 private:
-    template <class Factor>
-    static std::size_t unknowns(const Factor& factor) {
-        return core::at(static_cast<Index>(factor.shape().nodes) * factor.shape().block);
+    /// A chain's values among those of its pack.
+    template <class Kept>
+    static ChainCouplings::Line line(std::vector<Kept>& values, std::size_t lane) {
+        return {values.front().data() + lane, core::at(Index{Kept::SizeAtCompileTime})};
     }
     /// Not more than twice the packs of chains that are sorted by nothing.
     bool pays() const {
