@@ -50,7 +50,7 @@ TEST_CASE("chains that nothing but ties joins are solved at once, whatever moves
         const Vector b = test::random_load(system.layout(), 3);
         Vector x;
         solver::TwoLevelPcg solver;
-        // One step would be exact, but for the single precision of the factors and for the coarse space, which is added to it.
+        // One step would be exact, but for the single precision of the factors and for the coarse space.
         const solver::SolveReport report = test::solve(solver, system, b, 1e-4, x);
         CHECK(report.status == solver::SolveStatus::converged);
         CHECK(report.iterations <= 8);  // 3 and 4
@@ -64,7 +64,7 @@ TEST_CASE("fibre ends that are tied on the mean take hardly more iterations than
         const Vector load = test::contact_load(test::FabricSystem(fabric));
         const int held = iterations(bundles(fabric, false), load, 1e-4), tied = iterations(bundles(fabric, true), load, 1e-4);
         CAPTURE(held);
-        CHECK(tied <= 1.6 * held);  // 84 of 61, 46 of 29; 105 of 90 and 55 of 41 where chains are not swept
+        CHECK(tied <= held + 20);  // 60 of 42, 33 of 17; 84 of 61 and 46 of 29 with the coarse space beside the sweeps, 105 of 90 and 55 of 41 without sweeps
     }
 }
 

@@ -24,10 +24,11 @@ class ChainCouplings {
 public:
     using Value = Eigen::Array4f;
     /// Values of a chain among those of a pack.
+    template <class Real>
     struct Line {
-        float* first;
+        Real* first;
         std::size_t stride;
-        float& operator[](std::size_t unknown) const noexcept { return first[stride * unknown]; }
+        Real& operator[](std::size_t unknown) const noexcept { return first[stride * unknown]; }
     };
 
     /// Takes over the terms of a system, and sorts its chains into classes.
@@ -46,14 +47,22 @@ public:
     int classes() const noexcept { return classes_; }
     /// Class of each chain.
     const std::vector<int>& class_of() const noexcept { return class_; }
-    bool has_later(Index chain) const noexcept { return middle_[core::at(chain)] < first_[core::at(chain) + 1]; }
+    bool couples(Index chain) const noexcept { return first_[core::at(chain)] < first_[core::at(chain) + 1]; }
 
-    /// line -= L z and line -= L^T z of a chain, z being what was kept of the chains that it is coupled with.
-    void subtract_earlier(Index chain, Line line) const { subtract(chain, first_[core::at(chain)], middle_[core::at(chain)], line); }
-    void subtract_later(Index chain, Line line) const { subtract(chain, middle_[core::at(chain)], first_[core::at(chain) + 1], line); }
-    /// Keeps of a chain's z what its later chains, or its earlier ones, will ask for.
-    void keep_for_later(Index chain, Line line) { keep(middle_[core::at(chain)], first_[core::at(chain) + 1], line); }
-    void keep_for_earlier(Index chain, Line line) { keep(first_[core::at(chain)], middle_[core::at(chain)], line); }
+    /// line -= L z, line -= L^T z and both of a chain, z being what was kept of the chains that it is coupled with.
+    template <class Real>
+    void subtract_earlier(Index chain, Line<Real> line) const { subtract(chain, first_[core::at(chain)], middle_[core::at(chain)], line); }
+    template <class Real>
+    void subtract_later(Index chain, Line<Real> line) const { subtract(chain, middle_[core::at(chain)], first_[core::at(chain) + 1], line); }
+    template <class Real>
+    void subtract(Index chain, Line<Real> line) const { subtract(chain, first_[core::at(chain)], first_[core::at(chain) + 1], line); }
+    /// Keeps of a chain's z what its later chains, its earlier ones, or all will ask for.
+    template <class Real>
+    void keep_for_later(Index chain, Line<Real> line) { keep(middle_[core::at(chain)], first_[core::at(chain) + 1], line); }
+    template <class Real>
+    void keep_for_earlier(Index chain, Line<Real> line) { keep(first_[core::at(chain)], middle_[core::at(chain)], line); }
+    template <class Real>
+    void keep(Index chain, Line<Real> line) { keep(first_[core::at(chain)], first_[core::at(chain) + 1], line); }
 
 private:
     /// Two particles of different chains; `first` is the number of the first vector in its chain.
@@ -200,7 +209,8 @@ private:
         }
     }
 
-    void subtract(Index chain, std::int32_t first, std::int32_t last, Line line) const {
+    template <class Real>
+    void subtract(Index chain, std::int32_t first, std::int32_t last, Line<Real> line) const {
         with_particle([&](auto fixed, Value* forces) {
             for (std::int32_t s = first; s < last;) {
                 const std::int32_t start = sides_[core::at(s)].first;
@@ -215,23 +225,24 @@ private:
                     for (std::size_t k = 0; k < fixed.count; ++k) forces[k] += weights[k] * force;
                 }
                 for (std::size_t k = 0; k < fixed.count; ++k)
-                    for (std::size_t i = 0; i < 3; ++i) line[3 * (core::at(start) + k * fixed.stride) + i] -= forces[k][static_cast<Index>(i)];
+                    for (std::size_t i = 0; i < 3; ++i) line[3 * (core::at(start) + k * fixed.stride) + i] -= static_cast<Real>(forces[k][static_cast<Index>(i)]);
             }
         });
         if (first == last) return;
         for (const auto& [vector, free] : held_[core::at(chain)]) {
             const std::size_t v = 3 * core::at(vector);
-            const Eigen::Vector3f value = free * Eigen::Vector3f(line[v], line[v + 1], line[v + 2]);
+            const Eigen::Matrix<Real, 3, 1> value = free.template cast<Real>() * Eigen::Matrix<Real, 3, 1>(line[v], line[v + 1], line[v + 2]);
             for (std::size_t i = 0; i < 3; ++i) line[v + i] = value[static_cast<Index>(i)];
         }
     }
-    void keep(std::int32_t first, std::int32_t last, Line line) {
+    template <class Real>
+    void keep(std::int32_t first, std::int32_t last, Line<Real> line) {
         with_particle([&](auto fixed, Value* values) {
             for (std::int32_t s = first; s < last;) {
                 const std::int32_t start = sides_[core::at(s)].first;
                 for (std::size_t k = 0; k < fixed.count; ++k) {
                     const std::size_t v = 3 * (core::at(start) + k * fixed.stride);
-                    values[k] = Value(line[v], line[v + 1], line[v + 2], 0.0f);
+                    values[k] = Value(static_cast<float>(line[v]), static_cast<float>(line[v + 1]), static_cast<float>(line[v + 2]), 0.0f);
                 }
                 for (; s < last && sides_[core::at(s)].first == start; ++s) {
                     const float* weights = weights_.data() + fixed.count * static_cast<std::size_t>(s);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Symmetric Gauss-Seidel over the chains of a system: each is solved for what the chains before it leave over.
+/// @file Sweeps forth and back over the chains of a system, each solved for what those before it leave over, and a correction of all between.
 
 #include <fibrant/solver/chain_couplings.hpp>
 #include <fibrant/solver/chain_factors.hpp>
@@ -10,12 +10,13 @@
 
 namespace fibrant::solver {
 
-/// M^-1 = (B + L)^-T B (B + L)^-1: B the bands of the chains as ChainFactors has them, L their ChainCouplings.
+/// M^-1 = S^-T (B + L Q L^T) S^-1, S = B + L: B the bands of the chains as ChainFactors has them, L their ChainCouplings, Q a correction that
+/// is given, symmetric and positive semidefinite as a coarse space is.
 ///
-/// Two solutions of every chain in the place of one, but for those of the last class, and half as many iterations where modes that
-/// several chains share are what converges last: M = A + L B^-1 L^T, up to what L leaves out, is four times closer to A than B there
-/// (as symmetric Gauss-Seidel is to Jacobi; Saad, Iterative Methods for Sparse Linear Systems, 10.2).
-/// Chains of a class are solved at once. Where classes would leave most lanes of the packs empty M is B.
+/// This is a cycle of two levels: the sweep forth, S y = r, leaves r - (S + L^T) y = -L^T y over, which Q answers by the motion c; the sweep back
+/// from y + c is S^T (z - y) = -L^T y - L c. No product with the matrix is needed, and M is positive definite whatever L leaves out.
+/// Without Q, M = (B + L) B^-1 (B + L)^T is symmetric Gauss-Seidel (Saad, Iterative Methods for Sparse Linear Systems, 10.2).
+/// Chains of a class are solved at once. Where classes would leave most lanes of the packs empty M^-1 = B^-1 + Q.
 class ChainSweeps {
 public:
     void analyse(const scene::DofLayout& layout) {
@@ -35,8 +36,13 @@ public:
     }
 
     /// z = M^-1 r, of an r that is zero outside the free directions of held vectors.
-    void apply(const scene::DofLayout& layout, const Vector& r, Vector& z) {
-        if (class_of_.empty()) return factors_.apply(layout, r, z);
+    /// @param correct  correct(left, motion): motion += Q left, zero outside the free directions as well
+    template <class Correct>
+    void apply(const scene::DofLayout& layout, const Vector& r, Vector& z, const Correct& correct) {
+        if (class_of_.empty()) {
+            factors_.apply(layout, r, z);
+            return correct(r, z);
+        }
         const int classes = couplings_.classes();
         values_.resize(core::at(factors_.packs()));
         for (int k = 0; k < classes; ++k)
@@ -44,18 +50,24 @@ public:
                 auto y = ChainFactors::to_lanes(layout, chains, factor, r);
                 for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.subtract_earlier(chains[lane], line(y, lane));
                 factor.solve(y.data());
-                for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.keep_for_later(chains[lane], line(y, lane));
+                for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.keep(chains[lane], line(y, lane));
                 values_[core::at(pack)].assign(y.front().data(), y.front().data() + y.front().size() * core::count(y));
             });
-        // B^-1 (B y - L^T z) = y - B^-1 L^T z
+        left_.setZero(r.size()), motion_.setZero(r.size());
+        const auto of = [&](Vector& all, Index chain) { return ChainCouplings::Line<double>{all.data() + 3 * layout.chains[core::at(chain)].first_vector, 1}; };
+        const Index chains = core::count(layout.chains);
+        core::parallel_for(chains, [&](Index chain) { couplings_.subtract_later(chain, of(left_, chain)); }, grain(layout, chains));
+        correct(std::as_const(left_), motion_);
+        core::parallel_for(chains, [&](Index chain) { couplings_.keep_for_later(chain, of(motion_, chain)); }, grain(layout, chains));
+        // z = y - B^-1 (L^T z + L c)
         for (int k = classes - 1; k >= 0; --k)
             factors_.for_class(layout, k, [&](Index pack, const auto& chains, const auto& factor) {
                 using Kept = typename std::remove_cvref_t<decltype(factor)>::Kept;
                 std::vector<Kept> values(ChainFactors::unknowns(factor.shape()), Kept::Zero());
-                bool later = false;
+                bool coupled = false;
                 for (std::size_t lane = 0; lane < chains.size(); ++lane)
-                    if (couplings_.has_later(chains[lane])) couplings_.subtract_later(chains[lane], line(values, lane)), later = true;
-                if (later) factor.solve(values.data());
+                    if (couplings_.couples(chains[lane])) couplings_.subtract(chains[lane], line(values, lane)), coupled = true;
+                if (coupled) factor.solve(values.data());
                 const std::vector<float>& y = values_[core::at(pack)];
                 for (std::size_t i = 0; i < y.size(); ++i) values.front().data()[i] += y[i];
                 ChainFactors::from_lanes(layout, chains, values, z);
@@ -71,7 +83,7 @@ public:
 private:
     /// A chain's values among those of its pack.
     template <class Kept>
-    static ChainCouplings::Line line(std::vector<Kept>& values, std::size_t lane) {
+    static ChainCouplings::Line<float> line(std::vector<Kept>& values, std::size_t lane) {
         return {values.front().data() + lane, core::at(Index{Kept::SizeAtCompileTime})};
     }
     /// Not more than twice the packs of chains that are sorted by nothing.
@@ -89,6 +101,7 @@ private:
     ChainCouplings couplings_;
     std::vector<int> class_of_;               // empty: no sweeps
     std::vector<std::vector<float>> values_;  // y of each pack
+    Vector left_, motion_;                    // -L^T y, c
 };
 
 }  // namespace fibrant::solver

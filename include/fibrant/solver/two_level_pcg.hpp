@@ -13,7 +13,7 @@
 
 namespace fibrant::solver {
 
-/// M^-1 = S^-1 + P (P^T A P)^-1 P^T: S = (B + L) B^-1 (B + L)^T the sweeps over chains (ChainSweeps), B their bands, P a RigidCoarseSpace.
+/// The cycle of ChainSweeps over the factors B of the chains' bands, with Q = P (P^T A P)^-1 P^T, P a RigidCoarseSpace.
 ///
 /// The factors of B take the stiff modes of single fibres exactly; what they leave is the bending of neighbours that contact
 /// ties together, which the coarse space has. Forms no matrix but P^T A P. A solve that takes long goes on with a finer
@@ -105,8 +105,7 @@ private:
         Work& work = *work_;
         const bool tied = !work.ties.empty();
         if (tied) work.forces = r, work.ties.project_forces(layout, work.forces);
-        work.chains.apply(layout, tied ? work.forces : r, z);
-        space.add_correction(layout, tied ? work.forces : r, z);
+        work.chains.apply(layout, tied ? work.forces : r, z, [&](const Vector& left, Vector& motion) { space.add_correction(layout, left, motion); });
         if (tied) work.ties.project(layout, z);
     }
     /// Forms the finer space of the present values; false if there is none.
