@@ -76,9 +76,9 @@ TEST_CASE("dense mats of random fibres press on both plates alike, by a power of
         CHECK(slope > 3.0);  // van Wyk's, of fibres in all directions
     }
     std::printf("power of the volume fraction from 0.24 to 0.33: %.2f\n", slopes);
-    // Toll has 5 for fibres in a plane, and a threshold makes it steeper. Five mats gave 6.02 with a standard deviation of 0.39: two, within three times
-    // that over the root of two.
-    CHECK(std::abs(slopes - 6.02) < 3.0 * 0.39 / std::sqrt(2.0));
+    // Toll has 5 for fibres in a plane, and a threshold makes it steeper. Ten mats, five of them with contacts that may soften more, gave 6.28 with
+    // a standard deviation of 0.63: two, within twice that over the root of two.
+    CHECK(std::abs(slopes - 6.28) < 2.0 * 0.63 / std::sqrt(2.0));
 }
 
 TEST_CASE("levels that cannot be are refused by name") {

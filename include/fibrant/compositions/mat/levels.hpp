@@ -20,7 +20,7 @@ struct LevelParameters {
     double allowed_penetration = 0.05;   ///< [radius], > 0
     /// Least stiffness of a contact, of that of a section: one that carries nothing while a mat rests is softened down to it, and takes several
     /// increments to become as stiff as the next press needs [1], > 0.
-    double softest = 1e-6;
+    double softest = 1e-2;
     double rest_share = 5e-4;            ///< at rest, springs hold no more than this of the forces [1], > 0;
     Index rest_increments = 20;          ///< or so many increments have gone by: a mat with friction creeps for long, >= 1
     /// Springs from every centre to its last place while fibres part, and while they are pressed, over what bends a fibre between
