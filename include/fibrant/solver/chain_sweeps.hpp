@@ -37,11 +37,14 @@ public:
 
     /// z = M^-1 r, of an r that is zero outside the free directions of held vectors.
     /// @param correct  correct(left, motion): motion += Q left, zero outside the free directions as well
+    /// @param product  (B + L + L^T) z = r + L (z - y - c) if it is wanted, to rounding of float
+    /// @return whether there is a product: not without sweeps
     template <class Correct>
-    void apply(const scene::DofLayout& layout, const Vector& r, Vector& z, const Correct& correct) {
+    bool apply(const scene::DofLayout& layout, const Vector& r, Vector& z, const Correct& correct, Vector* product = nullptr) {
         if (class_of_.empty()) {
             factors_.apply(layout, r, z);
-            return correct(r, z);
+            correct(r, z);
+            return false;
         }
         const int classes = couplings_.classes();
         values_.resize(core::at(factors_.packs()));
@@ -68,11 +71,20 @@ public:
                 for (std::size_t lane = 0; lane < chains.size(); ++lane)
                     if (couplings_.couples(chains[lane])) couplings_.subtract(chains[lane], line(values, lane)), coupled = true;
                 if (coupled) factor.solve(values.data());
+                if (product != nullptr) {  // y + c - z
+                    auto opposite = ChainFactors::to_lanes(layout, chains, factor, motion_);
+                    for (std::size_t i = 0; i < opposite.size(); ++i) opposite[i] -= values[i];
+                    for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.keep_for_later(chains[lane], line(opposite, lane));
+                }
                 const std::vector<float>& y = values_[core::at(pack)];
                 for (std::size_t i = 0; i < y.size(); ++i) values.front().data()[i] += y[i];
                 ChainFactors::from_lanes(layout, chains, values, z);
                 for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.keep_for_earlier(chains[lane], line(values, lane));
             });
+        if (product == nullptr) return false;
+        *product = r;
+        core::parallel_for(chains, [&](Index chain) { couplings_.subtract_earlier(chain, of(*product, chain)); }, grain(layout, chains));
+        return true;
     }
     /// z = B^-1 r
     void apply_factors(const scene::DofLayout& layout, const Vector& r, Vector& z) const { factors_.apply(layout, r, z); }

@@ -64,7 +64,7 @@ public:
             return {};
         }
         RigidCoarseSpace<>* space = &work.coarse;
-        const auto precondition = [&](const Vector& r, Vector& z) { apply(system.layout(), *space, r, z); };
+        const Cycle precondition{this, &system.layout(), &space};
         if constexpr (UnsymmetricSystem<System>)
             if (parameters_.unsymmetric && system.unsymmetric())
                 return stabilised_biconjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.biconjugate, x);
@@ -90,6 +90,13 @@ public:
     Index fine_unknowns() const { return work_->fine == Fine::ready ? 6 * work_->finer.stations() : 0; }
 
 private:
+    struct Cycle {
+        TwoLevelPcg* own;
+        const scene::DofLayout* layout;
+        RigidCoarseSpace<>* const* space;
+        void operator()(const Vector& r, Vector& z) const { own->apply(*layout, **space, r, z); }
+        bool with_product(const Vector& r, Vector& z, Vector& product) const { return own->apply(*layout, **space, r, z, &product); }
+    };
     enum class Fine : std::uint8_t { none, ready, useless };
     struct Work {
         ChainSweeps chains;
@@ -101,12 +108,14 @@ private:
         BiconjugateVectors biconjugate;
         SolveStatus status = SolveStatus::not_finite;
     };
-    void apply(const scene::DofLayout& layout, RigidCoarseSpace<>& space, const Vector& r, Vector& z) {
+    /// @return whether there is a product, as ChainSweeps::apply; none of systems with ties
+    bool apply(const scene::DofLayout& layout, RigidCoarseSpace<>& space, const Vector& r, Vector& z, Vector* product = nullptr) {
         Work& work = *work_;
         const bool tied = !work.ties.empty();
         if (tied) work.forces = r, work.ties.project_forces(layout, work.forces);
-        work.chains.apply(layout, tied ? work.forces : r, z, [&](const Vector& left, Vector& motion) { space.add_correction(layout, left, motion); });
+        const bool passed = work.chains.apply(layout, tied ? work.forces : r, z, [&](const Vector& left, Vector& motion) { space.add_correction(layout, left, motion); }, tied ? nullptr : product);
         if (tied) work.ties.project(layout, z);
+        return passed;
     }
     /// Forms the finer space of the present values; false if there is none.
     template <assembly::LinearSystem System>
