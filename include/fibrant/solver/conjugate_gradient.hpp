@@ -5,6 +5,7 @@
 #include <fibrant/solver/linear_solver.hpp>
 
 #include <algorithm>
+#include <concepts>
 #include <limits>
 #include <utility>
 
@@ -42,7 +43,7 @@ inline double advance(const scene::DofLayout& layout, double alpha, const Conjug
 inline double distance(const scene::DofLayout& layout, const Vector& a, const Vector& b) {
     return std::sqrt(core::ordered_sum(layout.vectors(), 0.0, [&](Index first, Index last) {
         double sum = 0.0;
-        for (Index v = first; v < last; ++v) sum += (a.segment<3>(3 * v) - b.segment<3>(3 * v)).squaredNorm() / (layout.length[core::at(v)] * layout.length[core::at(v)]);
+        for (Index v = first; v < last; ++v) sum += ((a.segment<3>(3 * v) - b.segment<3>(3 * v)) / layout.length[core::at(v)]).squaredNorm();
         return sum;
     }));
 }

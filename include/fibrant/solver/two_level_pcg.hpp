@@ -113,7 +113,8 @@ private:
         Work& work = *work_;
         const bool tied = !work.ties.empty();
         if (tied) work.forces = r, work.ties.project_forces(layout, work.forces);
-        const bool passed = work.chains.apply(layout, tied ? work.forces : r, z, [&](const Vector& left, Vector& motion) { space.add_correction(layout, left, motion); }, tied ? nullptr : product);
+        const auto correct = [&](const Vector& left, Vector& motion) { space.add_correction(layout, left, motion); };
+        const bool passed = work.chains.apply(layout, tied ? work.forces : r, z, correct, tied ? nullptr : product);
         if (tied) work.ties.project(layout, z);
         return passed;
     }
