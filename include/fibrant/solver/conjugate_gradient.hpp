@@ -39,15 +39,6 @@ inline double advance(const scene::DofLayout& layout, double alpha, const Conjug
     });
 }
 
-/// Scaled norm of a - b.
-inline double distance(const scene::DofLayout& layout, const Vector& a, const Vector& b) {
-    return std::sqrt(core::ordered_sum(layout.vectors(), 0.0, [&](Index first, Index last) {
-        double sum = 0.0;
-        for (Index v = first; v < last; ++v) sum += ((a.segment<3>(3 * v) - b.segment<3>(3 * v)) / layout.length[core::at(v)]).squaredNorm();
-        return sum;
-    }));
-}
-
 struct SamePreconditioner {
     bool operator()(int) const noexcept { return false; }
 };
@@ -124,7 +115,8 @@ SolveReport conjugate_gradient(const System& system, const Precondition& precond
         if (!given) system.apply(cg.p, cg.product);
         if (passed && before == 0.0) {
             held.project(cg.product);
-            given = detail::distance(layout, cg.passed, cg.product) <= 0.05 * tolerance * norm;
+            cg.passed -= cg.product;
+            given = scaled_norm(layout, cg.passed) <= 0.05 * tolerance * norm;
         }
         const double curvature = core::dot(cg.p, cg.product);
         if (!std::isfinite(curvature) || !std::isfinite(rz)) {
