@@ -75,10 +75,9 @@ public:
         if (damping_ > 0.0) anchor_ = state;
         motion_.at(amplitudes, state, system_.layout().held, targets_);
         ties_.begin(amplitudes);
-        if constexpr (has_solid) {
-            solid_.hold(amplitudes, system_.layout().held, targets_);
-            system_.share_held();
-        }
+        if constexpr (has_solid) solid_.hold(amplitudes, system_.layout().held, targets_);
+        ties_.hold(system_.layout().held, targets_);
+        if constexpr (has_solid) system_.share_held();
         reset_stresses(state);
     }
 

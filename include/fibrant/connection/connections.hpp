@@ -14,6 +14,7 @@ namespace fibrant::connection {
 /// the tied vectors say of them.
 ///
 /// - begin(amplitudes): sets what is prescribed; free coordinates start from the accepted ones.
+/// - hold(held, targets): adds single vectors that are tied to what is prescribed, and the held parts that they are to have.
 /// - place(state, layout): free coordinates that suit the state, and from them the ties of the layout.
 /// - add_closing(layout, step): the part of a step that ties prescribe.
 /// - add_forces(layout, external): forces on free coordinates.
@@ -21,8 +22,9 @@ namespace fibrant::connection {
 /// - accept(): coordinates as they stand.
 template <class C, class B>
 concept Connection = requires(C connection, const C& constant, std::span<const double> amplitudes, const Vector& state, Vector& forces,
-                              scene::DofLayout& layout) {
+                              scene::DofLayout& layout, std::vector<Vec3>& targets) {
     connection.begin(amplitudes);
+    constant.hold(layout.held, targets);
     connection.place(state, layout);
     connection.accept();
     connection.hold_forces(layout, state);
@@ -40,6 +42,7 @@ struct NoConnections : core::Inactive {
         Of() = default;
         Of(const scene::Assembly&, const beam::Mesh<B>&, const Channels&) {}
         void begin(std::span<const double>) const noexcept {}
+        void hold(std::vector<scene::HeldVector>&, std::vector<Vec3>&) const noexcept {}
         void place(const Vector&, scene::DofLayout&) const noexcept {}
         void accept() const noexcept {}
         void hold_forces(const scene::DofLayout&, const Vector&) const noexcept {}

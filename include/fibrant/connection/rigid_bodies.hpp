@@ -5,6 +5,7 @@
 #include <fibrant/connection/body_motion.hpp>
 #include <fibrant/connection/connections.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
+#include <fibrant/connection/solid_places.hpp>
 #include <fibrant/scene/tied_vectors.hpp>
 
 #include <Eigen/SVD>
@@ -28,7 +29,7 @@ struct Wrench {
 /// tied vectors, so a body whose coordinates are prescribed is reached in one step. Free coordinates q are those that the tied
 /// vectors fit best; with D their derivative and U an orthonormal basis of its columns, a step of the vectors is free in
 /// U and blocked across it, and a force on q is U Sigma^-1 V^T of it on them. Neither the averages nor the bodies are unknowns
-/// of the system.
+/// of the system. A single vector that is tied to what is prescribed altogether is held: no solver has to know of a tie there.
 template <beam::BeamElement B>
 class BodyTies {
 public:
@@ -44,7 +45,6 @@ public:
             taken[core::at(vector)] = 1;
         };
         const auto finish = [&](scene::Tie& tie, const Condition& condition, double support) {
-            tie.first = scalars_, scalars_ += tie.count;
             tie.support = support;
             ties_.push_back(tie), conditions_.push_back(condition);
         };
@@ -84,6 +84,7 @@ public:
                 for (const Index vector : tie.vectors) take(vector);
                 finish(tie, condition, fibre_support(pair.first.fibre));
             }
+        sort_ties();
         find_groups();
         anchor(solids.state);
     }
@@ -102,6 +103,26 @@ public:
     void begin(std::span<const double> amplitudes) {
         motion_.begin(amplitudes);
         for (Condition& condition : conditions_) condition.amplitude = condition.channel < 0 ? 0.0 : amplitudes[core::at(condition.channel)];
+    }
+
+    /// Adds the vectors that are held to those of other holds, whose order by vector is kept. @param targets  held parts
+    void hold(std::vector<scene::HeldVector>& held, std::vector<Vec3>& targets) const {
+        if (tied_ == ties_.size()) return;
+        std::vector<std::pair<scene::HeldVector, Vec3>> all;
+        for (std::size_t k = 0; k < held.size(); ++k) all.emplace_back(held[k], targets[k]);
+        for (std::size_t k = tied_; k < ties_.size(); ++k) {
+            const Condition& condition = conditions_[k];
+            const Vec3 from = condition.director ? Vec3(Vec3::Zero()) : motion_.position(condition.owner);
+            auto& [one, target] = all.emplace_back(scene::HeldVector{ties_[k].vectors.front(), Mat3::Identity()}, Vec3::Zero());
+            for (Index a = 0; a < ties_[k].count; ++a) {
+                const Vec3 axis = direction(condition, a);
+                one.free -= axis * axis.transpose();
+                target += (axis.dot(from) + offset(condition, a)) * axis;
+            }
+        }
+        std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first.vector < b.first.vector; });
+        held.clear(), targets.clear();
+        for (const auto& [one, target] : all) held.push_back(one), targets.push_back(target);
     }
 
     void place(const Vector& state, scene::DofLayout& layout) {
@@ -123,8 +144,8 @@ public:
                 gap_[ties_[k].first + a] = gap(k, a);
             }
         }
-        if (layout.ties.size() != ties_.size()) layout.ties = ties_;
-        for (std::size_t k = 0; k < ties_.size(); ++k) layout.ties[k].axes = ties_[k].axes;
+        if (layout.ties.size() != tied_) layout.ties.assign(ties_.begin(), ties_.begin() + static_cast<std::ptrdiff_t>(tied_));
+        for (std::size_t k = 0; k < tied_; ++k) layout.ties[k].axes = ties_[k].axes;
         layout.motions.resize(groups_.size());
         for (std::size_t g = 0; g < groups_.size(); ++g) {
             layout.motions[g].scalars = groups_[g].scalars;
@@ -159,7 +180,12 @@ public:
 
     /// Keeps what fibres and contacts exert on the tied vectors: at equilibrium the force of the ties on them.
     void hold_forces(const scene::DofLayout& layout, const Vector& internal) {
-        if (!ties_.empty()) forces_ = scene::tied_part(layout, internal);
+        if (ties_.empty()) return;
+        forces_.resize(scalars_);
+        const Vector tied = scene::tied_part(layout, internal);
+        forces_.head(tied.size()) = tied;
+        for (std::size_t k = tied_; k < ties_.size(); ++k)
+            forces_.segment(ties_[k].first, ties_[k].count) = ties_[k].axes.leftCols(ties_[k].count).transpose() * combination(ties_[k], internal);
     }
 
     /// Stiffness of the free coordinates from the forces that turn with them. @param whole  else none
@@ -225,28 +251,6 @@ public:
     }
 
 private:
-    /// Where the nodes of solids are among all nodal vectors: after those of the fibres.
-    struct SolidPlaces {
-        SolidPlaces(const scene::Assembly& assembly, const Vector& fibres) {
-            Index nodes = 0;
-            for (const scene::Solid& solid : assembly.solids()) first.push_back(fibres.size() / 3 + nodes), nodes += core::count(solid.nodes);
-            state.resize(fibres.size() + 3 * nodes);
-            state.head(fibres.size()) = fibres;
-            for (std::size_t s = 0; s < first.size(); ++s)
-                for (Index n = 0; n < core::count(assembly.solids()[s].nodes); ++n) state.segment<3>(3 * (first[s] + n)) = assembly.solids()[s].nodes[core::at(n)];
-        }
-        Index vector(const scene::SolidNode& at) const noexcept { return first[core::at(at.solid)] + at.node; }
-        /// E times the size of a cell next to the node: what a cell gives it [force / length].
-        static double support(const scene::Assembly& assembly, const scene::SolidNode& at) {
-            const scene::Solid& solid = assembly.solids()[core::at(at.solid)];
-            for (const auto& cell : solid.cells)
-                if (std::find(cell.begin(), cell.end(), at.node) != cell.end())
-                    return solid.material.young_modulus * (solid.nodes[core::at(cell[6])] - solid.nodes[core::at(cell[0])]).norm();
-            return 0.0;
-        }
-        std::vector<Index> first;
-        Vector state;
-    };
     struct Condition {
         Index owner = -1, channel = -1;
         bool periodic = false, director = false;
@@ -275,9 +279,11 @@ private:
             const double moved = condition.director ? 0.0 : motion_.gradient(condition.owner).row(a).dot(condition.period) / condition.root;
             return sums_[k][a] - condition.offset[a] - moved;
         }
-        const double offset = condition.axes.col(a).dot(condition.offset) + condition.root * condition.amplitude * condition.displacement[a];
         const Vec3 from = condition.director ? sums_[k] : Vec3(sums_[k] - condition.root * motion_.position(condition.owner));
-        return direction(condition, a).dot(from) - offset;
+        return direction(condition, a).dot(from) - offset(condition, a);
+    }
+    static double offset(const Condition& condition, Index a) noexcept {
+        return condition.axes.col(a).dot(condition.offset) + condition.root * condition.amplitude * condition.displacement[a];
     }
     /// The combination, where the conditions hold: a lever that should be nothing is nothing.
     Vec3 closed(std::size_t k) const noexcept {
@@ -293,8 +299,8 @@ private:
         return force;
     }
     bool depends(const Condition& condition, Index coordinate) const noexcept {
-        if (!condition.periodic) return motion_.moves(coordinate, condition.owner);
         const FreeCoordinate& free = motion_.free(coordinate);
+        if (!condition.periodic) return motion_.moves(coordinate, condition.owner) && !(condition.director && free.component < 3);
         return free.of_cell && free.owner == condition.owner && !condition.director;
     }
 
@@ -339,6 +345,26 @@ private:
         return along.size() > 0 ? along.cwiseAbs().maxCoeff() : 0.0;
     }
 
+    /// Puts what is held behind what is tied, and numbers the scalars of all.
+    void sort_ties() {
+        const auto held = [&](std::size_t k) {
+            if (ties_[k].vectors.size() > 1) return false;
+            for (Index q = 0; q < motion_.free_coordinates(); ++q)
+                if (depends(conditions_[k], q)) return false;
+            return true;
+        };
+        std::vector<std::size_t> order(ties_.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        tied_ = static_cast<std::size_t>(std::stable_partition(order.begin(), order.end(), [&](std::size_t k) { return !held(k); }) - order.begin());
+        std::vector<scene::Tie> ties;
+        std::vector<Condition> conditions;
+        for (const std::size_t k : order) {
+            ties.push_back(ties_[k]), conditions.push_back(conditions_[k]);
+            ties.back().first = scalars_, scalars_ += ties.back().count;
+        }
+        ties_ = std::move(ties), conditions_ = std::move(conditions);
+    }
+
     void find_groups() {
         std::vector<Index> root(core::at(motion_.free_coordinates()));
         std::iota(root.begin(), root.end(), Index{0});
@@ -373,8 +399,9 @@ private:
     }
 
     BodyMotion motion_;
-    std::vector<scene::Tie> ties_;
+    std::vector<scene::Tie> ties_;  // the first `tied_` are ties, all others hold one vector each
     std::vector<Condition> conditions_;
+    std::size_t tied_ = 0;
     std::vector<Group> groups_;
     std::vector<Vec3> sums_;
     Vector gap_, forces_;
