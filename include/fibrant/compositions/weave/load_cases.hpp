@@ -31,7 +31,8 @@ inline const std::vector<std::string>& load_case_names() {
 }
 
 /// What tow ends do along their edge: keep their places, move apart by the strain of the fabric across them, or go where they like, while
-/// it is stretched; or move apart with every fibre at its place in its tow end, in all load cases: tows do not spread there.
+/// it is stretched; or move apart with every fibre at its place in its tow end, in all load cases: tows do not spread there, nor does
+/// the free end of one that is pulled out.
 enum class TowEnds { kept, spread, free, fibres };
 inline const std::vector<std::string>& tow_ends_names() {
     static const std::vector<std::string> names{"kept", "spread", "free", "fibres"};
@@ -176,7 +177,13 @@ inline LoadCase load_case(const std::string& name, const observe::Snapshot& snap
         load.bodies = add_edges(load.assembly, snapshot, fabric, edges);
         load.puller = load.assembly.add(puller), load.pulled_from = puller.position.x();
         for (Index k = 0; k < fabric.warp.fibres; ++k) load.pulled_fibres.push_back(fabric.fibre(Family::warp, tow, k));
-        connect_tow_end(load.assembly, fabric, Edge::east, tow, load.puller, {.spin = true});
+        connect_tow_end(load.assembly, fabric, Edge::east, tow, load.puller, {.spin = true}, west.one_by_one);
+        if (west.one_by_one) {  // the other end goes where it likes as well, but as one: single fibres that nothing holds snap past each other
+            scene::RigidBody tail;
+            tail.name = "tail", tail.position = tow_end_middle(snapshot, fabric, Edge::west, tow);
+            tail.translation.fill(Coordinate::loose()), tail.rotation.fill(Coordinate::loose());
+            connect_tow_end(load.assembly, fabric, Edge::west, tow, load.assembly.add(tail), {}, true);
+        }
         return load;
     }
     load.bodies = add_edges(load.assembly, snapshot, fabric, edges);
