@@ -46,6 +46,9 @@ struct Bounded {
     void reset_stresses(const Vector&) {}
     double greatest(const Vector& step) const { return step.norm(); }
     double norm(const Vector& forces) const { return forces.norm(); }
+    contact::LearnedContacts memory;
+    contact::LearnedContacts& learned() { return memory; }
+    void add_learned(Vector&) const {}
 };
 struct Untouched {
     struct Element {
@@ -56,6 +59,10 @@ struct Untouched {
     const std::vector<Element>& elements() const { return none; }
     bool forced(const Element&) const { return false; }
     void evaluate(const Vector&) {}
+    Vec3 force(Index) const { return Vec3::Zero(); }
+    Mat3 tangent(Index) const { return Mat3::Zero(); }
+    std::vector<contact::ContactResponse> nothing;
+    const std::vector<contact::ContactResponse>& responses() const { return nothing; }
 };
 struct Exact {
     const Bounded* problem;
@@ -106,6 +113,131 @@ TEST_CASE("what the first step of a prescribed motion may leave over is a part o
     REQUIRE(linear.tolerances.size() == 2);
     CHECK(linear.tolerances[0] * problem.own.coupling == doctest::Approx(1e-2));  // the first solution is to 1e-2
     CHECK(linear.tolerances[1] >= 1e-4);
+}
+
+/// Nodes on soft springs along x, each pushed at its own wall, of which some are so near that a step goes far into them.
+struct Walls {
+    static constexpr double spring = 1.0, wall = 1e4, push = 1.0;
+    struct Element {
+        Index node;
+        Vec3 normal = Vec3::UnitX();  // of the wall from the node
+        Vec3 motion(const Vector& step) const { return -step.segment<3>(3 * node); }
+    };
+    std::vector<double> place;
+    std::vector<Element> all;
+    Vector state;
+
+    explicit Walls(Index nodes) : state{Vector::Zero(3 * nodes)} {
+        for (Index k = 0; k < nodes; ++k) place.push_back(0.9 - 0.05 * static_cast<double>(k)), all.push_back({k});
+    }
+    double depth(Index k) const { return state[3 * k] - place[core::at(k)]; }
+    const std::vector<Element>& elements() const { return all; }
+    bool forced(const Element&) const { return false; }
+    std::vector<contact::ContactResponse> states;
+    const std::vector<contact::ContactResponse>& responses() const { return states; }
+    void evaluate(const Vector& x) {
+        state = x;
+        states.clear();
+        for (Index k = 0; k < core::count(place); ++k) states.push_back({-depth(k), wall * std::max(0.0, depth(k)), depth(k) > 0.0 ? -wall : 0.0});
+    }
+    Vec3 force(Index k) const { return Vec3(-wall * std::max(0.0, depth(k)), 0.0, 0.0); }
+    Mat3 tangent(Index k) const { return Vec3(depth(k) > 0.0 ? wall : 0.0, 0.0, 0.0).asDiagonal(); }
+    Vector internal() const {
+        Vector sum = spring * state;
+        for (Index k = 0; k < core::count(place); ++k) sum[3 * k] += -force(k).x() - push;
+        return sum;
+    }
+};
+template <bool learns>
+struct Pushed : Bounded {
+    Walls* walls;
+    explicit Pushed(Walls& of) : walls{&of} { own.own.chains[0].nodes = core::count(of.place); }
+    void prescribed_step(const Vector& x, Vector& step) const { step = Vector::Zero(x.size()); }
+    void linearise(const Vector&, bool, double) {
+        stiffness = Vector::Constant(walls->state.size(), Walls::spring);
+        for (Index k = 0; k < core::count(walls->place); ++k)
+            stiffness[3 * k] += walls->tangent(k)(0, 0) + (memory.empty() || !learns ? 0.0 : memory.stiffness(*walls, k)(0, 0));
+    }
+    void add_learned(Vector& right) const {
+        if (learns && !memory.empty())
+            for (Index k = 0; k < core::count(walls->place); ++k) right[3 * k] += memory.force(*walls, k).x();
+    }
+    assembly::ResidualFigures residual(const Vector&, Vector& r) const {
+        r = walls->internal();
+        return {r.norm(), 1.0, 0.0};
+    }
+};
+
+template <bool learns>
+Index iterations(Index nodes) {
+    Walls walls(nodes);
+    Pushed<learns> problem(walls);
+    Exact linear{&problem};
+    solver::IterationParameters parameters;
+    parameters.mixed = false, parameters.overshoot = 0.5, parameters.newton_limit = 200, parameters.residual_tolerance = 1e-10;
+    core::StageClock clock;
+    solver::Newton<Pushed<learns>, Walls, Exact> newton(problem, walls, linear, parameters, 1e3, clock);
+    solver::IterationCounts counts;
+    Vector x = Vector::Zero(3 * nodes);
+    const solver::NewtonReport report = newton.solve(x, 1e-4, x, std::numeric_limits<double>::infinity(), counts);
+    REQUIRE(report.status == solver::NewtonStatus::converged);
+    for (Index k = 0; k < nodes; ++k) {  // push - spring x = wall (x - place)
+        const double at = (Walls::push + Walls::wall * walls.place[core::at(k)]) / (Walls::spring + Walls::wall);
+        CHECK(std::abs(x[3 * k] - at) < 1e-9);
+    }
+    CHECK(problem.memory.empty());
+    return report.iterations;
+}
+
+TEST_CASE("a step that would go far into many contacts is solved again with what they turned out to be, and not cut for each of them") {
+    // The first step is cut for all of them at once and the second finds all walls, whatever their number; others are for rounding.
+    CHECK(iterations<true>(16) <= 6);
+    CHECK(iterations<false>(16) > 2 * iterations<true>(16));
+}
+
+TEST_CASE("a contact that closed is linear about where the step went, one that slid back has the secant, one that its tangent describes has nothing") {
+    struct Pairs {
+        struct Element {
+            Vec3 normal = Vec3::UnitZ();
+            Vec3 by;
+            Vec3 motion(const Vector&) const { return by; }
+        };
+        std::vector<Element> all;
+        std::vector<Vec3> forces;
+        std::vector<Mat3> tangents;
+        std::vector<contact::ContactResponse> states;
+        const std::vector<Element>& elements() const { return all; }
+        const std::vector<contact::ContactResponse>& responses() const { return states; }
+        Vec3 force(Index k) const { return forces[core::at(k)]; }
+        Mat3 tangent(Index k) const { return tangents[core::at(k)]; }
+    };
+    const double stiffness = 50.0, gap = 0.3, depth = 0.1, bound = 2.0, slip = 0.4;
+    const Mat3 across = Vec3::UnitZ() * Vec3::UnitZ().transpose(), along = Vec3::UnitX() * Vec3::UnitX().transpose();
+    Pairs pairs;
+    // One closes by a gap and a penetration; one slid to its bound and slides back to the other; one is pressed as its tangent says.
+    pairs.all = {{.by = {0, 0, -(gap + depth)}}, {.by = {-slip, 0, 0}}, {.by = {0, 0, -depth}}};
+    const Pairs start = [&] {
+        Pairs at = pairs;
+        at.forces = {Vec3::Zero(), Vec3(bound, 0, 0), Vec3::Zero()};
+        at.tangents = {Mat3::Zero(), Mat3::Zero(), stiffness * across};
+        at.states = {{gap, 0.0, 0.0}, {gap, 0.0, 0.0}, {0.0, 0.0, -stiffness}};
+        return at;
+    }();
+    contact::LearnedContacts learned;
+    learned.begin_step(start);
+    CHECK(learned.empty());
+    pairs.forces = {Vec3(0, 0, -stiffness * depth), Vec3(-bound, 0, 0), Vec3(0, 0, -stiffness * depth)};
+    pairs.states = {{-depth, stiffness * depth, -stiffness}, {gap, 0.0, 0.0}, {-depth, stiffness * depth, -stiffness}};
+    learned.learn(pairs, Vector::Zero(3));
+    // Seen from the start the one that closes pulls its gap to nothing: what the next step finds is the wall.
+    CHECK((learned.stiffness(start, 0) - stiffness * across).norm() < 1e-12);
+    CHECK((learned.force(start, 0) - stiffness * gap * Vec3::UnitZ()).norm() < 1e-12);
+    CHECK((learned.stiffness(start, 1) - 2.0 * bound / slip * along).norm() < 1e-12);
+    CHECK(learned.force(start, 1).norm() == 0.0);
+    CHECK(learned.stiffness(start, 2).norm() + learned.force(start, 2).norm() < 1e-12);
+    learned.begin_step(start);
+    CHECK((learned.stiffness(start, 1) - contact::LearnedContacts::kept * 2.0 * bound / slip * along).norm() < 1e-12);
+    CHECK(learned.stiffness(start, 0).norm() == 0.0);
 }
 
 }  // namespace newton_test

@@ -7,6 +7,7 @@
 #include <fibrant/connection/connections.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/contact/contact_set.hpp>
+#include <fibrant/contact/learned_contacts.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -93,6 +94,21 @@ public:
         for_elements([&](Index f, Index e) {
             stress(f, e) = beam_.predicted_stresses(mesh_->rest(f, e), mesh_->element(state, f, e), mesh_->element(step, f, e));
         });
+    }
+
+    /// What contacts turned out to be over a step that went too far: tangents have it until the next step begins.
+    contact::LearnedContacts& learned() noexcept { return learned_; }
+    /// Adds to the right side of the next step what goes with it.
+    void add_learned(Vector& right) const {
+        if (learned_.empty()) return;
+        const auto& elements = contacts_->elements();
+        for (Index k = 0; k < core::count(elements); ++k) {
+            const Vec3 force = learned_.force(*contacts_, k);
+            if (force.isZero(0.0)) continue;
+            beam::spread(elements[core::at(k)].weights_j, Vec3(-force), elements[core::at(k)].first_j, right);
+            beam::spread(elements[core::at(k)].weights_i, force, elements[core::at(k)].first_i, right);
+        }
+        scene::project_free(system_.layout(), right);
     }
 
     /// Part of a step that moves held components to their targets.
@@ -242,10 +258,11 @@ private:
         system_.skews().clear();
         const auto& elements = contacts_->elements();
         for (Index k = 0; k < core::count(elements); ++k) {
-            if (!contacts_->carries(k)) continue;
+            const Mat3 learned = learned_.empty() ? Mat3(Mat3::Zero()) : learned_.stiffness(*contacts_, k);
+            if (!contacts_->carries(k) && learned.isZero(0.0)) continue;
             const auto& element = elements[core::at(k)];
             points.push_back({element.first_i, element.first_j, element.fibre_i, element.fibre_j, element.weights_i,
-                              element.weights_j, contacts_->tangent(k)});
+                              element.weights_j, contacts_->tangent(k) + learned});
             if (!contacts_->follows()) continue;
             const Vec3 column = contacts_->friction_by_gap(k);
             if (!column.isZero(0.0)) system_.skews().push_back({static_cast<std::int32_t>(points.size() - 1), column, element.normal});
@@ -275,6 +292,7 @@ private:
     [[no_unique_address]] Solid solid_;
     System system_;
     std::vector<typename B::Stresses> stresses_;
+    contact::LearnedContacts learned_;
     std::vector<double> amplitudes_, holding_;
     std::vector<Vec3> targets_;
     Vector external_, reaction_, anchor_;

@@ -97,6 +97,7 @@ public:
         double eta = 1e-2, worst = 0.0;
         bool mixed = parameters_.mixed;
         Index growing = 0;
+        const Forgotten learned{equilibrium.learned()};
         report.residual = evaluate(state);
         for (Index iteration = 0; iteration < parameters_.newton_limit; ++iteration) {
             equilibrium.prescribed_step(state, prescribed_);
@@ -105,7 +106,8 @@ public:
                 return report;
             }
             // A prescribed motion has a residual that is not that of one energy.
-            const bool watched = std::isfinite(parameters_.overshoot) && iteration > 0 && prescribed_.norm() <= 1e-3 * step_.norm();
+            const bool watched = std::isfinite(parameters_.overshoot) && prescribed_.norm() <= 1e-3 * step_.norm();
+            if (watched) equilibrium.learned().begin_step(*contacts_);
             const double slope = watched ? residual_.dot(step_) : 0.0;
             step_ += prescribed_;
             double scale = bounded(step_);
@@ -145,7 +147,7 @@ public:
             if (iteration > 2 && report.residual.residual > worst) ++growing;
             worst = iteration <= 2 ? std::max(worst, report.residual.residual) : worst;
             if (growing >= 2 && mixed) mixed = false, growing = 0, equilibrium.reset_stresses(state);
-            if (growing >= 3) {
+            if (growing >= 3 && !watched) {  // else the energy falls
                 report.status = NewtonStatus::diverged;
                 return report;
             }
@@ -157,6 +159,11 @@ public:
     const Vector& last_step() const noexcept { return step_; }
 
 private:
+    struct Forgotten {  // when the contacts change, at the latest
+        contact::LearnedContacts& all;
+        ~Forgotten() { all.clear(); }
+    };
+
     double residual_tolerance(double tolerance) const {
         return parameters_.residual_tolerance * std::max(1.0, tolerance / (parameters_.step_tolerance * radius_));
     }
@@ -168,7 +175,7 @@ private:
 
     /// Shortens a step beyond whose end the energy rises steeply: contacts that close or let go within it, one after the other,
     /// would send Newton's method to and fro for ever. With normals and bounds of friction that stand the energy is convex, and the
-    /// place where it rises is found between.
+    /// place where it rises is found between. What contacts were over the whole step goes into the next tangent.
     /// @param slope  of the energy along the step, at its start [force * length]
     /// @returns the part of the step that is left
     double shorten(double slope, Vector& state, assembly::ResidualFigures& figures) {
@@ -176,6 +183,7 @@ private:
         for (int trial = 0; trial < 4 && slope < 0.0 && std::isfinite(figures.residual); ++trial) {
             const double end = residual_.dot(step_);
             if (end <= -parameters_.overshoot * slope) break;
+            if (trial == 0) equilibrium_->learned().learn(*contacts_, step_);
             const double factor = std::clamp(slope / (slope - end), 0.1, 0.8);
             step_ *= factor, part *= factor, slope *= factor;
             state = before_ + step_;
@@ -196,6 +204,7 @@ private:
             clock_->time(core::Part::assembly, [&] {
                 equilibrium.linearise(state, attempt > 0, shift);
                 right_ = -residual_;
+                equilibrium.add_learned(right_);
                 if (!prescribed_.isZero(0.0)) {
                     product_.resize(state.size());
                     equilibrium.system().apply_unheld(prescribed_, product_);

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What contacts turned out to be over a step of Newton's method that went too far, for the step after.
+
+#include <fibrant/core/parallel.hpp>
+#include <fibrant/core/types.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace fibrant::contact {
+
+/// A contact that closes, or slides back, within a step has a tangent at its start that says nothing of its end: the step goes too far
+/// there, and is cut for all. The next step takes the normal reaction of such a contact to be linear about the end of the one that was
+/// cut, as if it were closed already, and gives friction its secant in the place of its tangent.
+class LearnedContacts {
+public:
+    /// Part of secants that is left for the step after the next: without any, every other step goes too far again.
+    static constexpr double kept = 0.25;
+
+    bool empty() const noexcept { return learned_.empty(); }
+    void clear() noexcept { learned_.clear(); }
+
+    /// What comes to the tangent of element k, symmetric and positive semidefinite [force / length].
+    template <class Contacts>
+    Mat3 stiffness(const Contacts& contacts, Index k) const noexcept {
+        const Learned& one = learned_[core::at(k)];
+        Mat3 sum = one.friction;
+        const Vec3& normal = contacts.elements()[core::at(k)].normal;
+        if (one.closes) sum += std::max(0.0, contacts.responses()[core::at(k)].slope - one.end.slope) * normal * normal.transpose();
+        return sum;
+    }
+    /// What comes to the force of element k [force].
+    template <class Contacts>
+    Vec3 force(const Contacts& contacts, Index k) const noexcept {
+        const Learned& one = learned_[core::at(k)];
+        if (!one.closes) return Vec3::Zero();
+        const auto& now = contacts.responses()[core::at(k)];
+        return (now.reaction - one.end.reaction - one.end.slope * (now.gap - one.end.gap)) * contacts.elements()[core::at(k)].normal;
+    }
+
+    /// To be called at the start of a step, with contacts that have been evaluated there.
+    template <class Contacts>
+    void begin_step(const Contacts& contacts) {
+        for (Learned& one : learned_) one.friction *= kept, one.closes = false;
+        start_.resize(contacts.elements().size());
+        core::parallel_for(core::count(start_), [&](Index k) { start_[core::at(k)] = {contacts.force(k), contacts.tangent(k)}; }, core::light_items);
+    }
+
+    /// To be called where that step goes too far, with contacts that have been evaluated at its end.
+    /// @param step  of all unknowns
+    template <class Contacts>
+    void learn(const Contacts& contacts, const Vector& step) {
+        learned_.resize(start_.size());
+        core::parallel_for(core::count(start_), [&](Index k) {
+            const auto& element = contacts.elements()[core::at(k)];
+            const Start& start = start_[core::at(k)];
+            const Vec3 motion = element.motion(step), change = contacts.force(k) - start.force;
+            const Vec3 along = motion.dot(element.normal) * element.normal, slip = motion - along;
+            Learned& one = learned_[core::at(k)];
+            one.closes = change.dot(along) > along.dot(start.tangent * along);
+            const auto& end = contacts.responses()[core::at(k)];
+            if (one.closes) one.end = {end.gap, end.reaction, end.slope};
+            const double square = slip.squaredNorm(), excess = change.dot(slip) - slip.dot(start.tangent * slip);
+            if (square > 0.0 && excess > 0.0) one.friction += (excess / (square * square)) * slip * slip.transpose();
+        }, core::light_items);
+    }
+
+private:
+    struct Start {
+        Vec3 force;
+        Mat3 tangent;
+    };
+    struct Response {
+        double gap = 0.0, reaction = 0.0, slope = 0.0;
+    };
+    struct Learned {
+        Mat3 friction = Mat3::Zero();
+        Response end;
+        bool closes = false;
+    };
+    std::vector<Start> start_;
+    std::vector<Learned> learned_;  // empty where no step went too far
+};
+
+}  // namespace fibrant::contact
