@@ -79,6 +79,7 @@ inline LoadFile read_load_file(TomlReader& file, const std::filesystem::path& fo
     file.read("solver", "residual_tolerance", load.scene.iteration.residual_tolerance);
     file.read("solver", "step_tolerance", load.scene.iteration.step_tolerance);
     file.read("solver", "linear_tolerance", load.scene.iteration.linear_tolerance);
+    load.scene.iteration.newton_limit = 30;  // near locking solutions take up to 25 iterations, and an attempt that is given up more
     file.read("solver", "newton_limit", load.scene.iteration.newton_limit);
     load.scene.iteration.overshoot = 0.5;
     file.read("solver", "overshoot", load.scene.iteration.overshoot);
