@@ -42,12 +42,13 @@ public:
     /// To be called at the start of a step, with contacts that have been evaluated there.
     template <class Contacts>
     void begin_step(const Contacts& contacts) {
-        for (Learned& one : learned_) one.friction *= kept, one.closes = false;
+        for (Learned& one : learned_) one.friction = one.before = kept * one.friction, one.closes = false;
         start_.resize(contacts.elements().size());
         core::parallel_for(core::count(start_), [&](Index k) { start_[core::at(k)] = {contacts.force(k), contacts.tangent(k)}; }, core::light_items);
     }
 
-    /// To be called where that step goes too far, with contacts that have been evaluated at its end.
+    /// To be called where that step, or a part of it, goes too far, with contacts that have been evaluated at its end: the shortest
+    /// part says most about where it should have ended.
     /// @param step  of all unknowns
     template <class Contacts>
     void learn(const Contacts& contacts, const Vector& step) {
@@ -62,6 +63,7 @@ public:
             const auto& end = contacts.responses()[core::at(k)];
             if (one.closes) one.end = {end.gap, end.reaction, end.slope};
             const double square = slip.squaredNorm(), excess = change.dot(slip) - slip.dot(start.tangent * slip);
+            one.friction = one.before;
             if (square > 0.0 && excess > 0.0) one.friction += (excess / (square * square)) * slip * slip.transpose();
         }, core::light_items);
     }
@@ -75,7 +77,7 @@ private:
         double gap = 0.0, reaction = 0.0, slope = 0.0;
     };
     struct Learned {
-        Mat3 friction = Mat3::Zero();
+        Mat3 friction = Mat3::Zero(), before = Mat3::Zero();  // secants, and what was left of them when the step began
         Response end;
         bool closes = false;
     };

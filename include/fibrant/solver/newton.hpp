@@ -175,7 +175,7 @@ private:
 
     /// Shortens a step beyond whose end the energy rises steeply: contacts that close or let go within it, one after the other,
     /// would send Newton's method to and fro for ever. With normals and bounds of friction that stand the energy is convex, and the
-    /// place where it rises is found between. What contacts were over the whole step goes into the next tangent.
+    /// place where it rises is found between. What contacts were beyond it goes into the next tangent.
     /// @param slope  of the energy along the step, at its start [force * length]
     /// @returns the part of the step that is left
     double shorten(double slope, Vector& state, assembly::ResidualFigures& figures) {
@@ -183,7 +183,7 @@ private:
         for (int trial = 0; trial < 4 && slope < 0.0 && std::isfinite(figures.residual); ++trial) {
             const double end = residual_.dot(step_);
             if (end <= -parameters_.overshoot * slope) break;
-            if (trial == 0) equilibrium_->learned().learn(*contacts_, step_);
+            equilibrium_->learned().learn(*contacts_, step_);
             const double factor = std::clamp(slope / (slope - end), 0.1, 0.8);
             step_ *= factor, part *= factor, slope *= factor;
             state = before_ + step_;
