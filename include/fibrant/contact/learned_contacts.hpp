@@ -2,8 +2,8 @@
 #pragma once
 /// @file What contacts turned out to be over a step of Newton's method that went too far, for the step after.
 
+#include <fibrant/contact/contact_element.hpp>
 #include <fibrant/core/parallel.hpp>
-#include <fibrant/core/types.hpp>
 
 #include <algorithm>
 #include <vector>
@@ -35,7 +35,7 @@ public:
     Vec3 force(const Contacts& contacts, Index k) const noexcept {
         const Learned& one = learned_[core::at(k)];
         if (!one.closes) return Vec3::Zero();
-        const auto& now = contacts.responses()[core::at(k)];
+        const ContactResponse& now = contacts.responses()[core::at(k)];
         return (now.reaction - one.end.reaction - one.end.slope * (now.gap - one.end.gap)) * contacts.elements()[core::at(k)].normal;
     }
 
@@ -60,8 +60,7 @@ public:
             const Vec3 along = motion.dot(element.normal) * element.normal, slip = motion - along;
             Learned& one = learned_[core::at(k)];
             one.closes = change.dot(along) > along.dot(start.tangent * along);
-            const auto& end = contacts.responses()[core::at(k)];
-            if (one.closes) one.end = {end.gap, end.reaction, end.slope};
+            if (one.closes) one.end = contacts.responses()[core::at(k)];
             const double square = slip.squaredNorm(), excess = change.dot(slip) - slip.dot(start.tangent * slip);
             one.friction = one.before;
             if (square > 0.0 && excess > 0.0) one.friction += (excess / (square * square)) * slip * slip.transpose();
@@ -73,12 +72,9 @@ private:
         Vec3 force;
         Mat3 tangent;
     };
-    struct Response {
-        double gap = 0.0, reaction = 0.0, slope = 0.0;
-    };
     struct Learned {
         Mat3 friction = Mat3::Zero(), before = Mat3::Zero();  // secants, and what was left of them when the step began
-        Response end;
+        ContactResponse end;
         bool closes = false;
     };
     std::vector<Start> start_;
