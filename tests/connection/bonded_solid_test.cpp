@@ -40,6 +40,7 @@ struct FibresAlone {
     [[no_unique_address]] connection::NoConnections::Of<Scene::Beam> ties;
     assembly::ChainSystem<Scene::Beam> system;
     std::vector<Scene::Beam::Stresses> stresses;
+    contact::LearnedContacts learned;
     std::vector<double> amplitudes, holding;
     std::vector<Vec3> targets;
     Vector external, reaction, anchor;
