@@ -258,11 +258,17 @@ private:
         system_.skews().clear();
         const auto& elements = contacts_->elements();
         for (Index k = 0; k < core::count(elements); ++k) {
-            const Mat3 learned = learned_.empty() ? Mat3(Mat3::Zero()) : learned_.stiffness(*contacts_, k);
-            if (!contacts_->carries(k) && learned.isZero(0.0)) continue;
+            const bool carries = contacts_->carries(k);
+            if (!carries && learned_.empty()) continue;
+            Mat3 tangent = contacts_->tangent(k);
+            if (!learned_.empty()) {
+                const Mat3 learned = learned_.stiffness(*contacts_, k);
+                if (!carries && learned.isZero(0.0)) continue;
+                tangent += learned;
+            }
             const auto& element = elements[core::at(k)];
             points.push_back({element.first_i, element.first_j, element.fibre_i, element.fibre_j, element.weights_i,
-                              element.weights_j, contacts_->tangent(k) + learned});
+                              element.weights_j, tangent});
             if (!contacts_->follows()) continue;
             const Vec3 column = contacts_->friction_by_gap(k);
             if (!column.isZero(0.0)) system_.skews().push_back({static_cast<std::int32_t>(points.size() - 1), column, element.normal});

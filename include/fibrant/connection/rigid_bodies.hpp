@@ -179,13 +179,8 @@ public:
     }
 
     /// Keeps what fibres and contacts exert on the tied vectors: at equilibrium the force of the ties on them.
-    void hold_forces(const scene::DofLayout& layout, const Vector& internal) {
-        if (ties_.empty()) return;
-        forces_.resize(scalars_);
-        const Vector tied = scene::tied_part(layout, internal);
-        forces_.head(tied.size()) = tied;
-        for (std::size_t k = tied_; k < ties_.size(); ++k)
-            forces_.segment(ties_[k].first, ties_[k].count) = ties_[k].axes.leftCols(ties_[k].count).transpose() * combination(ties_[k], internal);
+    void hold_forces(const scene::DofLayout&, const Vector& internal) {
+        if (!ties_.empty()) forces_ = scene::tied_part(ties_, internal);
     }
 
     /// Stiffness of the free coordinates from the forces that turn with them. @param whole  else none

@@ -9,20 +9,20 @@
 namespace fibrant::scene {
 
 /// Number of tied scalars.
-inline Index tied_scalars(const DofLayout& layout) noexcept {
-    return layout.ties.empty() ? 0 : layout.ties.back().first + layout.ties.back().count;
-}
+inline Index tied_scalars(const std::vector<Tie>& ties) noexcept { return ties.empty() ? 0 : ties.back().first + ties.back().count; }
+inline Index tied_scalars(const DofLayout& layout) noexcept { return tied_scalars(layout.ties); }
 
 /// B x: the tied scalars of a vector.
-inline Vector tied_part(const DofLayout& layout, const Vector& x) {
-    Vector scalars(tied_scalars(layout));
-    for (const Tie& tie : layout.ties) {
+inline Vector tied_part(const std::vector<Tie>& ties, const Vector& x) {
+    Vector scalars(tied_scalars(ties));
+    for (const Tie& tie : ties) {
         Vec3 sum = Vec3::Zero();
         for (std::size_t k = 0; k < tie.vectors.size(); ++k) sum += tie.weights[k] * x.segment<3>(3 * tie.vectors[k]);
         for (Index a = 0; a < tie.count; ++a) scalars[tie.first + a] = tie.axes.col(a).dot(sum);
     }
     return scalars;
 }
+inline Vector tied_part(const DofLayout& layout, const Vector& x) { return tied_part(layout.ties, x); }
 
 /// x += B^T scalars
 inline void add_tied(const DofLayout& layout, const Vector& scalars, Vector& x) {
