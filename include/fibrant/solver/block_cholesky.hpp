@@ -4,6 +4,7 @@
 
 #include <fibrant/core/large_array.hpp>
 #include <fibrant/core/parallel.hpp>
+#include <fibrant/solver/compressed_panel.hpp>
 #include <fibrant/solver/supernodes.hpp>
 
 #include <Eigen/Dense>
@@ -20,16 +21,9 @@
 
 namespace fibrant::solver {
 
-/// What a pivot that is too small, or negative, is replaced by.
-enum class SmallPivot : std::uint8_t {
-    infinite,  ///< so much that its unknown stays zero: a singular matrix is solved for the other unknowns
-    magnitude, ///< its magnitude, at least `least_pivot`: nearly an inverse, for use as a preconditioner
-};
-
 /// A = L L^T of a symmetric matrix whose rows and columns come in blocks: nodes, or stations of a coarse space.
 ///
-/// A pivot that is not positive, or that cancellation has left less than `least_pivot` of, is replaced, so that the factor
-/// is positive definite always; SmallPivot says by what.
+/// The factor is positive definite always: pivots that are too small are replaced (DenseElimination).
 ///
 /// @tparam Real  float or double, of fronts and factor
 template <class Real>
@@ -38,15 +32,9 @@ public:
     using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
     using RealVector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
-    static constexpr double least_pivot = sizeof(Real) == 4 ? 1e-6 : 1e-12;  ///< over the diagonal entry [1]
+    using Pivots = solver::Pivots;
 
-    explicit BlockCholesky(SmallPivot small = SmallPivot::infinite) : small_{small} {}
-
-    struct Pivots {
-        Index dropped = 0;   ///< replaced
-        Index negative = 0;  ///< of these, negative beyond rounding: the matrix is indefinite
-        bool finite = true;
-    };
+    explicit BlockCholesky(SmallPivot small = SmallPivot::infinite) : dense_{small} {}
 
     /// Orders the blocks and finds the pattern of the factor.
     ///
@@ -76,14 +64,21 @@ public:
             for (const int row : list[s].rows) rows_[s] += size(row);
             if (list[s].parent >= 0) children_[core::at(list[s].parent)].push_back(static_cast<int>(s));
         }
-        panel_first_.assign(1, 0);
-        for (int s = 0; s < static_cast<int>(list.size()); ++s) panel_first_.push_back(panel_first_.back() + columns(s) * (columns(s) + rows_[core::at(s)]));
+        compressed_.assign(list.size(), {});
+        lay_out(false);
+        fill_ = panel_first_.back();
         stack_updates();
     }
 
     Index unknowns() const noexcept { return offset_.empty() ? 0 : offset_.back(); }
-    /// Entries of the factor, zeros in its dense panels included.
-    Index fill() const noexcept { return panel_first_.empty() ? 0 : panel_first_.back(); }
+    /// Entries of the exact factor, zeros in its dense panels included.
+    Index fill() const noexcept { return fill_; }
+    /// Entries that are kept of the last factor, which may be compressed.
+    Index entries() const {
+        Index sum = panel_first_.empty() ? 0 : panel_first_.back();
+        for (const CompressedPanel<Real>& panel : compressed_) sum += panel.entries();
+        return sum;
+    }
 
     /// Sets the matrix to zero.
     ///
@@ -143,17 +138,23 @@ public:
     }
 
     /// Factor of the present matrix.
-    Pivots factor() {
+    ///
+    /// @param left_out  0: all of it; > 0: wide panels are compressed, entries up to this, over the root of the diagonal of their row,
+    ///                  left out (CompressedPanel). Only where `analyse` knew the places of the blocks.
+    Pivots factor(Real left_out = 0) {
+        const core::EigenOnOneThread threads;
         Pivots pivots;
         const auto& list = supernodes_.list();
+        if (!supernodes_.sorted()) left_out = 0;
+        if (compressing_ != (left_out > 0)) lay_out(left_out > 0);
         // What fronts leave to their parents lies on two stacks that levels of the tree take by turns: children lie on top of one
         // when their parent puts its own part on the other. They are kept: pages that are new to a process are slow.
         for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) stack_[k].resize(stack_size_[k]);
-        panels_.resize(fill());
+        panels_.resize(panel_first_.back());
+        wide_.resize(wide_size_);
         const auto update_of = [&](std::size_t s) {
             return Eigen::Map<RealMatrix>(stack_[core::at(update_[s].stack)].data() + update_[s].first, rows_[s], rows_[s]);
         };
-        Scratch scratch;
         std::vector<int> local(core::at(supernodes_.vertices()), -1);  // first row of a block in the front
         for (std::size_t s = 0; s < list.size(); ++s) {
             const Index m = columns(static_cast<int>(s)), n = m + rows_[s];
@@ -175,8 +176,13 @@ public:
                 for (const int other : supernodes_.later(k)) take(other);
             }
             for (const int c : children_[s]) extend(c, update_of(core::at(c)), local, panel, update);
-            eliminate(panel, 0, m, pivot_scale(list[s]), scratch, pivots);
-            if (n > m) subtract_square(panel.bottomRows(n - m), update);
+            const RealVector scale = pivot_scale(list[s].first, list[s].last);
+            if (!compressed_[s].empty()) {
+                compressed_[s].eliminate(panel, update, scale, row_scale(list[s]), left_out, dense_, pivots);
+                continue;
+            }
+            dense_.eliminate(panel, 0, m, scale, pivots);
+            if (n > m) dense_.subtract_square(panel.bottomRows(n - m), update);
         }
         return pivots;
     }
@@ -192,12 +198,16 @@ public:
         for (std::size_t s = 0; s < list.size(); ++s) {
             const Index m = columns(static_cast<int>(s));
             auto own = work_.segment(offset_[core::at(list[s].first)], m);
-            const auto panel = panel_of(s);
-            panel.topRows(m).template triangularView<Eigen::Lower>().solveInPlace(own);
-            if (rows_[s] == 0) continue;
-            gathered_.noalias() = panel.bottomRows(rows_[s]) * own;
+            if (!compressed_[s].empty()) {
+                compressed_[s].forward(own, gathered_);
+            } else {
+                const auto panel = panel_of(s);
+                panel.topRows(m).template triangularView<Eigen::Lower>().solveInPlace(own);
+                if (rows_[s] == 0) continue;
+                gathered_.noalias() = -(panel.bottomRows(rows_[s]) * own);
+            }
             Index row = 0;
-            for (const int k : list[s].rows) work_.segment(offset_[core::at(k)], size(k)) -= gathered_.segment(row, size(k)), row += size(k);
+            for (const int k : list[s].rows) work_.segment(offset_[core::at(k)], size(k)) += gathered_.segment(row, size(k)), row += size(k);
         }
         for (std::size_t s = list.size(); s-- > 0;) {
             const Index m = columns(static_cast<int>(s));
@@ -205,6 +215,10 @@ public:
             gathered_.resize(rows_[s]);
             Index row = 0;
             for (const int k : list[s].rows) gathered_.segment(row, size(k)) = work_.segment(offset_[core::at(k)], size(k)), row += size(k);
+            if (!compressed_[s].empty()) {
+                compressed_[s].backward(own, gathered_);
+                continue;
+            }
             const auto panel = panel_of(s);
             if (rows_[s] > 0) own.noalias() -= panel.bottomRows(rows_[s]).transpose() * gathered_;
             panel.topRows(m).template triangularView<Eigen::Lower>().transpose().solveInPlace(own);
@@ -218,10 +232,37 @@ public:
 private:
     using Panel = Eigen::Map<RealMatrix>;
 
-    /// Columns of a supernode, the diagonal part on top.
+    /// Columns of a supernode, the diagonal part on top. Those that are compressed have one place to be eliminated in.
     Panel panel_of(std::size_t s) {
         const Index m = columns(static_cast<int>(s));
-        return {panels_.data() + panel_first_[s], m + rows_[s], m};
+        return {compressed_[s].empty() ? panels_.data() + panel_first_[s] : wide_.data(), m + rows_[s], m};
+    }
+    /// Which panels are compressed, and where the others lie.
+    void lay_out(bool compressing) {
+        constexpr Index least_columns = 256, least_rows = 768, piece = 256;
+        const auto& list = supernodes_.list();
+        compressing_ = compressing;
+        panel_first_.assign(1, 0);
+        wide_size_ = 0;
+        for (std::size_t s = 0; s < list.size(); ++s) {
+            const Index m = columns(static_cast<int>(s)), n = m + rows_[s];
+            const bool wide = compressing && m >= least_columns && n >= least_rows;
+            compressed_[s].clear();
+            panel_first_.push_back(panel_first_.back() + (wide ? 0 : m * n));
+            if (!wide) continue;
+            wide_size_ = std::max(wide_size_, m * n);
+            std::vector<typename CompressedPanel<Real>::Piece> pieces;
+            Index row = 0, own = 0;
+            const auto take = [&](int k) {
+                if (row == 0 || row == m || pieces.back().size + size(k) > piece) pieces.push_back({row, 0});
+                pieces.back().size += size(k);
+                row += size(k);
+                if (row == m) own = core::count(pieces);
+            };
+            for (int k = list[s].first; k < list[s].last; ++k) take(k);
+            for (const int k : list[s].rows) take(k);
+            compressed_[s].set(std::move(pieces), own);
+        }
     }
     int size(int place) const noexcept { return static_cast<int>(offset_[core::at(place) + 1] - offset_[core::at(place)]); }
     Index columns(int s) const noexcept {
@@ -260,11 +301,12 @@ private:
         }
     }
 
-    /// What pivots are compared with: the diagonal, and of a vector that is nearly nothing in one direction the others'.
-    RealVector pivot_scale(const Supernodes::Supernode& supernode) const {
-        RealVector scale(offset_[core::at(supernode.last)] - offset_[core::at(supernode.first)]);
+    /// What pivots of the places [first, last) are compared with: the diagonal, and of a vector that is nearly nothing in one
+    /// direction the others'.
+    RealVector pivot_scale(int first, int last) const {
+        RealVector scale(offset_[core::at(last)] - offset_[core::at(first)]);
         Index row = 0;
-        for (int k = supernode.first; k < supernode.last; ++k)
+        for (int k = first; k < last; ++k)
             for (int i = 0; i < size(k); ++i) scale[row++] = static_cast<Real>(value_[core::at(entry_[core::at(k)] + i * (size(k) + 1))]);
         for (Index k = 0; k < scale.size(); k += 3) {
             const Real largest = scale.template segment<3>(k).maxCoeff();
@@ -272,6 +314,19 @@ private:
                 if (scale[i] >= 0) scale[i] = std::max(scale[i], Real(1e-3) * largest);
             }
         }
+        return scale;
+    }
+    /// Roots of the diagonal of all rows of a front.
+    RealVector row_scale(const Supernodes::Supernode& supernode) const {
+        RealVector scale(offset_[core::at(supernode.last)] - offset_[core::at(supernode.first)] + rows_[core::at(&supernode - supernodes_.list().data())]);
+        Index row = 0;
+        const auto take = [&](int first, int last) {
+            const RealVector own = pivot_scale(first, last).cwiseAbs().cwiseMax(Real(1e-30)).cwiseSqrt();
+            scale.segment(row, own.size()) = own;
+            row += own.size();
+        };
+        take(supernode.first, supernode.last);
+        for (const int k : supernode.rows) take(k, k + 1);
         return scale;
     }
 
@@ -306,70 +361,7 @@ private:
             }
     }
 
-    /// square -= rows rows^T, the lower part: below strips' own blocks as products, which are faster than Eigen's rank update.
-    template <class Rows, class Square>
-    static void subtract_square(const Rows& rows, Square&& square) {
-        constexpr Index strip = 1536;
-        for (Index first = 0; first < rows.rows(); first += strip) {
-            const Index width = std::min(strip, rows.rows() - first), below = rows.rows() - first - width;
-            const auto own = rows.middleRows(first, width);
-            square.block(first, first, width, width).template selfadjointView<Eigen::Lower>().rankUpdate(own, Real(-1));
-            if (below > 0) square.block(first + width, first, below, width).noalias() -= rows.bottomRows(below) * own.transpose();
-        }
-    }
-
-    struct Scratch {
-        RealMatrix inverse, rows;
-    };
-    /// Cholesky of the columns [first, last) of a front, the upper part of `panel`, and what it makes of the rows below.
-    ///
-    /// By halves, so that most is done by wide products. Below the narrowest diagonal blocks the rows are multiplied by
-    /// the inverse, which is faster than a solution and as good: these blocks are small.
-    void eliminate(Panel& panel, Index first, Index last, const RealVector& scale, Scratch& scratch, Pivots& pivots) const {
-        constexpr Index narrow = 24, strip = 768;
-        const Index width = last - first, n = panel.rows();
-        if (width > narrow) {
-            const Index half = first + (width / 2 + narrow - 1) / narrow * narrow, other = last - half;
-            eliminate(panel, first, half, scale, scratch, pivots);
-            const auto own = panel.block(half, first, other, half - first);
-            subtract_square(own, panel.block(half, half, other, other));
-            if (last < n) panel.block(last, half, n - last, other).noalias() -= panel.block(last, first, n - last, half - first) * own.transpose();
-            eliminate(panel, half, last, scale, scratch, pivots);
-            return;
-        }
-        eliminate_diagonal(panel, first, width, scale, pivots);
-        scratch.inverse.setIdentity(width, width);
-        panel.block(first, first, width, width).template triangularView<Eigen::Lower>().solveInPlace(scratch.inverse);
-        for (Index row = last; row < n; row += strip) {
-            auto rows = panel.block(row, first, std::min(strip, n - row), width);
-            scratch.rows = rows;
-            rows.noalias() = scratch.rows * scratch.inverse.transpose();
-        }
-    }
-    void eliminate_diagonal(Panel& panel, Index first, Index width, const RealVector& scale, Pivots& pivots) const {
-        auto diagonal = panel.block(first, first, width, width);
-        for (Index j = 0; j < width; ++j) {
-            const Real original = scale[first + j];
-            Real pivot = diagonal(j, j) - diagonal.row(j).head(j).squaredNorm();
-            if (!std::isfinite(pivot)) pivots.finite = false;
-            if (!(pivot > static_cast<Real>(least_pivot) * original)) {
-                ++pivots.dropped;
-                if (pivot < -static_cast<Real>(100 * least_pivot) * std::abs(original) || original < 0) ++pivots.negative;
-                pivot = small_ == SmallPivot::infinite
-                            ? static_cast<Real>(1e16) * std::max(std::abs(original), Real(1e-10))
-                            : std::max({std::abs(pivot), static_cast<Real>(least_pivot) * std::abs(original), Real(1e-30)});
-            }
-            const Real root = std::sqrt(pivot);
-            diagonal(j, j) = root;
-            const Index below = width - j - 1;
-            if (below > 0) {
-                diagonal.col(j).tail(below).noalias() -= diagonal.bottomLeftCorner(below, j) * diagonal.row(j).head(j).transpose();
-                diagonal.col(j).tail(below) /= root;
-            }
-        }
-    }
-
-    SmallPivot small_;
+    DenseElimination<Real> dense_;
     Supernodes supernodes_;
     std::vector<Index> offset_;  // first unknown of each place
     std::vector<Index> input_;   // first unknown of each block as it was given
@@ -385,7 +377,10 @@ private:
     std::vector<Update> update_;  // of each supernode: the place of what it leaves to its parent
     std::array<Index, 2> stack_size_{};
     std::vector<Index> panel_first_;  // of each supernode, in `panels_`
-    core::LargeArray<Real> panels_;
+    core::LargeArray<Real> panels_, wide_;
+    std::vector<CompressedPanel<Real>> compressed_;  // of each supernode; empty if its panel is dense
+    Index fill_ = 0, wide_size_ = 0;
+    bool compressing_ = false;
     std::array<core::LargeArray<Real>, 2> stack_;
     RealVector work_, gathered_;
     bool uniform_ = true;  // all blocks have the same size

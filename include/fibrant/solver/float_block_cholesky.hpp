@@ -12,16 +12,21 @@
 
 namespace fibrant::solver {
 
-/// A is formed by blocks of nodes and factored in `Real`; two or three iterations then reach any tolerance.
+/// A is formed by blocks of nodes and factored in `Real`; a few iterations then reach any tolerance.
 ///
-/// For states too ill-conditioned for iterations, few fibres, and as a reference. Memory and time grow with about the
-/// powers 1.3 and 1.6 of the unknowns.
+/// For states too ill-conditioned for other iterations, few fibres, and as a reference. Blocks far apart in wide fronts are compressed
+/// (CompressedPanel) unless `left_out` is 0; should a pivot turn negative so, or iterations not end, A is factored as it is.
 template <class Real>
 class NodeBlockCholesky {
 public:
     struct Parameters {
-        int iteration_limit = 200;  ///< > 0
-        void validate() const { core::require_at_least("NodeBlockCholesky.iteration_limit", iteration_limit, 1); }
+        int iteration_limit = 200;  ///< with the factor of A as it is; > 0
+        /// Largest entries that are left out of the factor, over the root of the diagonal of their row; 0: none. >= 0 [1]
+        double left_out = sizeof(Real) == 4 ? 3e-4 : 0.0;
+        void validate() const {
+            core::require_at_least("NodeBlockCholesky.iteration_limit", iteration_limit, 1);
+            core::require_not_negative("NodeBlockCholesky.left_out", left_out);
+        }
     };
     NodeBlockCholesky() : NodeBlockCholesky(Parameters{}) {}
     explicit NodeBlockCholesky(const Parameters& parameters) : parameters_{core::validated(parameters)} {}
@@ -75,8 +80,9 @@ public:
             [[maybe_unused]] const bool complete = sum(system);
             assert(complete);
         }
-        const typename BlockCholesky<Real>::Pivots pivots = work.factor.factor();
-        work.status = !pivots.finite ? SolveStatus::not_finite : pivots.negative > 0 ? SolveStatus::indefinite : SolveStatus::converged;
+        factor(static_cast<Real>(parameters_.left_out));
+        if (work.left_out > 0 && work.status != SolveStatus::converged) factor(0);
+        work.prepared = work.left_out;
         return work.status;
     }
 
@@ -91,13 +97,27 @@ public:
             z = r;
             work.factor.solve(z);
         };
-        return conjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.vectors, x);
+        const auto iterate = [&](int limit) { return conjugate_gradient(system, precondition, b, tolerance, limit, work.vectors, x); };
+        if (work.left_out != work.prepared) factor(work.prepared);  // the solution before fell back
+        int before = 0;
+        if (work.left_out > 0) {
+            const SolveReport report = iterate(compressed_limit);
+            if (report.status != SolveStatus::iteration_limit) return report;
+            before = report.iterations;
+            factor(0);
+        }
+        SolveReport report = iterate(parameters_.iteration_limit);
+        report.iterations += before;
+        return report;
     }
 
-    /// Entries of the factor.
+    /// Entries of the factor of A as it is.
     Index fill() const { return work_->factor.fill(); }
+    /// Entries that are kept of the last one.
+    Index entries() const { return work_->factor.entries(); }
 
 private:
+    static constexpr int compressed_limit = 50;  // iterations that cost less than a factor of A as it is
     struct Place {
         int node = 0, vector = 0;
     };
@@ -106,7 +126,14 @@ private:
         BlockCholesky<Real> factor{SmallPivot::magnitude};
         ConjugateGradientVectors vectors;
         SolveStatus status = SolveStatus::not_finite;
+        Real left_out = 0, prepared = 0;  // of the factor that there is, and of the one that prepare left
     };
+
+    void factor(Real left_out) {
+        const Pivots pivots = work_->factor.factor(left_out);
+        work_->left_out = left_out;
+        work_->status = !pivots.finite ? SolveStatus::not_finite : pivots.negative > 0 ? SolveStatus::indefinite : SolveStatus::converged;
+    }
 
     /// Sums the matrix from the terms; false if the pattern lacks a block.
     template <class System>
@@ -158,7 +185,7 @@ private:
     Workspace<Work> work_;
 };
 
-/// The fallback: half the memory and a third of the time of a factor in double.
+/// The fallback: a tenth of the memory and of the time of a factor in double.
 using FloatBlockCholesky = NodeBlockCholesky<float>;
 /// The reference.
 using DoubleBlockCholesky = NodeBlockCholesky<double>;

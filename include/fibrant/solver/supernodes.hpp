@@ -44,12 +44,16 @@ public:
         }
 #endif
         merge_supernodes();
+        sorted_ = !places.empty();
+        if (sorted_) sort_by_place(graph, places);
     }
 
     int vertices() const noexcept { return static_cast<int>(place_.size()); }
     /// Place of a vertex in the order of elimination.
     int place(int vertex) const noexcept { return place_[core::at(vertex)]; }
     const std::vector<Supernode>& list() const noexcept { return list_; }
+    /// Whether the columns of each supernode are sorted by their places in space.
+    bool sorted() const noexcept { return sorted_; }
     /// Neighbours of a place that come after it, rising.
     std::span<const int> later(int place) const {
         return {later_.data() + start_[core::at(place)], core::at(start_[core::at(place + 1)] - start_[core::at(place)])};
@@ -218,6 +222,36 @@ private:
         for (Supernode& s : list_) s.parent = s.rows.empty() ? -1 : supernode[core::at(s.rows.front())];
     }
 
+    /// Columns of a supernode that follow each other stand close to each other: what couples runs of them with others far away has
+    /// little rank, and rows of its children stay together in long runs.
+    void sort_by_place(const SparseMatrix& graph, std::span<const Vec3> places) {
+        std::vector<int> vertex(place_.size()), renamed(place_.size());
+        for (int v = 0; v < vertices(); ++v) vertex[core::at(place(v))] = v;
+        for (const Supernode& s : list_) halve(std::span(vertex).subspan(core::at(s.first), core::at(s.last - s.first)), places);
+        for (int k = 0; k < vertices(); ++k) renamed[core::at(place(vertex[core::at(k)]))] = k;
+        for (int k = 0; k < vertices(); ++k) place_[core::at(vertex[core::at(k)])] = k;
+        for (Supernode& s : list_) {
+            for (int& row : s.rows) row = renamed[core::at(row)];
+            std::sort(s.rows.begin(), s.rows.end());
+        }
+        list_later(graph);
+    }
+    /// Sorts vertices by halves across their longest direction.
+    static void halve(std::span<int> vertices, std::span<const Vec3> places) {
+        if (vertices.size() <= 8) return;
+        Vec3 low = places[core::at(vertices.front())], high = low;
+        for (const int v : vertices) low = low.cwiseMin(places[core::at(v)]), high = high.cwiseMax(places[core::at(v)]);
+        Index axis = 0;
+        (high - low).maxCoeff(&axis);
+        const auto key = [&](int v) { return std::pair{places[core::at(v)][axis], v}; };
+        const std::size_t half = vertices.size() / 2;
+        std::nth_element(vertices.begin(), vertices.begin() + static_cast<std::ptrdiff_t>(half), vertices.end(),
+                         [&](int a, int b) { return key(a) < key(b); });
+        halve(vertices.first(half), places);
+        halve(vertices.subspan(half), places);
+    }
+
+    bool sorted_ = false;
     std::vector<int> place_;
     std::vector<int> start_, later_;
     std::vector<Supernode> list_;
