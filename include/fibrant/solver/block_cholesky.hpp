@@ -140,13 +140,70 @@ public:
     /// Factor of the present matrix.
     ///
     /// @param left_out  0: all of it; > 0: wide panels are compressed, entries up to this, over the root of the diagonal of their row,
-    ///                  left out (CompressedPanel). Only where `analyse` knew the places of the blocks.
+    ///                  left out (CompressedPanel). Only where `analyse` knew the places of the blocks, and where no pivot turns
+    ///                  negative so
     Pivots factor(Real left_out = 0) {
+        left_out_ = supernodes_.sorted() ? left_out : 0;
+        Pivots pivots = eliminate();
+        if (left_out_ > 0 && (!pivots.finite || pivots.negative > 0)) {
+            left_out_ = 0;
+            pivots = eliminate();
+        }
+        return pivots;
+    }
+    /// What the last factor leaves out.
+    Real left_out() const noexcept { return left_out_; }
+
+    /// x <- A^-1 x
+    void solve(Vector& x) {
+        work_.resize(unknowns());
+        for (int v = 0; v < supernodes_.vertices(); ++v) {
+            work_.segment(offset_[core::at(supernodes_.place(v))], size(supernodes_.place(v))) =
+                x.segment(input_[core::at(v)], size(supernodes_.place(v))).template cast<Real>();
+        }
+        const auto& list = supernodes_.list();
+        for (std::size_t s = 0; s < list.size(); ++s) {
+            const Index m = columns(static_cast<int>(s));
+            auto own = work_.segment(offset_[core::at(list[s].first)], m);
+            if (!compressed_[s].empty()) {
+                compressed_[s].forward(own, gathered_);
+            } else {
+                const auto panel = panel_of(s);
+                panel.topRows(m).template triangularView<Eigen::Lower>().solveInPlace(own);
+                if (rows_[s] == 0) continue;
+                gathered_.noalias() = panel.bottomRows(rows_[s]) * own;
+            }
+            Index row = 0;
+            for (const int k : list[s].rows) work_.segment(offset_[core::at(k)], size(k)) -= gathered_.segment(row, size(k)), row += size(k);
+        }
+        for (std::size_t s = list.size(); s-- > 0;) {
+            const Index m = columns(static_cast<int>(s));
+            auto own = work_.segment(offset_[core::at(list[s].first)], m);
+            gathered_.resize(rows_[s]);
+            Index row = 0;
+            for (const int k : list[s].rows) gathered_.segment(row, size(k)) = work_.segment(offset_[core::at(k)], size(k)), row += size(k);
+            if (!compressed_[s].empty()) {
+                compressed_[s].backward(own, gathered_);
+                continue;
+            }
+            const auto panel = panel_of(s);
+            if (rows_[s] > 0) own.noalias() -= panel.bottomRows(rows_[s]).transpose() * gathered_;
+            panel.topRows(m).template triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+        }
+        for (int v = 0; v < supernodes_.vertices(); ++v) {
+            x.segment(input_[core::at(v)], size(supernodes_.place(v))) =
+                work_.segment(offset_[core::at(supernodes_.place(v))], size(supernodes_.place(v))).template cast<double>();
+        }
+    }
+
+private:
+    using Panel = Eigen::Map<RealMatrix>;
+
+    Pivots eliminate() {
         const core::EigenOnOneThread threads;
         Pivots pivots;
         const auto& list = supernodes_.list();
-        if (!supernodes_.sorted()) left_out = 0;
-        if (compressing_ != (left_out > 0)) lay_out(left_out > 0);
+        if (compressing_ != (left_out_ > 0)) lay_out(left_out_ > 0);
         // What fronts leave to their parents lies on two stacks that levels of the tree take by turns: children lie on top of one
         // when their parent puts its own part on the other. They are kept: pages that are new to a process are slow.
         for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) stack_[k].resize(stack_size_[k]);
@@ -178,7 +235,7 @@ public:
             for (const int c : children_[s]) extend(c, update_of(core::at(c)), local, panel, update);
             const RealVector scale = pivot_scale(list[s].first, list[s].last);
             if (!compressed_[s].empty()) {
-                compressed_[s].eliminate(panel, update, scale, row_scale(list[s]), left_out, dense_, pivots);
+                compressed_[s].eliminate(panel, update, scale, row_scale(list[s]), left_out_, dense_, pivots);
                 continue;
             }
             dense_.eliminate(panel, 0, m, scale, pivots);
@@ -186,51 +243,6 @@ public:
         }
         return pivots;
     }
-
-    /// x <- A^-1 x
-    void solve(Vector& x) {
-        work_.resize(unknowns());
-        for (int v = 0; v < supernodes_.vertices(); ++v) {
-            work_.segment(offset_[core::at(supernodes_.place(v))], size(supernodes_.place(v))) =
-                x.segment(input_[core::at(v)], size(supernodes_.place(v))).template cast<Real>();
-        }
-        const auto& list = supernodes_.list();
-        for (std::size_t s = 0; s < list.size(); ++s) {
-            const Index m = columns(static_cast<int>(s));
-            auto own = work_.segment(offset_[core::at(list[s].first)], m);
-            if (!compressed_[s].empty()) {
-                compressed_[s].forward(own, gathered_);
-            } else {
-                const auto panel = panel_of(s);
-                panel.topRows(m).template triangularView<Eigen::Lower>().solveInPlace(own);
-                if (rows_[s] == 0) continue;
-                gathered_.noalias() = -(panel.bottomRows(rows_[s]) * own);
-            }
-            Index row = 0;
-            for (const int k : list[s].rows) work_.segment(offset_[core::at(k)], size(k)) += gathered_.segment(row, size(k)), row += size(k);
-        }
-        for (std::size_t s = list.size(); s-- > 0;) {
-            const Index m = columns(static_cast<int>(s));
-            auto own = work_.segment(offset_[core::at(list[s].first)], m);
-            gathered_.resize(rows_[s]);
-            Index row = 0;
-            for (const int k : list[s].rows) gathered_.segment(row, size(k)) = work_.segment(offset_[core::at(k)], size(k)), row += size(k);
-            if (!compressed_[s].empty()) {
-                compressed_[s].backward(own, gathered_);
-                continue;
-            }
-            const auto panel = panel_of(s);
-            if (rows_[s] > 0) own.noalias() -= panel.bottomRows(rows_[s]).transpose() * gathered_;
-            panel.topRows(m).template triangularView<Eigen::Lower>().transpose().solveInPlace(own);
-        }
-        for (int v = 0; v < supernodes_.vertices(); ++v) {
-            x.segment(input_[core::at(v)], size(supernodes_.place(v))) =
-                work_.segment(offset_[core::at(supernodes_.place(v))], size(supernodes_.place(v))).template cast<double>();
-        }
-    }
-
-private:
-    using Panel = Eigen::Map<RealMatrix>;
 
     /// Columns of a supernode, the diagonal part on top. Those that are compressed have one place to be eliminated in.
     Panel panel_of(std::size_t s) {
@@ -380,6 +392,7 @@ private:
     core::LargeArray<Real> panels_, wide_;
     std::vector<CompressedPanel<Real>> compressed_;  // of each supernode; empty if its panel is dense
     Index fill_ = 0, wide_size_ = 0;
+    Real left_out_ = 0;
     bool compressing_ = false;
     std::array<core::LargeArray<Real>, 2> stack_;
     RealVector work_, gathered_;

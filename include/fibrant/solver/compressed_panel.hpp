@@ -130,7 +130,7 @@ public:
         });
     }
 
-    /// own <- L^-1 own of the diagonal part, below <- what that takes off the rows below, negative.
+    /// own <- L^-1 own of the diagonal part, below <- what that takes off the rows below.
     template <class Own>
     void forward(Own& own, RealVector& below) const {
         const Index all = core::count(pieces_), m = own.size();
@@ -143,12 +143,12 @@ public:
                 const LowRankBlock<Real>& b = block(i, j);
                 if (b.rank() == 0) continue;
                 if (!b.whole) thin.noalias() = b.right.transpose() * x;
-                const auto take = [&](auto&& y) {
-                    if (b.whole) y.noalias() -= b.left * x;
-                    else y.noalias() -= b.left * thin;
+                const auto taken = [&](const auto& v) {
+                    if (i < columns_) own.segment(piece(i).first, piece(i).size).noalias() -= b.left * v;
+                    else below.segment(piece(i).first - m, piece(i).size).noalias() += b.left * v;
                 };
-                if (i < columns_) take(own.segment(piece(i).first, piece(i).size));
-                else take(below.segment(piece(i).first - m, piece(i).size));
+                if (b.whole) taken(x);
+                else taken(thin);
             }
         }
     }

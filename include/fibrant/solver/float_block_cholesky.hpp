@@ -81,8 +81,7 @@ public:
             assert(complete);
         }
         factor(static_cast<Real>(parameters_.left_out));
-        if (work.left_out > 0 && work.status != SolveStatus::converged) factor(0);
-        work.prepared = work.left_out;
+        work.prepared = work.factor.left_out();
         return work.status;
     }
 
@@ -98,9 +97,9 @@ public:
             work.factor.solve(z);
         };
         const auto iterate = [&](int limit) { return conjugate_gradient(system, precondition, b, tolerance, limit, work.vectors, x); };
-        if (work.left_out != work.prepared) factor(work.prepared);  // the solution before fell back
+        if (work.factor.left_out() != work.prepared) factor(work.prepared);  // the solution before fell back
         int before = 0;
-        if (work.left_out > 0) {
+        if (work.prepared > 0) {
             const SolveReport report = iterate(compressed_limit);
             if (report.status != SolveStatus::iteration_limit) return report;
             before = report.iterations;
@@ -126,12 +125,11 @@ private:
         BlockCholesky<Real> factor{SmallPivot::magnitude};
         ConjugateGradientVectors vectors;
         SolveStatus status = SolveStatus::not_finite;
-        Real left_out = 0, prepared = 0;  // of the factor that there is, and of the one that prepare left
+        Real prepared = 0;  // what the factor that prepare left leaves out
     };
 
     void factor(Real left_out) {
         const Pivots pivots = work_->factor.factor(left_out);
-        work_->left_out = left_out;
         work_->status = !pivots.finite ? SolveStatus::not_finite : pivots.negative > 0 ? SolveStatus::indefinite : SolveStatus::converged;
     }
 
