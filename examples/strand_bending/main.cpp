@@ -93,7 +93,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     const simulation::Report report = simulator.run(loading, recorder);
     const strand::BendingState state = strand::measure_bending(simulator, parameters, bending);
     example::write_pictures(output, simulator.snapshot(), -90.0, 10.0);
-    example::write_summary(output, report, radius, {{"wires", static_cast<double>(wires)}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
+    example::write_summary(output, report, radius, {example::least_gap(simulator.snapshot()), {"wires", static_cast<double>(wires)}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
                            {"length_over_radius", parameters.length / radius}, {"angle_deg", state.angle * 180.0 / std::numbers::pi},
                            {"moment", state.moment}, {"moment_at_plate", state.at_plate},
                            {"moment_of_loose_wires", strand::loose_stiffness(parameters) * full / parameters.length},

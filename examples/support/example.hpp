@@ -7,9 +7,11 @@
 
 #include <fibrant/observe/csv_writer.hpp>
 #include <fibrant/observe/json.hpp>
+#include <fibrant/observe/least_gap.hpp>
 #include <fibrant/observe/svg_slice.hpp>
 #include <fibrant/observe/svg_view.hpp>
 #include <fibrant/observe/vtk_writer.hpp>
+#include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/simulation/report.hpp>
 
 #include <CLI/CLI.hpp>
@@ -21,6 +23,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace example {
@@ -127,6 +130,11 @@ inline void write_pictures(const Output& output, const observe::Snapshot& snapsh
     observe::SliceParameters slice;
     slice.axis = cut->first, slice.position = cut->second, slice.unit = output.unit;
     observe::write_file(output.folder / "section.svg", observe::svg_slice(snapshot, slice));
+}
+
+/// For a summary: the true least gap, which no contact element has a say in. Of fibres with three nodes an element.
+inline std::pair<std::string, double> least_gap(const observe::Snapshot& snapshot) {
+    return {"least_gap_over_radius", observe::least_gap(snapshot, fibrant::proximity::GridSearch{}).gap_over_radius};
 }
 
 /// summary.json: what every run says, and what `figures` adds.

@@ -149,7 +149,7 @@ inline void write_measures(const std::filesystem::path& folder, const observe::S
                 sections.row({{"family", name},
                               {"tow", tow},
                               {"crossing", 0.5 * static_cast<double>(k)},
-                              {"along", cloth::NodalCurve{centre}.position(t)[cloth::axis_of(family)]},
+                              {"along", fibrant::observe::NodalCurve{centre}.position(t)[cloth::axis_of(family)]},
                               {"area", section.area},
                               {"fibre_volume_fraction", section.fibre_volume_fraction},
                               {"width", section.width},

@@ -106,7 +106,9 @@
 #include <fibrant/observe/contact_statistics.hpp>
 #include <fibrant/observe/csv_writer.hpp>
 #include <fibrant/observe/json.hpp>
+#include <fibrant/observe/least_gap.hpp>
 #include <fibrant/observe/loading_curve.hpp>
+#include <fibrant/observe/nodal_curve.hpp>
 #include <fibrant/observe/observer.hpp>
 #include <fibrant/observe/snapshot.hpp>
 #include <fibrant/observe/svg_curves.hpp>
@@ -147,7 +149,6 @@
 #include <fibrant/compositions/weave/fabric.hpp>
 #include <fibrant/compositions/weave/fabric_parameters.hpp>
 #include <fibrant/compositions/weave/fibre_figures.hpp>
-#include <fibrant/compositions/weave/least_gap.hpp>
 #include <fibrant/compositions/weave/load_cases.hpp>
 #include <fibrant/compositions/weave/measures.hpp>
 #include <fibrant/compositions/weave/packing.hpp>

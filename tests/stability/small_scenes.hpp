@@ -99,6 +99,7 @@ struct SmallResult {
     std::vector<Vec3> support;                  ///< what holds each fibre at its two ends [force]
     double reactions = 0.0;                     ///< sum of the sizes of all reactions at ends [force]
     Vector state;
+    observe::Snapshot snapshot;
     bool finite() const { return state.allFinite(); }
 };
 
@@ -158,6 +159,7 @@ SmallResult run(const SmallScene& small) {
     SmallResult result;
     result.report = simulator.run(loading);
     result.state = simulator.state();
+    result.snapshot = simulator.snapshot();
     for (Index f = 0; f < core::count(small.fibres); ++f) {
         std::vector<Vec3> line;
         std::vector<std::pair<Vec3, Vec3>> directors;

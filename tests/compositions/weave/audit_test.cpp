@@ -91,7 +91,7 @@ TEST_CASE("crossings are found on wavy fibres where a dense sampling finds them"
             a.emplace_back(s, wave(random), wave(random));
             b.emplace_back(wave(random), s, wave(random));
         }
-        const NodalCurve warp{a}, weft{b};
+        const observe::NodalCurve warp{a}, weft{b};
         Index found = 0;
         double t = 0.0;
         const Index crossings = for_each_plan_crossing(warp, weft, [&](const PlanCrossing& crossing) {
@@ -117,7 +117,7 @@ TEST_CASE("two crossed fibres are apart by the distance of their axes less both 
     observe::Snapshot snapshot;
     snapshot.fibres = {curve({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, 0.1),
                        curve({{0.3, -1, 0.25}, {0.3, 0.2, 0.25}, {0.3, 1, 0.25}}, 0.2)};
-    const LeastGap least = least_gap(snapshot, proximity::BruteSearch{});
+    const observe::LeastGap least = least_gap(snapshot, proximity::BruteSearch{});
     CHECK(least.gap == doctest::Approx(-0.05));
     CHECK(least.gap_over_radius == doctest::Approx(-0.5));
     CHECK((least.position - Vec3{0.3, 0, 0.125}).norm() < 1e-6);
@@ -133,7 +133,7 @@ TEST_CASE("the least gap is that of the curves, not of the chords between their 
     const auto height = [](double x) { return 0.1 + x * x; };
     snapshot.fibres = {curve({{-0.6, 0, height(-0.6)}, {0.2, 0, height(0.2)}, {1.0, 0, height(1.0)}}, 0.02),
                        curve({{0, -1, 0}, {0, 0.1, 0}, {0, 1, 0}}, 0.02)};
-    const LeastGap least = least_gap(snapshot, proximity::BruteSearch{});
+    const observe::LeastGap least = least_gap(snapshot, proximity::BruteSearch{});
     CHECK(least.gap == doctest::Approx(0.06).epsilon(1e-9));
     CHECK(least.position.x() == doctest::Approx(0.0).epsilon(1e-6));
 }
@@ -145,8 +145,8 @@ TEST_CASE("a pair whose chords are apart but whose curves touch deepest is not p
                        curve({{0.5, -1, 0.199}, {0.5, 0, 0.199}, {0.5, 1, 0.199}}, 0.1),
                        curve({{-1, 9, 0}, {0, 9, 0}, {1, 9, 0}}, 0.1),
                        curve({{0.1, 8.5, 0.201}, {0.1, 9.5, 0.201}, {0.1, 10.5, 1.0}}, 0.1)};
-    const NodalCurve bulge{snapshot.fibres[3].position};
-    const LeastGap least = least_gap(snapshot, proximity::BruteSearch{});
+    const observe::NodalCurve bulge{snapshot.fibres[3].position};
+    const observe::LeastGap least = least_gap(snapshot, proximity::BruteSearch{});
     CHECK(least.fibre_i == 2);
     CHECK(least.fibre_j == 3);
     CHECK(least.gap == least_gap(snapshot, proximity::GridSearch{}).gap);
@@ -175,13 +175,13 @@ TEST_CASE("the least gap of a fabric is that of a dense sampling of all pairs, w
     double sampled = 1.0;
     for (std::size_t i = 0; i < snapshot.fibres.size(); ++i)
         for (std::size_t j = i + 1; j < snapshot.fibres.size(); ++j) {
-            const NodalCurve a{snapshot.fibres[i].position}, b{snapshot.fibres[j].position};
+            const observe::NodalCurve a{snapshot.fibres[i].position}, b{snapshot.fibres[j].position};
             for (int p = 0; p <= 512; ++p)
                 for (int q = 0; q <= 512; ++q)
                     sampled = std::min(sampled, (a.position(p / 8.0) - b.position(q / 8.0)).norm() - 0.08);
         }
-    const LeastGap brute = least_gap(snapshot, proximity::BruteSearch{});
-    const LeastGap grid = least_gap(snapshot, proximity::GridSearch{});
+    const observe::LeastGap brute = least_gap(snapshot, proximity::BruteSearch{});
+    const observe::LeastGap grid = least_gap(snapshot, proximity::GridSearch{});
     CHECK(brute.gap <= sampled + 1e-6);
     CHECK(brute.gap >= sampled - 2e-4);
     CHECK(grid.gap == brute.gap);

@@ -45,7 +45,7 @@ TEST_CASE("crimp of a sine path is that of its integral, to the fourth order in 
     double previous = 0.0;
     for (const Index elements : {16, 32, 64}) {
         const std::vector<Vec3> nodes = sine_nodes(a, k, length, elements);
-        const double error = std::abs(crimp(NodalCurve{nodes}, 0, 0.0, length) - exact);
+        const double error = std::abs(crimp(observe::NodalCurve{nodes}, 0, 0.0, length) - exact);
         CHECK(error < 2e-3 * exact);
         if (elements > 16) CHECK(previous / error > 12.0);  // 16 in the limit
         previous = error;
@@ -53,21 +53,21 @@ TEST_CASE("crimp of a sine path is that of its integral, to the fourth order in 
     // A part that begins and ends within elements.
     const std::vector<Vec3> nodes = sine_nodes(a, k, length, 64);
     const double part = (sine_length(a, k, 3.0) - sine_length(a, k, 0.7)) / 2.3 - 1.0;
-    CHECK(crimp(NodalCurve{nodes}, 0, 0.7, 3.0) == doctest::Approx(part).epsilon(1e-4));
+    CHECK(crimp(observe::NodalCurve{nodes}, 0, 0.7, 3.0) == doctest::Approx(part).epsilon(1e-4));
 }
 
 TEST_CASE("a straight fibre has no crimp, and one that does not reach has none to tell") {
     const std::vector<Vec3> nodes{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
-    CHECK(crimp(NodalCurve{nodes}, 0, 0.25, 1.5) == doctest::Approx(0.0));
-    CHECK(std::isnan(crimp(NodalCurve{nodes}, 0, 0.25, 2.5)));
-    CHECK(std::isnan(crimp(NodalCurve{nodes}, 0, 1.5, 0.25)));
-    CHECK(test::refusal([&] { NodalCurve{std::span<const Vec3>{nodes}.first(2)}; }) ==
+    CHECK(crimp(observe::NodalCurve{nodes}, 0, 0.25, 1.5) == doctest::Approx(0.0));
+    CHECK(std::isnan(crimp(observe::NodalCurve{nodes}, 0, 0.25, 2.5)));
+    CHECK(std::isnan(crimp(observe::NodalCurve{nodes}, 0, 1.5, 0.25)));
+    CHECK(test::refusal([&] { observe::NodalCurve{std::span<const Vec3>{nodes}.first(2)}; }) ==
           "NodalCurve.nodes = 2, but it must be odd and >= 3");
 }
 
 TEST_CASE("a curve is met by a plane where its parabolas cross it, at nodes and tangents too") {
     const std::vector<Vec3> nodes{{0, 0, 0}, {1, 0, 1}, {2, 0, 0}, {3, 0, -1}, {4, 0, 0}};
-    const NodalCurve curve{nodes};
+    const observe::NodalCurve curve{nodes};
     CHECK(*curve.meets(Vec3::UnitX(), 2.5) == doctest::Approx(2.5));
     CHECK(*curve.meets(Vec3::UnitZ(), 0.75) == doctest::Approx(0.5));  // z = 1 - (t - 1)^2
     CHECK(*curve.meets(Vec3::UnitZ(), 1.0) == doctest::Approx(1.0));   // touches
@@ -81,7 +81,7 @@ TEST_CASE("curvature of a circle is one over its radius, and its length two pi t
     std::vector<Vec3> nodes;
     for (int k = 0; k <= 128; ++k)
         nodes.emplace_back(2.0 * std::cos(pi * k / 64.0), 1.0, 2.0 * std::sin(pi * k / 64.0));
-    const NodalCurve curve{nodes};
+    const observe::NodalCurve curve{nodes};
     // Middle of an element: the parabola's curvature is 8 sag / chord^2 = 1 / (R cos^2(angle / 2)), angle = pi / 64
     // here.
     CHECK(curve.curvature(5.0) == doctest::Approx(0.5).epsilon(1e-3));

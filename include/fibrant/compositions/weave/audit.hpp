@@ -2,7 +2,7 @@
 #pragma once
 /// @file Audit of a settled fabric: every crossing of every two fibres against the pattern, and the true least gap.
 
-#include <fibrant/compositions/weave/least_gap.hpp>
+#include <fibrant/observe/least_gap.hpp>
 #include <fibrant/compositions/weave/tow_geometry.hpp>
 #include <fibrant/core/parallel.hpp>
 
@@ -26,7 +26,7 @@ struct Audit {
     Index missing_crossings = 0;  ///< pairs of a warp and a weft fibre that do not cross in plan: one slipped out
     double least_height = std::numeric_limits<double>::infinity();  ///< over all crossings [length]
     std::vector<AuditedCrossing> worst;                             ///< the lowest, lowest first
-    LeastGap least_gap;
+    observe::LeastGap least_gap;
 
     /// All crossings as the pattern says, and no fibres deeper in each other than allowed [length].
     bool clean(double allowed_penetration) const noexcept {
@@ -50,9 +50,9 @@ inline Audit audit_crossings(const observe::Snapshot& snapshot, const FabricPara
     std::vector<Audit> parts(core::at(warps));  // one a warp fibre, joined in order
     core::parallel_for(warps, [&](Index i) {
         Audit& part = parts[core::at(i)];
-        const NodalCurve warp{snapshot.fibres[core::at(i)].position};
+        const observe::NodalCurve warp{snapshot.fibres[core::at(i)].position};
         for (Index j = 0; j < wefts; ++j) {
-            const NodalCurve weft{snapshot.fibres[core::at(warps + j)].position};
+            const observe::NodalCurve weft{snapshot.fibres[core::at(warps + j)].position};
             const Index warp_tow = i / fabric.warp.fibres, weft_tow = j / fabric.weft.fibres;
             const bool over = fabric.pattern.over(warp_tow, weft_tow);
             const Index found = for_each_plan_crossing(warp, weft, [&](const PlanCrossing& crossing) {

@@ -22,7 +22,7 @@ inline ElementFigures element_figures(const observe::Snapshot& snapshot) {
     for (const observe::FibreSnapshot& fibre : snapshot.fibres) {
         std::vector<Vec3> rest(fibre.position.size());
         for (std::size_t k = 0; k < rest.size(); ++k) rest[k] = fibre.position[k] - fibre.displacement[k];
-        const NodalCurve now{fibre.position}, before{rest};
+        const observe::NodalCurve now{fibre.position}, before{rest};
         for (Index e = 0; e < now.elements(); ++e) {
             const double from = 2.0 * static_cast<double>(e), length = now.length(from, from + 2.0);
             double bend = 0.0;
@@ -56,7 +56,7 @@ inline TowFigures tow_figures(const observe::Snapshot& snapshot, const FabricPar
     for (Index tow = 0; tow + 1 < fabric.tows(family); ++tow) {
         const std::vector<double> places = crossing_parameters(snapshot, fabric, family, tow);
         const std::vector<Vec3> centre = tow_centreline(snapshot, fabric, family, tow);
-        const NodalCurve line{centre};
+        const observe::NodalCurve line{centre};
         for (std::size_t k = 0; k + 1 < places.size(); ++k) {
             const double t = 0.5 * (places[k] + places[k + 1]);
             if (!std::isfinite(t)) continue;
@@ -67,7 +67,7 @@ inline TowFigures tow_figures(const observe::Snapshot& snapshot, const FabricPar
             for (const Index which : {tow, tow + 1})
                 for (Index f = 0; f < fabric.tow(family).fibres; ++f) {
                     const observe::FibreSnapshot& fibre = snapshot.fibres[core::at(fabric.fibre(family, which, f))];
-                    const NodalCurve curve{fibre.position};
+                    const observe::NodalCurve curve{fibre.position};
                     const auto at = curve.meets(along, along.dot(origin));
                     if (!at) continue;
                     const double place = across.dot(curve.position(*at) - origin), extent = section_extent(fibre, curve, *at, across);

@@ -77,7 +77,7 @@ inline double middle_spacing(const observe::Snapshot& snapshot, const FabricPara
     for (const Index tow : warp) {
         const std::vector<double> crossings = crossing_parameters(snapshot, fabric, Family::warp, tow);
         const std::vector<Vec3> centre = tow_centreline(snapshot, fabric, Family::warp, tow);
-        const NodalCurve line{centre};
+        const observe::NodalCurve line{centre};
         sum += 0.5 * (line.position(crossings[core::at(last)]) - line.position(crossings[core::at(first)])).x();
     }
     return sum;

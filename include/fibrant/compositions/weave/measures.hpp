@@ -3,6 +3,7 @@
 /// @file Figures of a settled fabric: crimp of fibres and tows, curvature, thickness.
 
 #include <fibrant/compositions/weave/tow_geometry.hpp>
+#include <fibrant/observe/least_gap.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +18,7 @@ namespace fibrant::compositions::weave {
 /// @param axis      0 for x, 1 for y, 2 for z
 /// @param from, to  where the part begins and ends on that axis, from < to [length]; NaN is returned unless the curve
 ///                  reaches both
-inline double crimp(const NodalCurve& curve, Index axis, double from, double to) {
+inline double crimp(const observe::NodalCurve& curve, Index axis, double from, double to) {
     const Vec3 normal = Vec3::Unit(axis);
     const auto a = curve.meets(normal, from), b = curve.meets(normal, to);
     if (!a || !b || !(to > from)) return std::numeric_limits<double>::quiet_NaN();
@@ -46,7 +47,7 @@ inline std::vector<double> crossing_parameters(const observe::Snapshot& snapshot
         const std::vector<Vec3> nodes = tow_centreline(snapshot, fabric, other(family), k);
         const bool is_warp = family == Family::warp;
         double place = std::numeric_limits<double>::quiet_NaN();
-        for_each_plan_crossing(NodalCurve{is_warp ? own : nodes}, NodalCurve{is_warp ? nodes : own},
+        for_each_plan_crossing(observe::NodalCurve{is_warp ? own : nodes}, observe::NodalCurve{is_warp ? nodes : own},
                                [&](const PlanCrossing& crossing) { place = is_warp ? crossing.warp : crossing.weft; });
         answer.push_back(place);
     }
@@ -64,12 +65,12 @@ inline CrimpMeasures crimp_measures(const observe::Snapshot& snapshot, const Fab
         for (Index tow = 0; tow < fabric.tows(family); ++tow) {
             const std::vector<double> crossings = crossing_parameters(snapshot, fabric, family, tow);
             const std::vector<Vec3> centre = tow_centreline(snapshot, fabric, family, tow);
-            const NodalCurve line{centre};
+            const observe::NodalCurve line{centre};
             const double from = line.position(crossings.front())[axis], to = line.position(crossings.back())[axis];
             (family == Family::warp ? answer.warp_tows : answer.weft_tows).push_back(crimp(line, axis, from, to));
             for (Index k = 0; k < fibres; ++k) {
                 const std::size_t fibre = core::at(fabric.fibre(family, tow, k));
-                answer.fibres[fibre] = crimp(NodalCurve{snapshot.fibres[fibre].position}, axis, from, to);
+                answer.fibres[fibre] = crimp(observe::NodalCurve{snapshot.fibres[fibre].position}, axis, from, to);
                 sum += answer.fibres[fibre];
             }
         }
@@ -91,23 +92,13 @@ inline Outline outline(const observe::Snapshot& snapshot, const FabricParameters
             middle(Family::warp, fabric.warp_tows - 1)};
 }
 
-/// Half extent of a fibre's deformed section along a unit direction [length].
-inline double section_extent(const observe::FibreSnapshot& fibre, const NodalCurve& curve, double t,
-                             const Vec3& direction) {
-    const double p =
-        fibre.section.semi_axis_1 * curve.interpolate(std::span<const Vec3>{fibre.director_1}, t).dot(direction);
-    const double q =
-        fibre.section.semi_axis_2 * curve.interpolate(std::span<const Vec3>{fibre.director_2}, t).dot(direction);
-    return std::sqrt(p * p + q * q);
-}
-
 /// Height between the lowest and the highest surface of the fibres within the outline [length].
 inline double thickness(const observe::Snapshot& snapshot, const FabricParameters& fabric) {
     const Outline part = outline(snapshot, fabric);
     double low = std::numeric_limits<double>::infinity(), high = -low;
     const Index steps = 4 * (fabric.nodes_per_fibre() - 1);  // a quarter of a node interval
     for (const observe::FibreSnapshot& fibre : snapshot.fibres) {
-        const NodalCurve curve{fibre.position};
+        const observe::NodalCurve curve{fibre.position};
         for (Index k = 0; k <= steps; ++k) {
             const double t = 0.25 * static_cast<double>(k);
             const Vec3 x = curve.position(t);
@@ -130,7 +121,7 @@ inline CurvatureStatistics curvature_statistics(const observe::Snapshot& snapsho
     CurvatureStatistics answer;
     double length = 0.0;
     for (const Index fibre : fibres) {
-        const NodalCurve curve{snapshot.fibres[core::at(fibre)].position};
+        const observe::NodalCurve curve{snapshot.fibres[core::at(fibre)].position};
         curve.integrate(0.0, curve.end(), [&](double t, double weight) {
             const double kappa = curve.curvature(t);
             length += weight;

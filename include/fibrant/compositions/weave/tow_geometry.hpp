@@ -3,7 +3,7 @@
 /// @file Fibres and tows of a settled fabric: centre lines, and where they cross in plan.
 
 #include <fibrant/compositions/weave/fabric_parameters.hpp>
-#include <fibrant/compositions/weave/nodal_curve.hpp>
+#include <fibrant/observe/nodal_curve.hpp>
 #include <fibrant/observe/snapshot.hpp>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ namespace detail {
 /// A curve whose y grows along it, as a function of y.
 class CurveOverY {
 public:
-    explicit CurveOverY(const NodalCurve& curve) : curve_{&curve} {}
+    explicit CurveOverY(const observe::NodalCurve& curve) : curve_{&curve} {}
 
     /// Parameter at which y is reached, at the nearest end if it is not. Quick where y is near that of the last call.
     double parameter(double y) noexcept {
@@ -68,7 +68,7 @@ public:
     }
 
 private:
-    const NodalCurve* curve_;
+    const observe::NodalCurve* curve_;
     std::size_t first_ = 0;
 };
 
@@ -80,7 +80,7 @@ private:
 /// regula falsi (Illinois) finds the crossing. Time linear in the nodes.
 /// @return number of crossings found; 0 for two fibres of a fabric tells that one slipped out of it
 template <class Visit>
-Index for_each_plan_crossing(const NodalCurve& warp, const NodalCurve& weft, const Visit& visit) {
+Index for_each_plan_crossing(const observe::NodalCurve& warp, const observe::NodalCurve& weft, const Visit& visit) {
     detail::CurveOverY over_y(weft);
     double u = 0.0;
     const auto beside = [&](double t) {

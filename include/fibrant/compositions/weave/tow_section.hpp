@@ -113,14 +113,14 @@ inline TowSection tow_section(const observe::Snapshot& snapshot, const FabricPar
                               Index tow, double t) {
     require_snapshot_of(snapshot, fabric);
     const std::vector<Vec3> centre = tow_centreline(snapshot, fabric, family, tow);
-    const NodalCurve line{centre};
+    const observe::NodalCurve line{centre};
     const Vec3 origin = line.position(t), normal = line.tangent(t).normalized();
     const Vec3 across = Vec3::UnitZ().cross(normal).normalized(), up = normal.cross(across);
     const auto flat = [&](const Vec3& v) { return Vec2{across.dot(v), up.dot(v)}; };
     std::vector<SectionEllipse> ellipses;
     for (Index k = 0; k < fabric.tow(family).fibres; ++k) {
         const observe::FibreSnapshot& fibre = snapshot.fibres[core::at(fabric.fibre(family, tow, k))];
-        const NodalCurve curve{fibre.position};
+        const observe::NodalCurve curve{fibre.position};
         const auto at = curve.meets(normal, normal.dot(origin));
         if (!at) continue;
         ellipses.push_back(

@@ -15,7 +15,7 @@
 #include <span>
 #include <string>
 
-namespace fibrant::compositions::weave {
+namespace fibrant::observe {
 
 /// Quadratic elements over nodes (0, 1, 2), (2, 3, 4), ...; the parameter t counts nodes, so node k is at t = k.
 /// It does not own the nodes.
@@ -118,4 +118,4 @@ private:
     std::span<const Vec3> nodes_;
 };
 
-}  // namespace fibrant::compositions::weave
+}  // namespace fibrant::observe

@@ -2,18 +2,20 @@
 #pragma once
 /// @file True least distance between the surfaces of all fibres.
 
-#include <fibrant/compositions/weave/measures.hpp>
 #include <fibrant/core/parallel.hpp>
+#include <fibrant/observe/nodal_curve.hpp>
+#include <fibrant/observe/snapshot.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
 #include <fibrant/proximity/segment_distance.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <tuple>
 #include <vector>
 
-namespace fibrant::compositions::weave {
+namespace fibrant::observe {
 
 /// The closest two fibres.
 struct LeastGap {
@@ -22,6 +24,16 @@ struct LeastGap {
     Index fibre_i = -1, fibre_j = -1;
     Vec3 position = Vec3::Zero();  ///< half way between the two axes [length]
 };
+
+/// Half extent of a fibre's deformed section along a unit direction [length].
+inline double section_extent(const FibreSnapshot& fibre, const NodalCurve& curve, double t,
+                             const Vec3& direction) {
+    const double p =
+        fibre.section.semi_axis_1 * curve.interpolate(std::span<const Vec3>{fibre.director_1}, t).dot(direction);
+    const double q =
+        fibre.section.semi_axis_2 * curve.interpolate(std::span<const Vec3>{fibre.director_2}, t).dot(direction);
+    return std::sqrt(p * p + q * q);
+}
 
 namespace detail {
 
@@ -63,21 +75,23 @@ inline void closest_points(const NodalCurve& a, const NodalCurve& b, double a_fr
 
 }  // namespace detail
 
-/// The least distance between the surfaces of any two fibres, also within a tow.
+/// The least distance between the surfaces of any two fibres, which owes nothing to contact elements: what lies deeper in
+/// another one than they say, beside a crossing or where a mesh is too coarse for a section, is seen here.
 ///
+/// Fibres are those of three-node elements. Their ends are flat, and count.
 /// A search over the half elements, inflated by their deviation from the chord, gives the candidates; the closest
 /// points are then found on the curves, and the sections' extents taken along the line that joins them. Candidates
 /// whose lower bound exceeds the best gap so far are passed over. Never quadratic: the reach grows from zero until a
 /// pair is met.
 template <proximity::ProximitySearch Search>
-LeastGap least_gap(const observe::Snapshot& snapshot, Search search) {
+LeastGap least_gap(const Snapshot& snapshot, Search search) {
     const auto fibres = core::count(snapshot.fibres);
     std::vector<proximity::Centreline> lines(core::at(fibres));
     std::vector<std::vector<double>> inflation(core::at(fibres));
     std::vector<Index> first(core::at(fibres) + 1, 0), owner;
     double greatest_radius = 0.0, extent = 0.0;
     for (std::size_t k = 0; k < lines.size(); ++k) {
-        const observe::FibreSnapshot& fibre = snapshot.fibres[k];
+        const FibreSnapshot& fibre = snapshot.fibres[k];
         const NodalCurve curve{fibre.position};
         double radius = 0.0;  // of the section as it is deformed
         for (std::size_t node = 0; node < fibre.position.size(); ++node)
@@ -129,7 +143,7 @@ LeastGap least_gap(const observe::Snapshot& snapshot, Search search) {
         });
         for (const Candidate& candidate : candidates) {
             if (candidate.bound >= least.gap) break;
-            const observe::FibreSnapshot &fibre_i = snapshot.fibres[core::at(candidate.i)],
+            const FibreSnapshot &fibre_i = snapshot.fibres[core::at(candidate.i)],
                                          &fibre_j = snapshot.fibres[core::at(candidate.j)];
             const NodalCurve a{fibre_i.position}, b{fibre_j.position};
             double t = candidate.t, u = candidate.u;
@@ -149,4 +163,4 @@ LeastGap least_gap(const observe::Snapshot& snapshot, Search search) {
     return least;
 }
 
-}  // namespace fibrant::compositions::weave
+}  // namespace fibrant::observe
