@@ -115,8 +115,9 @@ inline void check_random_scenes(std::uint64_t first, std::uint64_t count) {
         // What the run itself says, and a fifth of a radius: where fibres cross there is one contact element, and beside it a hard fibre
         // lies a little in a soft one that it crushes to half its width. Three of the first thousand are deeper than a tenth.
         CHECK(depth < result.report.contact.greatest_penetration / scene.radius() + 0.2);
-        // Brute force along eighths of elements is off by their sag; least_gap is measured where axes are closest, and takes the ends as well.
-        if (depth > 0.0) CHECK(-observe::least_gap(result.snapshot, proximity::GridSearch{}).gap / scene.radius() > depth - 0.01);
+        // Brute force along eighths of elements is off by their sag, and looks everywhere; least_gap looks where axes are closest, a
+        // hundredth beside the deepest place where a section changes along the fibre, and takes the ends as well.
+        if (depth > 0.0) CHECK(-observe::least_gap(result.snapshot, proximity::GridSearch{}).gap / scene.radius() > depth - 0.02);
         Vec3 sum = Vec3::Zero();
         double size = 0.0;
         for (const Vec3& support : result.support) sum += support, size += support.norm();
