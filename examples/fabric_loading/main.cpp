@@ -43,12 +43,9 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     fabric_loading::write_state(output.folder / "before", settled, load.scene, output.pictures);
 
     // The programme.
-    fabric_loading::Curve curve;
     example::Recorder recorder(output, radius, [&] {
         const observe::Snapshot now = simulator.snapshot();
-        std::vector<observe::Column> row = fabric_loading::columns(cloth::load_figures(scene, simulator, now), now, fabric);
-        curve.add(row);
-        return row;
+        return fabric_loading::columns(cloth::load_figures(scene, simulator, now), now, fabric);
     });
     simulation::Loading<LoadedWeave> loading = simulation::loading_of<LoadedWeave>(load.programme);
     loading.checkpoint = output.checkpoint(), loading.checkpoint_seconds = 20.0, loading.resume = output.resume;
@@ -56,7 +53,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
 
     const observe::Snapshot snapshot = simulator.snapshot();
     fabric_loading::write_state(output.folder / "after", snapshot, load.scene, output.pictures);
-    curve.write(output.folder, load.name);
+    fabric_loading::write_curves(output.folder, load.name, output.unit);
     const cloth::CrimpMeasures before = cloth::crimp_measures(settled, fabric), after = cloth::crimp_measures(snapshot, fabric);
     std::vector<std::pair<std::string, double>> figures{{"fibres", static_cast<double>(fabric.fibres())}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())}};
     for (const auto& figure : cloth::load_figures(scene, simulator, snapshot)) figures.push_back(figure);

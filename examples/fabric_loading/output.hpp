@@ -11,8 +11,11 @@
 #include <fibrant/observe/svg_curves.hpp>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fabric_loading {
@@ -61,22 +64,39 @@ inline void write_state(const std::filesystem::path& folder, const observe::Snap
     observe::write_file(folder / "contacts.json", json.text() + "\n");
 }
 
-/// The curve of a case, its two first figures, and the gaps between neighbouring tows over the same abscissa.
-struct Curve {
-    std::string x_name, y_name;
-    observe::PlotLine line, warp{"warp", {}}, weft{"weft", {}};
-    void add(const std::vector<observe::Column>& row) {
-        x_name = row[0].name, y_name = row[1].name;
-        const double x = std::stod(row[0].value);
-        line.points.emplace_back(x, std::stod(row[1].value));
-        for (const observe::Column& column : row)
-            if (column.name == "warp_gap" || column.name == "weft_gap") (column.name == "warp_gap" ? warp : weft).points.emplace_back(x, std::stod(column.value));
-    }
-    void write(const std::filesystem::path& folder, const std::string& title) const {
-        if (line.points.empty()) return;
-        observe::write_file(folder / "curve.svg", observe::curves_svg({.title = title, .x_label = x_name, .y_label = y_name, .lines = {line}}));
-        observe::write_file(folder / "gap.svg", observe::curves_svg({.title = title, .x_label = x_name, .y_label = "gap between neighbouring tows", .lines = {warp, weft}}));
-    }
-};
+/// curve.svg, the two first figures of the case and what damping holds, and gap.svg, the gaps between neighbouring tows over the same
+/// abscissa, both from the table, which a run that was resumed has whole. Forces in N, as in the scene files.
+inline void write_curves(const std::filesystem::path& folder, const std::string& title, const std::string& unit) {
+    std::ifstream table(folder / "increments.csv");
+    const auto cells = [&] {
+        std::vector<std::string> row(1);
+        std::string line;
+        if (!std::getline(table, line)) return std::vector<std::string>{};
+        for (const char c : line) {
+            if (c == ',') row.emplace_back();
+            else row.back() += c;
+        }
+        return row;
+    };
+    const std::vector<std::string> names = cells();
+    const auto column = [&](std::string_view name) { return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()); };
+    const std::size_t first = column("progress") + 1;
+    if (first + 1 >= names.size()) return;
+    const auto labelled = [&](const std::string& name) {
+        return name == "angle_deg" ? "angle [degrees]" : name == "force" ? "force [N]" : name == "moment" ? "moment [N " + unit + "]" :
+               name == "curvature" ? "curvature [1 / " + unit + "]" : name == "strain" ? "strain [1]" : name + " [" + unit + "]";
+    };
+    std::array<observe::PlotLine, 4> lines{{{names[first + 1], {}}, {"held by damping", {}}, {"warp", {}}, {"weft", {}}}};
+    const std::array<std::size_t, 4> from{first + 1, column("damping_force"), column("warp_gap"), column("weft_gap")};
+    for (std::vector<std::string> row = cells(); row.size() == names.size(); row = cells())
+        for (std::size_t k = 0; k < lines.size(); ++k)
+            if (from[k] < row.size()) lines[k].points.emplace_back(std::stod(row[first]), std::stod(row[from[k]]));
+    if (lines[0].points.empty()) return;
+    const std::string x = labelled(names[first]);
+    std::vector<observe::PlotLine> curve{lines[0]};
+    if (names[first + 1] == "force") curve.push_back(lines[1]);
+    observe::write_file(folder / "curve.svg", observe::curves_svg({.title = title, .x_label = x, .y_label = labelled(names[first + 1]), .lines = curve}));
+    observe::write_file(folder / "gap.svg", observe::curves_svg({.title = title, .x_label = x, .y_label = "gap between neighbouring tows [" + unit + "]", .lines = {lines[2], lines[3]}}));
+}
 
 }  // namespace fabric_loading
