@@ -32,7 +32,7 @@ concept SystemWithSolid = assembly::LinearSystem<T> && requires(const T system) 
 /// solid, and far too stiff for those in which both move together, the more so the stiffer the bonds. Those C has; alone
 /// beside M_f it would be too stiff where fibres that hardly stretch stay behind. C^T A C is summed and factored once an
 /// analysis: it changes little from one iteration of Newton's method to the next.
-/// Both factors are of floats and compressed: they are read from memory twice an iteration, and a preconditioner need not be finer.
+/// Both factors are of floats: they are read from memory twice an iteration, and a preconditioner need not be finer.
 ///
 /// Where nodes are tied, the parts have the supports of the ties in their place, and what a tie leaves free, the motions of free
 /// bodies, would be held by them: C^T A C is let go along these motions.
@@ -66,14 +66,14 @@ public:
             [[maybe_unused]] const bool whole = sum_alone(system);
             assert(whole);
         }
-        judge(work.alone.factor(left_out));
+        judge(work.alone.factor());
         if (parameters_.carried && !work.summed) {
             if (!sum(system)) {  // contacts that the analysis did not have
                 find_pattern(system);
                 [[maybe_unused]] const bool complete = sum(system);
                 assert(complete);
             }
-            const auto pivots = work.together.factor(left_out);
+            const auto pivots = work.together.factor();
             work.summed = pivots.finite && pivots.negative == 0;
             judge(pivots);
             if (pivots.finite) let_go(system);
@@ -120,8 +120,6 @@ public:
     Index fill() const { return work_->alone.fill() + (parameters_.carried ? work_->together.fill() : 0); }
 
 private:
-    static constexpr float left_out = 1e-3F;  // of the factors, over the roots of diagonals
-
     struct Work {
         BlockCholesky<float> alone{SmallPivot::magnitude}, together{SmallPivot::magnitude};  // A_s and C^T A C
         std::vector<std::uint8_t> held;  // vectors of fibres that are held, and not carried
