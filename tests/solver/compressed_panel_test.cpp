@@ -137,8 +137,8 @@ TEST_CASE("without places nothing is compressed") {
 TEST_CASE("fibres are solved with a compressed factor, and with the whole one should that not do") {
     const test::FabricSystem system(test::Fabric{.bundles = 1, .fibres = 38, .elements = 16, .length = 2.2});
     const Vector b = test::contact_load(system);
-    const auto solve = [&](double left_out, Vector& x) {
-        solver::FloatBlockCholesky factor{{.left_out = left_out}};
+    const auto solve = [&](double left_out, Vector& x, Index least_fill = 0) {
+        solver::FloatBlockCholesky factor{{.left_out = left_out, .least_fill = least_fill}};
         factor.analyse(system);
         CHECK(factor.prepare(system) == solver::SolveStatus::converged);
         const Index kept = factor.entries();
@@ -155,6 +155,8 @@ TEST_CASE("fibres are solved with a compressed factor, and with the whole one sh
     CHECK_FALSE(whole);
     CHECK(iterations > 2);
     CHECK(iterations < 15);
+    CHECK(solve(3e-4, hardly, 200'000'000) == solve(0.0, exact));  // too small a factor to gain
+    CHECK(hardly == exact);
     const auto fallen_back = solve(0.05, hardly);  // pivots turned negative
     CHECK(fallen_back.first);
     CHECK(fallen_back.second == 2);

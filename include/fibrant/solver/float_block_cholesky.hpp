@@ -14,8 +14,8 @@ namespace fibrant::solver {
 
 /// A is formed by blocks of nodes and factored in `Real`; a few iterations then reach any tolerance.
 ///
-/// For states too ill-conditioned for other iterations, few fibres, and as a reference. Blocks far apart in wide fronts are compressed
-/// (CompressedPanel) unless `left_out` is 0; should a pivot turn negative so, or iterations not end, A is factored as it is.
+/// For states too ill-conditioned for other iterations, few fibres, and as a reference. Blocks far apart in wide fronts of large factors
+/// are compressed (CompressedPanel) unless `left_out` is 0; should a pivot turn negative so, or iterations not end, A is factored as it is.
 template <class Real>
 class NodeBlockCholesky {
 public:
@@ -23,9 +23,11 @@ public:
         int iteration_limit = 200;  ///< with the factor of A as it is; > 0
         /// Largest entries that are left out of the factor, over the root of the diagonal of their row; 0: none. >= 0 [1]
         double left_out = sizeof(Real) == 4 ? 3e-4 : 1e-5;
+        Index least_fill = 200'000'000;  ///< entries of the factor below which nothing is left out: narrow fronts gain nothing; >= 0
         void validate() const {
             core::require_at_least("NodeBlockCholesky.iteration_limit", iteration_limit, 1);
             core::require_not_negative("NodeBlockCholesky.left_out", left_out);
+            core::require_at_least("NodeBlockCholesky.least_fill", least_fill, 0);
         }
     };
     NodeBlockCholesky() : NodeBlockCholesky(Parameters{}) {}
@@ -80,7 +82,7 @@ public:
             [[maybe_unused]] const bool complete = sum(system);
             assert(complete);
         }
-        factor(static_cast<Real>(parameters_.left_out));
+        factor(work.factor.fill() < parameters_.least_fill ? Real(0) : static_cast<Real>(parameters_.left_out));
         work.prepared = work.factor.left_out();
         return work.status;
     }
