@@ -11,9 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
-#include <cmath>
-#include <cstdint>
 #include <functional>
 #include <span>
 #include <utility>

@@ -7,6 +7,8 @@
 #include <fibrant/solver/conjugate_gradient.hpp>
 
 #include <algorithm>
+#include <cassert>
+#include <span>
 #include <utility>
 #include <vector>
 

@@ -2,9 +2,9 @@
 #pragma once
 /// @file Audit of a settled fabric: every crossing of every two fibres against the pattern, and the true least gap.
 
-#include <fibrant/observe/least_gap.hpp>
 #include <fibrant/compositions/weave/tow_geometry.hpp>
 #include <fibrant/core/parallel.hpp>
+#include <fibrant/observe/least_gap.hpp>
 
 #include <algorithm>
 #include <limits>
