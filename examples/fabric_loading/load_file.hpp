@@ -25,6 +25,8 @@ struct LoadFile {
     std::string checkpoint, name;
     cloth::TowEnds tow_ends = cloth::TowEnds::kept;
     Index points_per_element = 0;  ///< spacing of contacts, if it is another
+    Index parts = 1;               ///< that each element of the settled fabric is cut into
+    cloth::FabricParameters settled_fabric;  ///< before that
     fibrant::simulation::LoadProgramme programme;
 };
 
@@ -51,6 +53,8 @@ inline LoadFile read_load_file(TomlReader& file, const std::filesystem::path& fo
     file.require("settled", "scene", scene);
     file.read("settled", "set", set);
     file.require("settled", "checkpoint", load.checkpoint);
+    file.read("settled", "parts", load.parts);
+    if (load.parts < 1 || load.parts > 8) file.refuse("settled", "parts", ">= 1 and <= 8");
     file.require("loading", "case", load.name);
     std::string ends = cloth::tow_ends_names().front();
     file.read("loading", "tow_ends", ends);
@@ -72,7 +76,9 @@ inline LoadFile read_load_file(TomlReader& file, const std::filesystem::path& fo
     programme.rest_motion = rest_motion * r, programme.rest_penetration = 2.0 * allowed, programme.largest_displacement = largest * r;
     programme.calm = calm * r;
     programme.reversible_displacement = std::max(0.02 * r, friction * allowed);
-    programme.damping = cloth::node_stiffness(load.scene.fabric, load.scene.settle.tension_strain);
+    // Of a length of fibre, however many nodes it has.
+    programme.damping = cloth::node_stiffness(load.scene.fabric, load.scene.settle.tension_strain) / static_cast<double>(load.parts);
+    load.settled_fabric = load.scene.fabric, load.scene.fabric.elements *= load.parts;
     file.read("contact", "points_per_element", load.points_per_element);
     file.read("solver", "linear_solver", load.scene.linear_solver);
     file.read("solver", "contact_tolerance", load.scene.iteration.contact_tolerance);

@@ -8,6 +8,7 @@
 #include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/simulation/refined_state.hpp>
 #include <fibrant/solver/any_solver.hpp>
 
 using namespace fibrant;
@@ -29,17 +30,26 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     const double radius = cloth::smallest_radius(fabric);
 
     // The settled fabric, and bodies at its edges.
-    scene::Assembly fibres;
-    cloth::add_flat_fibres(fibres, fabric);
     auto parameters = cloth::model_parameters<LoadedWeave>(fabric, load.scene.settle);
-    const beam::Mesh<LoadedWeave::Beam> mesh(fibres, LoadedWeave::Beam(parameters.beam));
-    const observe::Snapshot settled = simulation::snapshot_of(mesh, simulation::checkpoint_state(load.checkpoint, mesh));
+    const auto mesh_of = [&](const cloth::FabricParameters& of) {
+        scene::Assembly fibres;
+        cloth::add_flat_fibres(fibres, of);
+        return beam::Mesh<LoadedWeave::Beam>(fibres, LoadedWeave::Beam(parameters.beam));
+    };
+    const auto mesh = mesh_of(fabric);
+    std::string start = load.checkpoint;
+    if (load.parts > 1) {
+        const auto coarse = mesh_of(load.settled_fabric);
+        start = (output.folder / "refined.bin").string();
+        simulation::write_state<LoadedWeave>(start, mesh, simulation::refined(simulation::read_state<LoadedWeave>(load.checkpoint, coarse), coarse, mesh, load.parts));
+    }
+    const observe::Snapshot settled = simulation::snapshot_of(mesh, simulation::checkpoint_state(start, mesh));
     const cloth::LoadCase scene = cloth::load_case(load.name, settled, fabric, load.tow_ends);
     parameters.iteration = load.scene.iteration;
     parameters.solver.strategy = load.scene.linear_solver;
     if (load.points_per_element > 0) parameters.contact.spacing.points_per_element = static_cast<double>(load.points_per_element);
     simulation::Simulator<LoadedWeave> simulator(scene.assembly, parameters);
-    simulator.start_from(load.checkpoint);
+    simulator.start_from(start);
     fabric_loading::write_state(output.folder / "before", settled, load.scene, output.pictures);
 
     // The programme.

@@ -126,6 +126,7 @@
 #include <fibrant/simulation/model.hpp>
 #include <fibrant/simulation/programme.hpp>
 #include <fibrant/simulation/position.hpp>
+#include <fibrant/simulation/refined_state.hpp>
 #include <fibrant/simulation/report.hpp>
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
