@@ -71,9 +71,10 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     auto loading = parts::loading_of<Composite>(fabric, scene.weave.settle, scene.load);
     loading.checkpoint = output.checkpoint(), loading.checkpoint_seconds = 20.0, loading.resume = output.resume;
     const simulation::Report report = simulator.run(loading, watch, recorder);
-    watch.write_curve(output.scene.stem().string());
+    const composite::CurvePoint end = point(parts::edge_wrench(simulator, composite));
+    composite::write_curve(output, end);
     composite::write_pictures(output, simulator.snapshot(), fabric);
-    composite::write_summary(output, simulator, report, point(parts::edge_wrench(simulator, composite)), cloth::smallest_radius(fabric));
+    composite::write_summary(output, simulator, report, end, cloth::smallest_radius(fabric));
     return report.converged;
 }
 

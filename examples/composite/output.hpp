@@ -3,6 +3,7 @@
 /// @file What a run of a composite writes beside the table of increments: curve, pictures, summary.
 
 #include "../support/example.hpp"
+#include "../support/table.hpp"
 #include "../weave/output.hpp"
 
 #include <fibrant/compositions/composite/composite.hpp>
@@ -25,51 +26,50 @@ using fibrant::Index;
 
 /// Name of what a load does, of what it takes, and both after an increment.
 struct CurvePoint {
-    std::string x_name, y_name;
+    std::string x_name, y_name, column;  ///< what is done and what it takes; the latter's column in the table of increments
     double x, y;
 };
 inline CurvePoint curve_point(const parts::LoadParameters& load, double amplitude, const fibrant::simulation::Wrench& edge) {
     switch (load.load) {
-        case parts::LoadCase::bending: return {"angle_deg", "moment", amplitude * load.angle_deg, edge.moment.y()};
-        case parts::LoadCase::twisting: return {"angle_deg", "torque", amplitude * load.angle_deg, edge.moment.x()};
-        case parts::LoadCase::shear: return {"shear", "force", amplitude * load.strain, edge.force.y()};
-        default: return {"strain", "force", amplitude * load.strain, edge.force.x()};
+        case parts::LoadCase::bending: return {"angle_deg", "moment", "moment_y", amplitude * load.angle_deg, edge.moment.y()};
+        case parts::LoadCase::twisting: return {"angle_deg", "torque", "moment_x", amplitude * load.angle_deg, edge.moment.x()};
+        case parts::LoadCase::shear: return {"shear", "force", "force_y", amplitude * load.strain, edge.force.y()};
+        default: return {"strain", "force", "force_x", amplitude * load.strain, edge.force.x()};
     }
 }
 
-/// Sees increments before the others do: its last one, the solid's ParaView files, the curve of the load.
+/// Sees increments before the others do: its last one, and the solid's ParaView files.
 class Watch {
 public:
-    explicit Watch(const example::Output& output) : folder_{output.folder} {
+    explicit Watch(const example::Output& output) {
         if (output.paraview) series_.emplace(output.folder / "paraview", output.start());
     }
     void reported(const fibrant::simulation::IncrementReport& increment) { last_ = &increment; }
     void accepted(const observe::Snapshot& snapshot) {
         if (series_) series_->accepted(snapshot);
     }
-    /// Columns of the table of increments.
+    /// Columns of the table of increments beside those of every run.
     std::vector<observe::Column> columns(const CurvePoint& point, const fibrant::simulation::Wrench& edge) {
-        if (last_->stage == "load") x_name_ = point.x_name, y_name_ = point.y_name, line_.points.emplace_back(point.x, point.y);
         const fibrant::simulation::EnergyBalance& energy = last_->energy;
         return {{point.x_name, point.x}, {"moment_x", edge.moment.x()}, {"moment_y", edge.moment.y()}, {"moment_z", edge.moment.z()},
                 {"force_x", edge.force.x()}, {"force_y", edge.force.y()}, {"force_z", edge.force.z()},
-                {"linear_iterations", last_->counts.linear_iterations}, {"linear_solves", last_->counts.linear_solves},
-                {"elastic", energy.elastic}, {"contact", energy.contact}, {"external", energy.external}, {"dissipated", energy.dissipated},
-                {"damped", energy.damped}, {"rearranged", energy.rearranged}, {"energy_error", energy.error()},
-                {"displacement", last_->displacement}, {"fraction", last_->fraction}};
-    }
-    void write_curve(const std::string& title) const {
-        if (line_.points.empty()) return;
-        observe::write_file(folder_ / "curve.svg", observe::curves_svg({.title = title, .x_label = x_name_, .y_label = y_name_, .lines = {line_}}));
+                {"linear_solves", last_->counts.linear_solves}, {"elastic", energy.elastic}, {"contact", energy.contact},
+                {"rearranged", energy.rearranged}, {"energy_error", energy.error()}, {"displacement", last_->displacement}, {"fraction", last_->fraction}};
     }
 
 private:
-    std::filesystem::path folder_;
     std::optional<observe::SolidWriter> series_;
     const fibrant::simulation::IncrementReport* last_ = nullptr;
-    std::string x_name_, y_name_;
-    observe::PlotLine line_;
 };
+
+/// curve.svg of the load, from the table, which a run that was resumed has whole.
+inline void write_curve(const example::Output& output, const CurvePoint& names) {
+    const example::Table table(output.folder / "increments.csv");
+    const observe::PlotLine line = table.line("", table.column(names.x_name), table.column(names.column), "stage", "load");
+    if (line.points.empty()) return;
+    observe::write_file(output.folder / "curve.svg", observe::curves_svg({.title = output.scene.stem().string(), .x_label = example::axis_label(names.x_name, output.unit),
+                                                                          .y_label = example::axis_label(names.y_name, output.unit), .lines = {line}}));
+}
 
 /// view.svg of the fibres, solid.svg of the matrix with stresses, slices through both.
 inline void write_pictures(const example::Output& output, const observe::Snapshot& snapshot, const cloth::FabricParameters& fabric) {

@@ -3,6 +3,7 @@
 /// @file What a load case writes: its curve, the fabric before and after, contact statistics and histograms.
 
 #include "../support/example.hpp"
+#include "../support/table.hpp"
 #include "../weave/output.hpp"
 
 #include <fibrant/compositions/weave/fibre_figures.hpp>
@@ -11,9 +12,7 @@
 #include <fibrant/observe/svg_curves.hpp>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -67,36 +66,18 @@ inline void write_state(const std::filesystem::path& folder, const observe::Snap
 /// curve.svg, the two first figures of the case and what damping holds, and gap.svg, the gaps between neighbouring tows over the same
 /// abscissa, both from the table, which a run that was resumed has whole. Forces in N, as in the scene files.
 inline void write_curves(const std::filesystem::path& folder, const std::string& title, const std::string& unit) {
-    std::ifstream table(folder / "increments.csv");
-    const auto cells = [&] {
-        std::vector<std::string> row(1);
-        std::string line;
-        if (!std::getline(table, line)) return std::vector<std::string>{};
-        for (const char c : line) {
-            if (c == ',') row.emplace_back();
-            else row.back() += c;
-        }
-        return row;
-    };
-    const std::vector<std::string> names = cells();
-    const auto column = [&](std::string_view name) { return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()); };
-    const std::size_t first = column("progress") + 1;
-    if (first + 1 >= names.size()) return;
-    const auto labelled = [&](const std::string& name) {
-        return name == "angle_deg" ? "angle [degrees]" : name == "force" ? "force [N]" : name == "moment" ? "moment [N " + unit + "]" :
-               name == "curvature" ? "curvature [1 / " + unit + "]" : name == "strain" ? "strain [1]" : name + " [" + unit + "]";
-    };
-    std::array<observe::PlotLine, 4> lines{{{names[first + 1], {}}, {"held by damping", {}}, {"warp", {}}, {"weft", {}}}};
-    const std::array<std::size_t, 4> from{first + 1, column("damping_force"), column("warp_gap"), column("weft_gap")};
-    for (std::vector<std::string> row = cells(); row.size() == names.size(); row = cells())
-        for (std::size_t k = 0; k < lines.size(); ++k)
-            if (from[k] < row.size()) lines[k].points.emplace_back(std::stod(row[first]), std::stod(row[from[k]]));
-    if (lines[0].points.empty()) return;
-    const std::string x = labelled(names[first]);
-    std::vector<observe::PlotLine> curve{lines[0]};
-    if (names[first + 1] == "force") curve.push_back(lines[1]);
-    observe::write_file(folder / "curve.svg", observe::curves_svg({.title = title, .x_label = x, .y_label = labelled(names[first + 1]), .lines = curve}));
-    observe::write_file(folder / "gap.svg", observe::curves_svg({.title = title, .x_label = x, .y_label = "gap between neighbouring tows [" + unit + "]", .lines = {lines[2], lines[3]}}));
+    const example::Table table(folder / "increments.csv");
+    const std::size_t x = table.column("progress") + 1;
+    if (x + 1 >= table.names().size()) return;
+    const std::string &x_name = table.names()[x], &y_name = table.names()[x + 1];
+    const auto over_x = [&](const std::string& name, std::string_view column) { return table.line(name, x, table.column(column)); };
+    std::vector<observe::PlotLine> curve{over_x(y_name, y_name)};
+    if (curve[0].points.empty()) return;
+    if (y_name == "force") curve.push_back(over_x("held by damping", "damping_force"));
+    const std::string x_label = example::axis_label(x_name, unit);
+    observe::write_file(folder / "curve.svg", observe::curves_svg({.title = title, .x_label = x_label, .y_label = example::axis_label(y_name, unit), .lines = curve}));
+    observe::write_file(folder / "gap.svg", observe::curves_svg({.title = title, .x_label = x_label, .y_label = "gap between neighbouring tows [" + unit + "]",
+                                                                 .lines = {over_x("warp", "warp_gap"), over_x("weft", "weft_gap")}}));
 }
 
 }  // namespace fabric_loading
