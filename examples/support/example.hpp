@@ -3,6 +3,7 @@
 /// @file What the examples that read a scene file have in common: the command line, progress, tables, pictures and a summary.
 
 #include "process.hpp"
+#include "progress.hpp"
 #include "toml_reader.hpp"
 
 #include <fibrant/observe/csv_writer.hpp>
@@ -106,6 +107,9 @@ public:
         for (const observe::Column& column : columns) std::printf("%s %s  ", column.name.c_str(), column.value.c_str());
         std::printf("\n");
         std::fflush(stdout);
+    }
+    void gave_up(const fibrant::simulation::FailedAttempt& attempt) const {
+        if (!quiet_) print(attempt);
     }
     void accepted(const observe::Snapshot& snapshot) {
         if (series_) series_->accepted(snapshot);

@@ -2,6 +2,8 @@
 #pragma once
 /// @file What a run of the weave prints and writes: progress, the table of increments, measures, pictures, the summary.
 
+#include "../support/progress.hpp"
+
 #include <fibrant/compositions/weave/audit.hpp>
 #include <fibrant/compositions/weave/slices.hpp>
 #include <fibrant/compositions/weave/tow_section.hpp>
@@ -60,6 +62,10 @@ public:
                     increment.cuts, increment.contact.greatest_penetration / radius_,
                     left < 0.0 ? "?" : clock_text(left).c_str());
         std::fflush(stdout);
+    }
+
+    void gave_up(const fibrant::simulation::FailedAttempt& attempt) const {
+        if (!quiet_) example::print(attempt);
     }
 
 private:

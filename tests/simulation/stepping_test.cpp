@@ -30,6 +30,12 @@ struct Amplitudes {
     void reported(const simulation::IncrementReport&) { values.push_back(simulator->amplitude(channel)); }
 };
 
+/// Attempts that came to nothing.
+struct Failures {
+    std::vector<simulation::FailedAttempt> attempts;
+    void gave_up(const simulation::FailedAttempt& attempt) { attempts.push_back(attempt); }
+};
+
 TEST_CASE("a ramp goes by equal steps or by equal factors, and a channel without a ramp stays") {
     const Rod rod;
     scene::Assembly assembly = rod.pushed(1.0);
@@ -427,7 +433,8 @@ TEST_CASE("a step too large is cut, and goes on from the same bits as if it had 
     Amplitudes<Rough> reached{&cut, "approach"};
     Loading<Rough> large, accepted;
     large.stages = {stage(0.0625), stage(0.5625)};  // in contact when the large step comes
-    const Report report = cut.run(large, cut_record, reached);
+    Failures failures;
+    const Report report = cut.run(large, cut_record, reached, failures);
     CAPTURE(report.reason);
     REQUIRE(report.converged);
     REQUIRE(report.rejected_increments > 0);
@@ -435,6 +442,18 @@ TEST_CASE("a step too large is cut, and goes on from the same bits as if it had 
     CHECK(report.increments[0].contact.active > 0);
     CHECK(report.increments[1].cuts == report.rejected_increments);
     CHECK(report.increments[1].fraction == std::pow(0.5, report.rejected_increments));
+    REQUIRE(core::count(failures.attempts) == report.rejected_increments);
+    Index wasted = 0;
+    for (std::size_t k = 0; k < failures.attempts.size(); ++k) {
+        const simulation::FailedAttempt& attempt = failures.attempts[k];
+        CHECK(attempt.number == 2);
+        CHECK(attempt.attempts == static_cast<Index>(k) + 1);
+        CHECK(attempt.fraction == std::pow(0.5, static_cast<double>(k)));
+        CHECK(!attempt.reason.empty());
+        wasted += attempt.newton;
+    }
+    CHECK(wasted > 0);
+    CHECK(wasted < report.increments[1].counts.newton);
     for (const double amplitude : reached.values) accepted.stages.push_back(stage(amplitude));  // exact in binary
     const Report again = direct.run(accepted, direct_record);
     REQUIRE(again.converged);

@@ -46,6 +46,18 @@ struct IncrementReport {
     double seconds = 0;         ///< wall time of the increment
 };
 
+/// An attempt at an increment that was given up: a smaller one, or one that is held harder, follows.
+struct FailedAttempt {
+    Index number = 0;     ///< of the increment
+    std::string stage;
+    Index attempts = 0;   ///< at it, this one included
+    double fraction = 1;  ///< of the stage's increment that it tried
+    double springs = 1;   ///< of the damping over those of the stage
+    Index newton = 0;     ///< iterations that it took
+    std::string reason;
+    double seconds = 0;   ///< wall time since the increment began
+};
+
 /// A whole run.
 struct Report {
     bool converged = false;

@@ -54,7 +54,8 @@ public:
     Simulator& operator=(const Simulator&) = delete;
 
     /// Takes the scene through a loading. Each observer is shown a snapshot of every accepted increment; one that has a
-    /// member `reported(const IncrementReport&)` is also given its figures.
+    /// member `reported(const IncrementReport&)` is also given its figures, and one with `gave_up(const FailedAttempt&)` those of
+    /// attempts that came to nothing.
     template <class... Observers>
     Report run(const Loading<M>& loading, Observers&... observers) {
         loading.validate();
@@ -81,7 +82,8 @@ public:
             const Stage<M>& stage = stages[core::at(position_.stage)];
             take_laws(stage);
             while (!position_.stage_over) {
-                if (!advance(loading, stages, stage, report)) {
+                const auto gave_up = [&](const FailedAttempt& attempt) { (tell(observers, attempt), ...); };
+                if (!advance(loading, stages, stage, report, gave_up)) {
                     if (unsaved) write_checkpoint(loading.checkpoint, stages, report);
                     finish(report, start);
                     return report;
@@ -183,8 +185,9 @@ private:
         position_.from = amplitudes_;
     }
 
-    /// One accepted increment, after as many cuts as it takes.
-    bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report) {
+    /// One accepted increment, after as many cuts as it takes; gave_up(attempt) is told of those.
+    template <class GaveUp>
+    bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report, const GaveUp& gave_up) {
         const auto start = std::chrono::steady_clock::now();
         IncrementReport increment;
         double attempt_newton = 0.0;  // iterations a normal pass of the last attempt
@@ -237,6 +240,8 @@ private:
                 break;
             }
             ++report.rejected_increments, ++increment.cuts;
+            gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, position_.fraction, position_.damping, attempt.counts.newton, attempt.reason,
+                                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
             contacts_.restore();
             position_.give_way(stage, equilibrium_.greatest_by_fibre(attempt.unsettled), attempt.allowed, increment.cuts);
             if (position_.fraction < loading.smallest_fraction || report.rejected_increments > loading.most_rejected) {
@@ -268,6 +273,10 @@ private:
         return true;
     }
 
+    template <class Observer>
+    static void tell([[maybe_unused]] Observer& observer, [[maybe_unused]] const FailedAttempt& attempt) {
+        if constexpr (requires { observer.gave_up(attempt); }) observer.gave_up(attempt);
+    }
     template <class Observer>
     void show(Observer& observer, const IncrementReport& increment) {
         if constexpr (requires { observer.reported(increment); }) observer.reported(increment);
