@@ -130,6 +130,9 @@ inline Scene read_fabric(TomlReader& file, const std::string& path, bool all) {
         file.read("settle", "looseness", settle.looseness);
         file.read("settle", "rest_motion_over_radius", settle.rest_motion_over_radius);
         file.read("settle", "rest_share", settle.rest_share);
+        // Contacts that close and let go in turns send Newton's method to and fro: most of the attempts that a large weave gave up.
+        scene.iteration.overshoot = 0.5;
+        file.read("settle", "overshoot", scene.iteration.overshoot);
         file.read("contact", "friction_coefficient", settle.friction_coefficient);
         file.read("contact", "allowed_penetration_over_radius", settle.allowed_penetration_over_radius);
 
