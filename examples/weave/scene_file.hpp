@@ -92,6 +92,7 @@ inline Scene read_fabric(TomlReader& file, const std::string& path, bool all) {
         {"SettleParameters.friction_coefficient", "contact.friction_coefficient"},
         {"SettleParameters.allowed_penetration_over_radius", "contact.allowed_penetration_over_radius"},
         {"SettleParameters.", "settle."},
+        {"IterationParameters.overshoot", "settle.overshoot"},
         {"IterationParameters.", "solver."},
         {"Scene.paraview_every", "output.paraview_every"},
         {"Scene.threads", "solver.threads"}};

@@ -95,6 +95,7 @@ TEST_CASE("a wrong scene is refused by section, key, value and bound") {
     CHECK(refused({"contact.friction_coefficient=-0.1"}) ==
           "contact.friction_coefficient = -0.1, but it must be finite and >= 0");
     CHECK(refused({"settle.release_increments=0"}) == "settle.release_increments = 0, but it must be >= 1");
+    CHECK(refused({"settle.overshoot=0.0"}) == "settle.overshoot = 0, but it must be > 0");
     CHECK(refused({"solver.newton_limit=0"}) == "solver.newton_limit = 0, but it must be >= 1");
     CHECK(refused({"solver.linear_solver=lu"}) ==
           "solver.linear_solver = 'lu', but it must be one of automatic, two_level_pcg, fibre_block_pcg, "
