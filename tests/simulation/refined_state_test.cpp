@@ -23,7 +23,7 @@ Vec3 held(const simulation::Simulator<Rough>& simulator, const Crossing& crossin
     return simulator.reaction({crossing.lower(), 0.0}) + simulator.reaction({crossing.lower(), 1.0});
 }
 
-/// Beside normal and friction: where a particle of a fibre is, by its abscissa over the length.
+/// Where a particle of a fibre is, by its abscissa over the length.
 Vec3 place(const Mesh& mesh, const Vector& state, Index f, double share, double xi1, double xi2) {
     const auto [e, xi] = mesh.locate(f, share * static_cast<double>(mesh.fibre(f).elements));
     return Mesh::point(state, mesh.first_unknown(f, e), Rough::Beam::particle_weights(xi, xi1, xi2));
