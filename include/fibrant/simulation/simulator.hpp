@@ -158,6 +158,10 @@ private:
         return parameters;
     }
 
+    static double seconds_since(std::chrono::steady_clock::time_point start) {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+
     void move_tools([[maybe_unused]] const std::vector<double>& amplitudes) {
         if constexpr (HasTools<M>) {
             std::vector<double> own;
@@ -241,7 +245,7 @@ private:
             }
             ++report.rejected_increments, ++increment.cuts;
             gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, position_.fraction, position_.damping, attempt.counts.newton, attempt.reason,
-                                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+                                  seconds_since(start)});
             contacts_.restore();
             position_.give_way(stage, equilibrium_.greatest_by_fibre(attempt.unsettled), attempt.allowed, increment.cuts);
             if (position_.fraction < loading.smallest_fraction || report.rejected_increments > loading.most_rejected) {
@@ -267,7 +271,7 @@ private:
         contacts_.accept(state_);
         if constexpr (HasSolid<M>)
             if (equilibrium_.solid().accept(state_) > 0) energy_.release(equilibrium_.elastic_energy(state_));  // bonds that had too much
-        increment.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        increment.seconds = seconds_since(start);
         report.counts += increment.counts;
         report.increments.push_back(increment);
         return true;
@@ -296,7 +300,7 @@ private:
         }
         report.energy = energy_.balance();
         report.seconds = clock_.seconds();
-        report.wall_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        report.wall_seconds += seconds_since(start);
     }
 
     void write_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, const Report& report) {
