@@ -43,7 +43,8 @@ mat::MatParameters dense(std::uint64_t seed) {
 TEST_CASE("dense mats of random fibres press on both plates alike, by a power of the volume fraction above van Wyk's, and each fibre touches as many as theory says") {
     const mat::LevelParameters levels{.last = 0.33};
     double slopes = 0.0;
-    const int mats = 2;
+    const int mats = 5;
+    std::vector<double> surplus(5, 0.0);  // of contacts over those at random, mean of all mats
     for (int seed = 1; seed <= mats; ++seed) {
         const mat::MatParameters parameters = dense(static_cast<std::uint64_t>(seed));
         const auto fibres = mat::random_fibres(parameters);
@@ -67,19 +68,23 @@ TEST_CASE("dense mats of random fibres press on both plates alike, by a power of
                 CHECK(std::abs(level.mat.pressure - level.mat.lower_pressure) < 0.05 * level.mat.pressure);
                 CHECK(level.mat.pressure > record.levels()[k - 1].mat.pressure);
             }
-            // Ends are flat and meet less than round ones would; a pressed mat crosses itself no less than at random. At the first level it is
-            // a random one, of some 240 contacts: within three standard deviations of such a count.
-            CHECK(level.mat.contacts_per_fibre > crossed - (k > 0 ? 0.0 : 3.0 * std::sqrt(2.0 * crossed / whole)));
+            // Ends are flat and meet less than round ones would. Mats that are hardly pressed, up to a pressure of
+            // 4e-5 of the modulus, are random ones, of some 240 contacts: each within three standard deviations of such a count.
+            CHECK(level.mat.contacts_per_fibre > crossed - (k > 1 ? 0.0 : 3.0 * std::sqrt(2.0 * crossed / whole)));
+            surplus[k] += (level.mat.contacts_per_fibre / crossed - 1.0) / mats;
             CHECK(level.mat.contacts_per_fibre < met);
         }
         const double slope = std::log(record.levels()[4].mat.pressure / record.levels()[2].mat.pressure) / std::log(1.17 * 1.17);
         slopes += slope / mats;
         CHECK(slope > 3.0);  // van Wyk's, of fibres in all directions
     }
+    // A pressed mat crosses itself no less than at random: each from the third level on (above), from the second on the mean of all.
+    for (std::size_t k = 0; k < 5; ++k) std::printf("level %d: contacts over those at random, less one: %.3f\n", static_cast<int>(k), surplus[k]);
+    for (std::size_t k = 1; k < 5; ++k) CHECK(surplus[k] > 0.0);
     std::printf("power of the volume fraction from 0.24 to 0.33: %.2f\n", slopes);
     // Toll has 5 for fibres in a plane, and a threshold makes it steeper. Ten mats, five of them with contacts that may soften more, gave 6.28 with
-    // a standard deviation of 0.63: two, within twice that over the root of two.
-    CHECK(std::abs(slopes - 6.28) < 2.0 * 0.63 / std::sqrt(2.0));
+    // a standard deviation of 0.63: the mean of those here within twice that over the root of their number.
+    CHECK(std::abs(slopes - 6.28) < 2.0 * 0.63 / std::sqrt(static_cast<double>(mats)));
 }
 
 TEST_CASE("levels that cannot be are refused by name") {
