@@ -279,6 +279,31 @@ TEST_CASE("a stage may end while its damping holds no more than a share of the f
     CHECK((simulator.state() - direct.state()).cwiseAbs().maxCoeff() < 1e-4 * (sag + rod.length));
 }
 
+TEST_CASE("damping that waits rises where forces balance and what a stage waits for is not there yet, and holds no more than it may") {
+    const Rod rod;
+    const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3), share = 0.05;  // stiffness of the tip
+    const auto run = [&](bool waits) {
+        Loading<Smooth> loading;
+        loading.stages = {{.increments = 1, .ramps = {{"load", 1.0}}, .damping = stiffness, .damping_decay = 0.5, .damping_share = share,
+                           .damping_waits = waits,
+                           .until = [&](const simulation::IncrementReport& increment) { return increment.displacement <= 1e-4 * rod.length; }}};
+        Simulator<Smooth> simulator(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
+        return simulator.run(loading);
+    };
+    const Report waiting = run(true), falling = run(false);
+    REQUIRE(waiting.converged);
+    REQUIRE(falling.converged);
+    Index rises = 0;
+    for (std::size_t k = 1; k < waiting.increments.size(); ++k) {
+        const simulation::IncrementReport &before = waiting.increments[k - 1], &now = waiting.increments[k];
+        CHECK(now.springs == (before.damping < 0.5 * share ? 2.0 : 0.5) * before.springs);
+        rises += before.damping < 0.5 * share ? 1 : 0;
+    }
+    CHECK(rises > 0);
+    for (std::size_t k = 1; k < falling.increments.size(); ++k) CHECK(falling.increments[k].springs < falling.increments[k - 1].springs);
+    CHECK(waiting.increments.back().damping <= share);
+}
+
 TEST_CASE("an increment that moves further than its stage allows is cut") {
     const Rod rod;
     Loading<Smooth> loading;

@@ -40,6 +40,9 @@ struct Stage {
     /// Where damping decays, an `until` holds only once the damping's force is at most this part of the scale of forces, which
     /// a residual is measured by too, >= 0. 0: once there is no damping at all.
     double damping_share = 0.0;
+    /// Where forces balance to less than half of that share and `until` still does not hold, damping rises instead of falling: what moves is
+    /// slack, and the less it is held the further it leaps into others, so that contacts never come to the penetration that is allowed.
+    bool damping_waits = false;
     /// Greatest displacement of an increment after which damping is lowered [length], > 0.
     double damping_calm = std::numeric_limits<double>::infinity();
     /// Displacement beyond which an attempt at an increment is given up and cut [length], > 0.

@@ -44,10 +44,13 @@ struct Position {
 
     /// Damping is the inverse of a time step: what was solved with ease goes on faster, and what was hard more slowly.
     /// @param effort  iterations of a normal pass of the last attempt over how many it may take [1]
+    /// @param waits   the stage has ramped and is not over
     template <Model M>
-    void adapt_damping(const Stage<M>& stage, const IncrementReport& increment, double effort) {
+    void adapt_damping(const Stage<M>& stage, const IncrementReport& increment, double effort, bool waits) {
         const double before = damping;
-        if (increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= 0.6)
+        if (waits && stage.damping_waits && increment.damping < 0.5 * stage.damping_share)
+            damping = std::clamp(2.0 * damping, least_damping, 1.0 / least_damping);
+        else if (increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= 0.6)
             damping = std::max(damping * (damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, fraction)), std::min(damping, damping_floor));
         else if (stage.damping_decay < 1.0 && effort > 0.75)
             damping = std::min(2.0 * damping, 1.0 / least_damping);

@@ -114,6 +114,7 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
         0.6 * settle.gap_limit_over_radius * r;
     handover.damping_share = relaxation.damping_share = share_on_the_way;
     stiffening.damping_share = rest.damping_share = share_at_rest;
+    stiffening.damping_waits = rest.damping_waits = true;
     for (simulation::Stage<M>* stage : {&separation, &handover, &release, &relaxation, &stiffening, &rest})
         stage->largest_displacement = 4.0 * settle.gap_limit_over_radius * r;
     loading.stages = {tension, separation, handover, release, relaxation, stiffening, rest};
