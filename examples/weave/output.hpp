@@ -208,6 +208,8 @@ struct Summary {
     Index crossings = 0, wrong_crossings = 0, missing_crossings = 0;
     double greatest_penetration_over_radius = fibrant::core::unset;  ///< of all contact elements [1]
     double least_gap_over_radius = fibrant::core::unset;             ///< true, between any two fibres [1]
+    Index least_gap_fibre_i = -1, least_gap_fibre_j = -1;            ///< which these are,
+    fibrant::Vec3 least_gap_place = fibrant::Vec3::Zero();           ///< and where [length]
     double crimp_warp = fibrant::core::unset, crimp_weft = fibrant::core::unset;
     double thickness = fibrant::core::unset;
     double energy_error_over_work = fibrant::core::unset;  ///< of the report's energy balance [1]
@@ -240,6 +242,8 @@ inline void fill(Summary& summary, const fibrant::simulation::Report& report, co
     summary.wrong_crossings = audit.wrong_crossings;
     summary.missing_crossings = audit.missing_crossings;
     summary.least_gap_over_radius = audit.least_gap.gap / radius;
+    summary.least_gap_fibre_i = audit.least_gap.fibre_i, summary.least_gap_fibre_j = audit.least_gap.fibre_j;
+    summary.least_gap_place = audit.least_gap.position;
     summary.crimp_warp = crimp.warp;
     summary.crimp_weft = crimp.weft;
 }
@@ -266,6 +270,11 @@ inline void write_summary(const std::filesystem::path& folder, const Summary& su
         .add("missing_crossings", summary.missing_crossings)
         .add("greatest_penetration_over_radius", summary.greatest_penetration_over_radius)
         .add("least_gap_over_radius", summary.least_gap_over_radius)
+        .add("least_gap_fibre_i", summary.least_gap_fibre_i)
+        .add("least_gap_fibre_j", summary.least_gap_fibre_j)
+        .add("least_gap_x", summary.least_gap_place.x())
+        .add("least_gap_y", summary.least_gap_place.y())
+        .add("least_gap_z", summary.least_gap_place.z())
         .add("crimp_warp", summary.crimp_warp)
         .add("crimp_weft", summary.crimp_weft)
         .add("thickness", summary.thickness)
@@ -291,8 +300,10 @@ inline void print(const Summary& summary, const std::string& folder) {
                 summary.missing_crossings);
     std::printf("  crimp      warp %.4f  weft %.4f;  thickness %.4f\n", summary.crimp_warp, summary.crimp_weft,
                 summary.thickness);
-    std::printf("  depth / r  %.4f;  least gap / r %.4f;  energy balance %.1e\n", summary.greatest_penetration_over_radius,
-                summary.least_gap_over_radius, summary.energy_error_over_work);
+    std::printf("  depth / r  %.4f;  least gap / r %.4f, fibres %td and %td at (%.3f, %.3f, %.3f);  energy balance %.1e\n",
+                summary.greatest_penetration_over_radius, summary.least_gap_over_radius, summary.least_gap_fibre_i,
+                summary.least_gap_fibre_j, summary.least_gap_place.x(), summary.least_gap_place.y(),
+                summary.least_gap_place.z(), summary.energy_error_over_work);
     std::printf("  results    %s (view.svg, top.svg, slice_*.svg, summary.json, paraview/fibres.pvd)\n", folder.c_str());
 }
 
