@@ -37,7 +37,7 @@ TEST_CASE("a fibre drawn through pairs of others is held back by the friction th
     assembly.clamp(scene::first_end(drawn), Vec3(range, 0, 0), Vec3::Zero(), Vec3::Zero(), "draw");
     const std::array groups{other, outer, inner};
     for (std::size_t k = 0; k < places.size(); ++k)
-        for (const std::size_t above : {0, 1}) {
+        for (const std::size_t above : {std::size_t{0}, std::size_t{1}}) {
             const double side = above == 1 ? 1.0 : -1.0;
             specification = test::straight_fibre({places[k].at, -0.3, side * 2.0 * r}, {places[k].at, 0.3, side * 2.0 * r}, r, 7);
             specification.group = groups[k];
