@@ -44,11 +44,11 @@ struct Position {
 
     /// Damping is the inverse of a time step: what was solved with ease goes on faster, and what was hard more slowly.
     /// @param effort  iterations of a normal pass of the last attempt over how many it may take [1]
-    /// @param waits   the stage has ramped and is not over
     template <Model M>
-    void adapt_damping(const Stage<M>& stage, const IncrementReport& increment, double effort, bool waits) {
+    void adapt_damping(const Stage<M>& stage, const IncrementReport& increment, double effort) {
         const double before = damping;
-        if (waits && stage.damping_waits && increment.damping < 0.5 * stage.damping_share)
+        const bool waits = stage.damping_waits && progress >= 1.0 && !stage_over;
+        if (waits && increment.damping < 0.5 * stage.damping_share)
             damping = std::clamp(2.0 * damping, least_damping, 1.0 / least_damping);
         else if (increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= 0.6)
             damping = std::max(damping * (damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, fraction)), std::min(damping, damping_floor));
