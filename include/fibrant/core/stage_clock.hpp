@@ -16,6 +16,11 @@ inline constexpr std::size_t part_count = 6;
 inline constexpr std::array<const char*, part_count> part_names{"search",      "contact",  "assembly",
                                                                 "preparation", "solution", "output"};
 
+/// Wall time that has gone by [second].
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 /// Sums the wall time of each part [second].
 class StageClock {
 public:
@@ -32,7 +37,7 @@ private:
     struct Timer {
         double* sum;
         std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-        ~Timer() { *sum += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
+        ~Timer() { *sum += seconds_since(start); }
     };
     std::array<double, part_count> seconds_{};
 };

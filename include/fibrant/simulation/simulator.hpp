@@ -2,6 +2,7 @@
 #pragma once
 /// @file Runs a loading on a scene with a model: steps that are cut, restored and grown again.
 
+#include <fibrant/core/stage_clock.hpp>
 #include <fibrant/observe/observer.hpp>
 #include <fibrant/simulation/energy_account.hpp>
 #include <fibrant/simulation/increment_file.hpp>
@@ -158,10 +159,6 @@ private:
         return parameters;
     }
 
-    static double seconds_since(std::chrono::steady_clock::time_point start) {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    }
-
     void move_tools([[maybe_unused]] const std::vector<double>& amplitudes) {
         if constexpr (HasTools<M>) {
             std::vector<double> own;
@@ -245,7 +242,7 @@ private:
             }
             ++report.rejected_increments, ++increment.cuts;
             gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, position_.fraction, position_.damping, attempt.counts.newton, attempt.reason,
-                                  seconds_since(start)});
+                                  core::seconds_since(start)});
             contacts_.restore();
             position_.give_way(stage, equilibrium_.greatest_by_fibre(attempt.unsettled), attempt.allowed, increment.cuts);
             if (position_.fraction < loading.smallest_fraction || report.rejected_increments > loading.most_rejected) {
@@ -271,7 +268,7 @@ private:
         contacts_.accept(state_);
         if constexpr (HasSolid<M>)
             if (equilibrium_.solid().accept(state_) > 0) energy_.release(equilibrium_.elastic_energy(state_));  // bonds that had too much
-        increment.seconds = seconds_since(start);
+        increment.seconds = core::seconds_since(start);
         report.counts += increment.counts;
         report.increments.push_back(increment);
         return true;
@@ -300,7 +297,7 @@ private:
         }
         report.energy = energy_.balance();
         report.seconds = clock_.seconds();
-        report.wall_seconds += seconds_since(start);
+        report.wall_seconds += core::seconds_since(start);
     }
 
     void write_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, const Report& report) {
