@@ -310,6 +310,21 @@ TEST_CASE("splayed fibres have a pair in their last section, where they are clos
     }
 }
 
+TEST_CASE("where a fibre ends, its last section has no deeper contact than its pairs know of, wherever its stations stand") {
+    // 15 degrees towards the first fibre, and touching it where it ends; it begins a little later each time, over a whole spacing.
+    const double angle = 15.0 * std::numbers::pi / 180.0, length = 1.0;
+    for (int shift = 0; shift < 40; ++shift) {
+        const Vec3 end(0.7 + 0.2 * 0.5 * shift / 40.0, 0.0, 2.0 * r);
+        const Vec3 start = end + length * Vec3(-std::cos(angle), 0.0, std::sin(angle));
+        const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre(start, end, r, 5)});
+        const double last = (end.x() + 1.0) / 0.2;
+        double least = 1e300;
+        for (const StationPair& pair : pairs_of(mesh, zone(last - 2.0, last + 0.1, 3.0, 5.0), false))
+            least = std::min(least, std::cos(0.5 * angle) * distance(mesh, pair.u_i, pair.u_j));  // in the plane across their mean line
+        CHECK(least <= (2.0 + spacing.largest_unseen) * r);
+    }
+}
+
 TEST_CASE("where one fibre ends before the other, the pair is in the last section of that one") {
     // The second begins 0.06 and ends 0.05 inside the first: 0.3 and 0.25 elements of it.
     const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({-0.94, 0, 0.04}, {0.95, 0, 0.04}, r, 9)});

@@ -210,11 +210,13 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
     const auto add_last_section = [&](bool of_i, double u, double v) {
         const Index self = of_i ? i : j, other = of_i ? j : i;
         const double other_end = of_i ? end_j : end_i;
-        for (std::size_t k = before; k < pairs.size(); ++k)
-            if (std::abs((of_i ? pairs[k].u_i : pairs[k].u_j) - u) < 0.1 * step) return true;
         const Vec3 origin = mesh.position(state, self, u);
-        const Vec3 tangent = mean_tangent(contact_tangent(mesh, state, self, u).normalized(),
-                                          contact_tangent(mesh, state, other, v).normalized());
+        const Vec3 t = contact_tangent(mesh, state, self, u).normalized(), t_other = contact_tangent(mesh, state, other, v).normalized();
+        const Vec3 tangent = mean_tangent(t, t_other);
+        // A station next to it will do, unless the fibres come closer by more than may go unseen between the two.
+        const double near = std::min(0.1 * step, spacing.largest_unseen * r / (h * std::max(sine_between(t, t_other), 1e-3)));
+        for (std::size_t k = before; k < pairs.size(); ++k)
+            if (std::abs((of_i ? pairs[k].u_i : pairs[k].u_j) - u) < near) return true;
         v = plane_section(mesh, state, other, v, origin, tangent);
         if ((v <= 0.0 || v >= other_end) && std::abs((mesh.position(state, other, v) - origin).dot(tangent)) > 0.05 * r) return false;
         pairs.push_back({of_i ? u : v, of_i ? v : u, false, false, false, 0.0});
