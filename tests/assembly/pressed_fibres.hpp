@@ -2,6 +2,8 @@
 #pragma once
 /// @file Fibres pressed into each other, with everything that adds to an equilibrium's tangent.
 
+#include "../support/random_vector.hpp"
+
 #include <fibrant/assembly/equilibrium.hpp>
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/beam/on_centreline.hpp>
@@ -31,7 +33,7 @@ struct PressedFibres {
         std::mt19937 random(5);
         std::uniform_real_distribution<double> any(-1.0, 1.0);
         for (Index v = 0; v < state.size() / 3; ++v) {  // a few per cent of a radius, and as much at the surface
-            const Vec3 step(any(random), any(random), any(random));
+            const Vec3 step = test::random_vector(any, random);
             state.segment<3>(3 * v) += 0.01 * (v % 3 == 0 ? radius : 1.0) * step;
         }
         equilibrium.begin(amplitudes, accepted);

@@ -2,6 +2,8 @@
 #pragma once
 /// @file What every beam element owes, as one function.
 
+#include "../support/random_vector.hpp"
+
 #include <fibrant/beam/beam_element.hpp>
 #include <fibrant/core/rotation.hpp>
 
@@ -172,7 +174,7 @@ ElementErrors check_beam_element(const B& beam, const typename B::Rest& rest, co
         CHECK((tangent_given - tangent).norm() < 1e-14 * tangent.norm());
 
         // A rigid motion leaves the energy: strains of the order of 0.1 keep 15 of 16 digits.
-        const Vec3 axis = Vec3(normal(generator), normal(generator), normal(generator)).normalized();
+        const Vec3 axis = test::random_vector(normal, generator).normalized();
         const Mat3 rotation = Eigen::AngleAxisd(2.0 * normal(generator), axis).toRotationMatrix();
         const double turned = beam.energy(rest, moved<B>(y, rotation, size * axis));
         errors.rotation = std::max(errors.rotation, std::abs(turned - energy) / energy);

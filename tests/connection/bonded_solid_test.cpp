@@ -2,6 +2,7 @@
 // Fibres in a solid: patch, rigid motion, tangent, one fibre's pull-out, a bundle's moduli, the solver.
 #include "../refusal.hpp"
 #include "../support/bonded_scene.hpp"
+#include "../support/random_vector.hpp"
 
 #include <fibrant/connection/bonded_solid.hpp>
 #include <fibrant/solver/solid_pcg.hpp>
@@ -63,7 +64,7 @@ scene::Assembly cube(const Mat3& gradient, scene::ElasticMaterial solid, scene::
     std::uniform_real_distribution<double> draw(-0.06, 0.06);
     const auto inner = [](const Vec3& x) { return (x.array() > 0.01).all() && (x.array() < 0.99).all(); };
     for (Vec3& node : body.nodes)
-        if (inner(node)) node += Vec3(draw(generator), draw(generator), draw(generator));
+        if (inner(node)) node += test::random_vector(draw, generator);
     assembly.add(body);
     for (const Index node : test::nodes_where(body, [&](const Vec3& x) { return !inner(x); })) {
         scene::SolidHold hold;
@@ -123,7 +124,7 @@ TEST_CASE("the tangent of fibres and solid is the derivative of the residual, an
     std::uniform_real_distribution<double> draw(-1.0, 1.0);
     const auto& system = scene.equilibrium.system();
     Vector& state = scene.state;
-    for (Index v = 0; v < system.layout().vectors(); ++v) state.segment<3>(3 * v) += 1e-2 * Vec3(draw(generator), draw(generator), draw(generator));
+    for (Index v = 0; v < system.layout().vectors(); ++v) state.segment<3>(3 * v) += 1e-2 * test::random_vector(draw, generator);
     scene.equilibrium.begin(std::vector<double>(1, 0.0), state);
     scene.equilibrium.linearise(state, false, 0.0);
     Vector direction(state.size()), image(state.size()), up, down, terms(state.size());

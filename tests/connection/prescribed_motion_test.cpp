@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "refusal.hpp"
+#include "../support/random_vector.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
@@ -159,7 +160,7 @@ TEST_CASE("random holds give projectors, and targets that lie in the held direct
     std::uniform_real_distribution<double> any(-1.0, 1.0);
     for (int trial = 0; trial < 50; ++trial) {
         Scene scene;
-        for (int k = 0; k < 4; ++k) scene.hold(Vec3(any(random), any(random), any(random)), Vec3(any(random), any(random), 0));
+        for (int k = 0; k < 4; ++k) scene.hold(test::random_vector(any, random), Vec3(any(random), any(random), 0));
         scene.evaluate(any(random));
         CHECK(Scene::projector(scene.held[0].free, 0));
         CHECK((scene.held[0].free * scene.target[0]).norm() < rounding);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fibres.hpp"
+#include "../support/random_vector.hpp"
 
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/law/frictionless.hpp>
@@ -101,9 +102,9 @@ TEST_CASE("a tangential vector is rebuilt from its two components, and turns wit
     std::mt19937 generator(7);
     std::normal_distribution<double> value;
     for (int n = 0; n < 100; ++n) {
-        const Vec3 normal = Vec3(value(generator), value(generator), value(generator)).normalized();
-        const Vec3 tangent = n % 10 == 0 ? normal : Vec3(value(generator), value(generator), value(generator)).normalized();
-        Vec3 slip(value(generator), value(generator), value(generator));
+        const Vec3 normal = test::random_vector(value, generator).normalized();
+        const Vec3 tangent = n % 10 == 0 ? normal : test::random_vector(value, generator).normalized();
+        Vec3 slip = test::random_vector(value, generator);
         slip -= slip.dot(normal) * normal;
         const contact::TangentPlane plane(tangent, normal);
         CHECK(std::abs(plane.along.norm() - 1.0) < 1e-14);
@@ -113,7 +114,7 @@ TEST_CASE("a tangential vector is rebuilt from its two components, and turns wit
         const double along = slip.dot(plane.along), across = slip.dot(plane.across);
         CHECK((along * plane.along + across * plane.across - slip).norm() < 1e-13);
         if (n % 10 == 0) continue;  // at the end of a fibre its tangent gives no direction
-        const Mat3 turn = Eigen::AngleAxisd(0.1 + n, Vec3(value(generator), value(generator), value(generator)).normalized()).toRotationMatrix();
+        const Mat3 turn = Eigen::AngleAxisd(0.1 + n, test::random_vector(value, generator).normalized()).toRotationMatrix();
         const contact::TangentPlane turned(turn * tangent, turn * normal);
         CHECK((along * turned.along + across * turned.across - turn * slip).norm() < 1e-11);
     }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "../support/random_vector.hpp"
+
 #include <fibrant/contact/normal_direction.hpp>
 
 #include <refusal.hpp>
@@ -24,12 +26,6 @@ const Vec3 new_contact = Vec3::Zero();
 Vec3 heading(double degrees) {
     const double angle = degrees * std::numbers::pi / 180.0;
     return {std::cos(angle), std::sin(angle), 0.0};
-}
-
-Vec3 random_vector(std::mt19937& generator) {
-    std::normal_distribution<double> normal;
-    const double x = normal(generator), y = normal(generator), z = normal(generator);
-    return {x, y, z};
 }
 
 /// Largest turn of the normal between neighbours while the angle goes from 0 to 60 degrees.
@@ -114,15 +110,15 @@ TEST_CASE("a crossing that turns through 90 degrees keeps its side") {
 TEST_CASE("the normal is a unit vector, changes sign with the order of the fibres and turns with the scene") {
     std::mt19937 generator(1);
     for (int n = 0; n < 500; ++n) {
-        const Vec3 centres = random_vector(generator), t_i = random_vector(generator).normalized();
-        const Vec3 t_j = n % 2 == 0 ? random_vector(generator).normalized() : Vec3((t_i + 0.2 * random_vector(generator)).normalized());
-        const Vec3 remembered = n % 3 == 0 ? new_contact : Vec3(random_vector(generator).normalized());
+        const Vec3 centres = test::normal_vector(generator), t_i = test::normal_vector(generator).normalized();
+        const Vec3 t_j = n % 2 == 0 ? test::normal_vector(generator).normalized() : Vec3((t_i + 0.2 * test::normal_vector(generator)).normalized());
+        const Vec3 remembered = n % 3 == 0 ? new_contact : Vec3(test::normal_vector(generator).normalized());
         const Vec3 normal = normal_direction(rule, centres, t_i, t_j, remembered);
         CHECK(std::abs(normal.norm() - 1.0) < rounding);
         // across the mean of the tangents; the cross product loses digits where the fibres are nearly parallel
         CHECK(std::abs(normal.dot(contact::mean_tangent(t_i, t_j))) < 1e-13);
         CHECK((normal_direction(rule, -centres, t_j, t_i, -remembered) + normal).norm() < 1e-13);
-        const Mat3 turn = Eigen::AngleAxisd(1.0 + n, random_vector(generator).normalized()).toRotationMatrix();
+        const Mat3 turn = Eigen::AngleAxisd(1.0 + n, test::normal_vector(generator).normalized()).toRotationMatrix();
         CHECK((normal_direction(rule, turn * centres, turn * t_i, turn * t_j, turn * remembered) - turn * normal).norm() < 1e-12);
     }
 }
@@ -163,9 +159,9 @@ TEST_CASE("angles in the wrong order are refused") {
 TEST_CASE("the least turn takes one direction to the other and leaves what is across both of them") {
     std::mt19937 generator(5);
     for (int k = 0; k < 200; ++k) {
-        const Vec3 before = random_vector(generator).normalized();
-        const Vec3 after = k == 0 ? Vec3(-before) : k == 1 ? before : random_vector(generator).normalized();
-        const Vec3 vector = random_vector(generator), image = contact::turned(vector, before, after);
+        const Vec3 before = test::normal_vector(generator).normalized();
+        const Vec3 after = k == 0 ? Vec3(-before) : k == 1 ? before : test::normal_vector(generator).normalized();
+        const Vec3 vector = test::normal_vector(generator), image = contact::turned(vector, before, after);
         const double amplified = 1e-15 / std::max(1e-14, 1.0 + before.dot(after));  // the axis is a difference of rounded products
         CHECK((contact::turned(before, before, after) - after).norm() < rounding + amplified);
         CHECK(std::abs(image.norm() - vector.norm()) < vector.norm() * (rounding + amplified));

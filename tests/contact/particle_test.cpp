@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "../support/random_vector.hpp"
+
 #include <fibrant/contact/particle.hpp>
 
 #include <doctest/doctest.h>
@@ -13,12 +15,6 @@ namespace particle_test {
 
 using contact::Particle;
 using contact::support_particle;
-
-Vec3 random_vector(std::mt19937& generator) {
-    std::normal_distribution<double> normal;
-    const double x = normal(generator), y = normal(generator), z = normal(generator);
-    return {x, y, z};
-}
 
 /// Distance from the centre of the furthest of many particles of the contour along a direction.
 double furthest(const scene::CrossSection& section, const Vec3& g_1, const Vec3& g_2, const Vec3& direction, int particles) {
@@ -49,8 +45,8 @@ TEST_CASE("the particle lies on the contour, and none lies further along the nor
     const scene::CrossSection section = scene::elliptical(0.03, 0.01);
     for (int n = 0; n < 200; ++n) {
         // stretched, sheared and turned
-        const Vec3 g_1 = Vec3::UnitX() + 0.3 * random_vector(generator), g_2 = Vec3::UnitY() + 0.3 * random_vector(generator);
-        const Vec3 direction = random_vector(generator).normalized();
+        const Vec3 g_1 = Vec3::UnitX() + 0.3 * test::normal_vector(generator), g_2 = Vec3::UnitY() + 0.3 * test::normal_vector(generator);
+        const Vec3 direction = test::normal_vector(generator).normalized();
         const Particle particle = support_particle(section, g_1, g_2, direction, false);
         if (particle.cap > 0.0) continue;
         CHECK(std::hypot(particle.xi_1 / 0.03, particle.xi_2 / 0.01) == doctest::Approx(1.0).epsilon(1e-14));
@@ -66,8 +62,8 @@ TEST_CASE("where the particle sits on the contour does not change the gap to fir
     const scene::CrossSection section = scene::elliptical(0.03, 0.02);
     const double step = 1e-5;
     for (int n = 0; n < 50; ++n) {
-        const Vec3 g_1 = Vec3::UnitX() + 0.2 * random_vector(generator), g_2 = Vec3::UnitY() + 0.2 * random_vector(generator);
-        const Vec3 direction = (g_1 + 0.7 * g_2 + 0.3 * random_vector(generator)).normalized(), aside = random_vector(generator);
+        const Vec3 g_1 = Vec3::UnitX() + 0.2 * test::normal_vector(generator), g_2 = Vec3::UnitY() + 0.2 * test::normal_vector(generator);
+        const Vec3 direction = (g_1 + 0.7 * g_2 + 0.3 * test::normal_vector(generator)).normalized(), aside = test::normal_vector(generator);
         const Particle particle = support_particle(section, g_1, g_2, direction, false);
         const double by_1 = (reach(section, g_1 + step * aside, g_2, direction) - reach(section, g_1 - step * aside, g_2, direction)) / (2 * step);
         const double by_2 = (reach(section, g_1, g_2 + step * aside, direction) - reach(section, g_1, g_2 - step * aside, direction)) / (2 * step);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Fibres against rigid planes, cylinders and spheres: forces and tangent by differences, reactions by balance, and scenes
 // whose answer is known.
+#include "../support/random_vector.hpp"
+
 #include <contact/contact_model.hpp>
 #include <refusal.hpp>
 
@@ -92,7 +94,7 @@ TEST_CASE("the distance of a point from a tool grows along its normal by as much
     const scene::Assembly assembly = crowded();
     for (const scene::Tool& tool : assembly.tools())
         for (int n = 0; n < 20; ++n) {
-            const Vec3 x = 0.1 * Vec3(value(generator), value(generator), value(generator));
+            const Vec3 x = 0.1 * test::random_vector(value, generator);
             const scene::ToolDistance here = scene::tool_distance(tool, x);
             CHECK(std::abs(here.normal.norm() - 1.0) < 1e-14);
             CHECK(std::abs(scene::tool_distance(tool, x - here.distance * here.normal).distance) < 1e-14);

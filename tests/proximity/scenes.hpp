@@ -2,6 +2,8 @@
 #pragma once
 /// @file Sets of fibres on which the searches are compared.
 
+#include "../support/random_vector.hpp"
+
 #include <fibrant/proximity/proximity_search.hpp>
 
 #include <Eigen/Geometry>
@@ -49,18 +51,12 @@ struct FibreSet {
     }
 };
 
-inline Vec3 random_vector(std::mt19937& random) {
-    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    const double x = uniform(random), y = uniform(random), z = uniform(random);
-    return {x, y, z};
-}
-
 /// A random walk of segments that keeps its direction more or less.
 inline std::vector<Vec3> random_fibre(std::mt19937& random, int segments, double length, double curl, const Vec3& start) {
     std::vector<Vec3> line{start};
-    Vec3 direction = random_vector(random).normalized();
+    Vec3 direction = uniform_vector(random).normalized();
     for (int k = 0; k < segments; ++k) {
-        direction = (direction + curl * random_vector(random)).normalized();
+        direction = (direction + curl * uniform_vector(random)).normalized();
         line.push_back(line.back() + length * direction);
     }
     return line;
@@ -70,7 +66,7 @@ inline FibreSet random_fibres(unsigned seed, int fibres, int segments, double le
     std::mt19937 random(seed);
     FibreSet set{.name = "random fibres " + std::to_string(seed), .reach = 0.03};
     for (int f = 0; f < fibres; ++f) {
-        const Vec3 start = box * random_vector(random);
+        const Vec3 start = box * uniform_vector(random);
         set.add(random_fibre(random, segments, length, curl, start), 0.05);
     }
     return set;
@@ -139,7 +135,7 @@ inline std::vector<FibreSet> search_cases() {
         std::mt19937 random(7);
         for (int f = 0; f < 80; ++f) {
             const double r = std::pow(10.0, -2.0 + (f % 5) * 0.5), length = 0.02 * std::pow(10.0, (f % 10) * 0.3);
-            const Vec3 start = 3.0 * random_vector(random);
+            const Vec3 start = 3.0 * uniform_vector(random);
             set.add(random_fibre(random, 1 + f % 7, length, 0.3, start), r);
         }
         cases.push_back(set);
@@ -148,11 +144,11 @@ inline std::vector<FibreSet> search_cases() {
         FibreSet set{.name = "many thin fibres and a few thick ones", .reach = 0.01};
         std::mt19937 random(8);
         for (int f = 0; f < 150; ++f) {
-            const Vec3 start = random_vector(random);
+            const Vec3 start = uniform_vector(random);
             set.add(random_fibre(random, 10, 0.05, 0.3, start), 0.01);
         }
         for (int f = 0; f < 3; ++f) {
-            const Vec3 start = random_vector(random);
+            const Vec3 start = uniform_vector(random);
             set.add(random_fibre(random, 4, 0.6, 0.3, start), 0.4);
         }
         cases.push_back(set);
@@ -161,7 +157,7 @@ inline std::vector<FibreSet> search_cases() {
         FibreSet set{.name = "long thin rods", .reach = 0.002};
         std::mt19937 random(9);
         for (int f = 0; f < 300; ++f) {
-            const Vec3 start = 0.7 * random_vector(random);
+            const Vec3 start = 0.7 * uniform_vector(random);
             set.add(random_fibre(random, 2, 0.8, 0.03, start), 0.002);
         }
         cases.push_back(set);

@@ -269,7 +269,7 @@ TEST_CASE("a Verlet list serves small motions, and is built anew before it could
         // Every third of the steps is a jump, which no list survives.
         const double size = step % 20 == 19 ? 0.2 : 0.002;
         for (auto& line : set.points)
-            for (Vec3& x : line) x += size * test::random_vector(random);
+            for (Vec3& x : line) x += size * test::uniform_vector(random);
         if (step == 30) set.reach = 0.05;
         if (step == 40) set.reach = 0.01;
     }
@@ -292,7 +292,7 @@ TEST_CASE("a Verlet list without a skin of its own takes one from the motion, an
     };
     for (const Motion& motion : {Motion{1e-4, 2, 5}, Motion{0.01, 9, 12}, Motion{0.05, 59, 61}, Motion{0.001, 2, 5}}) {
         std::vector<Vec3> way;
-        for (std::size_t k = 0; k < 660; ++k) way.push_back(motion.step * test::random_vector(random).normalized());
+        for (std::size_t k = 0; k < 660; ++k) way.push_back(motion.step * test::uniform_vector(random).normalized());
         for (int call = 0; call < 30; ++call) {
             std::size_t vertex = 0;
             for (auto& line : set.points)
@@ -331,8 +331,8 @@ TEST_CASE("curves cut into chords lose none of their contacts once the chords ar
     FibreSet set{.name = "curves", .reach = reach};
     std::vector<std::vector<Vec3>> sampled;
     for (int c = 0; c < curves; ++c) {
-        const Vec3 x0 = 0.35 * test::random_vector(random), x1 = x0 + 0.3 * test::random_vector(random);
-        const Vec3 x2 = x1 + 0.3 * test::random_vector(random);
+        const Vec3 x0 = 0.35 * test::uniform_vector(random), x1 = x0 + 0.3 * test::uniform_vector(random);
+        const Vec3 x2 = x1 + 0.3 * test::uniform_vector(random);
         const auto at = [&](double t) {  // interpolates x0, x1, x2 at t = 0, 1/2, 1
             return Vec3((1 - t) * (1 - 2 * t) * x0 + 4 * t * (1 - t) * x1 + t * (2 * t - 1) * x2);
         };

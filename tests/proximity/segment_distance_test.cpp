@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "../support/random_vector.hpp"
+
 #include <fibrant/proximity/segment_distance.hpp>
 
 #include <Eigen/Geometry>
@@ -36,12 +38,6 @@ long double true_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec
     return std::min({from(0), from(1), from(0.5L * (low + high))});
 }
 
-Vec3 random_vector(std::mt19937& random) {
-    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    const double x = uniform(random), y = uniform(random), z = uniform(random);
-    return {x, y, z};
-}
-
 TEST_CASE("crossing segments are closest inside, parallel ones all along, and distant ones at their ends") {
     const SegmentDistance crossing = segment_distance({-1, 0, 0}, {4, 0, 0}, {0, -1, 0.5}, {0, 2, 0});
     CHECK(crossing.squared == doctest::Approx(0.25));
@@ -70,10 +66,10 @@ TEST_CASE("the distance is right to 2e-12 at any angle, near-parallel first of a
         const double angle = trial % 13 == 12 ? 0.0 : std::pow(10.0, -(trial % 13));
         const double length = std::pow(200.0, uniform(random)), other_length = std::pow(200.0, uniform(random));
         const double offset = trial % 5 == 0 ? 0.0 : std::pow(10.0, 6.0 * uniform(random));
-        const Vec3 along = random_vector(random).normalized();
-        const Vec3 aside = along.cross(random_vector(random)).normalized();
+        const Vec3 along = test::uniform_vector(random).normalized();
+        const Vec3 aside = along.cross(test::uniform_vector(random)).normalized();
         const Vec3 turned = (along + angle * (aside + 0.3 * along.cross(aside))) * (trial % 2 == 0 ? 1.0 : -1.0);
-        const Vec3 a = offset * random_vector(random);
+        const Vec3 a = offset * test::uniform_vector(random);
         const Vec3 b = a + length * along;
         const Vec3 c = a + aside * (0.2 + uniform(random)) + along * length * (2.0 * uniform(random) - 0.5);
         const Vec3 d = c + other_length * turned.normalized();
@@ -92,7 +88,7 @@ TEST_CASE("the distance is right to 2e-12 at any angle, near-parallel first of a
 TEST_CASE("the branch-free form for whole vectors gives the same distance") {
     std::mt19937 random(2);
     for (int trial = 0; trial < 1000; ++trial) {
-        const Vec3 a = random_vector(random), u = random_vector(random), b = random_vector(random), v = random_vector(random);
+        const Vec3 a = test::uniform_vector(random), u = test::uniform_vector(random), b = test::uniform_vector(random), v = test::uniform_vector(random);
         using proximity::detail::plain;
         const double least = proximity::detail::least_squared(plain(a) - plain(b), plain(u), plain(v));
         CHECK(least == doctest::Approx(segment_distance(a, u, b, v).squared).epsilon(1e-13));  // but for fused operations

@@ -87,8 +87,8 @@ TEST_CASE("a right crossing stays one zone although the sense of its fibres is n
     for (int trial = 0; trial < 50; ++trial) {
         FibreSet set{.name = "wavy crossing", .reach = 0.2};
         std::vector<Vec3> a = straight({-1, 0, 0}, {1, 0, 0}, 60), b = straight({0, -1, 0.2}, {0, 1, 0.2}, 60);
-        for (Vec3& x : a) x += 0.004 * test::random_vector(random);
-        for (Vec3& x : b) x += 0.004 * test::random_vector(random);
+        for (Vec3& x : a) x += 0.004 * test::uniform_vector(random);
+        for (Vec3& x : b) x += 0.004 * test::uniform_vector(random);
         set.add(a, 0.1);
         set.add(b, 0.1);
         CHECK(zones_of(set).size() == 1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "../refusal.hpp"
+#include "../support/random_vector.hpp"
 
 #include <fibrant/solid/cell_search.hpp>
 
@@ -15,7 +16,7 @@ namespace hexahedron_map_test {
 solid::CellNodes random_cell(std::mt19937& generator) {
     std::uniform_real_distribution<double> draw(-1.0, 1.0);
     while (true) {
-        const Vec3 size = Vec3::Constant(0.55) + 0.45 * Vec3(draw(generator), draw(generator), draw(generator));
+        const Vec3 size = Vec3::Constant(0.55) + 0.45 * test::random_vector(draw, generator);
         const double shear = draw(generator), taper = 0.5 * draw(generator);
         Mat3 turn = Mat3::Identity();
         turn(0, 1) = shear, turn(0, 2) = 0.5 * draw(generator), turn(2, 1) = 0.3 * draw(generator);
@@ -40,7 +41,7 @@ void check_round_trips(int cells, int points) {
     for (int c = 0; c < cells; ++c) {
         const solid::CellNodes nodes = random_cell(generator);
         for (int p = 0; p < points; ++p) {
-            const Vec3 xi(draw(generator), draw(generator), draw(generator));
+            const Vec3 xi = test::random_vector(draw, generator);
             const Vec3 x = nodes.transpose() * solid::shape(xi);
             const solid::MapResult map = solid::inverse_map(nodes, x);
             if (map.status != solid::MapStatus::inside) ++lost;
@@ -110,7 +111,7 @@ TEST_CASE("the search finds the lowest cell of those that hold a point, as tryin
         for (Index j = 0; j <= n; ++j)
             for (Index i = 0; i <= n; ++i) {
                 Vec3 x(static_cast<double>(i), static_cast<double>(j), 0.2 * static_cast<double>(k));
-                x += 0.04 * Vec3(draw(generator), draw(generator), draw(generator));
+                x += 0.04 * test::random_vector(draw, generator);
                 x.z() += 0.3 * std::sin(x.x());
                 solid.nodes.push_back(x);
             }

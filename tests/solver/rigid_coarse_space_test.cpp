@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "support/fabric_system.hpp"
 #include "support/synthetic_system.hpp"
+#include "../support/random_vector.hpp"
 
 #include <fibrant/solver/rigid_coarse_space.hpp>
 
@@ -28,7 +29,7 @@ SyntheticSystem coupled(int held) {
     for (std::size_t c = 0; c < system.description.chains.size(); ++c) {
         const scene::Chain& chain = system.description.chains[c];
         for (Index k = 0; k < chain.nodes * chain.vectors_per_node; ++k) {
-            Vec3 value(uniform(generator), uniform(generator), uniform(generator));
+            Vec3 value = test::random_vector(uniform, generator);
             if (k % chain.vectors_per_node == 0) value = Vec3(static_cast<double>(k / chain.vectors_per_node), static_cast<double>(c), 0) + 0.1 * value;
             system.description.value[core::at(chain.first_vector + k)] = value;
         }

@@ -2,6 +2,8 @@
 #pragma once
 /// @file A linear system as a fabric of fibre bundles gives it: director beams, contact elements side by side and at crossings.
 
+#include "random_vector.hpp"
+
 #include <fibrant/assembly/chain_system.hpp>
 #include <fibrant/assembly/visited_system.hpp>
 #include <fibrant/beam/director_beam.hpp>
@@ -343,7 +345,7 @@ Vector contact_load(const System& system) {
         std::normal_distribution<double> normal{};
         void dense(const assembly::DenseTerm&) const {}
         void point(const assembly::PointTerm& term) {
-            const Vec3 gap(normal(generator), normal(generator), normal(generator));
+            const Vec3 gap = random_vector(normal, generator);
             const Vec3 force = term.stiffness * gap;
             for (std::size_t i = 0; i < term.vectors.size(); ++i) b.segment<3>(3 * term.vectors[i]) += term.weights[i] * force;
         }

@@ -2,6 +2,8 @@
 #pragma once
 /// @file The least linear system: terms that are stored and visited, and nothing faster.
 
+#include "random_vector.hpp"
+
 #include <fibrant/assembly/visited_system.hpp>
 
 #include <Eigen/Geometry>
@@ -132,13 +134,13 @@ inline SyntheticSystem random_system(const RandomSystem& options) {
                 term.weights.push_back(sign * system.description.length[core::at(vector)] * (k == 0 ? 1.0 : uniform(generator)));
             }
         }
-        const Vec3 normal = Vec3(uniform(generator), uniform(generator), uniform(generator)).normalized();
+        const Vec3 normal = random_vector(uniform, generator).normalized();
         term.stiffness = 5.0 * normal * normal.transpose() + 0.5 * Mat3::Identity();
         system.points.push_back(std::move(term));
     }
     for (int k = 0; k < options.held; ++k) {
         const Index vector = k * (system.description.vectors() / std::max(options.held, 1));
-        const Vec3 u = Vec3(uniform(generator), uniform(generator), uniform(generator)).normalized();
+        const Vec3 u = random_vector(uniform, generator).normalized();
         const Mat3 line = u * u.transpose();
         system.hold(vector, k % 3 == 0 ? Mat3::Zero() : k % 3 == 1 ? line : Mat3(Mat3::Identity() - line));
     }
@@ -156,7 +158,7 @@ inline SyntheticSystem random_system(const RandomSystem& options) {
             if (taken(vector)) continue;
             tie.vectors.push_back(vector), tie.weights.push_back(1.0 / std::sqrt(5.0));
         }
-        const Vec3 first = Vec3(uniform(generator), uniform(generator), uniform(generator)).normalized(), second = first.unitOrthogonal();
+        const Vec3 first = random_vector(uniform, generator).normalized(), second = first.unitOrthogonal();
         tie.axes.col(0) = first, tie.axes.col(1) = second, tie.axes.col(2) = first.cross(second);
         system.description.ties.push_back(tie);
     }
