@@ -2,8 +2,6 @@
 #pragma once
 /// @file A linear system as a fabric of fibre bundles gives it: director beams, contact elements side by side and at crossings.
 
-#include "random_vector.hpp"
-
 #include <fibrant/assembly/chain_system.hpp>
 #include <fibrant/assembly/visited_system.hpp>
 #include <fibrant/beam/director_beam.hpp>
@@ -345,7 +343,8 @@ Vector contact_load(const System& system) {
         std::normal_distribution<double> normal{};
         void dense(const assembly::DenseTerm&) const {}
         void point(const assembly::PointTerm& term) {
-            const Vec3 gap = random_vector(normal, generator);
+            Vec3 gap;
+            for (const Index k : {2, 1, 0}) gap[k] = normal(generator);  // one by one: as arguments, in an order that the compiler chooses
             const Vec3 force = term.stiffness * gap;
             for (std::size_t i = 0; i < term.vectors.size(); ++i) b.segment<3>(3 * term.vectors[i]) += term.weights[i] * force;
         }

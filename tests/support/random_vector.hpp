@@ -8,12 +8,11 @@
 
 namespace fibrant::test {
 
-/// Components drawn one after the other, the last one first: as arguments of one call, the compiler would choose their order, and the scene.
+/// Components drawn one after the other: as arguments of one call, the compiler would choose their order, and the scene.
 template <class Distribution, class Generator>
 Vec3 random_vector(Distribution& draw, Generator& generator) {
-    Vec3 vector;
-    for (const Index k : {2, 1, 0}) vector[k] = draw(generator);
-    return vector;
+    const double x = draw(generator), y = draw(generator), z = draw(generator);
+    return {x, y, z};
 }
 
 inline Vec3 uniform_vector(std::mt19937& generator) {
