@@ -310,6 +310,20 @@ TEST_CASE("splayed fibres have a pair in their last section, where they are clos
     }
 }
 
+TEST_CASE("a kink between two elements that is turned to the other fibre is seen wherever it lies between the stations") {
+    // Straight elements that meet at 0.02 rad, which touch the other fibre with that node alone, somewhere along a spacing.
+    const double angle = 0.02;
+    for (int shift = 0; shift < 20; ++shift) {
+        const double along = 0.2 * 0.5 * shift / 20.0;
+        const auto roof = [=](double t) { return Vec3(-1.0 + along + 2.0 * t, 0.0, 2.0 * r + angle * std::abs(t - 0.5)); };
+        const Mesh mesh = mesh_of({straight_fibre({-1.5, 0, 0}, {1.5, 0, 0}, r, 15), curved_fibre(roof, r, 10)});
+        double least = 1e300;
+        for (const StationPair& pair : pairs_of(mesh, zone(2.5 + 5.0 * along, 12.5 + 5.0 * along, 0.0, 10.0), false))
+            least = std::min(least, distance(mesh, pair.u_i, pair.u_j));
+        CHECK(least < (2.0 + spacing.largest_unseen) * r);
+    }
+}
+
 TEST_CASE("where a fibre ends, its last section has no deeper contact than its pairs know of, wherever its stations stand") {
     // 15 degrees towards the first fibre, and touching it where it ends; it begins a little later each time, over a whole spacing.
     const double angle = 15.0 * std::numbers::pi / 180.0, length = 1.0;

@@ -6,6 +6,15 @@
 
 namespace fibrant::contact {
 
+/// Jump of the centreline's derivative by u where element `node` begins and the one before it ends [length].
+template <class B>
+Vec3 kink(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, Index node) noexcept {
+    const auto at = [&](Index e, double end) {
+        return Vec3(2.0 * beam::Mesh<B>::point(state, mesh.first_unknown(fibre, e), B::centreline_derivative_weights(end)));
+    };
+    return at(node, -1.0) - at(node - 1, 1.0);
+}
+
 /// Derivative of the centreline by u [length], with its jump at a node shared by two elements evened out linearly over both.
 ///
 /// A centreline of quadratic elements has kinks, above all under a point force. In a kink the closest point and the normal
@@ -14,12 +23,9 @@ namespace fibrant::contact {
 template <class B>
 Vec3 contact_tangent(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u) noexcept {
     const auto [element, xi] = mesh.locate(fibre, u);
-    const auto at = [&](Index e, double end) {
-        return Vec3(2.0 * beam::Mesh<B>::point(state, mesh.first_unknown(fibre, e), B::centreline_derivative_weights(end)));
-    };
-    Vec3 tangent = at(element, xi);
-    if (element > 0) tangent += 0.25 * (1.0 - xi) * (at(element - 1, 1.0) - at(element, -1.0));
-    if (element + 1 < mesh.fibre(fibre).elements) tangent += 0.25 * (1.0 + xi) * (at(element + 1, -1.0) - at(element, 1.0));
+    Vec3 tangent = 2.0 * beam::Mesh<B>::point(state, mesh.first_unknown(fibre, element), B::centreline_derivative_weights(xi));
+    if (element > 0) tangent -= 0.25 * (1.0 - xi) * kink(mesh, state, fibre, element);
+    if (element + 1 < mesh.fibre(fibre).elements) tangent += 0.25 * (1.0 + xi) * kink(mesh, state, fibre, element + 1);
     return tangent;
 }
 

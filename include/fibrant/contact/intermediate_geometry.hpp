@@ -7,6 +7,7 @@
 #include <fibrant/proximity/proximity_search.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -263,10 +264,29 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         const double u_i = zone.a_i + s * (zone.b_i - zone.a_i), u_j = zone.a_j + s * (zone.b_j - zone.a_j);
         const Vec3 centres = mesh.position(state, j, u_j) - mesh.position(state, i, u_i);
         const Vec3 bend = mesh.second_derivative(state, j, u_j) / (h_j * h_j) - mesh.second_derivative(state, i, u_i) / (h_i * h_i);
-        const double half = 0.5 * step * h, bending = std::max(0.0, bend.dot(centres.normalized()));
-        const double unseen = 0.5 * half * half * (sine * sine / (2.0 * r) + bending);
+        const double bending = std::max(0.0, bend.dot(centres.normalized()));
+        const double smooth = 0.125 * step * h * step * h * (sine * sine / (2.0 * r) + bending);
+        // Where two elements of a fibre meet between the stations, at a part of the way, it turns towards the other one by an angle.
+        struct Turn { double at, angle; };
+        std::array<Turn, 2> turns{};
+        for (const bool of_i : {true, false}) {
+            const double low = share(static_cast<double>(k)), high = share(static_cast<double>(k) + 1.0);
+            const double a = of_i ? zone.a_i : zone.a_j, b = of_i ? zone.b_i : zone.b_j, from_u = a + low * (b - a), to_u = a + high * (b - a);
+            const double node = std::floor(std::max(from_u, to_u) - 1e-6), elements = of_i ? end_i : end_j;
+            if (node <= std::min(from_u, to_u) || node < 1.0 || node >= elements) continue;
+            const Vec3 jump = kink(mesh, state, of_i ? i : j, static_cast<Index>(node)) / (of_i ? -h_i : h_j);
+            turns[of_i ? 0 : 1] = {(node - from_u) / (to_u - from_u), std::max(0.0, jump.dot(centres.normalized()))};
+        }
+        const auto unseen = [&](int parts) {
+            double depth = smooth / (parts * parts);
+            for (const Turn& turn : turns) {
+                const double at = turn.at * parts - std::floor(turn.at * parts);
+                depth += turn.angle * at * (1.0 - at) * step * h / parts;
+            }
+            return depth;
+        };
         int parts = 1;
-        while (parts < 8 && (unseen > spacing.largest_unseen * r * parts * parts || was_halved(k, parts))) parts *= 2;
+        while (parts < 8 && (unseen(parts) > spacing.largest_unseen * r || was_halved(k, parts))) parts *= 2;
         for (int m = 1; m < parts; ++m) {
             const double at = static_cast<double>(k) + static_cast<double>(m) / parts;
             if (at * step > from && at * step < to) add_station(share(at), step * h / parts);
