@@ -224,7 +224,8 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         return true;
     };
     const auto nearest_end = [&](bool of_i, double u) { return u > 0.5 * (of_i ? end_i : end_j) ? (of_i ? end_i : end_j) : 0.0; };
-    // The pair of the plane at the share s of the zone. @returns the sine of the angle between the fibres there
+    struct Station { double u_i, u_j, sine; };  // sine of the angle between the fibres
+    // The pair of the plane at the share s of the zone.
     const auto add_station = [&](double s, double length) {
         double u_i = zone.a_i + s * (zone.b_i - zone.a_i), u_j = zone.a_j + s * (zone.b_j - zone.a_j);
         const Vec3 middle = 0.5 * (mesh.position(state, i, u_i) + mesh.position(state, j, u_j));
@@ -243,7 +244,7 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         } else {
             pairs.push_back({u_i, u_j, false, false, false, length});
         }
-        return t_i.cross(t_j).norm();
+        return Station{u_i, u_j, t_i.cross(t_j).norm()};
     };
     if (first > last) add_station(0.5, step * h);
     // Between two stations fibres come closer than at either where they slant past each other, the distance of their centres
@@ -259,9 +260,8 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
             return place > 0.0 && place < 2.0 * parts && std::abs(std::remainder(place - 1.0, 2.0)) < 0.2;
         });
     };
-    const auto add_between = [&](Index k, double sine) {
-        const double s = share(static_cast<double>(k) + 0.5);
-        const double u_i = zone.a_i + s * (zone.b_i - zone.a_i), u_j = zone.a_j + s * (zone.b_j - zone.a_j);
+    const auto add_between = [&](Index k, const Station& low, const Station& high) {
+        const double u_i = 0.5 * (low.u_i + high.u_i), u_j = 0.5 * (low.u_j + high.u_j), sine = std::max(low.sine, high.sine);
         const Vec3 centres = mesh.position(state, j, u_j) - mesh.position(state, i, u_i);
         const Vec3 bend = mesh.second_derivative(state, j, u_j) / (h_j * h_j) - mesh.second_derivative(state, i, u_i) / (h_i * h_i);
         const double bending = std::max(0.0, bend.dot(centres.normalized()));
@@ -270,8 +270,7 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         struct Turn { double at, angle; };
         std::array<Turn, 2> turns{};
         for (const bool of_i : {true, false}) {
-            const double low = share(static_cast<double>(k)), high = share(static_cast<double>(k) + 1.0);
-            const double a = of_i ? zone.a_i : zone.a_j, b = of_i ? zone.b_i : zone.b_j, from_u = a + low * (b - a), to_u = a + high * (b - a);
+            const double from_u = of_i ? low.u_i : low.u_j, to_u = of_i ? high.u_i : high.u_j;
             const double node = std::floor(std::max(from_u, to_u) - 1e-6), elements = of_i ? end_i : end_j;
             if (node <= std::min(from_u, to_u) || node < 1.0 || node >= elements) continue;
             const Vec3 jump = kink(mesh, state, of_i ? i : j, static_cast<Index>(node)) / (of_i ? -h_i : h_j);
@@ -292,13 +291,18 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
             if (at * step > from && at * step < to) add_station(share(at), step * h / parts);
         }
     };
-    double sine = 0.0;
+    const double per_step = to > from ? step / (to - from) : 0.0;
+    const auto next = [&](const Station& station, double steps) {
+        return Station{std::clamp(station.u_i + steps * per_step * (zone.b_i - zone.a_i), 0.0, end_i),
+                       std::clamp(station.u_j + steps * per_step * (zone.b_j - zone.a_j), 0.0, end_j), station.sine};
+    };
+    Station station{};
     for (Index k = first; k <= last; ++k) {
-        const double here = add_station(share(static_cast<double>(k)), step * h);
-        add_between(k - 1, k == first ? here : std::max(sine, here));
-        sine = here;
+        const Station here = add_station(share(static_cast<double>(k)), step * h);
+        add_between(k - 1, k == first ? next(here, -1.0) : station, here);
+        station = here;
     }
-    if (first <= last) add_between(last, sine);
+    if (first <= last) add_between(last, station, next(station, 1.0));
     // Ends that the zone reaches and no station has met.
     for (const double s : {0.0, 1.0})
         for (const bool of_i : {true, false}) {
