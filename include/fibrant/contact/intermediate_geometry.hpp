@@ -244,7 +244,7 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         } else {
             pairs.push_back({u_i, u_j, false, false, false, length});
         }
-        return Station{u_i, u_j, t_i.cross(t_j).norm()};
+        return Station{u_i, u_j, sine_between(t_i, t_j)};
     };
     if (first > last) add_station(0.5, step * h);
     // Between two stations fibres come closer than at either where they slant past each other, the distance of their centres
@@ -262,9 +262,9 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
     };
     const auto add_between = [&](Index k, const Station& low, const Station& high) {
         const double u_i = 0.5 * (low.u_i + high.u_i), u_j = 0.5 * (low.u_j + high.u_j), sine = std::max(low.sine, high.sine);
-        const Vec3 centres = mesh.position(state, j, u_j) - mesh.position(state, i, u_i);
+        const Vec3 across = (mesh.position(state, j, u_j) - mesh.position(state, i, u_i)).normalized();
         const Vec3 bend = mesh.second_derivative(state, j, u_j) / (h_j * h_j) - mesh.second_derivative(state, i, u_i) / (h_i * h_i);
-        const double bending = std::max(0.0, bend.dot(centres.normalized()));
+        const double bending = std::max(0.0, bend.dot(across));
         const double smooth = 0.125 * step * h * step * h * (sine * sine / (2.0 * r) + bending);
         // Where two elements of a fibre meet between the stations, at a part of the way, it turns towards the other one by an angle.
         struct Turn { double at, angle; };
@@ -274,7 +274,7 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
             const double node = std::floor(std::max(from_u, to_u) - 1e-6), elements = of_i ? end_i : end_j;
             if (node <= std::min(from_u, to_u) || node < 1.0 || node >= elements) continue;
             const Vec3 jump = kink(mesh, state, of_i ? i : j, static_cast<Index>(node)) / (of_i ? -h_i : h_j);
-            turns[of_i ? 0 : 1] = {(node - from_u) / (to_u - from_u), std::max(0.0, jump.dot(centres.normalized()))};
+            turns[of_i ? 0 : 1] = {(node - from_u) / (to_u - from_u), std::max(0.0, jump.dot(across))};
         }
         const auto unseen = [&](int parts) {
             double depth = smooth / (parts * parts);
