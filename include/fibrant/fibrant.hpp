@@ -67,6 +67,7 @@
 #include <fibrant/contact/normal_direction.hpp>
 #include <fibrant/contact/pair_rules.hpp>
 #include <fibrant/contact/side_index.hpp>
+#include <fibrant/contact/station_pairs.hpp>
 #include <fibrant/contact/support.hpp>
 #include <fibrant/contact/tool_contacts.hpp>
 #include <fibrant/contact/tool_element.hpp>

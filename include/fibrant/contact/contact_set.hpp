@@ -6,9 +6,9 @@
 #include <fibrant/contact/contact_element.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
-#include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/pair_rules.hpp>
 #include <fibrant/contact/side_index.hpp>
+#include <fibrant/contact/station_pairs.hpp>
 #include <fibrant/contact/support.hpp>
 
 #include <algorithm>

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Contact points of a proximity zone: planes across the mean of its two lines, closest points, fibre ends.
+
+#include <fibrant/contact/intermediate_geometry.hpp>
+#include <fibrant/contact/normal_direction.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace fibrant::contact {
+
+namespace detail {
+
+/// The stations of one zone while they are placed, appended to the caller's pairs.
+///
+/// `u` of one of the two fibres goes with a `bool of_i` that says of which.
+template <class B>
+class ZoneStations {
+public:
+    ZoneStations(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone, const ContactSpacing& spacing,
+                 std::vector<StationPair>& pairs)
+        : mesh_{mesh}, state_{state}, zone_{zone}, spacing_{spacing}, pairs_{pairs}, before_{pairs.size()}, i_{zone.fibre_i}, j_{zone.fibre_j},
+          h_i_{mesh.fibre(i_).element_length}, h_j_{mesh.fibre(j_).element_length}, end_i_{static_cast<double>(mesh.fibre(i_).elements)},
+          end_j_{static_cast<double>(mesh.fibre(j_).elements)},
+          r_{0.5 * (mesh.fibre(i_).section.radius() + mesh.fibre(j_).section.radius())}, h_{0.5 * (h_i_ + h_j_)},
+          step_{1.0 / spacing.points_per_element}, from_{mean_abscissa(zone.a_i, zone.a_j)}, to_{mean_abscissa(zone.b_i, zone.b_j)} {}
+
+    /// The mutual closest points; with an end beyond which the other fibre goes on, its cap.
+    void place_crossing() {
+        StationPair pair = closest_points(mesh_, state_, i_, j_, zone_.closest_i, zone_.closest_j);
+        if (is_one(pair)) pair.u_i = zone_.closest_i, pair.u_j = zone_.closest_j, pair.crossing = false;  // nor across both tangents
+        pair.length = r_;
+        const Vec3 centres = mesh_.position(state_, j_, pair.u_j) - mesh_.position(state_, i_, pair.u_i);
+        const double off_i = std::abs(centres.dot(mesh_.derivative(state_, i_, pair.u_i).normalized()));
+        const double off_j = std::abs(centres.dot(mesh_.derivative(state_, j_, pair.u_j).normalized()));
+        // A fibre's line goes on beyond its end, its end does not: the gap across both tangents is less than that of a cap, by 0.1 r where lines part by a quarter
+        // of r. Then an end that slides to where the one kind begins would be sent back by the other for ever.
+        const double nearly_none = 0.01 * r_;
+        pair.end_i = (pair.u_i <= 0.0 || pair.u_i >= end_i_) && off_i > nearly_none;
+        pair.end_j = (pair.u_j <= 0.0 || pair.u_j >= end_j_) && off_j > nearly_none;
+        pairs_.push_back(pair);
+    }
+
+    /// Stations at whole multiples of the spacing in the mean abscissa of both fibres, so that they stay at the same
+    /// material when the ends of a zone move, and meet the nodes of aligned fibres, where a centreline has its kinks.
+    /// More of them where the fibres would come closer unseen, and the last sections of fibres.
+    /// @param earlier  as of `station_pairs`
+    template <class Earlier>
+    void place_along(const Earlier& earlier) {
+        std::vector<double> between;
+        earlier([&](double u_i, double u_j) {
+            const double k = mean_abscissa(u_i, u_j) / step_;
+            if (std::abs(k - std::round(k)) > 0.1) between.push_back(k);
+        });
+        const auto first = static_cast<Index>(std::ceil(from_ / step_ - 1e-6)), last = static_cast<Index>(std::floor(to_ / step_ + 1e-6));
+        if (first > last) add_station(0.5, step_ * h_);
+        Station station{};
+        for (Index k = first; k <= last; ++k) {
+            const Station here = add_station(share(static_cast<double>(k)), step_ * h_);
+            add_between(k - 1, k == first ? beside(here, -1.0) : station, here, between);
+            station = here;
+        }
+        if (first <= last) add_between(last, station, beside(station, 1.0), between);
+        // Ends that the zone reaches and no station has met.
+        for (const double s : {0.0, 1.0})
+            for (const bool of_i : {true, false}) {
+                const double u_i = zone_.a_i + s * (zone_.b_i - zone_.a_i), u_j = zone_.a_j + s * (zone_.b_j - zone_.a_j);
+                const double u = of_i ? u_i : u_j, end = nearest_end(of_i, u);
+                if (std::abs(u - end) < 0.5 * step_) add_last_section(of_i, end, of_i ? u_j : u_i);
+            }
+        const auto begin = pairs_.begin() + static_cast<std::ptrdiff_t>(before_);
+        pairs_.erase(std::remove_if(begin, pairs_.end(), [&](const StationPair& pair) { return is_one(pair); }), pairs_.end());
+        std::sort(pairs_.begin() + static_cast<std::ptrdiff_t>(before_), pairs_.end(), [](const StationPair& a, const StationPair& b) {
+            return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j;
+        });
+    }
+
+private:
+    struct Station { double u_i, u_j, sine; };  // sine of the angle between the fibres
+    struct Turn { double at, angle; };          // of a fibre towards the other one where two of its elements meet, at a part of the way
+
+    // In a bend the points of a fibre that are closest to each other are next to each other, or one.
+    bool is_one(const StationPair& pair) const noexcept {
+        return i_ == j_ && std::abs(pair.u_j - pair.u_i) * h_i_ < self_contact_arc(r_, h_i_);
+    }
+    double mean_abscissa(double u_i, double u_j) const noexcept {
+        return 0.5 * (h_i_ * u_i + h_j_ * (zone_.b_j < zone_.a_j ? end_j_ - u_j : u_j)) / h_;
+    }
+    // Of the zone at a multiple k of the spacing.
+    double share(double k) const noexcept { return to_ > from_ ? std::clamp((k * step_ - from_) / (to_ - from_), 0.0, 1.0) : 0.5; }
+    double nearest_end(bool of_i, double u) const noexcept {
+        const double end = of_i ? end_i_ : end_j_;
+        return u > 0.5 * end ? end : 0.0;
+    }
+    // Where a station lies that would be so many steps from one, as the zone's ends say.
+    Station beside(const Station& station, double steps) const noexcept {
+        const double per_step = to_ > from_ ? step_ / (to_ - from_) : 0.0;
+        return {std::clamp(station.u_i + steps * per_step * (zone_.b_i - zone_.a_i), 0.0, end_i_),
+                std::clamp(station.u_j + steps * per_step * (zone_.b_j - zone_.a_j), 0.0, end_j_), station.sine};
+    }
+
+    // A fibre's end against the other fibre's side; the same end is paired once in a zone.
+    void add_end(bool of_i, double u) {
+        bool& done = met_[(of_i ? 0U : 2U) + (u > 0.5 * (of_i ? end_i_ : end_j_) ? 1U : 0U)];
+        if (done) return;
+        done = true;
+        const Index self = of_i ? i_ : j_, other = of_i ? j_ : i_;
+        const Vec3 centre = mesh_.position(state_, self, u);
+        const double low = of_i ? std::min(zone_.a_j, zone_.b_j) : zone_.a_i, high = of_i ? std::max(zone_.a_j, zone_.b_j) : zone_.b_i;
+        double v = 0.5 * (low + high);
+        const double other_end = of_i ? end_j_ : end_i_;
+        double best = (mesh_.position(state_, other, v) - centre).squaredNorm();
+        for (int k = 0; k <= 8; ++k) {  // a start close enough for the tangent planes to converge
+            const double w = low + (high - low) * k / 8.0;
+            const double square = (mesh_.position(state_, other, w) - centre).squaredNorm();
+            if (square < best) best = square, v = w;
+        }
+        for (int iteration = 0; iteration < 12; ++iteration) {
+            const Vec3 d = mesh_.derivative(state_, other, v);
+            const double step = std::clamp((centre - mesh_.position(state_, other, v)).dot(d) / d.squaredNorm(), -1.0, 1.0);
+            v = std::clamp(v + step, 0.0, other_end);
+            if (std::abs(step) < 1e-11) break;
+        }
+        const Vec3 d = mesh_.derivative(state_, other, v);
+        const double beyond = std::abs((centre - mesh_.position(state_, other, v)).dot(d.normalized()));
+        StationPair pair{of_i ? u : v, of_i ? v : u, false, of_i, !of_i, 0.5 * r_};
+        if (beyond > 0.25 * r_) pair.end_i = pair.end_j = true;  // end to end
+        pairs_.push_back(pair);
+    }
+
+    // The last section of a fibre against the other one: there splayed fibres are closest, and no cap sticks out. False if
+    // the other fibre ends before.
+    bool add_last_section(bool of_i, double u, double v) {
+        const Index self = of_i ? i_ : j_, other = of_i ? j_ : i_;
+        const double other_end = of_i ? end_j_ : end_i_;
+        const Vec3 origin = mesh_.position(state_, self, u);
+        const Vec3 t = contact_tangent(mesh_, state_, self, u).normalized(), t_other = contact_tangent(mesh_, state_, other, v).normalized();
+        const Vec3 tangent = mean_tangent(t, t_other);
+        // A station next to it will do, unless the fibres come closer by more than may go unseen between the two.
+        const double near = std::min(0.1 * step_, spacing_.largest_unseen * r_ / (h_ * std::max(sine_between(t, t_other), 1e-3)));
+        for (std::size_t k = before_; k < pairs_.size(); ++k)
+            if (std::abs((of_i ? pairs_[k].u_i : pairs_[k].u_j) - u) < near) return true;
+        v = plane_section(mesh_, state_, other, v, origin, tangent);
+        if ((v <= 0.0 || v >= other_end) && std::abs((mesh_.position(state_, other, v) - origin).dot(tangent)) > 0.05 * r_) return false;
+        pairs_.push_back({of_i ? u : v, of_i ? v : u, false, false, false, 0.0});
+        return true;
+    }
+
+    // The pair of the plane at the share s of the zone.
+    Station add_station(double s, double length) {
+        double u_i = zone_.a_i + s * (zone_.b_i - zone_.a_i), u_j = zone_.a_j + s * (zone_.b_j - zone_.a_j);
+        const Vec3 middle = 0.5 * (mesh_.position(state_, i_, u_i) + mesh_.position(state_, j_, u_j));
+        const Vec3 t_i = contact_tangent(mesh_, state_, i_, u_i).normalized(), t_j = contact_tangent(mesh_, state_, j_, u_j).normalized();
+        const Vec3 tangent = mean_tangent(t_i, t_j);
+        u_i = plane_section(mesh_, state_, i_, u_i, middle, tangent);
+        u_j = plane_section(mesh_, state_, j_, u_j, middle, tangent);
+        const double off_i = std::abs((mesh_.position(state_, i_, u_i) - middle).dot(tangent));
+        const double off_j = std::abs((mesh_.position(state_, j_, u_j) - middle).dot(tangent));
+        const bool left_i = off_i > 0.05 * r_ && (u_i <= 0.0 || u_i >= end_i_);
+        const bool left_j = off_j > 0.05 * r_ && (u_j <= 0.0 || u_j >= end_j_);
+        if (left_i || left_j) {
+            const bool of_i = left_i;
+            const double u = of_i ? u_i : u_j;
+            if (!add_last_section(of_i, nearest_end(of_i, u), of_i ? u_j : u_i)) add_end(of_i, u);
+        } else {
+            pairs_.push_back({u_i, u_j, false, false, false, length});
+        }
+        return {u_i, u_j, sine_between(t_i, t_j)};
+    }
+
+    // Stations between two that are a step apart, the first at the multiple k of it. Fibres come closer there than at either where they slant
+    // past each other, the distance of their centres being a hyperbola, and where they bend towards each other: the spacing is halved then.
+    void add_between(Index k, const Station& low, const Station& high, const std::vector<double>& earlier) {
+        const double u_i = 0.5 * (low.u_i + high.u_i), u_j = 0.5 * (low.u_j + high.u_j), sine = std::max(low.sine, high.sine);
+        const Vec3 across = (mesh_.position(state_, j_, u_j) - mesh_.position(state_, i_, u_i)).normalized();
+        const Vec3 bend = mesh_.second_derivative(state_, j_, u_j) / (h_j_ * h_j_) - mesh_.second_derivative(state_, i_, u_i) / (h_i_ * h_i_);
+        const double bending = std::max(0.0, bend.dot(across));
+        const double smooth = 0.125 * step_ * h_ * step_ * h_ * (sine * sine / (2.0 * r_) + bending);
+        find_turns(low, high, across);
+        const auto unseen = [&](int parts) {
+            double depth = smooth / (parts * parts);
+            for (const Turn& turn : turns_) {
+                const double at = turn.at * parts - std::floor(turn.at * parts);
+                depth += turn.angle * at * (1.0 - at) * step_ * h_ / parts;
+            }
+            return depth;
+        };
+        const auto was_halved = [&](int parts) {
+            return std::any_of(earlier.begin(), earlier.end(), [&](double station) {
+                const double place = (station - static_cast<double>(k)) * 2.0 * parts;  // odd at the stations of this halving
+                return place > 0.0 && place < 2.0 * parts && std::abs(std::remainder(place - 1.0, 2.0)) < 0.2;
+            });
+        };
+        int parts = 1;
+        while (parts < 8 && (unseen(parts) > spacing_.largest_unseen * r_ || was_halved(parts))) parts *= 2;
+        for (int m = 1; m < parts; ++m) {
+            const double at = static_cast<double>(k) + static_cast<double>(m) / parts;
+            if (at * step_ > from_ && at * step_ < to_) add_station(share(at), step_ * h_ / parts);
+        }
+    }
+
+    // Where elements of either fibre meet between two stations, and it turns towards the other one.
+    void find_turns(const Station& low, const Station& high, const Vec3& across) {
+        turns_.clear();
+        for (const bool of_i : {true, false}) {
+            const double from_u = of_i ? low.u_i : low.u_j, to_u = of_i ? high.u_i : high.u_j;
+            const double least = std::max(std::min(from_u, to_u), 0.5);
+            double node = std::min(std::floor(std::max(from_u, to_u) - 1e-6), (of_i ? end_i_ : end_j_) - 1.0);
+            for (; node > least; node -= 1.0) {
+                const Vec3 jump = kink(mesh_, state_, of_i ? i_ : j_, static_cast<Index>(node)) / (of_i ? -h_i_ : h_j_);
+                turns_.push_back({(node - from_u) / (to_u - from_u), std::max(0.0, jump.dot(across))});
+            }
+        }
+    }
+
+    const beam::Mesh<B>& mesh_;
+    const Vector& state_;
+    const proximity::ProximityZone& zone_;
+    const ContactSpacing& spacing_;
+    std::vector<StationPair>& pairs_;
+    std::size_t before_;         // pairs of other zones
+    Index i_, j_;
+    double h_i_, h_j_;           // lengths of an element
+    double end_i_, end_j_;       // abscissae of the last ends
+    double r_, h_;               // means of the two fibres
+    double step_, from_, to_;    // of the mean abscissa
+    std::array<bool, 4> met_{};  // first and last ends of i and of j that have their cap already
+    std::vector<Turn> turns_;    // between the stations that are looked at
+};
+
+}  // namespace detail
+
+/// Stations of a zone (Durville, eq. 6 to 8). The intermediate geometry is the mean of the zone's two lines, points stand
+/// at equal distances on it, and the plane across it cuts the two centrelines.
+///
+/// Departures: a crossing is one element at the mutual closest points, because every plane near a crossing yields the
+/// same gap along the cross product of the tangents; where a zone reaches the end of a fibre, its last section has a
+/// point; and fibres that meet end to end are paired by their rounded ends.
+/// @param zone        abscissae in elements
+/// @param crossing    the zone is a crossing
+/// @param pairs       appended to, in the order of the zone
+/// @param earlier     earlier(see) calls see(u_i, u_j) with the stations that the two fibres had before: a spacing that was
+///                    halved stays so, or the contact that it found would come and go for ever
+template <class B, class Earlier>
+void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone, bool crossing,
+                   const ContactSpacing& spacing, std::vector<StationPair>& pairs, const Earlier& earlier) {
+    detail::ZoneStations<B> stations{mesh, state, zone, spacing, pairs};
+    if (crossing)
+        stations.place_crossing();
+    else
+        stations.place_along(earlier);
+}
+
+/// Stations of a zone that had none before.
+template <class B>
+void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone, bool crossing,
+                   const ContactSpacing& spacing, std::vector<StationPair>& pairs) {
+    station_pairs(mesh, state, zone, crossing, spacing, pairs, [](const auto&) {});
+}
+
+}  // namespace fibrant::contact
