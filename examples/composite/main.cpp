@@ -32,7 +32,7 @@ void settle(simulation::Simulator<Dry>& dry, const composite::Scene& scene, cons
     auto loading = cloth::settling<Dry>(scene.weave.fabric, scene.weave.settle);
     loading.checkpoint = scene.settled.empty() ? (output.folder / "settled.bin").string() : scene.settled;
     loading.checkpoint_seconds = 1e9, loading.resume = true;
-    weave::ProgressPrinter progress(cloth::smallest_radius(scene.weave.fabric), output.quiet);
+    auto progress = example::progress_printer(cloth::smallest_radius(scene.weave.fabric), 0, output.quiet);
     const simulation::Report report = dry.run(loading, progress);
     if (!report.converged) throw std::runtime_error("the fabric did not settle: " + report.reason);
 }

@@ -76,17 +76,19 @@ int run(int argc, char** argv, const char* name, const char* description, const 
     }
 }
 
-/// The ParaView series, a row of increments.csv and a printed line after each increment. `more()` gives columns of its own.
+/// The ParaView series, a row of increments.csv and a line of progress after each increment. `more()` gives columns of its own, the first
+/// three of which are told in the line of progress, too.
 template <class More>
 class Recorder {
 public:
     Recorder(const Output& output, double radius, const More& more)
-        : table_{output.folder / "increments.csv", output.start()}, radius_{radius}, quiet_{output.quiet}, more_{more} {
+        : table_{output.folder / "increments.csv", output.start()}, printer_{progress_printer(radius, 3, output.quiet)}, radius_{radius}, more_{more} {
         if (output.paraview) series_.emplace(output.folder / "paraview", output.start());
     }
     void reported(const fibrant::simulation::IncrementReport& increment) {
         std::vector<observe::Column> columns{{"increment", increment.number}, {"stage", increment.stage}, {"progress", increment.progress}};
-        for (const observe::Column& column : more_()) columns.push_back(column);
+        const std::vector<observe::Column> figures = more_();
+        columns.insert(columns.end(), figures.begin(), figures.end());
         for (const observe::Column& column : std::vector<observe::Column>{{"newton_iterations", increment.counts.newton},
                                                                            {"linear_iterations", increment.counts.linear_iterations},
                                                                            {"contact_passes", increment.counts.contact_passes},
@@ -103,14 +105,9 @@ public:
                                                                            {"seconds", increment.seconds}})
             columns.push_back(column);
         table_.row(columns);
-        if (quiet_) return;
-        for (const observe::Column& column : columns) std::printf("%s %s  ", column.name.c_str(), column.value.c_str());
-        std::printf("\n");
-        std::fflush(stdout);
+        printer_.reported(increment, figures);
     }
-    void gave_up(const fibrant::simulation::FailedAttempt& attempt) const {
-        if (!quiet_) print(attempt);
-    }
+    void gave_up(const fibrant::simulation::FailedAttempt& attempt) const { printer_.gave_up(attempt); }
     void accepted(const observe::Snapshot& snapshot) {
         if (series_) series_->accepted(snapshot);
     }
@@ -118,8 +115,8 @@ public:
 private:
     observe::CsvWriter table_;
     std::optional<observe::VtkWriter> series_;
+    observe::ProgressPrinter printer_;
     double radius_;
-    bool quiet_;
     More more_;
 };
 

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Lines of progress.
+/// @file Lines of progress, on the standard output.
 
-#include <fibrant/simulation/report.hpp>
+#include <fibrant/observe/progress_printer.hpp>
 
-#include <cstdio>
+#include <iostream>
+#include <ostream>
 
 namespace example {
 
-/// What has come to nothing: where fibres snap a large scene spends minutes on such attempts.
-inline void print(const fibrant::simulation::FailedAttempt& attempt) {
-    std::printf("%4td %-10s attempt %td given up after %td Newton iterations, %.0f s since the increment began: %s\n", attempt.number, attempt.stage.c_str(),
-                attempt.attempts, attempt.newton, attempt.seconds, attempt.reason.c_str());
-    std::fflush(stdout);
+/// @param radius   of the thinnest fibre [length]
+/// @param figures  of the example's own, at the end of a line
+/// @param quiet    prints nothing
+inline fibrant::observe::ProgressPrinter progress_printer(double radius, fibrant::Index figures, bool quiet) {
+    static std::ostream nowhere(nullptr);
+    return {{.radius = radius, .figures = figures}, quiet ? nowhere : std::cout};
 }
 
 }  // namespace example

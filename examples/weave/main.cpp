@@ -2,6 +2,7 @@
 // The initial state of a woven fabric at the scale of its fibres, found from flat, interpenetrating tows.
 //   weave SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
 #include "../support/process.hpp"
+#include "../support/progress.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
 
@@ -48,7 +49,7 @@ bool settle(const weave::Scene& scene, const Options& options, Index threads) {
 
     const std::filesystem::path folder = options.output;
     const observe::Start start = options.resume ? observe::Start::resumed : observe::Start::anew;
-    weave::ProgressPrinter progress(radius, options.quiet);
+    auto progress = example::progress_printer(radius, 0, options.quiet);
     weave::IncrementTable table(folder, radius, start);
     weave::Series series(folder / "paraview", start, scene.paraview ? scene.paraview_every : 0);
     auto loading = weave::cloth::settling<M>(scene.fabric, scene.settle);
@@ -91,7 +92,7 @@ int main(int argc, char** argv) {
     example::keep_freed_memory();
     try {
         const weave::Scene scene = weave::read_scene(options.scene, options.set);
-        const Index wanted = options.threads > 0 ? options.threads : scene.threads;
+        [[maybe_unused]] const Index wanted = options.threads > 0 ? options.threads : scene.threads;
 #if defined(_OPENMP)
         if (wanted > 0) omp_set_num_threads(static_cast<int>(wanted));
 #endif

@@ -2,18 +2,16 @@
 #pragma once
 /// @file What a run of the weave prints and writes: progress, the table of increments, measures, pictures, the summary.
 
-#include "../support/progress.hpp"
-
 #include <fibrant/compositions/weave/audit.hpp>
 #include <fibrant/compositions/weave/slices.hpp>
 #include <fibrant/compositions/weave/tow_section.hpp>
 #include <fibrant/observe/csv_writer.hpp>
 #include <fibrant/observe/json.hpp>
+#include <fibrant/observe/progress_printer.hpp>
 #include <fibrant/observe/svg_view.hpp>
 #include <fibrant/observe/vtk_writer.hpp>
 #include <fibrant/simulation/report.hpp>
 
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -25,58 +23,6 @@ namespace weave {
 namespace cloth = fibrant::compositions::weave;
 namespace observe = fibrant::observe;
 using fibrant::Index;
-
-/// Seconds as "1:02:03" or "2:03".
-inline std::string clock_text(double seconds) {
-    const auto whole = static_cast<long>(std::lround(std::max(0.0, seconds)));
-    char text[48];
-    if (whole >= 3600) {
-        std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
-    } else {
-        std::snprintf(text, sizeof text, "%ld:%02ld", whole / 60, whole % 60);
-    }
-    return text;
-}
-
-/// Prints a line after each increment, under a heading.
-class ProgressPrinter {
-public:
-    /// @param radius    of the thinnest fibre, in which penetrations are told [length]
-    /// @param quiet     prints nothing
-    ProgressPrinter(double radius, bool quiet) : radius_{radius}, quiet_{quiet} {}
-
-    void reported(const fibrant::simulation::IncrementReport& increment) {
-        if (quiet_) return;
-        if (!headed_)
-            std::printf("%4s %-10s %6s %7s %7s %9s %8s %8s %6s %8s %8s\n", "inc", "stage", "contact", "normal", "newton",
-                        "residual", "elements", "active", "cuts", "depth/r", "left");
-        if (!headed_) first_ = increment.progress, start_ = std::chrono::steady_clock::now() - whole(increment.seconds);
-        headed_ = true;
-        // From the progress since this process began: a resumed run starts in the middle.
-        const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-        const double done = increment.progress - first_;
-        const double left = done > 0.0 ? passed * (1.0 - increment.progress) / done : -1.0;
-        std::printf("%4td %-10s %7td %7td %7td %9.1e %8td %8td %6td %8.4f %8s\n", increment.number,
-                    increment.stage.c_str(), increment.counts.contact_passes, increment.counts.normal_passes,
-                    increment.counts.newton, increment.residual, increment.contact.elements, increment.contact.active,
-                    increment.cuts, increment.contact.greatest_penetration / radius_,
-                    left < 0.0 ? "?" : clock_text(left).c_str());
-        std::fflush(stdout);
-    }
-
-    void gave_up(const fibrant::simulation::FailedAttempt& attempt) const {
-        if (!quiet_) example::print(attempt);
-    }
-
-private:
-    static std::chrono::steady_clock::duration whole(double seconds) {
-        return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
-    }
-    double radius_;
-    bool quiet_, headed_ = false;
-    double first_ = 0.0;
-    std::chrono::steady_clock::time_point start_{};
-};
 
 /// A row of increments.csv after each increment.
 class IncrementTable {
@@ -293,7 +239,7 @@ inline void write_summary(const std::filesystem::path& folder, const Summary& su
 inline void print(const Summary& summary, const std::string& folder) {
     std::printf("\n%s after %td increments (%td rejected), %td Newton iterations, %s\n",
                 summary.converged ? "settled" : "NOT settled", summary.increments, summary.rejected_increments,
-                summary.newton_iterations, clock_text(summary.wall_seconds).c_str());
+                summary.newton_iterations, observe::clock_text(summary.wall_seconds).c_str());
     if (!summary.converged) std::printf("  %s\n", summary.reason.c_str());
     else if (!summary.clean) std::printf("  the audit is NOT clean: a crossing is wrong, or two fibres are too deep in each other\n");
     std::printf("  crossings  %td, against the pattern %td, missing %td\n", summary.crossings, summary.wrong_crossings,

@@ -111,6 +111,7 @@
 #include <fibrant/observe/loading_curve.hpp>
 #include <fibrant/observe/nodal_curve.hpp>
 #include <fibrant/observe/observer.hpp>
+#include <fibrant/observe/progress_printer.hpp>
 #include <fibrant/observe/snapshot.hpp>
 #include <fibrant/observe/svg_curves.hpp>
 #include <fibrant/observe/solid_writer.hpp>
