@@ -89,7 +89,7 @@ TEST_CASE("finite samples come near to periodic ones of the same fabric, the nea
     const Mesh cell_mesh = mesh_of(cell);
     const auto stored = simulation::read_state<Cell>(settled_file, cell_mesh);
     std::vector<double> periodic, finite;
-    for (const Index repeats : {1, 2, 3}) {
+    for (const Index repeats : {1, 2, 3, 4}) {
         const Mesh mesh = mesh_of(repeated(cell, repeats));
         const auto larger = repeated<Cell>(stored, cell, cell_mesh, mesh, repeats);
         CHECK(larger.records.size() == core::at(repeats * repeats) * stored.records.size());
@@ -116,6 +116,7 @@ TEST_CASE("finite samples come near to periodic ones of the same fabric, the nea
     }
     CHECK(periodic[2] - finite[2] < 0.6 * (periodic[0] - finite[0]));
     CHECK(finite[2] > 0.96 * periodic[2]);
+    CHECK(finite[3] > 0.97 * periodic[3]);  // what is missing goes about as one over the number of tows
 }
 
 }  // namespace repeated_cell_long_test
