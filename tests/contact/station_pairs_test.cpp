@@ -207,6 +207,42 @@ TEST_CASE("all kinks between two stations are seen where stations are further ap
     }
 }
 
+TEST_CASE("a section that is thicker than those beside it is seen wherever it lies between the stations") {
+    // Straight fibres side by side, one of them 3 % thicker towards the other at one node: at the middle of an element and where two
+    // meet. Half an element's spacing misses up to 0.0075 and 0.023 radii of it.
+    const double swell = 0.03;
+    int most = 0, least = 1000;
+    for (const bool of_first : {true, false})
+        for (const Index node : {13, 14})
+            for (int shift = 0; shift < 20; ++shift) {
+                CAPTURE(of_first);
+                CAPTURE(node);
+                CAPTURE(shift);
+                const double along = 0.2 * 0.5 * shift / 20.0;
+                const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({-1.2 + along, 0, 2.0 * r}, {1.2 + along, 0, 2.0 * r}, r, 12)});
+                Vector state = mesh.rest_state();
+                for (const Index vector : {1, 2}) {
+                    Vec3 director = state.segment<3>(3 * (mesh.fibre(of_first ? 0 : 1).first_vector + 3 * node + vector));
+                    director.z() *= 1.0 + swell;
+                    state.segment<3>(3 * (mesh.fibre(of_first ? 0 : 1).first_vector + 3 * node + vector)) = director;
+                }
+                const auto extent = [&](Index fibre, double u) {
+                    const auto [g_1, g_2] = mesh.directors(state, fibre, u);
+                    return mesh.fibre(fibre).section.extent(g_1, g_2, Vec3::UnitZ());
+                };
+                std::vector<StationPair> pairs;
+                contact::station_pairs(mesh, state, zone_of(1.0, 9.0, 2.0 - 5.0 * along, 10.0 - 5.0 * along), false, spacing, pairs);
+                double seen = 0.0, there = 0.0;
+                for (const StationPair& pair : pairs) seen = std::max(seen, extent(0, pair.u_i) + extent(1, pair.u_j) - 2.0 * r);
+                for (int k = 0; k <= 8000; ++k) there = std::max(there, extent(0, 1.0 + 0.001 * k) + extent(1, 2.0 - 5.0 * along + 0.001 * k) - 2.0 * r);
+                CHECK(there == doctest::Approx(swell * r).epsilon(1e-3));  // a sample is at most 0.0005 elements from the swelling
+                CHECK(seen > there - spacing.largest_unseen * r);
+                most = std::max(most, static_cast<int>(pairs.size())), least = std::min(least, static_cast<int>(pairs.size()));
+            }
+    CHECK(least >= 16);  // two an element, ...
+    CHECK(most <= 17 + 2 * 7);  // ... one where the last ends, and the rest where sections change: at most two spacings in eight parts
+}
+
 TEST_CASE("where a fibre ends, its last section has no deeper contact than its pairs know of, wherever its stations stand") {
     // 15 degrees towards the first fibre, and touching it where it ends; it begins a little later each time, over a whole spacing.
     const double angle = 15.0 * std::numbers::pi / 180.0, length = 1.0;

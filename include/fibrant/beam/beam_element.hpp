@@ -60,6 +60,9 @@ using Particle = typename detail::ParticleOf<B>::Type;
 /// The beam knows its centreline only: contact takes the radius off between centrelines, and needs no director.
 template <class B>
 concept CentrelineOnly = requires { requires B::centreline_particles; };
+/// Contact acts on the contours of sections that directors deform: particles are weighted sums of positions and directors.
+template <class B>
+concept DeformableSections = !CentrelineOnly<B> && !TurningSections<B> && !TouchedOnCentreline<B>;
 
 /// An element of a fibre: consecutive nodes, one shared by neighbours.
 ///

@@ -21,7 +21,7 @@ concept LeverNeeded = TouchedOnCentreline<B> && requires { requires B::friction_
 /// without friction, before the same fibres go on with sections that feel it (`Simulator::go_on_from`).
 /// @tparam Base  a beam with a position a node and other vectors beside it, whose sections do not turn by rotations
 template <BeamElement Base, FrictionLever Lever = FrictionLever::needed>
-    requires(!TurningSections<Base> && !CentrelineOnly<Base> && !TouchedOnCentreline<Base>)
+    requires DeformableSections<Base>
 class OnCentreline : public Base {
 public:
     using Base::Base;

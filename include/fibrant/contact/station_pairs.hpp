@@ -4,6 +4,7 @@
 
 #include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/normal_direction.hpp>
+#include <fibrant/contact/section_extents.hpp>
 
 #include <algorithm>
 #include <array>
@@ -172,12 +173,16 @@ private:
     }
 
     // Stations between two that are a step apart, the first at the multiple k of it. Fibres come closer there than at either where they slant
-    // past each other, the distance of their centres being a hyperbola, and where they bend towards each other: the spacing is halved then.
+    // past each other, the distance of their centres being a hyperbola, where they bend towards each other, and where sections are thicker: the
+    // spacing is halved then.
     void add_between(Index k, const Station& low, const Station& high, const std::vector<double>& earlier) {
         const double u_i = 0.5 * (low.u_i + high.u_i), u_j = 0.5 * (low.u_j + high.u_j), sine = std::max(low.sine, high.sine);
         const Vec3 across = (mesh_.position(state_, j_, u_j) - mesh_.position(state_, i_, u_i)).normalized();
         const Vec3 bend = mesh_.second_derivative(state_, j_, u_j) / (h_j_ * h_j_) - mesh_.second_derivative(state_, i_, u_i) / (h_i_ * h_i_);
-        const double bending = std::max(0.0, bend.dot(across));
+        const auto bulge = [&](Index fibre, double u, double length) {
+            return extents_along(mesh_, state_, fibre, mesh_.locate(fibre, u).first, across).second() / (length * length);
+        };
+        const double bending = std::max(0.0, bend.dot(across) - bulge(i_, u_i, h_i_) - bulge(j_, u_j, h_j_));
         const double smooth = 0.125 * step_ * h_ * step_ * h_ * (sine * sine / (2.0 * r_) + bending);
         find_turns(low, high, across);
         const auto unseen = [&](int parts) {
@@ -202,7 +207,7 @@ private:
         }
     }
 
-    // Where elements of either fibre meet between two stations, and it turns towards the other one.
+    // Where elements of either fibre meet between two stations, and its surface turns towards the other one.
     void find_turns(const Station& low, const Station& high, const Vec3& across) {
         turns_.clear();
         for (const bool of_i : {true, false}) {
@@ -210,8 +215,9 @@ private:
             const double least = std::max(std::min(from_u, to_u), 0.5);
             double node = std::min(std::floor(std::max(from_u, to_u) - 1e-6), (of_i ? end_i_ : end_j_) - 1.0);
             for (; node > least; node -= 1.0) {
-                const Vec3 jump = kink(mesh_, state_, of_i ? i_ : j_, static_cast<Index>(node)) / (of_i ? -h_i_ : h_j_);
-                turns_.push_back({(node - from_u) / (to_u - from_u), std::max(0.0, jump.dot(across))});
+                const Index fibre = of_i ? i_ : j_, next = static_cast<Index>(node);
+                const double jump = (of_i ? -1.0 : 1.0) * kink(mesh_, state_, fibre, next).dot(across) - extent_kink(mesh_, state_, fibre, next, across);
+                turns_.push_back({(node - from_u) / (to_u - from_u), std::max(0.0, jump) / (of_i ? h_i_ : h_j_)});
             }
         }
     }

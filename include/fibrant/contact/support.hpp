@@ -43,7 +43,7 @@ template <class B, class Add>
 void section_stiffness_term([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] const Vector& state, [[maybe_unused]] Index fibre,
                             [[maybe_unused]] double u, [[maybe_unused]] Index first, [[maybe_unused]] const Vec3& normal,
                             [[maybe_unused]] double reaction, [[maybe_unused]] bool end, [[maybe_unused]] const Add& add) {
-    if constexpr (!beam::CentrelineOnly<B> && !beam::TurningSections<B> && !beam::TouchedOnCentreline<B>) {
+    if constexpr (beam::DeformableSections<B>) {
     if (reaction == 0.0 || end) return;
     const double xi = mesh.locate(fibre, u).second;
     const beam::ElementWeights<B> w_1 = beam::director_weights<B>(xi, 1), w_2 = beam::director_weights<B>(xi, 2);

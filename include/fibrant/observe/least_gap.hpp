@@ -28,11 +28,7 @@ struct LeastGap {
 /// Half extent of a fibre's deformed section along a unit direction [length].
 inline double section_extent(const FibreSnapshot& fibre, const NodalCurve& curve, double t,
                              const Vec3& direction) {
-    const double p =
-        fibre.section.semi_axis_1 * curve.interpolate(std::span<const Vec3>{fibre.director_1}, t).dot(direction);
-    const double q =
-        fibre.section.semi_axis_2 * curve.interpolate(std::span<const Vec3>{fibre.director_2}, t).dot(direction);
-    return std::sqrt(p * p + q * q);
+    return fibre.section.extent(curve.interpolate(std::span<const Vec3>{fibre.director_1}, t), curve.interpolate(std::span<const Vec3>{fibre.director_2}, t), direction);
 }
 
 namespace detail {

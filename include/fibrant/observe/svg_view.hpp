@@ -168,9 +168,7 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
             // Half the width of the silhouette: extent of the section across the line of sight.
             Vec3 across = tangent.cross(eye);
             across = across.norm() > 1e-6 ? Vec3(across.normalized()) : right;
-            const double p = fibre.section.semi_axis_1 * at(piece, fibre.director_1).dot(across);
-            const double q = fibre.section.semi_axis_2 * at(piece, fibre.director_2).dot(across);
-            const double half_width = scale * std::sqrt(p * p + q * q);
+            const double half_width = scale * fibre.section.extent(at(piece, fibre.director_1), at(piece, fibre.director_2), across);
             thinnest = std::min(thinnest, half_width);
             pieces.push_back({on_page(a), on_page(b), half_width, 0.5 * eye.dot(a + b), tangent, static_cast<Index>(k),
                               detail::PieceKind::line});

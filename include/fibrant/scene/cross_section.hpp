@@ -3,6 +3,7 @@
 /// @file Elliptical cross-sections at rest, and the macro-fibre that stands for several fibres.
 
 #include <fibrant/core/parameters.hpp>
+#include <fibrant/core/types.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +34,11 @@ struct CrossSection {
     }
     /// Circumscribed radius [length]: what a search has to reach.
     double radius() const noexcept { return std::max(semi_axis_1, semi_axis_2); }
+    /// Half extent along a unit direction of the section that the directors deform [length].
+    double extent(const Vec3& g_1, const Vec3& g_2, const Vec3& direction) const noexcept {
+        const double p = semi_axis_1 * g_1.dot(direction), q = semi_axis_2 * g_2.dot(direction);
+        return std::sqrt(p * p + q * q);
+    }
     /// True over kinematic torsion constant of the ellipse, 4 a^2 b^2 / (a^2 + b^2)^2 [1]; 1 for a circle.
     double torsion_factor() const noexcept {
         const double p = semi_axis_1 * semi_axis_1, q = semi_axis_2 * semi_axis_2;

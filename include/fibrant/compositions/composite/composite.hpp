@@ -38,7 +38,7 @@ inline solid::Layers layers_of(const observe::Snapshot& snapshot, const FabricPa
         const auto [a, b] = std::minmax(fibre.position.front()[static_cast<Index>(axis)], fibre.position.back()[static_cast<Index>(axis)]);
         parameters.low[axis] = std::min(parameters.low[axis], a), parameters.high[axis] = std::max(parameters.high[axis], b);
         for (std::size_t k = 0; k < fibre.position.size(); ++k) {
-            const double reach = std::hypot(fibre.section.semi_axis_1 * fibre.director_1[k].z(), fibre.section.semi_axis_2 * fibre.director_2[k].z());
+            const double reach = fibre.section.extent(fibre.director_1[k], fibre.director_2[k], Vec3::UnitZ());
             top = std::max(top, fibre.position[k].z() + reach), bottom = std::min(bottom, fibre.position[k].z() - reach);
         }
     }
