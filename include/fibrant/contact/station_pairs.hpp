@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace fibrant::contact {
@@ -68,7 +69,7 @@ public:
         // Ends that the zone reaches and no station has met.
         for (const double s : {0.0, 1.0})
             for (const bool of_i : {true, false}) {
-                const double u_i = zone_.a_i + s * (zone_.b_i - zone_.a_i), u_j = zone_.a_j + s * (zone_.b_j - zone_.a_j);
+                const auto [u_i, u_j] = zone_point(s);
                 const double u = of_i ? u_i : u_j, end = nearest_end(of_i, u);
                 if (std::abs(u - end) < 0.5 * step_) add_last_section(of_i, end, of_i ? u_j : u_i);
             }
@@ -92,6 +93,10 @@ private:
     }
     // Of the zone at a multiple k of the spacing.
     double share(double k) const noexcept { return to_ > from_ ? std::clamp((k * step_ - from_) / (to_ - from_), 0.0, 1.0) : 0.5; }
+    // Abscissae of both fibres at a share of the zone.
+    std::pair<double, double> zone_point(double s) const noexcept {
+        return {zone_.a_i + s * (zone_.b_i - zone_.a_i), zone_.a_j + s * (zone_.b_j - zone_.a_j)};
+    }
     double nearest_end(bool of_i, double u) const noexcept {
         const double end = of_i ? end_i_ : end_j_;
         return u > 0.5 * end ? end : 0.0;
@@ -152,7 +157,7 @@ private:
 
     // The pair of the plane at the share s of the zone.
     Station add_station(double s, double length) {
-        double u_i = zone_.a_i + s * (zone_.b_i - zone_.a_i), u_j = zone_.a_j + s * (zone_.b_j - zone_.a_j);
+        auto [u_i, u_j] = zone_point(s);
         const Vec3 middle = 0.5 * (mesh_.position(state_, i_, u_i) + mesh_.position(state_, j_, u_j));
         const Vec3 t_i = contact_tangent(mesh_, state_, i_, u_i).normalized(), t_j = contact_tangent(mesh_, state_, j_, u_j).normalized();
         const Vec3 tangent = mean_tangent(t_i, t_j);
