@@ -167,6 +167,32 @@ TEST_CASE("a rigid motion of all bodies strains nothing") {
     CHECK(simulator.equilibrium().ties().motion().orthonormality_error() < 1e-14);
 }
 
+TEST_CASE("ends of a body that turns freely hold to rounding, however loosely forces balance") {
+    // Three fibres whose ends are clamped to a body that a moment turns in their plane: so little that one step of Newton's method is near
+    // enough, which leaves the outer ends further apart by half of the angle's square, 3e-9.
+    const double angle = 2.5e-4;
+    Bundle bundle(3);
+    scene::RigidBody end;
+    end.position = {0, 0, length};
+    for (std::size_t k = 0; k < 3; ++k) end.translation[k] = scene::Coordinate::under(0.0, "turn");
+    const double stiffness = young * (2.0 * area() * apart * apart + 3.0 * inertia()) / length;
+    end.rotation[1] = scene::Coordinate::under(stiffness * angle, "turn");
+    const Index body = bundle.assembly.add(end);
+    for (const scene::Station& last : bundle.last_ends()) bundle.assembly.clamp_to(body, last, bundle.section);
+    simulation::ModelParameters<Tied> loose = parameters();
+    loose.iteration.step_tolerance = 0.02, loose.iteration.residual_tolerance = 1.0;
+    loose.iteration.normal_step_tolerance = loose.iteration.contact_tolerance = 1.0;
+    simulation::Simulator<Tied> simulator(bundle.assembly, loose);
+    const simulation::Report report = simulator.run({.increments = 1});
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    CHECK(report.counts.newton == 1);  // or the test would pass without
+    CHECK(simulator.equilibrium().ties().misfit() <= 1e-13 * length);
+    const Vec3 between = simulator.value(scene::last_end(2)) - simulator.value(scene::last_end(0));
+    CHECK(std::abs(between.norm() - 2.0 * apart) < 1e-13 * length);
+    CHECK(between.z() == doctest::Approx(-2.0 * apart * angle).epsilon(1e-3));  // sheared by (r / L)^2
+}
+
 TEST_CASE("ends tied to a body that hangs on another do what ends tied to the other do") {
     Vector states[2];
     for (const bool direct : {true, false}) {

@@ -166,6 +166,9 @@ public:
         return most;
     }
 
+    /// Whether they are met but for rounding.
+    bool met() const { return ties_.empty() || misfit() <= 1e-13 * extent_; }
+
     void add_forces(const scene::DofLayout& layout, Vector& external) const {
         if (groups_.empty()) return;
         Vector scalars = Vector::Zero(scalars_);
