@@ -143,6 +143,7 @@ private:
             const double loose = std::isfinite(change) ? parameters_.inexact * change : 0.02 * radius_;
             const double tolerance = contact_possible_ ? std::clamp(loose, finest, 0.02 * radius_) : finest;
             const NewtonReport inner = newton.solve(state, tolerance, searched, bound, report.counts);
+            if (inner.status == NewtonStatus::converged) equilibrium_->close_ties(state);
             report.residual = inner.residual.relative(), report.force_scale = inner.residual.scale, report.step = inner.step;
             last_travel.swap(travel);
             travel = state - before;

@@ -136,7 +136,6 @@ public:
             const double enough = 0.1 * residual_tolerance(tolerance) / std::max(report.residual.relative(), residual_tolerance(tolerance));
             eta = std::clamp(0.9 * ratio * ratio, std::min(std::max(parameters_.linear_tolerance, enough), 1e-2), 1e-2);
             if (scale == 1.0 && report.step <= tolerance && report.residual.relative() <= residual_tolerance(tolerance)) {
-                equilibrium.close_ties(state);
                 report.status = NewtonStatus::converged;
                 return report;
             }
