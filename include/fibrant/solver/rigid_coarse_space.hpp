@@ -127,11 +127,13 @@ public:
 
     /// z += P (P^T A P)^-1 P^T r
     ///
-    /// @param r, z  zero and not used outside the free directions of held vectors
+    /// @param r, z  zero outside the free directions of held vectors
     void add_correction(const scene::DofLayout& layout, const Vector& r, Vector& z) {
         restrict_to_stations(layout, r);
         matrix_.solve(station_values_);
         prolong(layout, z);
+        // The P that the matrix was made with: what others make of z would not be symmetric otherwise.
+        for (const scene::HeldVector& held : layout.held) z.segment<3>(3 * held.vector) = held.free * z.segment<3>(3 * held.vector).eval();
     }
 
 private:
