@@ -176,7 +176,7 @@ TEST_CASE("products that a preconditioner passes on are used where they are good
         CHECK(refused <= 3);  // looked at once, and at each start anew
         CHECK(summed <= iterations + iterations / 10 + 1);
         if (tolerance > 1e-6) CHECK(passed == summed);
-        else CHECK(passed <= 3);  // float says no more
+        else CHECK((10 * passed > summed && 10 * passed < 9 * summed));  // float errs by 1e-7 of the residual: not at first, but later on
     }
 }
 
