@@ -99,9 +99,13 @@ public:
                                                                            {"damping_share", increment.damping},
                                                                            {"springs", increment.springs},
                                                                            {"hardest_springs", increment.hardest_springs},
+                                                                           {"elastic_energy", increment.energy.elastic},
+                                                                           {"contact_energy", increment.energy.contact},
                                                                            {"external_work", increment.energy.external},
                                                                            {"dissipated", increment.energy.dissipated},
                                                                            {"damped", increment.energy.damped},
+                                                                           {"rearranged", increment.energy.rearranged},
+                                                                           {"energy_error", increment.energy.error()},
                                                                            {"seconds", increment.seconds}})
             columns.push_back(column);
         table_.row(columns);
