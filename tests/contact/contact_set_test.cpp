@@ -236,6 +236,47 @@ TEST_CASE("friction answers a slide at a standing reaction by its own slope, stu
     }
 }
 
+TEST_CASE("where an increment started, pairs that are deeper than anything was there exert and store nothing, friction included") {
+    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8),
+                       straight_fibre({0.1, -0.4, -1.98 * r}, {0.1, 0.5, -1.98 * r}, r, 6)});
+    const Vector rest = scene.mesh.rest_state();
+    Vector slid = rest;  // the first along itself, by half of a reversible displacement
+    for (Index node = 0; node < scene.mesh.node_count(0); ++node) slid[3 * scene.mesh.node_vector(0, node)] += 0.01 * r;
+    auto contacts = contacts_of(scene.assembly, scene.mesh, coulomb);
+    contacts.detect(rest, rest, 0.5 * r, false);
+    contacts.evaluate(rest);
+    contacts.hold_reactions();
+    contacts.evaluate(slid);
+    contacts.accept(slid);
+    contacts.detect(slid, slid, 0.5 * r, false);
+    contacts.evaluate(slid);
+    contacts.hold_reactions();
+    struct Seen {
+        std::array<Vec3, 3> on;  // each fibre
+        contact::ContactFigures figures;
+    };
+    const auto seen = [&](double deepest) {
+        contacts.evaluate(slid, deepest);
+        Vector sum = Vector::Zero(slid.size());
+        contacts.add_forces(sum);
+        Seen all{{}, contacts.figures(slid)};
+        for (Index fibre = 0; fibre < 3; ++fibre) {
+            Vec3& force = all.on[core::at(fibre)] = Vec3::Zero();
+            for (Index node = 0; node < scene.mesh.node_count(fibre); ++node) force += sum.segment<3>(3 * scene.mesh.node_vector(fibre, node));
+        }
+        return all;
+    };
+    const Seen whole = seen(0.2 * r), part = seen(0.05 * r), none = seen(0.0);
+    CHECK(std::abs(whole.on[1].x()) > 0.05 * whole.on[1].norm());  // friction: half of 0.3
+    CHECK(part.on[1] == Vec3(Vec3::Zero()));
+    CHECK(whole.on[2].norm() > 0.0);
+    CHECK(part.on[2] == whole.on[2]);
+    CHECK((part.on[0] + part.on[2]).norm() < 1e-12 * part.on[2].norm());
+    CHECK((0.0 < part.figures.work && part.figures.work < 0.1 * whole.figures.work));
+    CHECK((none.figures.work == 0.0 && none.figures.active == 0));
+    CHECK(none.on[2] == Vec3(Vec3::Zero()));
+}
+
 TEST_CASE("a rule for a pair of groups changes the friction and the penetration of that pair alone") {
     // One fibre on two others, in the groups of a hierarchy: the rule is given for the outer group of one of them.
     for (const bool ruled : {false, true}) {

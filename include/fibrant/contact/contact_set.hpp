@@ -14,12 +14,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace fibrant::contact {
 
-/// The contacts of a mesh. The order of elements and of every sum is fixed by fibres and abscissae, so results do not
-/// depend on the number of threads.
+/// The contacts of a mesh. Fibres and abscissae fix the order of elements and sums: the number of threads changes no bit.
 template <beam::BeamElement B, proximity::ProximitySearch Search, law::NormalLaw Normal, law::FrictionLaw Friction>
 class ContactSet {
 public:
@@ -90,8 +90,8 @@ public:
     }
 
     /// Inner loop: gaps, reactions and friction of a state.
-    /// @param start  it is the last accepted one: nothing has slipped yet, however pairs have turned since
-    void evaluate(const Vector& state, bool start = false) {
+    /// @param start  of the last accepted one: nothing has slipped, however pairs have turned since; deeper pairs [length] were none then
+    void evaluate(const Vector& state, std::optional<double> start = {}) {
         responses_.resize(elements_.size());
         if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
         for_elements([&](Index k) {
@@ -100,12 +100,14 @@ public:
             if constexpr (core::Active<Friction>)
                 if (!start) slip = particle_offset(element, state) - element.friction.accepted_offset;
             follow_support(element, state);
-            const double gap = element.gap(state) + element.shift.value();
+            const double apart = element.gap(state);
+            const bool none = start && apart < -*start;
+            const double gap = (none ? 0.0 : apart) + element.shift.value();
             const law::NormalResponse response = normal_.response(gap, stiffness(element));
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             if constexpr (core::Active<Friction>) {
                 slip -= slip.dot(element.normal) * element.normal;
-                const double bound = element.friction.bound < 0.0 ? response.reaction : element.friction.bound;
+                const double bound = none ? 0.0 : element.friction.bound < 0.0 ? response.reaction : element.friction.bound;
                 const double factor = zones_[core::at(element.zone)].friction_factor;
                 frictions_[core::at(k)] = friction_.response(slip, factor * bound, element.friction.history);
             }
@@ -124,8 +126,7 @@ public:
         if constexpr (core::Active<Friction>) return elements_[core::at(k)].friction.bound > 0.0;
         return false;
     }
-    /// Stiffness of element k between its two particles, symmetric and positive semidefinite [force / length]. The
-    /// reaction in the friction bound is taken as constant, which keeps it symmetric.
+    /// Stiffness of element k between its particles, symmetric and positive semidefinite, as its friction bound stands [force / length].
     Mat3 tangent(Index k) const noexcept {
         const Vec3& normal = elements_[core::at(k)].normal;
         Mat3 sum = -responses_[core::at(k)].slope * normal * normal.transpose();
