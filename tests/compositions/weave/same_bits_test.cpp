@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A small fabric on its way from flat tows: the same bits for any number of threads, and after an interruption.
+#include "small_weave.hpp"
 #include "support/threads.hpp"
-
-#include <fibrant/beam/director_beam.hpp>
-#include <fibrant/compositions/weave/settle.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/two_level_pcg.hpp>
 
 #include <doctest/doctest.h>
 
@@ -19,24 +15,8 @@ namespace same_bits_test {
 
 using namespace fibrant::compositions;
 
-struct Model {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::LimitedGap<law::RegularisedPenalty>;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::TwoLevelPcg;
-};
-
-weave::FabricParameters fabric() {
-    weave::FabricParameters fabric;
-    fabric.pattern = weave::Pattern{};
-    fabric.warp_tows = fabric.weft_tows = 2;
-    fabric.warp = {5, 0.04, 0.05, {7300.0, 0.3}};
-    fabric.weft = fabric.warp;
-    fabric.warp_spacing = fabric.weft_spacing = fabric.overhang = 0.88;
-    fabric.elements = 12;
-    return fabric;
-}
+using Model = test::SmallWeave;
+using test::small_fabric;
 
 struct Interruption {};
 
@@ -47,9 +27,9 @@ struct Run {
 
     Run(const std::string& checkpoint, bool resume, Index interrupt_at) {
         const weave::SettleParameters settle;
-        simulation::Simulator<Model> simulator(weave::flat_fabric(fabric(), settle.tension_strain),
-                                               weave::model_parameters<Model>(fabric(), settle));
-        simulation::Loading<Model> loading = weave::settling<Model>(fabric(), settle);
+        simulation::Simulator<Model> simulator(weave::flat_fabric(small_fabric(), settle.tension_strain),
+                                               weave::model_parameters<Model>(small_fabric(), settle));
+        simulation::Loading<Model> loading = weave::settling<Model>(small_fabric(), settle);
         loading.stages.resize(2);
         loading.stages[1].until = [](const simulation::IncrementReport& increment) { return increment.number >= 4; };
         loading.checkpoint = checkpoint, loading.resume = resume;
