@@ -6,9 +6,9 @@
 #include "timing.hpp"
 
 #include <fibrant/compositions/weave/audit.hpp>
+#include <fibrant/observe/svg_plot.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
 
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <vector>
@@ -20,17 +20,6 @@ namespace {
 
 using Weave = benchmarks::SettledWeave<solver::TwoLevelPcg>;
 
-/// Slope of log y over log x.
-double exponent(const std::vector<double>& x, const std::vector<double>& y) {
-    double sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-        const double a = std::log(x[k]), b = std::log(y[k]);
-        sx += a, sy += b, sxx += a * a, sxy += a * b;
-    }
-    const auto n = static_cast<double>(x.size());
-    return (n * sxy - sx * sy) / (n * sxx - sx * sx);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -38,7 +27,7 @@ int main(int argc, char** argv) {
     std::vector<Index> sizes;
     for (int k = 2; k < argc; ++k) sizes.push_back(std::atol(argv[k]));
     if (sizes.empty()) sizes = {2, 3, 4, 6};
-    std::vector<double> unknowns, seconds, each, linear, bytes;
+    std::vector<std::pair<double, double>> seconds, each, linear, bytes;  // by unknowns
     std::printf("tows,fibres,unknowns,contact_elements,converged,wrong_crossings,least_gap_over_radius,increments,rejected,"
                 "newton,linear_iterations_a_solve,seconds,seconds_a_newton,peak_bytes\n");
     bool sound = true;
@@ -50,20 +39,20 @@ int main(int argc, char** argv) {
         const simulation::Report report = simulator.run(cloth::settling<Weave>(fabric, settle));
         const cloth::Audit audit = cloth::audit(simulator.snapshot(), fabric, proximity::GridSearch());
         const auto solves = static_cast<double>(report.counts.linear_solves);
-        unknowns.push_back(static_cast<double>(simulator.mesh().layout().unknowns()));
-        seconds.push_back(report.wall_seconds);
-        each.push_back(report.wall_seconds / static_cast<double>(report.counts.newton));
-        linear.push_back(static_cast<double>(report.counts.linear_iterations) / solves);
-        bytes.push_back(benchmarks::peak_bytes());
-        std::printf("%td,%td,%.0f,%td,%d,%td,%.4f,%zu,%td,%td,%.1f,%.2f,%.4f,%.0f\n", tows, fabric.fibres(), unknowns.back(),
+        const auto unknowns = static_cast<double>(simulator.mesh().layout().unknowns());
+        seconds.emplace_back(unknowns, report.wall_seconds);
+        each.emplace_back(unknowns, report.wall_seconds / static_cast<double>(report.counts.newton));
+        linear.emplace_back(unknowns, static_cast<double>(report.counts.linear_iterations) / solves);
+        bytes.emplace_back(unknowns, benchmarks::peak_bytes());
+        std::printf("%td,%td,%.0f,%td,%d,%td,%.4f,%zu,%td,%td,%.1f,%.2f,%.4f,%.0f\n", tows, fabric.fibres(), unknowns,
                     report.contact.elements, report.converged ? 1 : 0, audit.wrong_crossings + audit.missing_crossings,
                     audit.least_gap.gap_over_radius, report.increments.size(), report.rejected_increments, report.counts.newton,
-                    linear.back(), seconds.back(), each.back(), bytes.back());
+                    linear.back().second, seconds.back().second, each.back().second, bytes.back().second);
         std::fflush(stdout);
         sound = sound && report.converged;
     }
-    if (unknowns.size() > 1)
+    if (seconds.size() > 1)
         std::printf("# exponents over unknowns: seconds %.2f, seconds a Newton iteration %.2f, iterations a solve %.2f, bytes %.2f\n",
-                    exponent(unknowns, seconds), exponent(unknowns, each), exponent(unknowns, linear), exponent(unknowns, bytes));
+                    observe::fitted_order(seconds), observe::fitted_order(each), observe::fitted_order(linear), observe::fitted_order(bytes));
     return sound ? 0 : 1;
 }

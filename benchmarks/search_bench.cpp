@@ -10,7 +10,7 @@
 //   --refine N         each segment cut into N
 //   --repeats N        medians of so many, 7
 //   --motion D         instead: 50 calls between which each vertex moves by D radii
-//   --growth [SVG]     instead: random mats of 1e4 to 1e6 segments, exponents, a plot
+//   --growth           instead: random mats of 1e4 to 1e6 segments, exponents
 // Times are of the processor for one thread (set OMP_NUM_THREADS=1 and pin it), else on the wall. Ratios are to nanoflann
 // used directly in the same run and to the floor: the vertices read once and the filter on the wanted pairs. `bytes` are those that a
 // search keeps, without the pairs, over the segments.
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
             if (next() != "mat") throw std::invalid_argument("--generate mat N");
             scenes.push_back(random_mat(std::stoul(next())));
         } else if (argument == "--growth") {
-            measure_growth(options.repeats, a + 1 < argc ? argv[a + 1] : "");
+            measure_growth(options.repeats);
             return 0;
         } else {
             scenes.push_back(read_scene(argument));
