@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <type_traits>
 #include <vector>
 
 namespace fibrant::beam {
@@ -61,12 +62,32 @@ void spread(const Turning& particle, const Vec3& value, Index first_unknown, Vec
 
 /// Weights of director g_1 (which = 1) or g_2 (which = 2) at xi in [-1, 1].
 template <BeamElement B>
-ElementWeights<B> director_weights(double xi, int which) noexcept {
+constexpr ElementWeights<B> director_weights(double xi, int which) noexcept {
     ElementWeights<B> weights = B::particle_weights(xi, which == 1 ? 1.0 : 0.0, which == 2 ? 1.0 : 0.0);
     const ElementWeights<B> centre = B::centreline_weights(xi);
     for (std::size_t a = 0; a < weights.size(); ++a) weights[a] -= centre[a];
     return weights;
 }
+
+namespace detail {
+/// The only vector of each node that has a weight among those that Weights{}() gives, so that sums may leave the others out: a third of the time
+/// where nodes have three. -1 where several have, or the compiler cannot tell.
+template <class B, class Weights>
+constexpr int only_vector(Weights) noexcept {
+    if constexpr (requires { typename std::bool_constant<(static_cast<void>(Weights{}()), true)>; }) {
+        constexpr ElementWeights<B> weights = Weights{}();
+        int only = -1;
+        for (int a = 0; a < B::nodes * B::vectors_per_node; ++a) {
+            if (weights[core::at(a)] == 0.0) continue;
+            if (only >= 0 && only != a % B::vectors_per_node) return -1;
+            only = a % B::vectors_per_node;
+        }
+        return only;
+    } else {
+        return -1;
+    }
+}
+}  // namespace detail
 
 /// A fibre of a mesh. Its unknowns are consecutive, node after node.
 struct MeshFibre {
@@ -191,6 +212,17 @@ public:
             sum += weights[a] * state.segment<3>(first_unknown + 3 * static_cast<Index>(a));
         return sum;
     }
+    /// The same for weights of the centreline or of its derivatives.
+    static Vec3 centre(const Vector& state, Index first_unknown, const ElementWeights<B>& weights) noexcept {
+        constexpr int only = detail::only_vector<B>([] { return B::centreline_weights(0.3); });
+        return point_of<only>(state, first_unknown, weights);
+    }
+    /// The same for weights of director g_1 (Which = 1) or g_2 (Which = 2), of beams whose particles are weighted sums.
+    template <int Which>
+    static Vec3 director(const Vector& state, Index first_unknown, const ElementWeights<B>& weights) noexcept {
+        constexpr int only = detail::only_vector<B>([] { return director_weights<B>(0.3, Which); });
+        return point_of<only>(state, first_unknown, weights);
+    }
     /// Place of a particle of the centreline.
     static Vec3 point(const Vector& state, Index first_unknown, const CentreWeights<B::nodes, B::vectors_per_node>& centre) noexcept {
         Vec3 sum = Vec3::Zero();
@@ -215,12 +247,12 @@ public:
     }
     Vec3 position(const Vector& state, Index f, double u) const noexcept {
         const auto [e, xi] = locate(f, u);
-        return point(state, first_unknown(f, e), B::centreline_weights(xi));
+        return centre(state, first_unknown(f, e), B::centreline_weights(xi));
     }
     /// Derivative of the centreline by u [length].
     Vec3 derivative(const Vector& state, Index f, double u) const noexcept {
         const auto [e, xi] = locate(f, u);
-        return 2.0 * point(state, first_unknown(f, e), B::centreline_derivative_weights(xi));
+        return 2.0 * centre(state, first_unknown(f, e), B::centreline_derivative_weights(xi));
     }
     /// Directors of the section at u; of a beam that has none, any two across the centreline.
     std::pair<Vec3, Vec3> directors(const Vector& state, Index f, double u) const noexcept {
@@ -231,13 +263,13 @@ public:
     /// The same in the element with this first unknown.
     static std::pair<Vec3, Vec3> element_directors(const Vector& state, Index first, double xi) noexcept {
         if constexpr (CentrelineOnly<B>) {
-            const Vec3 tangent = point(state, first, B::centreline_derivative_weights(xi)).normalized(), across = tangent.unitOrthogonal();
+            const Vec3 tangent = centre(state, first, B::centreline_derivative_weights(xi)).normalized(), across = tangent.unitOrthogonal();
             return {across, tangent.cross(across)};
         } else if constexpr (TurningSections<B>) {
-            const Vec3 centre = point(state, first, B::centreline_weights(xi));
-            return {point(state, first, B::particle_weights(xi, 1.0, 0.0)) - centre, point(state, first, B::particle_weights(xi, 0.0, 1.0)) - centre};
+            const Vec3 middle = centre(state, first, B::centreline_weights(xi));
+            return {point(state, first, B::particle_weights(xi, 1.0, 0.0)) - middle, point(state, first, B::particle_weights(xi, 0.0, 1.0)) - middle};
         } else {
-            return {point(state, first, director_weights<B>(xi, 1)), point(state, first, director_weights<B>(xi, 2))};
+            return {director<1>(state, first, director_weights<B>(xi, 1)), director<2>(state, first, director_weights<B>(xi, 2))};
         }
     }
     /// Second derivative of the centreline by u [length]; the same all along an element unless the beam says otherwise.
@@ -247,8 +279,8 @@ public:
         if constexpr (requires { B::centreline_bend_weights(0.0); }) {
             return point(state, first, B::centreline_bend_weights(xi));
         } else {
-            return 2.0 * (point(state, first, B::centreline_derivative_weights(1.0)) -
-                          point(state, first, B::centreline_derivative_weights(-1.0)));
+            return 2.0 * (centre(state, first, B::centreline_derivative_weights(1.0)) -
+                          centre(state, first, B::centreline_derivative_weights(-1.0)));
         }
     }
     /// The same as it is felt over an element: straight elements have all of their bend between them [length].
@@ -271,6 +303,17 @@ public:
     }
 
 private:
+    /// Weighted sum of one vector of each node of an element; of all if Of < 0.
+    template <int Of>
+    static Vec3 point_of(const Vector& state, Index first_unknown, const ElementWeights<B>& weights) noexcept {
+        if constexpr (Of < 0) {
+            return point(state, first_unknown, weights);
+        } else {
+            Vec3 sum = Vec3::Zero();
+            for (int a = Of; a < B::nodes * B::vectors_per_node; a += B::vectors_per_node) sum += weights[core::at(a)] * state.segment<3>(first_unknown + 3 * a);
+            return sum;
+        }
+    }
     /// Starts where an earlier run ended.
     void begin_at(const Vector& state) {
         if (state.size() != start_state_.size())

@@ -10,7 +10,7 @@ namespace fibrant::contact {
 template <class B>
 Vec3 kink(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, Index node) noexcept {
     const auto at = [&](Index e, double end) {
-        return Vec3(2.0 * beam::Mesh<B>::point(state, mesh.first_unknown(fibre, e), B::centreline_derivative_weights(end)));
+        return Vec3(2.0 * beam::Mesh<B>::centre(state, mesh.first_unknown(fibre, e), B::centreline_derivative_weights(end)));
     };
     return at(node, -1.0) - at(node - 1, 1.0);
 }
@@ -23,7 +23,7 @@ Vec3 kink(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, Index nod
 template <class B>
 Vec3 contact_tangent(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u) noexcept {
     const auto [element, xi] = mesh.locate(fibre, u);
-    Vec3 tangent = 2.0 * beam::Mesh<B>::point(state, mesh.first_unknown(fibre, element), B::centreline_derivative_weights(xi));
+    Vec3 tangent = 2.0 * beam::Mesh<B>::centre(state, mesh.first_unknown(fibre, element), B::centreline_derivative_weights(xi));
     if (element > 0) tangent -= 0.25 * (1.0 - xi) * kink(mesh, state, fibre, element);
     if (element + 1 < mesh.fibre(fibre).elements) tangent += 0.25 * (1.0 + xi) * kink(mesh, state, fibre, element + 1);
     return tangent;

@@ -48,8 +48,8 @@ void section_stiffness_term([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_
     const double xi = mesh.locate(fibre, u).second;
     const beam::ElementWeights<B> w_1 = beam::director_weights<B>(xi, 1), w_2 = beam::director_weights<B>(xi, 2);
     const scene::CrossSection& section = mesh.fibre(fibre).section;
-    const double p = section.semi_axis_1 * beam::Mesh<B>::point(state, first, w_1).dot(normal);
-    const double q = section.semi_axis_2 * beam::Mesh<B>::point(state, first, w_2).dot(normal);
+    const double p = section.semi_axis_1 * beam::Mesh<B>::template director<1>(state, first, w_1).dot(normal);
+    const double q = section.semi_axis_2 * beam::Mesh<B>::template director<2>(state, first, w_2).dot(normal);
     const double h = std::hypot(p, q);
     if (h < 0.1 * section.radius()) return;
     beam::ElementWeights<B> weights;
