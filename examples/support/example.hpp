@@ -156,6 +156,7 @@ inline void write_summary(const Output& output, const fibrant::simulation::Repor
         .add("active_contacts", report.contact.active)
         .add("greatest_penetration_over_radius", report.contact.greatest_penetration / radius)
         .add("linear_iterations", report.counts.linear_iterations)
+        .add("solver", report.solver)
         .add("wall_seconds", report.wall_seconds)
         .add("cpu_seconds", cpu_seconds())
         .add("peak_memory_bytes", peak_memory_bytes())

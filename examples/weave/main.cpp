@@ -67,7 +67,6 @@ bool settle(const weave::Scene& scene, const Options& options, Index threads) {
     summary.dofs = simulator.mesh().layout().unknowns();
     summary.nodes = summary.dofs / M::Beam::dofs_per_node;
     summary.thickness = weave::cloth::thickness(snapshot, scene.fabric);
-    summary.solver = scene.linear_solver;
     summary.threads = threads;
     weave::write_measures(folder, snapshot, scene.fabric, crimp);
     if (scene.pictures) weave::write_pictures(folder, snapshot, scene.fabric, scene.unit);

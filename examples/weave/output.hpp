@@ -162,7 +162,7 @@ struct Summary {
     double wall_seconds = 0, cpu_seconds = 0;
     std::int64_t peak_memory_bytes = 0;
     std::array<double, fibrant::core::part_count> seconds_by_stage{};  ///< by core::Part
-    std::string solver;
+    std::string solver;  ///< chosen, and what the automatic one used and why
     Index threads = 1;
 };
 
@@ -171,6 +171,7 @@ inline void fill(Summary& summary, const fibrant::simulation::Report& report, co
                  const cloth::CrimpMeasures& crimp, double radius, double allowed_penetration) {
     summary.converged = report.converged;
     summary.reason = report.reason;
+    summary.solver = report.solver;
     summary.contact_elements = report.contact.elements;
     summary.increments = report.increments.empty() ? 0 : report.increments.back().number;
     summary.rejected_increments = report.rejected_increments;

@@ -48,6 +48,7 @@ TEST_CASE("a strategy that reaches its limit hands over to the next, and what wa
     CHECK(solver.use().fallbacks == 1);
     CHECK(solver.use().last_fallback.starts_with("TwoLevelPcg reached a residual of "));
     CHECK(solver.use().last_fallback.ends_with(" in 5 iterations, and 1.0e-09 was asked for"));
+    CHECK(solver.account() == "automatic: solves by FloatBlockCholesky 1; 1 after another one had failed, the last: " + solver.use().last_fallback);
     solver.solve(system, b, 1e-9, x);
     CHECK(solver.use().float_block_cholesky == 2);
 }

@@ -68,6 +68,7 @@ struct Report {
     double residual = 0;                 ///< at the end [1]
     contact::ContactFigures contact;     ///< at the end
     EnergyBalance energy;
+    std::string solver;                  ///< what a linear solver that chooses has used and why, in this process; empty for others
     std::array<double, core::part_count> seconds{};  ///< by core::Part
     double wall_seconds = 0;
 };

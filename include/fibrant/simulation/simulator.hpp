@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <concepts>
 #include <filesystem>
 #include <limits>
 #include <utility>
@@ -298,6 +299,7 @@ private:
             report.residual = report.increments.back().residual;
         }
         report.energy = energy_.balance();
+        if constexpr (requires { { linear_.account() } -> std::convertible_to<std::string>; }) report.solver = linear_.account();
         report.seconds = clock_.seconds();
         report.wall_seconds += core::seconds_since(start);
     }

@@ -28,7 +28,7 @@ public:
         }
     };
     AnySolver() : AnySolver(Parameters{}) {}
-    explicit AnySolver(const Parameters& parameters) : strategy_{make(core::validated(parameters).strategy)} {}
+    explicit AnySolver(const Parameters& parameters) : name_{core::validated(parameters).strategy}, strategy_{make(name_)} {}
 
     template <class System>
     void analyse(const System& system) {
@@ -48,6 +48,11 @@ public:
         const auto* automatic = std::get_if<AutomaticSolver>(&strategy_);
         return automatic != nullptr ? &automatic->use() : nullptr;
     }
+    /// Which strategy it is, and what the automatic one has used and why.
+    std::string account() const {
+        const auto* automatic = std::get_if<AutomaticSolver>(&strategy_);
+        return automatic != nullptr ? automatic->account() : name_;
+    }
 
 private:
     using Strategy = std::variant<TwoLevelPcg, AutomaticSolver, FibreBlockPcg, FloatBlockCholesky, DoubleBlockCholesky, SparseCholesky>;
@@ -59,6 +64,7 @@ private:
         if (name == "sparse_cholesky") return SparseCholesky();
         return TwoLevelPcg();
     }
+    std::string name_;
     Strategy strategy_;
 };
 

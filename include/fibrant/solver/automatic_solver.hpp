@@ -19,6 +19,18 @@ struct StrategyUse {
     Index fibre_block_pcg = 0, two_level_pcg = 0, float_block_cholesky = 0;  ///< solves that each was the last to try
     Index fallbacks = 0;                                                     ///< solves that more than one tried
     std::string last_fallback;  ///< what the last of these was for, a sentence; empty if there was none
+
+    /// All of it in words.
+    std::string text() const {
+        std::string words;
+        const auto add = [&](const char* name, Index solves) {
+            if (solves > 0) words += (words.empty() ? "" : ", ") + std::string(name) + " " + std::to_string(solves);
+        };
+        add("FibreBlockPcg", fibre_block_pcg), add("TwoLevelPcg", two_level_pcg), add("FloatBlockCholesky", float_block_cholesky);
+        words = words.empty() ? "no solves" : "solves by " + words;
+        if (!last_fallback.empty()) words += "; " + std::to_string(fallbacks) + " after another one had failed, the last: " + last_fallback;
+        return words;
+    }
 };
 
 /// Number of terms that couple chains; a system that knows it says so with couplings().
@@ -104,6 +116,8 @@ public:
 
     /// Since the solver was made.
     const StrategyUse& use() const noexcept { return use_; }
+    /// The same in words, for the report of a run.
+    std::string account() const { return "automatic: " + use_.text(); }
 
 private:
     static TwoLevelPcg::Parameters two_levels(const Parameters& parameters) {
