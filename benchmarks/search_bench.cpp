@@ -69,6 +69,9 @@ void print_table(const Scene& scene, const Options& options) {
 #if defined(FIBRANT_BENCHMARK_CGAL)
     if (!options.own) rows.push_back({"CGAL boxes", [&] { return cgal_pairs(lines, reach); }});
 #endif
+#if defined(FIBRANT_BENCHMARK_FCL)
+    if (!options.own) rows.push_back({"FCL tree", [&] { return fcl_pairs(lines, reach); }});
+#endif
     rows.push_back(halved("GridSearch", grid, lines, reach));
     rows.push_back(halved("BvhSearch", tree, lines, reach));
     rows.push_back({"KdTreeSearch", [&] { return Call{.pairs = kd_tree.pairs(lines, reach)}; }});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 /// @file Searches of other libraries, each as one would write it by hand, with the filter of ours: nanoflann, and, where the
-/// build found them, Boost's R-tree and CGAL's intersection of boxes. Their pairs are neither sorted nor joined.
+/// build found them, Boost's R-tree, CGAL's intersection of boxes and FCL's dynamic tree. Their pairs are neither sorted nor joined.
 
 #include "measure.hpp"
 
@@ -16,6 +16,12 @@
 #if defined(FIBRANT_BENCHMARK_CGAL)
 #include <CGAL/Box_intersection_d/Box_with_handle_d.h>
 #include <CGAL/box_intersection_d.h>
+#endif
+#if defined(FIBRANT_BENCHMARK_FCL)
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree_array.h>
+#include <fcl/geometry/shape/box.h>
+
+#include <memory>
 #endif
 
 #include <utility>
@@ -50,7 +56,7 @@ inline Call nanoflann_pairs(std::span<const proximity::Centreline> fibres, doubl
     return call;
 }
 
-#if defined(FIBRANT_BENCHMARK_BOOST) || defined(FIBRANT_BENCHMARK_CGAL)
+#if defined(FIBRANT_BENCHMARK_BOOST) || defined(FIBRANT_BENCHMARK_CGAL) || defined(FIBRANT_BENCHMARK_FCL)
 namespace detail {
 
 /// Lower and upper corner of a segment, widened by half its threshold.
@@ -116,6 +122,42 @@ inline Call cgal_pairs(std::span<const proximity::Centreline> fibres, double rea
         std::ptrdiff_t{500});
     keep_close(table, records.data(), candidates, call.pairs);
     return call;
+}
+#endif
+
+#if defined(FIBRANT_BENCHMARK_FCL)
+/// FCL's dynamic tree of boxes in arrays. Its objects are boxes that are not turned, so that the tree has them as they are.
+inline Call fcl_pairs(std::span<const proximity::Centreline> fibres, double reach) {
+    using namespace proximity::detail;
+    const SegmentTable table(fibres, reach);
+    const std::vector<SegmentRecord> records = table.records();
+    std::vector<std::unique_ptr<fcl::CollisionObjectd>> boxes;
+    std::vector<fcl::CollisionObjectd*> objects;
+    for (const SegmentRecord& r : records) {
+        const auto [low, high] = detail::corners(r, reach);
+        boxes.push_back(std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Boxd>(high - low), Mat3::Identity(), 0.5 * (low + high)));
+        boxes.back()->setUserData(const_cast<SegmentRecord*>(&r));
+        objects.push_back(boxes.back().get());
+    }
+    fcl::DynamicAABBTreeCollisionManager_Arrayd tree;
+    tree.registerObjects(objects);
+    tree.setup();
+    struct Search {
+        const SegmentTable& table;
+        const std::vector<SegmentRecord>& records;
+        std::vector<Candidate> candidates{};
+        Call call{.built = time_now()};
+        void keep() { keep_close(table, records.data(), candidates, call.pairs), candidates.clear(); }
+    } search{table, records};
+    tree.collide(&search, [](fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
+        const auto segment = [](const fcl::CollisionObjectd* object) { return static_cast<const SegmentRecord*>(object->getUserData())->segment; };
+        auto& to = *static_cast<Search*>(data);
+        to.candidates.push_back({std::min(segment(a), segment(b)), std::max(segment(a), segment(b))});
+        if (to.candidates.size() >= 4096) to.keep();
+        return false;  // go on
+    });
+    search.keep();
+    return std::move(search.call);
 }
 #endif
 
