@@ -70,17 +70,19 @@ constexpr ElementWeights<B> director_weights(double xi, int which) noexcept {
 }
 
 namespace detail {
-/// The only vector of each node that has a weight among those that Weights{}() gives, so that sums may leave the others out: a third of the time
-/// where nodes have three. -1 where several have, or the compiler cannot tell.
+/// The only vector of each node that has a weight among those that Weights{}(xi) gives, so that sums may leave the others out: a third of the
+/// time where nodes have three. -1 where several have, or the compiler cannot tell.
 template <class B, class Weights>
 constexpr int only_vector(Weights) noexcept {
-    if constexpr (requires { typename std::bool_constant<(static_cast<void>(Weights{}()), true)>; }) {
-        constexpr ElementWeights<B> weights = Weights{}();
+    if constexpr (requires { typename std::bool_constant<(static_cast<void>(Weights{}(0.3)), true)>; }) {
         int only = -1;
-        for (int a = 0; a < B::nodes * B::vectors_per_node; ++a) {
-            if (weights[core::at(a)] == 0.0) continue;
-            if (only >= 0 && only != a % B::vectors_per_node) return -1;
-            only = a % B::vectors_per_node;
+        for (const double xi : {-0.83, -0.29, 0.3, 0.71}) {  // no root of any shape function
+            const ElementWeights<B> weights = Weights{}(xi);
+            for (int a = 0; a < B::nodes * B::vectors_per_node; ++a) {
+                if (weights[core::at(a)] == 0.0) continue;
+                if (only >= 0 && only != a % B::vectors_per_node) return -1;
+                only = a % B::vectors_per_node;
+            }
         }
         return only;
     } else {
@@ -214,13 +216,13 @@ public:
     }
     /// The same for weights of the centreline or of its derivatives.
     static Vec3 centre(const Vector& state, Index first_unknown, const ElementWeights<B>& weights) noexcept {
-        constexpr int only = detail::only_vector<B>([] { return B::centreline_weights(0.3); });
+        constexpr int only = detail::only_vector<B>([](double xi) { return B::centreline_weights(xi); });
         return point_of<only>(state, first_unknown, weights);
     }
     /// The same for weights of director g_1 (Which = 1) or g_2 (Which = 2), of beams whose particles are weighted sums.
     template <int Which>
     static Vec3 director(const Vector& state, Index first_unknown, const ElementWeights<B>& weights) noexcept {
-        constexpr int only = detail::only_vector<B>([] { return director_weights<B>(0.3, Which); });
+        constexpr int only = detail::only_vector<B>([](double xi) { return director_weights<B>(xi, Which); });
         return point_of<only>(state, first_unknown, weights);
     }
     /// Place of a particle of the centreline.
