@@ -82,6 +82,8 @@ TEST_CASE("a slice names its plane, draws its scale, and says where nothing is c
     parameters.title = "two <fibres>";
     const std::string slice = svg_slice(crossing_pair(), parameters);
     CHECK(slice.find("two &lt;fibres&gt;, y = 0.5 mm") != std::string::npos);
+    parameters.position = 0.123456789;
+    CHECK(svg_slice(crossing_pair(), parameters).find("y = 0.1235 mm") != std::string::npos);  // to a thousandth of a picture 0.2 wide
     CHECK(slice.find("mm</text>") != std::string::npos);
     CHECK(occurrences(slice, "<path fill=") == 1);
     parameters.position = 5.0;

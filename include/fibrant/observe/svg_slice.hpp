@@ -174,7 +174,8 @@ inline std::string svg_slice(const Snapshot& snapshot, const SliceParameters& pa
     body += detail::svg_text(x - 5.0, y - 46.0, names[parameters.axis == 2 ? 1 : 2]);
     body += detail::svg_scale_bar(24.0, height - 24.0, 0.2 * parameters.width, scale, parameters.unit);
     std::string title = parameters.title.empty() ? std::string{} : parameters.title + ", ";
-    title += std::string(names[parameters.axis]) + " = " + core::text(parameters.position);
+    const int digits = std::max(0, 3 - static_cast<int>(std::floor(std::log10(high.x() - low.x()))));  // to a thousandth of the picture
+    title += std::string(names[parameters.axis]) + " = " + rounded(parameters.position, digits);
     if (!parameters.unit.empty()) title += " " + parameters.unit;
     return detail::svg_page(parameters.width, height, "path{stroke-width:.7}\n", body, title);
 }
