@@ -13,7 +13,7 @@ using namespace fibrant;
 
 namespace same_bits_test {
 
-using namespace fibrant::compositions;
+namespace cloth = fibrant::compositions::weave;
 
 using Model = test::SmallWeave;
 using test::small_fabric;
@@ -26,10 +26,10 @@ struct Run {
     simulation::Report report;
 
     Run(const std::string& checkpoint, bool resume, Index interrupt_at) {
-        const weave::SettleParameters settle;
-        simulation::Simulator<Model> simulator(weave::flat_fabric(small_fabric(), settle.tension_strain),
-                                               weave::model_parameters<Model>(small_fabric(), settle));
-        simulation::Loading<Model> loading = weave::settling<Model>(small_fabric(), settle);
+        const cloth::SettleParameters settle;
+        simulation::Simulator<Model> simulator(cloth::flat_fabric(small_fabric(), settle.tension_strain),
+                                               cloth::model_parameters<Model>(small_fabric(), settle));
+        simulation::Loading<Model> loading = cloth::settling<Model>(small_fabric(), settle);
         loading.stages.resize(2);
         loading.stages[1].until = [](const simulation::IncrementReport& increment) { return increment.number >= 4; };
         loading.checkpoint = checkpoint, loading.resume = resume;
