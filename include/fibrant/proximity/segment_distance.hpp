@@ -16,20 +16,21 @@ struct SegmentDistance {
 
 namespace detail {
 
+// What a loop over lanes calls is inlined whatever the options of that loop are.
 struct Plain3 {
     double x, y, z;
 };
-constexpr Plain3 operator-(const Plain3& a, const Plain3& b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-constexpr double dot(const Plain3& a, const Plain3& b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
+[[gnu::always_inline]] inline constexpr Plain3 operator-(const Plain3& a, const Plain3& b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+[[gnu::always_inline]] inline constexpr double dot(const Plain3& a, const Plain3& b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Plain3 plain(const Vec3& v) noexcept { return {v[0], v[1], v[2]}; }
 
 /// To [0, 1], and not a number to 0.
-constexpr double unit_clamped(double x) noexcept {
+[[gnu::always_inline]] inline constexpr double unit_clamped(double x) noexcept {
     x = x > 0.0 ? x : 0.0;
     return x < 1.0 ? x : 1.0;
 }
 
-constexpr double squared_between(const Plain3& w, const Plain3& u, const Plain3& v, double s, double t) noexcept {
+[[gnu::always_inline]] inline constexpr double squared_between(const Plain3& w, const Plain3& u, const Plain3& v, double s, double t) noexcept {
     const Plain3 difference{w.x + s * u.x - t * v.x, w.y + s * u.y - t * v.y, w.z + s * u.z - t * v.z};
     return dot(difference, difference);
 }
@@ -43,7 +44,7 @@ struct ClosestCandidates {
     double s[5], t[5];
 
     /// @param w  start - start'   @param u  chord   @param v  chord'
-    constexpr ClosestCandidates(const Plain3& w, const Plain3& u, const Plain3& v) noexcept : s{}, t{} {
+    [[gnu::always_inline]] constexpr ClosestCandidates(const Plain3& w, const Plain3& u, const Plain3& v) noexcept : s{}, t{} {
         constexpr double tiny = 1.0e-300;  // in place of the square of a segment without length
         const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
         const double per_uu = 1.0 / (uu > tiny ? uu : tiny), per_vv = 1.0 / (vv > tiny ? vv : tiny);
@@ -62,7 +63,7 @@ struct ClosestCandidates {
 };
 
 /// Squared distance alone, without a branch: for loops over lanes.
-constexpr double least_squared(const Plain3& w, const Plain3& u, const Plain3& v) noexcept {
+[[gnu::always_inline]] inline constexpr double least_squared(const Plain3& w, const Plain3& u, const Plain3& v) noexcept {
     const ClosestCandidates c(w, u, v);
     double least = squared_between(w, u, v, c.s[0], c.t[0]);
     for (int k = 1; k < 5; ++k) {
