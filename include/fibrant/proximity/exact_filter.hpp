@@ -76,7 +76,7 @@ struct FilterLanes {
 #endif
     }
 
-    // Without masked instructions g++ keeps this scalar, four times as slow, unless told that no operation traps; the values are the same.
+    // Without masked instructions g++ keeps this scalar, twice as slow, unless told that no operation traps; the values are the same.
 #if defined(__GNUC__) && !defined(__clang__)
     __attribute__((optimize("no-trapping-math")))
 #endif
