@@ -98,7 +98,7 @@ void plot_scaling(const std::filesystem::path& folder) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     if (argc != 2) {
         std::fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
         return 2;
@@ -116,4 +116,7 @@ int main(int argc, char** argv) {
     }
     if (written == 0) std::fprintf(stderr, "benchmark_plots: %s holds none of the tables\n", argv[1]);
     return written > 0 ? 0 : 1;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
 }

@@ -102,7 +102,7 @@ void print_table(const Scene& scene, const Options& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     Options options;
     std::vector<Scene> scenes;
     for (int a = 1; a < argc; ++a) {
@@ -131,4 +131,7 @@ int main(int argc, char** argv) {
         if (options.motion) measure_motion(scene, *options.motion, 50, options.self);
         else print_table(scene, options);
     }
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
 }

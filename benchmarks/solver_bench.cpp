@@ -30,6 +30,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -198,7 +199,7 @@ std::vector<std::string> split(const std::string& list) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     std::vector<std::string> strategies, scenes;
     bool variants = false;
     int threads = 1;
@@ -245,4 +246,7 @@ int main(int argc, char** argv) {
             compare(name, system, test::contact_load(system), chosen, threads);
         }
     }
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
 }
