@@ -45,6 +45,22 @@ inline fibrant::simulation::Ramp read_ramp(TomlReader& file, const std::string& 
     return ramp;
 }
 
+/// A section of the file as a stage, but for its friction.
+inline fibrant::simulation::ProgrammeStage read_stage(TomlReader& file, const std::string& name) {
+    fibrant::simulation::ProgrammeStage stage;
+    stage.name = name;
+    std::vector<std::string> ramps;
+    file.require(name, "increments", stage.increments);
+    file.read(name, "ramps", ramps);
+    file.read(name, "cycles", stage.cycles);
+    file.read(name, "back", stage.back);
+    file.read(name, "rest", stage.rest);
+    file.read(name, "damping", stage.damping);
+    file.read(name, "looseness", stage.looseness);
+    for (const std::string& text : ramps) stage.ramps.push_back(read_ramp(file, name, text));
+    return stage;
+}
+
 /// @param file  of the load case; paths in it count from its folder
 inline LoadFile read_load_file(TomlReader& file, const std::filesystem::path& folder) {
     LoadFile load;
@@ -90,20 +106,13 @@ inline LoadFile read_load_file(TomlReader& file, const std::filesystem::path& fo
     load.scene.iteration.overshoot = 0.5;
     file.read("solver", "overshoot", load.scene.iteration.overshoot);
     for (const std::string& name : stages) {
-        fibrant::simulation::ProgrammeStage stage;
-        stage.name = name;
-        std::vector<std::string> ramps;
-        file.read(name, "increments", stage.increments);
-        file.read(name, "ramps", ramps);
-        file.read(name, "cycles", stage.cycles);
-        file.read(name, "back", stage.back);
-        file.read(name, "rest", stage.rest);
-        file.read(name, "damping", stage.damping);
-        file.read(name, "looseness", stage.looseness);
+        programme.stages.push_back(read_stage(file, name));
         double coefficient = friction;
-        if (file.read(name, "friction_coefficient", coefficient) || programme.stages.empty()) stage.friction = coefficient;
-        for (const std::string& text : ramps) stage.ramps.push_back(read_ramp(file, name, text));
-        programme.stages.push_back(stage);
+        if (file.read(name, "friction_coefficient", coefficient) || programme.stages.size() == 1) programme.stages.back().friction = coefficient;
+    }
+    for (const std::string& name : file.sections_with("increments")) {  // stages that this run leaves out
+        double coefficient = friction;
+        read_stage(file, name), file.read(name, "friction_coefficient", coefficient);
     }
     file.refuse_unknown();
     programme.validate();

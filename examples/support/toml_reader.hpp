@@ -41,6 +41,13 @@ public:
     }
 
     bool has(const std::string& section, const std::string& key) { return node(section, key) != nullptr; }
+    /// Sections of the file in which the key is given.
+    std::vector<std::string> sections_with(const std::string& key) const {
+        std::vector<std::string> names;
+        for (const auto& [title, section] : table_)
+            if (section.is_table() && section.as_table()->contains(key)) names.emplace_back(title.str());
+        return names;
+    }
 
     /// Leaves `value` alone where the key is not given. @return whether it is
     bool read(const std::string& section, const std::string& key, double& value) {
