@@ -283,7 +283,7 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
         const Index body = load.bodies.of(edge);
         if (body < 0) continue;
         const auto wrench = ties.wrench(body);
-        sum += wrench.force;
+        if (ties.motion().parent(body) < 0) sum += wrench.force;  // what hangs on another edge is in that one's
         const Vec3 at = ties.motion().position(body), turn = core::rotation_vector(ties.motion().frame(body));
         const char* axes[] = {"_x", "_y", "_z"};
         for (int k = 0; k < 3; ++k) figures.push_back({edge_name(edge) + std::string(axes[k]), at[k]});
