@@ -30,9 +30,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <cstdlib>
 #include <ctime>
+#include <exception>
 #include <fstream>
 #include <limits>
 #include <string>

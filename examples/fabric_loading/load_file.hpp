@@ -45,7 +45,7 @@ inline fibrant::simulation::Ramp read_ramp(TomlReader& file, const std::string& 
     return ramp;
 }
 
-/// A section of the file as a stage, but for its friction.
+/// A section of the file as a stage.
 inline fibrant::simulation::ProgrammeStage read_stage(TomlReader& file, const std::string& name) {
     fibrant::simulation::ProgrammeStage stage;
     stage.name = name;
@@ -57,6 +57,8 @@ inline fibrant::simulation::ProgrammeStage read_stage(TomlReader& file, const st
     file.read(name, "rest", stage.rest);
     file.read(name, "damping", stage.damping);
     file.read(name, "looseness", stage.looseness);
+    double coefficient = 0.0;
+    if (file.read(name, "friction_coefficient", coefficient)) stage.friction = coefficient;
     for (const std::string& text : ramps) stage.ramps.push_back(read_ramp(file, name, text));
     return stage;
 }
@@ -105,15 +107,9 @@ inline LoadFile read_load_file(TomlReader& file, const std::filesystem::path& fo
     file.read("solver", "newton_limit", load.scene.iteration.newton_limit);
     load.scene.iteration.overshoot = 0.5;
     file.read("solver", "overshoot", load.scene.iteration.overshoot);
-    for (const std::string& name : stages) {
-        programme.stages.push_back(read_stage(file, name));
-        double coefficient = friction;
-        if (file.read(name, "friction_coefficient", coefficient) || programme.stages.size() == 1) programme.stages.back().friction = coefficient;
-    }
-    for (const std::string& name : file.sections_with("increments")) {  // stages that this run leaves out
-        double coefficient = friction;
-        read_stage(file, name), file.read(name, "friction_coefficient", coefficient);
-    }
+    for (const std::string& name : stages) programme.stages.push_back(read_stage(file, name));
+    if (!stages.empty() && !programme.stages.front().friction) programme.stages.front().friction = friction;
+    for (const std::string& name : file.sections_with("increments")) read_stage(file, name);  // those that this run leaves out are checked as well
     file.refuse_unknown();
     programme.validate();
     return load;

@@ -266,24 +266,18 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
         figures = {{"thickness", load.plate_distance * (1.0 - simulator.amplitude(plate_channel))},
                    {"force", 0.5 * std::abs((tools.reaction(load.plates[1]).force - tools.reaction(load.plates[0]).force).z())}};
     } else {
-        figures = {{"displacement", ties.motion().position(load.puller).x() - load.pulled_from}, {"force", ties.wrench(load.puller).force.x()}};
+        figures = {{"displacement", ties.motion().position(load.puller).x() - load.pulled_from}, {"force", ties.wrench(load.puller).force.x()},
+                   {"pressing", pressing_force(snapshot, load.pulled_fibres)}};
     }
     Vec3 sum = Vec3::Zero();
-    for (const Edge edge : all_edges)
-        if (load.bodies.of(edge) < 0)
-            for (const Index end : load.bodies.tow_end[static_cast<std::size_t>(edge)])
-                if (end >= 0) sum += ties.wrench(end).force;
-    if (load.puller >= 0) {
-        sum += ties.wrench(load.puller).force;
-        figures.push_back({"pressing", pressing_force(snapshot, load.pulled_fibres)});
-    }
+    for (Index body = 0; body < core::count(load.assembly.bodies()); ++body)
+        if (ties.motion().parent(body) < 0) sum += ties.wrench(body).force;  // and that of those that hang on it
     for (const Index plate : load.plates)
         if (plate >= 0) sum -= simulator.contacts().tools().reaction(plate).force;
     for (const Edge edge : all_edges) {
         const Index body = load.bodies.of(edge);
         if (body < 0) continue;
         const auto wrench = ties.wrench(body);
-        if (ties.motion().parent(body) < 0) sum += wrench.force;  // what hangs on another edge is in that one's
         const Vec3 at = ties.motion().position(body), turn = core::rotation_vector(ties.motion().frame(body));
         const char* axes[] = {"_x", "_y", "_z"};
         for (int k = 0; k < 3; ++k) figures.push_back({edge_name(edge) + std::string(axes[k]), at[k]});
