@@ -60,6 +60,9 @@ using Particle = typename detail::ParticleOf<B>::Type;
 /// The beam knows its centreline only: contact takes the radius off between centrelines, and needs no director.
 template <class B>
 concept CentrelineOnly = requires { requires B::centreline_particles; };
+/// Particles that touch are those of the centreline: a force has no lever.
+template <class B>
+concept CentreTouched = CentrelineOnly<B> || TouchedOnCentreline<B>;
 /// Contact acts on the contours of sections that directors deform: particles are weighted sums of positions and directors.
 template <class B>
 concept DeformableSections = !CentrelineOnly<B> && !TurningSections<B> && !TouchedOnCentreline<B>;

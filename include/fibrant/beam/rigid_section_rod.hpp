@@ -131,6 +131,12 @@ public:
                 turn_[core::at(node)] = -share_[core::at(node)] * core::cross_matrix(arm) * core::spin_matrix(psi);
             }
         }
+        /// What a shift in the sections is in space.
+        Mat3 turn(const Eigen::Ref<const ElementVector>& y) const noexcept {
+            return share_[0] * core::rotation(y.segment<3>(3)) + share_[1] * core::rotation(y.segment<3>(9));
+        }
+        /// Moves by a shift in the sections [length].
+        void shift(const Vec3& by) noexcept { arm_ += by; }
         /// Derivative of the place by a vector of the element.
         Mat3 slope(Index vector) const noexcept {
             return vector % 2 == 0 ? Mat3(share_[core::at(vector / 2)] * Mat3::Identity()) : turn_[core::at(vector / 2)];

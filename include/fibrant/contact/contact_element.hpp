@@ -41,18 +41,29 @@ struct FrictionState<B, Friction> {
     Vec3 accepted_offset = Vec3::Zero();  ///< particle j - particle i in the last accepted state, turned since with the pair
 };
 
+/// The place where both forces of a pair act; nothing where particles are those of the centreline.
+template <beam::BeamElement B>
+struct MeetingPoint {
+    Vec3 from_i = Vec3::Zero(), from_j = Vec3::Zero();  ///< from each particle to it, in material components
+    double depth = 0.0;                                 ///< of the two particles in each other when it was found, >= 0 [length]
+};
+template <beam::BeamElement B>
+    requires beam::CentreTouched<B>
+struct MeetingPoint<B> {};
+
 /// Two particles that are predicted to touch (Durville, eq. 8). Fibre i <= fibre j, the normal points from i to j.
 template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
 struct ContactElement {
     double u_i = 0.0, u_j = 0.0;           ///< abscissae, in elements
-    beam::Particle<B> weights_i{}, weights_j{};  ///< of the nodal vectors of each side's element
+    beam::Particle<B> weights_i{}, weights_j{};  ///< of the nodal vectors of each side's element, at the meeting point
     Vec3 normal = Vec3::Zero();
-    double cap = 0.0;                      ///< radii of fibre ends in contact, taken off the gap [length]
+    double cap = 0.0;                      ///< radii of fibre ends in contact and depth of the meeting point, taken off the gap [length]
     std::int32_t fibre_i = -1, fibre_j = -1;
     std::int32_t first_i = 0, first_j = 0;  ///< first unknown of each side's element
     std::int32_t zone = -1;
     bool crossing = false, end_i = false, end_j = false;
     [[no_unique_address]] GapShift<Normal> shift;
+    [[no_unique_address]] MeetingPoint<B> meeting;
     [[no_unique_address]] FrictionState<B, Friction> friction;
 
     /// Particle j - particle i [length].
