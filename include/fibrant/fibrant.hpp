@@ -64,6 +64,7 @@
 #include <fibrant/contact/contact_set.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>
+#include <fibrant/contact/meeting_point.hpp>
 #include <fibrant/contact/normal_direction.hpp>
 #include <fibrant/contact/pair_rules.hpp>
 #include <fibrant/contact/side_index.hpp>

@@ -6,6 +6,7 @@
 #include <fibrant/contact/contact_element.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
+#include <fibrant/contact/meeting_point.hpp>
 #include <fibrant/contact/pair_rules.hpp>
 #include <fibrant/contact/side_index.hpp>
 #include <fibrant/contact/station_pairs.hpp>
@@ -99,7 +100,7 @@ public:
             Vec3 slip = Vec3::Zero();
             if constexpr (core::Active<Friction>)
                 if (!start) slip = particle_offset(element, state) - element.friction.accepted_offset;
-            follow(element, state);
+            follow_particles(*mesh_, state, element);
             const double apart = element.gap(state);
             const bool none = start && apart < -*start;
             const double gap = (none ? 0.0 : apart) + element.shift.value();
@@ -308,7 +309,7 @@ private:
     /// Normal, particles, gap shift and accepted offset of an element whose stations stand.
     void place_particles(Element& element, const Vector& state, const Vector& accepted, const Vec3& remembered) const {
         element.normal = normal(element, state, remembered);
-        find_meeting_point(element, state);
+        find_meeting_point(*mesh_, state, element);
         if constexpr (law::GapShifting<Normal>) element.shift.shift = normal_.gap_shift(element.gap(accepted));
         if constexpr (law::Augmenting<Normal>) element.shift.shift = -normal_.penetration(element.shift.multiplier, stiffness(element));
         if constexpr (core::Active<Friction>) {
@@ -343,40 +344,6 @@ private:
     double sign_of_j(const Element& element, const Vector& state) const {
         const Vec3 other = contact_tangent(*mesh_, state, element.fibre_j, element.u_j);
         return tangent_of_i(element, state).dot(other) < 0.0 ? -1.0 : 1.0;
-    }
-
-    /// Particles that lie furthest along the normal in this state, and from there to the meeting point.
-    void follow(Element& element, const Vector& state) const {
-        follow_support(element, state);
-        if constexpr (!beam::CentreTouched<B>) {
-            shift_particle(*mesh_, state, element.fibre_i, element.u_i, element.first_i, element.meeting.from_i, element.weights_i);
-            shift_particle(*mesh_, state, element.fibre_j, element.u_j, element.first_j, element.meeting.from_j, element.weights_j);
-            element.cap += element.meeting.depth;
-        }
-    }
-
-    /// Both forces act half-way between the particles, so that they are without a moment: sections that are strained or lean have their
-    /// particles a little off the normal, and friction would turn a pair by its depth. Between fibres that do not touch a gap or a cap is left.
-    /// The place moves with the sections until normals are renewed: if it followed the pair, a slip would turn both fibres.
-    void find_meeting_point(Element& element, const Vector& state) const {
-        follow_support(element, state);
-        if constexpr (!beam::CentreTouched<B>) {
-            Vec3 half = 0.5 * element.offset(state);
-            const double along = half.dot(element.normal);
-            if (along > 0.0) half -= along * element.normal;
-            element.meeting = {material_shift(*mesh_, state, element.fibre_i, element.u_i, element.first_i, element.weights_i, half),
-                               material_shift(*mesh_, state, element.fibre_j, element.u_j, element.first_j, element.weights_j, Vec3(-half)),
-                               std::max(0.0, -2.0 * along)};
-            follow(element, state);
-        }
-    }
-
-    /// Weights of the particles that lie furthest along the normal in this state.
-    void follow_support(Element& element, const Vector& state) const {
-        element.cap = support_weights(*mesh_, state, element.fibre_i, element.u_i, element.first_i, element.normal,
-                                      element.end_i, element.weights_i) +
-                      support_weights(*mesh_, state, element.fibre_j, element.u_j, element.first_j, Vec3(-element.normal),
-                                      element.end_j, element.weights_j);
     }
 
     /// Particle j - particle i of the pair that the last refresh chose [length].

@@ -34,37 +34,6 @@ double support_weights(const beam::Mesh<B>& mesh, const Vector& state, Index fib
     }
 }
 
-/// Material components of a shift of the particle of a section: along the fibre and in the section, which deform with it.
-/// @param weights  of the particle
-/// @param shift    in this state [length]
-template <class B>
-    requires(!beam::CentreTouched<B>)
-Vec3 material_shift(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, Index first, const beam::Particle<B>& weights, const Vec3& shift) {
-    if constexpr (beam::TurningSections<B>) {
-        return weights.turn(state.segment<beam::Mesh<B>::element_unknowns>(first)).inverse() * shift;
-    } else {
-        const double xi = mesh.locate(fibre, u).second;
-        const auto [g_1, g_2] = beam::Mesh<B>::element_directors(state, first, xi);
-        Mat3 axes;
-        axes << beam::Mesh<B>::centre(state, first, B::centreline_derivative_weights(xi)), g_1, g_2;
-        return axes.inverse() * shift;
-    }
-}
-
-/// Weights of the particle that far from one, as a section carries it along.
-template <class B>
-    requires(!beam::CentreTouched<B>)
-void shift_particle(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, Index first, const Vec3& shift, beam::Particle<B>& weights) {
-    if constexpr (beam::TurningSections<B>) {
-        weights.shift(shift);
-        weights.follow(state.segment<beam::Mesh<B>::element_unknowns>(first));
-    } else {
-        const double xi = mesh.locate(fibre, u).second;
-        const beam::ElementWeights<B> section = B::particle_weights(xi, shift[1], shift[2]), centre = B::centreline_weights(xi), along = B::centreline_derivative_weights(xi);
-        for (std::size_t a = 0; a < weights.size(); ++a) weights[a] += shift[0] * along[a] + (section[a] - centre[a]);
-    }
-}
-
 /// Second derivative of a gap by the directors of a section: its support distance is convex in them, so this part of the
 /// tangent is positive. Without it a section between two contacts would tip over like a pencil on its point.
 /// Calls add(first unknown, weights on the nodal vectors, stiffness) of a rank-one term R_N / h (m m^T) (x) N N^T.

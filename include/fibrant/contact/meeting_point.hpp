@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Where the forces of a pair act, so that they are without a moment.
+
+#include <fibrant/contact/contact_element.hpp>
+#include <fibrant/contact/support.hpp>
+
+#include <algorithm>
+
+namespace fibrant::contact {
+
+/// Material components of a shift of the particle of a section: along the fibre and in the section, which deform with it.
+/// @param weights  of the particle
+/// @param shift    in this state [length]
+template <class B>
+    requires(!beam::CentreTouched<B>)
+Vec3 material_shift(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, Index first, const beam::Particle<B>& weights, const Vec3& shift) {
+    if constexpr (beam::TurningSections<B>) {
+        return weights.turn(state.segment<beam::Mesh<B>::element_unknowns>(first)).inverse() * shift;
+    } else {
+        const double xi = mesh.locate(fibre, u).second;
+        const auto [g_1, g_2] = beam::Mesh<B>::element_directors(state, first, xi);
+        Mat3 axes;
+        axes << beam::Mesh<B>::centre(state, first, B::centreline_derivative_weights(xi)), g_1, g_2;
+        return axes.inverse() * shift;
+    }
+}
+
+/// Weights of the particle that far from one, as a section carries it along.
+template <class B>
+    requires(!beam::CentreTouched<B>)
+void shift_particle(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, Index first, const Vec3& shift, beam::Particle<B>& weights) {
+    if constexpr (beam::TurningSections<B>) {
+        weights.shift(shift);
+        weights.follow(state.segment<beam::Mesh<B>::element_unknowns>(first));
+    } else {
+        const double xi = mesh.locate(fibre, u).second;
+        const beam::ElementWeights<B> section = B::particle_weights(xi, shift[1], shift[2]), centre = B::centreline_weights(xi), along = B::centreline_derivative_weights(xi);
+        for (std::size_t a = 0; a < weights.size(); ++a) weights[a] += shift[0] * along[a] + (section[a] - centre[a]);
+    }
+}
+
+/// Particles that lie furthest along the normal in this state.
+template <class B, class Element>
+void follow_support(const beam::Mesh<B>& mesh, const Vector& state, Element& element) {
+    element.cap = support_weights(mesh, state, element.fibre_i, element.u_i, element.first_i, element.normal, element.end_i, element.weights_i) +
+                  support_weights(mesh, state, element.fibre_j, element.u_j, element.first_j, Vec3(-element.normal), element.end_j, element.weights_j);
+}
+
+/// The same, and from there to the meeting point.
+template <class B, class Element>
+void follow_particles(const beam::Mesh<B>& mesh, const Vector& state, Element& element) {
+    follow_support(mesh, state, element);
+    if constexpr (!beam::CentreTouched<B>) {
+        shift_particle(mesh, state, element.fibre_i, element.u_i, element.first_i, element.meeting.from_i, element.weights_i);
+        shift_particle(mesh, state, element.fibre_j, element.u_j, element.first_j, element.meeting.from_j, element.weights_j);
+        element.cap += element.meeting.depth;
+    }
+}
+
+/// Both forces act half-way between the particles, so that they are without a moment: sections that are strained or lean have their
+/// particles a little off the normal, and friction would turn a pair by its depth. Between fibres that do not touch a gap or a cap is left.
+/// The place moves with the sections until normals are renewed: if it followed the pair, a slip would turn both fibres.
+template <class B, class Element>
+void find_meeting_point(const beam::Mesh<B>& mesh, const Vector& state, Element& element) {
+    follow_support(mesh, state, element);
+    if constexpr (!beam::CentreTouched<B>) {
+        Vec3 half = 0.5 * element.offset(state);
+        const double along = half.dot(element.normal);
+        if (along > 0.0) half -= along * element.normal;
+        element.meeting = {material_shift(mesh, state, element.fibre_i, element.u_i, element.first_i, element.weights_i, half),
+                           material_shift(mesh, state, element.fibre_j, element.u_j, element.first_j, element.weights_j, Vec3(-half)),
+                           std::max(0.0, -2.0 * along)};
+        follow_particles(mesh, state, element);
+    }
+}
+
+}  // namespace fibrant::contact
