@@ -295,6 +295,36 @@ TEST_CASE("where an increment started, pairs that are deeper than anything was t
     CHECK(none.on[2] == Vec3(Vec3::Zero()));
 }
 
+TEST_CASE("a fibre that slid around another stores and exerts the same where it came from, as it stood there") {
+    const double apart = 1.98 * r, angle = 0.4;
+    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({-0.5, 0, apart}, {0.5, 0, apart}, r, 8)});
+    const Vector start = scene.mesh.rest_state();
+    Vector end = start;
+    const Vec3 way = apart * Vec3(0.0, std::sin(angle), std::cos(angle) - 1.0);
+    for (Index node = 0; node < scene.mesh.node_count(1); ++node) end.segment<3>(3 * scene.mesh.node_vector(1, node)) += way;
+    auto contacts = contacts_of(scene.assembly, scene.mesh);
+    contacts.detect(end, end, 0.5 * r, false);
+    const auto pressed = [&](const Vector& state, std::optional<double> deepest) {
+        contacts.evaluate(state, deepest);
+        Vector forces = Vector::Zero(state.size());
+        contacts.add_forces(forces);
+        Vec3 sum = Vec3::Zero();
+        for (Index node = 0; node < scene.mesh.node_count(1); ++node) sum += forces.segment<3>(3 * scene.mesh.node_vector(1, node));
+        return std::pair<Vec3, double>(sum, contacts.figures(state).work);
+    };
+    const auto [force, work] = pressed(end, {});
+    REQUIRE(work > 0.0);
+    // As the pairs stand at the end, the start seems 1.98 r (1 - cos 0.4) = 0.16 r deep.
+    CHECK(pressed(start, r).second > 10.0 * work);
+    const auto pairs = contacts.turn_back(start);
+    const auto [force_before, work_before] = pressed(start, r);
+    CHECK(std::abs(work_before - work) < 1e-9 * work);
+    const Mat3 turn = Eigen::AngleAxisd(-angle, Vec3::UnitX()).toRotationMatrix();
+    CHECK((turn * force_before - force).norm() < 1e-9 * force.norm());
+    contacts.turn_forth(pairs);
+    CHECK(pressed(end, {}) == std::pair<Vec3, double>(force, work));
+}
+
 TEST_CASE("a rule for a pair of groups changes the friction and the penetration of that pair alone") {
     // One fibre on two others, in the groups of a hierarchy: the rule is given for the outer group of one of them.
     for (const bool ruled : {false, true}) {

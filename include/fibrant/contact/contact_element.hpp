@@ -70,7 +70,13 @@ struct ContactElement {
     Vec3 offset(const Vector& state) const noexcept {
         return beam::Mesh<B>::point(state, first_j, weights_j) - beam::Mesh<B>::point(state, first_i, weights_i);
     }
-    /// What a small step changes of it [length].
+    /// The same of the pair whose slip is counted, which the last normal pass chose [length].
+    Vec3 friction_offset(const Vector& state) const noexcept
+        requires core::Active<Friction>
+    {
+        return beam::Mesh<B>::point(state, first_j, friction.weights_j) - beam::Mesh<B>::point(state, first_i, friction.weights_i);
+    }
+    /// What a small step changes of the offset [length].
     Vec3 motion(const Vector& step) const noexcept {
         return beam::Mesh<B>::motion(step, first_j, weights_j) - beam::Mesh<B>::motion(step, first_i, weights_i);
     }

@@ -16,6 +16,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace fibrant::contact {
@@ -99,7 +101,7 @@ public:
             Element& element = elements_[core::at(k)];
             Vec3 slip = Vec3::Zero();
             if constexpr (core::Active<Friction>)
-                if (!start) slip = particle_offset(element, state) - element.friction.accepted_offset;
+                if (!start) slip = element.friction_offset(state) - element.friction.accepted_offset;
             follow_particles(*mesh_, state, element);
             const double apart = element.gap(state);
             const bool none = start && apart < -*start;
@@ -113,6 +115,21 @@ public:
                 frictions_[core::at(k)] = friction_.response(slip, factor * bound, element.friction.history);
             }
         });
+    }
+
+    /// Pairs as they stood in another state, which have not slid around each other yet; `turn_forth` takes back what it returns.
+    auto turn_back(const Vector& start) {
+        std::vector<std::pair<Vec3, MeetingPoint<B>>> present;
+        for (const Element& element : elements_) present.emplace_back(element.normal, element.meeting);
+        for_elements([&](Index k) {
+            Element& element = elements_[core::at(k)];
+            element.normal = normal(element, start, element.normal);
+            find_meeting_point(*mesh_, start, element);
+        });
+        return present;
+    }
+    void turn_forth(const auto& present) {
+        for (std::size_t k = 0; k < elements_.size(); ++k) std::tie(elements_[k].normal, elements_[k].meeting) = present[k];
     }
 
     /// Force of element k on the particle of fibre j, against the internal forces [force].
@@ -346,19 +363,12 @@ private:
         return tangent_of_i(element, state).dot(other) < 0.0 ? -1.0 : 1.0;
     }
 
-    /// Particle j - particle i of the pair that the last refresh chose [length].
-    static Vec3 particle_offset(const Element& element, const Vector& state)
-        requires core::Active<Friction>
-    {
-        return beam::Mesh<B>::point(state, element.first_j, element.friction.weights_j) -
-               beam::Mesh<B>::point(state, element.first_i, element.friction.weights_i);
-    }
     /// Offset of the friction's particles in the last accepted state, turned as the normal and the tangent have
     /// since: else a rigid rotation of a pair would slide it by the gap times the angle.
     Vec3 accepted_offset(const Element& element, const Vector& state, const Vector& accepted) const
         requires core::Active<Friction>
     {
-        const Vec3 offset = particle_offset(element, accepted);
+        const Vec3 offset = element.friction_offset(accepted);
         const Vec3 before = normal(element, accepted, element.normal);
         if (element.end_i || element.end_j) return turned(offset, before, element.normal);
         const double sign = sign_of_j(element, state);

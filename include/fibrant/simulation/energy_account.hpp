@@ -13,8 +13,9 @@ namespace fibrant::simulation {
 /// ends with. Contact elements are renewed in between, turned and weighed anew with the fibres. The forces of those that carry the
 /// end are therefore not those that the start was in balance with, and what contact stores and takes, which is booked on the
 /// elements of the end, is of a path that begins with a jump of forces. Along a path without it renewal works as well, by half of that
-/// jump: counted as rearranged with what the elements store at once, it leaves an error of second order. A pair that lies far deeper where
-/// the increment started than anything did is of places that came together since: it carried nothing there, and has none of this.
+/// jump: counted as rearranged with what the elements store at once, it leaves an error of second order. A pair that slid around each
+/// other has its normal of then, or it would seem to have been deep in each other. One that lies far deeper where the increment started
+/// than anything did is of places that came together since: it carried nothing there, and has none of this.
 class EnergyAccount {
 public:
     const EnergyBalance& balance() const noexcept { return balance_; }
@@ -38,6 +39,7 @@ public:
         balance_.damped += trapezium(way, damping_, equilibrium.damping_force(to));
         if constexpr (requires { contacts.tools(); }) balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(true);
         const contact::ContactFigures end = contacts.figures(to);
+        const auto pairs = contacts.turn_back(from);
         contacts.evaluate(from, 2.0 * deepest);  // the same contact elements, where the increment started
         balance_.rearranged += contacts.figures(from).work - balance_.contact;
         Vector renewed = Vector::Zero(to.size());
@@ -45,6 +47,7 @@ public:
         if (contact_.size() != to.size()) contact_ = Vector::Zero(to.size());
         if (!leap) balance_.rearranged -= 0.5 * way.dot(contact_ - renewed);
         if constexpr (requires { contacts.tools(); }) balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(false);
+        contacts.turn_forth(pairs);
         contacts.evaluate(to);
         contact_.setZero();
         contacts.add_forces(contact_);
