@@ -215,6 +215,11 @@ void check_balance(const std::vector<scene::FibreSpecification>& fibres, const F
     CHECK(size > 0.0);
     CHECK(sum.norm() < 1e-13 * size);
     CHECK(moment.norm() < 1e-12 * r * size);  // rounding: fibres reach 25 radii from the origin
+    // A look back to where it came from leaves no trace.
+    const auto pairs = contacts.turn_back(rest);
+    contacts.evaluate(rest, r);
+    contacts.turn_forth(pairs);
+    CHECK(forces(contacts, state) == force);
 }
 
 TEST_CASE("contact forces are equal and opposite and without a moment, whatever sections have suffered") {

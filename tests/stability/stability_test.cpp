@@ -247,11 +247,13 @@ TEST_CASE("a fibre that goes there and back with friction closes its loop, and n
         before = std::abs(cycle.error);
     }
     CHECK(before < 3e-4);
-    // With that bend resolved, and particles that hardly sink into each other, the balance closes to a millionth.
-    const Cycle fine = second_cycle(1e-4, 160, 400);
-    CHECK(std::abs(fine.error) < 1e-6);
-    CHECK(fine.loop < 1e-8);
-    CHECK(fine.dissipated == doctest::Approx(fine.work).epsilon(3e-5));  // the rest went with renewed contact elements
+    // With that bend resolved the balance closes to a millionth, however far particles sink into each other: friction has no lever.
+    for (const double allowed : {1e-2, 1e-4}) {
+        const Cycle fine = second_cycle(allowed, 160, 400);
+        CHECK(std::abs(fine.error) < 2e-6);
+        CHECK(fine.loop < 1e-8);
+        CHECK(fine.dissipated == doctest::Approx(fine.work).epsilon(3e-5));  // the rest went with renewed contact elements
+    }
 }
 
 }  // namespace stability_test

@@ -117,12 +117,13 @@ public:
         });
     }
 
-    /// Pairs as they stood in another state, which have not slid around each other yet; `turn_forth` takes back what it returns.
+    /// Fibres along each other as they stood in another state, not slid around each other yet; `turn_forth` takes back what it returns.
     auto turn_back(const Vector& start) {
         std::vector<std::pair<Vec3, MeetingPoint<B>>> present;
         for (const Element& element : elements_) present.emplace_back(element.normal, element.meeting);
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
+            if (element.crossing) return;
             element.normal = normal(element, start, element.normal);
             find_meeting_point(*mesh_, start, element);
         });

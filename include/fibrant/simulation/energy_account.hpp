@@ -13,9 +13,9 @@ namespace fibrant::simulation {
 /// ends with. Contact elements are renewed in between, turned and weighed anew with the fibres. The forces of those that carry the
 /// end are therefore not those that the start was in balance with, and what contact stores and takes, which is booked on the
 /// elements of the end, is of a path that begins with a jump of forces. Along a path without it renewal works as well, by half of that
-/// jump: counted as rearranged with what the elements store at once, it leaves an error of second order. A pair that slid around each
-/// other has its normal of then, or it would seem to have been deep in each other. One that lies far deeper where the increment started
-/// than anything did is of places that came together since: it carried nothing there, and has none of this.
+/// jump: counted as rearranged with what the elements store at once, it leaves an error of second order. Fibres along each other have
+/// their normals of then, or those that slid around each other would seem to have been deep in each other. A pair that lies far deeper
+/// where the increment started than anything did is of places that came together since: it carried nothing there, and has none of this.
 class EnergyAccount {
 public:
     const EnergyBalance& balance() const noexcept { return balance_; }
