@@ -47,15 +47,20 @@ void follow_support(const beam::Mesh<B>& mesh, const Vector& state, Element& ele
                   support_weights(mesh, state, element.fibre_j, element.u_j, element.first_j, Vec3(-element.normal), element.end_j, element.weights_j);
 }
 
-/// The same, and from there to the meeting point.
+/// From there to the meeting point.
+template <class B, class Element>
+    requires(!beam::CentreTouched<B>)
+void shift_to_meeting_point(const beam::Mesh<B>& mesh, const Vector& state, Element& element) {
+    shift_particle(mesh, state, element.fibre_i, element.u_i, element.first_i, element.meeting.from_i, element.weights_i);
+    shift_particle(mesh, state, element.fibre_j, element.u_j, element.first_j, element.meeting.from_j, element.weights_j);
+    element.cap += element.meeting.depth;
+}
+
+/// Particles of the meeting point that was found last.
 template <class B, class Element>
 void follow_particles(const beam::Mesh<B>& mesh, const Vector& state, Element& element) {
     follow_support(mesh, state, element);
-    if constexpr (!beam::CentreTouched<B>) {
-        shift_particle(mesh, state, element.fibre_i, element.u_i, element.first_i, element.meeting.from_i, element.weights_i);
-        shift_particle(mesh, state, element.fibre_j, element.u_j, element.first_j, element.meeting.from_j, element.weights_j);
-        element.cap += element.meeting.depth;
-    }
+    if constexpr (!beam::CentreTouched<B>) shift_to_meeting_point(mesh, state, element);
 }
 
 /// Both forces act half-way between the particles, so that they are without a moment: sections that are strained or lean have their
@@ -71,7 +76,7 @@ void find_meeting_point(const beam::Mesh<B>& mesh, const Vector& state, Element&
         element.meeting = {material_shift(mesh, state, element.fibre_i, element.u_i, element.first_i, element.weights_i, half),
                            material_shift(mesh, state, element.fibre_j, element.u_j, element.first_j, element.weights_j, Vec3(-half)),
                            std::max(0.0, -2.0 * along)};
-        follow_particles(mesh, state, element);
+        shift_to_meeting_point(mesh, state, element);
     }
 }
 
