@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -93,8 +92,8 @@ public:
     }
 
     /// Inner loop: gaps, reactions and friction of a state.
-    /// @param start  of the last accepted one: nothing has slipped, however pairs have turned since; deeper pairs [length] were none then
-    void evaluate(const Vector& state, std::optional<double> start = {}) {
+    /// @param start  the last accepted one: nothing has slipped, however pairs have turned; twice as deep as its zone was, none touched
+    void evaluate(const Vector& state, bool start = false) {
         responses_.resize(elements_.size());
         if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
         for_elements([&](Index k) {
@@ -104,15 +103,15 @@ public:
                 if (!start) slip = element.friction_offset(state) - element.friction.accepted_offset;
             follow_particles(*mesh_, state, element);
             const double apart = element.gap(state);
-            const bool none = start && apart < -*start;
+            const Zone& zone = zones_[core::at(element.zone)];
+            const bool none = start && apart < -2.0 * zone.deepest;
             const double gap = (none ? 0.0 : apart) + element.shift.value();
-            const law::NormalResponse response = normal_.response(gap, stiffness(element));
+            const law::NormalResponse response = normal_.response(gap, zone.stiffness);
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             if constexpr (core::Active<Friction>) {
                 slip -= slip.dot(element.normal) * element.normal;
                 const double bound = none ? 0.0 : element.friction.bound < 0.0 ? response.reaction : element.friction.bound;
-                const double factor = zones_[core::at(element.zone)].friction_factor;
-                frictions_[core::at(k)] = friction_.response(slip, factor * bound, element.friction.history);
+                frictions_[core::at(k)] = friction_.response(slip, zone.friction_factor * bound, element.friction.history);
             }
         });
     }
@@ -233,9 +232,12 @@ public:
     void accept(const Vector& state) {
         accepted_.assign(records(state));
         for (Zone& zone : zones_) {
-            double penetration = 0.0;
-            for (Index k = zone.first; k < zone.last; ++k)
-                penetration = std::max(penetration, adapting_penetration(elements_[core::at(k)], responses_[core::at(k)]));
+            double penetration = zone.deepest = 0.0;
+            for (Index k = zone.first; k < zone.last; ++k) {
+                const Element& element = elements_[core::at(k)];
+                penetration = std::max(penetration, adapting_penetration(element, responses_[core::at(k)]));
+                zone.deepest = std::max(zone.deepest, element.shift.value() - responses_[core::at(k)].gap);
+            }
             zone.stiffness = adapted_stiffness(parameters_.stiffness, normal_, zone.stiffness, zone.reference, penetration, zone.penetration_factor);
         }
         accepted_zones_ = zones_;
@@ -263,6 +265,7 @@ private:
         rules_.apply(zone);
         const Zone* before = predecessor(zones_, zone.span);
         zone.stiffness = before ? before->stiffness : parameters_.stiffness.initial_fraction * zone.reference;
+        if (!accepted_zones_.empty()) zone.deepest = before ? before->deepest : 0.0;
         if (zone.forced) return;
         const double angle = crossing_angle_deg(*mesh_, state, zone.span);
         const double shift = !before ? 0.0 : parameters_.spacing.angle_hysteresis_deg * (before->crossing ? -1.0 : 1.0);
@@ -332,7 +335,8 @@ private:
         if constexpr (law::Augmenting<Normal>) element.shift.shift = -normal_.penetration(element.shift.multiplier, stiffness(element));
         if constexpr (core::Active<Friction>) {
             element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
-            if (!remembered.isZero()) turn_history(element, remembered);
+            Vec3& reversible = element.friction.history.reversible;
+            if (!remembered.isZero()) reversible = turned_with_plane(reversible, remembered, element.normal);
             element.friction.accepted_offset = accepted_offset(element, state, accepted);
         }
     }
@@ -375,14 +379,6 @@ private:
         const double sign = sign_of_j(element, state);
         const TangentPlane then(heading(element, accepted, sign), before), now(heading(element, state, sign), element.normal);
         return offset.dot(then.along) * now.along + offset.dot(then.across) * now.across + offset.dot(before) * element.normal;
-    }
-
-    void turn_history(Element& element, const Vec3& before) const
-        requires core::Active<Friction>
-    {
-        Vec3& reversible = element.friction.history.reversible;
-        reversible = turned(reversible, before, element.normal);
-        reversible -= reversible.dot(element.normal) * element.normal;
     }
 
     void recall_friction(Element& element, const Vector& state) const

@@ -6,7 +6,6 @@
 #include <fibrant/contact/tool_contacts.hpp>
 
 #include <algorithm>
-#include <optional>
 #include <span>
 
 namespace fibrant::contact {
@@ -47,7 +46,7 @@ public:
         Base::hold_reactions();
         tools_.hold_reactions();
     }
-    void evaluate(const Vector& state, std::optional<double> start = {}) {
+    void evaluate(const Vector& state, bool start = false) {
         Base::evaluate(state, start);
         tools_.evaluate(state, this->normal_law(), this->friction_law());
     }

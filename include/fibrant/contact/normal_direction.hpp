@@ -49,6 +49,12 @@ inline Vec3 turned(const Vec3& vector, const Vec3& before, const Vec3& after) no
     return cosine * vector + axis.cross(vector) + axis.dot(vector) / (1.0 + cosine) * axis;
 }
 
+/// The same of a vector in the plane of the unit normal `before`, which comes to lie in that of `after`.
+inline Vec3 turned_with_plane(const Vec3& vector, const Vec3& before, const Vec3& after) noexcept {
+    const Vec3 sum = turned(vector, before, after);
+    return sum - sum.dot(after) * after;
+}
+
 /// Mean direction of two tangents, the second turned so that the angle is acute.
 inline Vec3 mean_tangent(const Vec3& t_i, const Vec3& t_j) noexcept {
     const Vec3 sum = t_i.dot(t_j) < 0.0 ? Vec3(t_i - t_j) : Vec3(t_i + t_j);

@@ -8,6 +8,7 @@
 #include <fibrant/scene/elastic_material.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct Zone {
     bool forced = false;       ///< its normal is prescribed by a forced order
     double friction_factor = 1.0;     ///< of its pair of groups, on the law's coefficient [1]
     double penetration_factor = 1.0;  ///< of its pair of groups, on the allowed penetration [1]
+    /// In the last accepted state, 0 for a pair that had no zone there, infinite where nothing was accepted yet [length].
+    double deepest = std::numeric_limits<double>::infinity();
     Index order = -1;          ///< forced order between the groups of its fibres, or -1
     Index first = 0, last = 0;  ///< its contact elements
 };

@@ -15,7 +15,7 @@ namespace fibrant::simulation {
 /// elements of the end, is of a path that begins with a jump of forces. Along a path without it renewal works as well, by half of that
 /// jump: counted as rearranged with what the elements store at once, it leaves an error of second order. Fibres along each other have
 /// their normals of then, or those that slid around each other would seem to have been deep in each other. A pair that lies far deeper
-/// where the increment started than anything did is of places that came together since: it carried nothing there, and has none of this.
+/// where the increment started than its zone did is of places that came together since: it carried nothing there, and has none of this.
 class EnergyAccount {
 public:
     const EnergyBalance& balance() const noexcept { return balance_; }
@@ -29,10 +29,9 @@ public:
     }
 
     /// An increment that has converged; contacts are evaluated at its end, before and after.
-    /// @param deepest  of the contacts where it started [length]
-    /// @param leap     it starts from an overlap that is imposed: it has no balance to check
+    /// @param leap  it starts from an overlap that is imposed: it has no balance to check
     template <class Equilibrium, class Contacts>
-    void book(const Equilibrium& equilibrium, Contacts& contacts, const Vector& from, const Vector& to, double deepest, bool leap) {
+    void book(const Equilibrium& equilibrium, Contacts& contacts, const Vector& from, const Vector& to, bool leap) {
         const double error_before = balance_.error();
         const Vector way = to - from;
         balance_.external += trapezium(way, external_, equilibrium.external() + equilibrium.reaction());
@@ -40,7 +39,7 @@ public:
         if constexpr (requires { contacts.tools(); }) balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(true);
         const contact::ContactFigures end = contacts.figures(to);
         const auto pairs = contacts.turn_back(from);
-        contacts.evaluate(from, 2.0 * deepest);  // the same contact elements, where the increment started
+        contacts.evaluate(from, true);  // the same contact elements, where the increment started
         balance_.rearranged += contacts.figures(from).work - balance_.contact;
         Vector renewed = Vector::Zero(to.size());
         contacts.add_forces(renewed);

@@ -227,8 +227,7 @@ private:
                 continue;
             }
             if (attempt.converged) {
-                const double deepest = report.increments.empty() ? std::numeric_limits<double>::infinity() : report.increments.back().contact.greatest_penetration;
-                energy_.book(equilibrium_, contacts_, state_, trial, deepest, stage.forced_orders);
+                energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders);
                 increment.energy = energy_.balance();
                 if (stage.damping_carried) motion_.learn(mesh_, state_, trial, change);
                 state_ = trial;
