@@ -3,9 +3,11 @@
 /// @file Where the forces of a pair act, so that they are without a moment.
 
 #include <fibrant/contact/contact_element.hpp>
+#include <fibrant/contact/contact_tangent.hpp>
 #include <fibrant/contact/support.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace fibrant::contact {
 
@@ -63,9 +65,25 @@ void follow_particles(const beam::Mesh<B>& mesh, const Vector& state, Element& e
     if constexpr (!beam::CentreTouched<B>) shift_to_meeting_point(mesh, state, element);
 }
 
-/// Both forces act half-way between the particles, so that they are without a moment: sections that are strained or lean have their
+/// Ways along both fibres, flat against the normal, from two particles of fibres that cross to the point where they do [length].
+/// @param apart  particle j - particle i, flat against the normal
+/// @returns ways from particle i and from particle j: way i - way j = apart
+template <class B, class Element>
+std::pair<Vec3, Vec3> ways_to_crossing(const beam::Mesh<B>& mesh, const Vector& state, const Element& element, const Vec3& apart) {
+    const auto flat = [&](Index fibre, double u) {
+        const Vec3 tangent = contact_tangent(mesh, state, fibre, u).normalized();
+        return Vec3(tangent - tangent.dot(element.normal) * element.normal);
+    };
+    const Vec3 t_i = flat(element.fibre_i, element.u_i), t_j = flat(element.fibre_j, element.u_j), both = t_i.cross(t_j);
+    const double square = both.squaredNorm();
+    if (square < 1e-4) return {0.5 * apart, -0.5 * apart};  // a normal along one of them: half-way
+    return {apart.cross(t_j).dot(both) / square * t_i, apart.cross(t_i).dot(both) / square * t_j};
+}
+
+/// Both forces act half-way between the particles, or where fibres cross, so that they are without a moment: sections that are strained or lean have their
 /// particles a little off the normal, and friction would turn a pair by its depth. Between fibres that do not touch a gap or a cap is left.
-/// The place moves with the sections until normals are renewed: if it followed the pair, a slip would turn both fibres.
+/// The place moves with the sections until normals are renewed: if it followed the pair, a slip would turn both fibres. A crossing
+/// that went on along its fibres is beside neither of them: half-way, normal forces would spin both, which next to nothing holds.
 template <class B, class Element>
 void find_meeting_point(const beam::Mesh<B>& mesh, const Vector& state, Element& element) {
     follow_support(mesh, state, element);
@@ -73,8 +91,14 @@ void find_meeting_point(const beam::Mesh<B>& mesh, const Vector& state, Element&
         Vec3 half = 0.5 * element.offset(state);
         const double along = half.dot(element.normal);
         if (along > 0.0) half -= along * element.normal;
-        element.meeting = {material_shift(mesh, state, element.fibre_i, element.u_i, element.first_i, element.weights_i, half),
-                           material_shift(mesh, state, element.fibre_j, element.u_j, element.first_j, element.weights_j, Vec3(-half)),
+        Vec3 from_i = half, from_j = -half;
+        if (element.crossing && !element.end_i && !element.end_j) {  // across a round end a fibre has no way
+            const Vec3 sunk = half.dot(element.normal) * element.normal;
+            const auto [way_i, way_j] = ways_to_crossing(mesh, state, element, Vec3(2.0 * (half - sunk)));
+            from_i = way_i + sunk, from_j = way_j - sunk;
+        }
+        element.meeting = {material_shift(mesh, state, element.fibre_i, element.u_i, element.first_i, element.weights_i, from_i),
+                           material_shift(mesh, state, element.fibre_j, element.u_j, element.first_j, element.weights_j, from_j),
                            std::max(0.0, -2.0 * along)};
         shift_to_meeting_point(mesh, state, element);
     }
