@@ -311,6 +311,32 @@ TEST_CASE("where an increment started, pairs far deeper than their zone was exer
     CHECK(alone.on[1] == whole.on[1]);
 }
 
+TEST_CASE("fibres that cross and slid along themselves since are pushed where they cross now, which spins neither") {
+    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({0, -0.5, 1.98 * r}, {0, 0.5, 1.98 * r}, r, 8)});
+    const Vector rest = scene.mesh.rest_state();
+    Vector slid = rest;
+    for (const Index fibre : {0, 1})
+        for (Index node = 0; node < scene.mesh.node_count(fibre); ++node) slid[3 * scene.mesh.node_vector(fibre, node) + fibre] += 0.3 * r;
+    auto contacts = contacts_of(scene.assembly, scene.mesh);
+    contacts.detect(rest, rest, 0.5 * r, false);
+    contacts.evaluate(rest);
+    contacts.refresh(slid, rest);  // at the stations of before
+    const Vector force = forces(contacts, slid);
+    for (const Index fibre : {0, 1}) {
+        double push = 0.0;
+        Vec3 moment = Vec3::Zero();  // about the crossing, at the height of the fibre's axis
+        const Vec3 crossing(0, 0, fibre * 1.98 * r);
+        for (Index node = 0; node < scene.mesh.node_count(fibre); ++node)
+            for (Index v = scene.mesh.node_vector(fibre, node), k = 0; k < 3; ++k) {
+                const Vec3 f = force.segment<3>(3 * (v + k)), y = slid.segment<3>(3 * (v + k));
+                moment += k == 0 ? Vec3((y - crossing).cross(f)) : y.cross(f);
+                if (k == 0) push += f.z();
+            }
+        REQUIRE(std::abs(push) > 0.0);
+        CHECK(moment.norm() < 1e-12 * r * std::abs(push));  // half-way between stations it were 0.2 r
+    }
+}
+
 TEST_CASE("a fibre that slid around another stores and exerts the same where it came from, as it stood there") {
     const double apart = 1.98 * r, angle = 0.4;
     const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({-0.5, 0, apart}, {0.5, 0, apart}, r, 8)});
