@@ -72,6 +72,18 @@ Contacts<Friction, Search> contacts_of(const scene::Assembly& assembly, const Me
     return {assembly, mesh, contact_parameters(), search, penalty, friction};
 }
 
+/// A state with a whole fibre moved.
+Vector moved(const Mesh& mesh, Vector state, Index fibre, const Vec3& way) {
+    for (Index node = 0; node < mesh.node_count(fibre); ++node) state.segment<3>(3 * mesh.node_vector(fibre, node)) += way;
+    return state;
+}
+/// Sum of the forces on a fibre.
+Vec3 on_fibre(const Mesh& mesh, const Vector& forces, Index fibre) {
+    Vec3 sum = Vec3::Zero();
+    for (Index node = 0; node < mesh.node_count(fibre); ++node) sum += forces.segment<3>(3 * mesh.node_vector(fibre, node));
+    return sum;
+}
+
 double random_value(std::mt19937& generator) {
     static std::uniform_real_distribution<double> value(-1.0, 1.0);
     return value(generator);
@@ -249,9 +261,8 @@ TEST_CASE("friction answers a slide at a standing reaction by its own slope, stu
         const Vector force = forces(contacts, state);
         const Vector product = tangent_times(contacts, scene.mesh, state, other);
         CHECK((difference - product).norm() < 1e-6 * product.norm());
-        Vec3 sum = Vec3::Zero();
+        const Vec3 sum = on_fibre(scene.mesh, force, 0);
         double reaction = 0.0;
-        for (Index node = 0; node < scene.mesh.node_count(0); ++node) sum += force.segment<3>(3 * scene.mesh.node_vector(0, node));
         for (const contact::ContactResponse& response : contacts.responses()) reaction += response.reaction;
         // against the slide, as an internal force: up to mu R_N
         CHECK(std::abs(sum.x() - 0.3 * reaction * std::min(slide, 1.0)) < 1e-12 * reaction);
@@ -262,11 +273,7 @@ TEST_CASE("friction answers a slide at a standing reaction by its own slope, stu
 TEST_CASE("where an increment started, pairs far deeper than their zone was exert and store nothing, friction included") {
     const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8),
                        straight_fibre({0.1, -0.4, -1.98 * r}, {0.1, 0.5, -1.98 * r}, r, 6)});
-    const auto moved = [&](Vector state, Index fibre, const Vec3& way) {
-        for (Index node = 0; node < scene.mesh.node_count(fibre); ++node) state.segment<3>(3 * scene.mesh.node_vector(fibre, node)) += way;
-        return state;
-    };
-    const Vector rest = scene.mesh.rest_state(), slid = moved(rest, 0, {0.01 * r, 0, 0});  // by half of a reversible displacement
+    const Vector rest = scene.mesh.rest_state(), slid = moved(scene.mesh, rest, 0, {0.01 * r, 0, 0});  // by half of a reversible displacement
     struct Seen {
         std::array<Vec3, 3> on;  // each fibre
         contact::ContactFigures figures;
@@ -289,15 +296,12 @@ TEST_CASE("where an increment started, pairs far deeper than their zone was exer
         Vector sum = Vector::Zero(state.size());
         contacts.add_forces(sum);
         Seen all{{}, contacts.figures(state)};
-        for (Index fibre = 0; fibre < 3; ++fibre) {
-            Vec3& force = all.on[core::at(fibre)] = Vec3::Zero();
-            for (Index node = 0; node < scene.mesh.node_count(fibre); ++node) force += sum.segment<3>(3 * scene.mesh.node_vector(fibre, node));
-        }
+        for (Index fibre = 0; fibre < 3; ++fibre) all.on[core::at(fibre)] = on_fibre(scene.mesh, sum, fibre);
         return all;
     };
     // The upper pair was 0.1 r deep: it carries at 0.15 r, and is of no place where it stood at 0.25 r.
     const auto contacts = settled(slid);
-    const Seen whole = seen(contacts, slid), deeper = seen(contacts, moved(slid, 1, {0, 0, -0.05 * r})), part = seen(contacts, moved(slid, 1, {0, 0, -0.15 * r}));
+    const Seen whole = seen(contacts, slid), deeper = seen(contacts, moved(scene.mesh, slid, 1, {0, 0, -0.05 * r})), part = seen(contacts, moved(scene.mesh, slid, 1, {0, 0, -0.15 * r}));
     CHECK(std::abs(whole.on[1].x()) > 0.05 * whole.on[1].norm());  // friction: half of 0.3
     CHECK(deeper.on[1].z() / whole.on[1].z() == doctest::Approx(1.5).epsilon(0.05));  // the penalty's regularised foot
     CHECK(part.on[1] == Vec3(Vec3::Zero()));
@@ -306,7 +310,7 @@ TEST_CASE("where an increment started, pairs far deeper than their zone was exer
     CHECK((part.on[0] + part.on[2]).norm() < 1e-12 * part.on[2].norm());
     CHECK((0.0 < part.figures.work && part.figures.work < 0.1 * whole.figures.work));
     // A pair that had no zone carried nothing, however little it seems to have been in contact.
-    const Seen alone = seen(settled(moved(slid, 2, {0, 0, -3.0 * r})), slid);
+    const Seen alone = seen(settled(moved(scene.mesh, slid, 2, {0, 0, -3.0 * r})), slid);
     CHECK(alone.on[2] == Vec3(Vec3::Zero()));
     CHECK(alone.on[1] == whole.on[1]);
 }
@@ -314,23 +318,20 @@ TEST_CASE("where an increment started, pairs far deeper than their zone was exer
 TEST_CASE("fibres that cross and slid along themselves since are pushed where they cross now, which spins neither") {
     const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({0, -0.5, 1.98 * r}, {0, 0.5, 1.98 * r}, r, 8)});
     const Vector rest = scene.mesh.rest_state();
-    Vector slid = rest;
-    for (const Index fibre : {0, 1})
-        for (Index node = 0; node < scene.mesh.node_count(fibre); ++node) slid[3 * scene.mesh.node_vector(fibre, node) + fibre] += 0.3 * r;
+    const Vector slid = moved(scene.mesh, moved(scene.mesh, rest, 0, {0.3 * r, 0, 0}), 1, {0, 0.3 * r, 0});
     auto contacts = contacts_of(scene.assembly, scene.mesh);
     contacts.detect(rest, rest, 0.5 * r, false);
     contacts.evaluate(rest);
     contacts.refresh(slid, rest);  // at the stations of before
     const Vector force = forces(contacts, slid);
     for (const Index fibre : {0, 1}) {
-        double push = 0.0;
+        const double push = on_fibre(scene.mesh, force, fibre).z();
         Vec3 moment = Vec3::Zero();  // about the crossing, at the height of the fibre's axis
         const Vec3 crossing(0, 0, fibre * 1.98 * r);
         for (Index node = 0; node < scene.mesh.node_count(fibre); ++node)
             for (Index v = scene.mesh.node_vector(fibre, node), k = 0; k < 3; ++k) {
                 const Vec3 f = force.segment<3>(3 * (v + k)), y = slid.segment<3>(3 * (v + k));
                 moment += k == 0 ? Vec3((y - crossing).cross(f)) : y.cross(f);
-                if (k == 0) push += f.z();
             }
         REQUIRE(std::abs(push) > 0.0);
         CHECK(moment.norm() < 1e-12 * r * std::abs(push));  // half-way between stations it were 0.2 r
@@ -340,19 +341,14 @@ TEST_CASE("fibres that cross and slid along themselves since are pushed where th
 TEST_CASE("a fibre that slid around another stores and exerts the same where it came from, as it stood there") {
     const double apart = 1.98 * r, angle = 0.4;
     const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({-0.5, 0, apart}, {0.5, 0, apart}, r, 8)});
-    const Vector start = scene.mesh.rest_state();
-    Vector end = start;
-    const Vec3 way = apart * Vec3(0.0, std::sin(angle), std::cos(angle) - 1.0);
-    for (Index node = 0; node < scene.mesh.node_count(1); ++node) end.segment<3>(3 * scene.mesh.node_vector(1, node)) += way;
+    const Vector start = scene.mesh.rest_state(), end = moved(scene.mesh, start, 1, apart * Vec3(0.0, std::sin(angle), std::cos(angle) - 1.0));
     auto contacts = contacts_of(scene.assembly, scene.mesh);
     contacts.detect(end, end, 0.5 * r, false);
     const auto pressed = [&](const Vector& state, bool start) {
         contacts.evaluate(state, start);
         Vector forces = Vector::Zero(state.size());
         contacts.add_forces(forces);
-        Vec3 sum = Vec3::Zero();
-        for (Index node = 0; node < scene.mesh.node_count(1); ++node) sum += forces.segment<3>(3 * scene.mesh.node_vector(1, node));
-        return std::pair<Vec3, double>(sum, contacts.figures(state).work);
+        return std::pair<Vec3, double>(on_fibre(scene.mesh, forces, 1), contacts.figures(state).work);
     };
     const auto [force, work] = pressed(end, false);
     REQUIRE(work > 0.0);
