@@ -327,7 +327,7 @@ TEST_CASE("fibres that cross and slid along themselves since are pushed where th
     for (const Index fibre : {0, 1}) {
         const double push = on_fibre(scene.mesh, force, fibre).z();
         Vec3 moment = Vec3::Zero();  // about the crossing, at the height of the fibre's axis
-        const Vec3 crossing(0, 0, fibre * 1.98 * r);
+        const Vec3 crossing(0, 0, static_cast<double>(fibre) * 1.98 * r);
         for (Index node = 0; node < scene.mesh.node_count(fibre); ++node)
             for (Index v = scene.mesh.node_vector(fibre, node), k = 0; k < 3; ++k) {
                 const Vec3 f = force.segment<3>(3 * (v + k)), y = slid.segment<3>(3 * (v + k));
