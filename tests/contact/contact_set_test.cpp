@@ -325,16 +325,12 @@ TEST_CASE("fibres that cross and slid along themselves since are pushed where th
     contacts.refresh(slid, rest);  // at the stations of before
     const Vector force = forces(contacts, slid);
     for (const Index fibre : {0, 1}) {
-        const double push = on_fibre(scene.mesh, force, fibre).z();
-        Vec3 moment = Vec3::Zero();  // about the crossing, at the height of the fibre's axis
-        const Vec3 crossing(0, 0, static_cast<double>(fibre) * 1.98 * r);
-        for (Index node = 0; node < scene.mesh.node_count(fibre); ++node)
-            for (Index v = scene.mesh.node_vector(fibre, node), k = 0; k < 3; ++k) {
-                const Vec3 f = force.segment<3>(3 * (v + k)), y = slid.segment<3>(3 * (v + k));
-                moment += k == 0 ? Vec3((y - crossing).cross(f)) : y.cross(f);
-            }
-        REQUIRE(std::abs(push) > 0.0);
-        CHECK(moment.norm() < 1e-12 * r * std::abs(push));  // half-way between stations it were 0.2 r
+        const Vec3 push = on_fibre(scene.mesh, force, fibre), crossing(0, 0, static_cast<double>(fibre) * 1.98 * r);
+        Vec3 moment = -crossing.cross(push);  // about the crossing, at the height of the fibre's axis
+        for (Index v = scene.mesh.node_vector(fibre, 0); v < scene.mesh.node_vector(fibre, 0) + 3 * scene.mesh.node_count(fibre); ++v)
+            moment += slid.segment<3>(3 * v).cross(force.segment<3>(3 * v));
+        REQUIRE(std::abs(push.z()) > 0.0);
+        CHECK(moment.norm() < 1e-12 * r * std::abs(push.z()));  // half-way between stations it were 0.2 r
     }
 }
 
@@ -382,8 +378,7 @@ TEST_CASE("a rule for a pair of groups changes the friction and the penetration 
         auto contacts = contacts_of(assembly, mesh, coulomb);
         const Vector rest = mesh.rest_state();
         contacts.detect(rest, rest, 0.5 * r, false);
-        Vector slid = rest;
-        for (Index node = 0; node < mesh.node_count(0); ++node) slid[3 * mesh.node_vector(0, node)] += 0.1 * r;
+        const Vector slid = moved(mesh, rest, 0, {0.1 * r, 0, 0});
         contacts.evaluate(slid);
         REQUIRE(contacts.elements().size() == 2);
         const auto ratio = [&](Index k) { return contacts.frictions()[core::at(k)].force.norm() / contacts.responses()[core::at(k)].reaction; };
@@ -543,11 +538,8 @@ TEST_CASE("contacts remember their side when elements are made anew after fibres
     contacts.detect(rest, rest, 0.5 * r, false);
     contacts.evaluate(rest);
     contacts.accept(rest);
-    Vector passed = rest;
-    for (Index node = 0; node < scene.mesh.node_count(0); ++node) {
-        passed[3 * scene.mesh.node_vector(1, node) + 2] -= 2.2 * r;  // to the other side of the first fibre
-        if (node < scene.mesh.node_count(2)) passed[3 * scene.mesh.node_vector(2, node) + 2] += 2.2 * r;
-    }
+    // Both to the other side of the first fibre.
+    const Vector passed = moved(scene.mesh, moved(scene.mesh, rest, 1, {0, 0, -2.2 * r}), 2, {0, 0, 2.2 * r});
     for (const bool restored : {false, true}) {
         if (restored) contacts.restore();
         contacts.detect(passed, rest, 0.5 * r, false);
