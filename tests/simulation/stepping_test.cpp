@@ -58,12 +58,25 @@ TEST_CASE("a ramp goes by equal steps or by equal factors, and a channel without
         CHECK(report.increments[k].number == static_cast<Index>(k) + 1);
     }
     CHECK(report.increments[1].stage_progress == 0.5);
-    CHECK(report.increments[1].progress == doctest::Approx(0.5 / 3.0));
+    CHECK(report.increments[1].progress == doctest::Approx(2.0 / 8.0).epsilon(1e-15));  // of 4 + 3 + 1 increments
+    CHECK(report.increments[4].progress == doctest::Approx(5.0 / 8.0).epsilon(1e-15));
     CHECK(report.increments.back().progress == 1.0);
     // Elastic, and nothing remembers: what is left is the side load's small deflection P L^3 / 3 EI.
     const Vec3 tip = simulator.value(scene::last_end(0));
     CHECK(std::abs(tip.x()) < 1e-5 * rod.length);
     CHECK(tip.y() == doctest::Approx(-1e-5 * std::pow(rod.length, 3) / (3.0 * rod.bending_stiffness())).epsilon(1e-2));
+}
+
+TEST_CASE("a stage that goes on until it is at rest counts as the mean of those whose increments are known") {
+    std::vector<Stage<Smooth>> stages(3);
+    stages[0].increments = 4, stages[1].increments = 1, stages[2].increments = 100;
+    stages[1].until = simulation::until_settled(1.0, 1.0);
+    CHECK(simulation::part_done(stages, 0, 1.0) == doctest::Approx(4.0 / 156.0).epsilon(1e-15));
+    CHECK(simulation::part_done(stages, 1, 1.0) == doctest::Approx(56.0 / 156.0).epsilon(1e-15));
+    CHECK(simulation::part_done(stages, 2, 0.5) == doctest::Approx(106.0 / 156.0).epsilon(1e-15));
+    CHECK(simulation::part_done(stages, 2, 1.0) == 1.0);
+    for (Stage<Smooth>& stage : stages) stage.until = simulation::until_settled(1.0, 1.0);
+    CHECK(simulation::part_done(stages, 1, 0.5) == doctest::Approx(0.5).epsilon(1e-15));  // nothing is known: all alike
 }
 
 TEST_CASE("without stages all channels go to 1 together") {

@@ -109,4 +109,24 @@ inline std::function<bool(const IncrementReport&)> until_settled(double displace
     };
 }
 
+/// Part of a loading that is done, in [0, 1]: stages count by their increments, but one that goes on until it is at rest, which nothing
+/// foretells, as the mean of the others.
+/// @param stage  that is under way, in [0, stages.size())
+/// @param part   of it that is done, in [0, 1]
+template <Model M>
+double part_done(const std::vector<Stage<M>>& stages, Index stage, double part) {
+    double foretold = 0.0;
+    Index ramps = 0;
+    for (const Stage<M>& each : stages)
+        if (!each.until) foretold += static_cast<double>(each.increments), ++ramps;
+    const double mean = ramps > 0 ? foretold / static_cast<double>(ramps) : 1.0;
+    double done = 0.0, whole = 0.0;
+    for (Index k = 0; k < core::count(stages); ++k) {
+        const double size = stages[core::at(k)].until ? mean : static_cast<double>(stages[core::at(k)].increments);
+        if (k <= stage) done = whole + (k < stage ? size : part * size);
+        whole += size;
+    }
+    return done / whole;
+}
+
 }  // namespace fibrant::simulation

@@ -261,7 +261,7 @@ private:
         increment.number = position_.accepted;
         increment.stage = stage.name;
         increment.stage_progress = position_.progress;
-        increment.progress = (static_cast<double>(position_.stage) + position_.progress) / static_cast<double>(stages.size());
+        increment.progress = part_done(stages, position_.stage, position_.progress);
         // A state is at rest when the force of what holds it is no more than what the balance of forces may miss anyway.
         const bool reached = position_.progress >= 1.0 && (!stage.until || stage.until(increment));
         const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
