@@ -123,7 +123,7 @@ double part_done(const std::vector<Stage<M>>& stages, Index stage, double part) 
     double done = 0.0, whole = 0.0;
     for (Index k = 0; k < core::count(stages); ++k) {
         const double size = stages[core::at(k)].until ? mean : static_cast<double>(stages[core::at(k)].increments);
-        if (k <= stage) done = whole + (k < stage ? size : part * size);
+        if (k == stage) done = whole + part * size;
         whole += size;
     }
     return done / whole;
