@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Two crossing fibres, clamped at their ends, are pressed together: prints the force against the approach.
-#include <fibrant/fibrant.hpp>
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/observe/loading_curve.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/simulation/simulator.hpp>
+#include <fibrant/solver/sparse_cholesky.hpp>
 
 #include <cstdio>
 

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# A folder includes only itself and those before it, headers are named <fibrant/...>, and no includes form a cycle.
+# A folder includes only itself and those before it, headers are named <fibrant/...>, and no includes form a cycle. The umbrella
+# of a folder, fibrant/FOLDER.hpp, has all of its headers but those that need a library of their own.
 # usage: folder_order.sh INCLUDE_FOLDER
 set -eu
 cd "$1"
@@ -15,13 +16,20 @@ find fibrant -name '*.hpp' | sort | xargs grep -nE '^[[:space:]]*#[[:space:]]*in
     if (match($0, /include[ \t]*"/)) { print place ": include <fibrant/...> instead of a quoted name"; bad = 1; next }
     if (!match($0, /<fibrant\/[^>]*>/)) next
     to = substr($0, RSTART + 1, RLENGTH - 2)
-    if (to == "fibrant/fibrant.hpp") { print place ": the umbrella is for users, no header includes it"; bad = 1; next }
-    if (from == "fibrant/fibrant.hpp") next
+    if (to !~ /\/.*\//) { print place ": an umbrella is for users, no header includes it"; bad = 1; next }
+    if (from !~ /\/.*\//) next
     if (!(folder(from) in rank)) { print place ": folder " folder(from) " has no place in the order"; bad = 1; next }
     if (!(folder(to) in rank)) { print place ": folder of " to " has no place in the order"; bad = 1; next }
     if (rank[folder(to)] > rank[folder(from)]) { print place ": " folder(from) " comes before " folder(to); bad = 1 }
   }
   END { exit bad }' || failed=1
+
+for folder in $order; do
+  [ -d "fibrant/$folder" ] || continue
+  find "fibrant/$folder" -name '*.hpp' | sort | while read -r header; do
+    grep -q '__has_include' "$header" || grep -qxF "#include <$header>" "fibrant/$folder.hpp" || echo "fibrant/$folder.hpp does not include $header"
+  done | { ! grep .; } || failed=1
+done
 
 # tsort takes pairs and names the members of a loop.
 cycle=$(find fibrant -name '*.hpp' | sort | xargs grep -E '^[[:space:]]*#[[:space:]]*include[[:space:]]*<fibrant/' /dev/null |

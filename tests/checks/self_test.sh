@@ -33,7 +33,9 @@ fresh() {
   rm -rf include
   echo 'inline int one() { return 1; }' | header fibrant/core/sound.hpp
   echo '#include <fibrant/core/sound.hpp>' | header fibrant/law/sound.hpp
-  printf '#include <fibrant/core/sound.hpp>\n#include <fibrant/compositions/weave/sound.hpp>\n' | header fibrant/fibrant.hpp
+  echo '#include <fibrant/core/sound.hpp>' | header fibrant/fibrant.hpp
+  for folder in core law; do echo "#include <fibrant/$folder/sound.hpp>" | header fibrant/$folder.hpp; done
+  echo '#include <fibrant/compositions/weave/sound.hpp>' | header fibrant/compositions.hpp
   echo 'struct Tow { int knots; };' | header fibrant/compositions/weave/sound.hpp
 }
 
@@ -51,7 +53,11 @@ echo '#include <fibrant/core/sound.hpp>' | header fibrant/misc/lost.hpp
 refuses 'misc has no place in the order' "$checks/folder_order.sh" include
 fresh
 echo '#include <fibrant/fibrant.hpp>' | header fibrant/solver/all.hpp
-refuses 'solver/all.hpp:4: the umbrella' "$checks/folder_order.sh" include
+echo '#include <fibrant/solver/all.hpp>' | header fibrant/solver.hpp
+refuses 'solver/all.hpp:4: an umbrella' "$checks/folder_order.sh" include
+fresh
+echo 'inline int two() { return 2; }' | header fibrant/core/forgotten.hpp
+refuses 'core.hpp does not include fibrant/core/forgotten.hpp' "$checks/folder_order.sh" include
 fresh
 echo '#include <fibrant/law/b.hpp>' | header fibrant/law/a.hpp
 echo '#include <fibrant/law/c.hpp>' | header fibrant/law/b.hpp

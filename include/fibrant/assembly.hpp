@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Equilibrium and its linear system.
+
+#include <fibrant/assembly/band_product.hpp>
+#include <fibrant/assembly/chain_system.hpp>
+#include <fibrant/assembly/equilibrium.hpp>
+#include <fibrant/assembly/linear_system.hpp>
+#include <fibrant/assembly/point_product.hpp>
+#include <fibrant/assembly/solid_system.hpp>
+#include <fibrant/assembly/term_assembly.hpp>
+#include <fibrant/assembly/terms.hpp>
+#include <fibrant/assembly/visited_system.hpp>

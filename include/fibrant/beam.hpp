@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file All beams, their section laws and meshes.
+
+#include <fibrant/beam/beam_element.hpp>
+#include <fibrant/beam/centre_weights.hpp>
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/director_points.hpp>
+#include <fibrant/beam/director_strains.hpp>
+#include <fibrant/beam/kirchhoff_cable.hpp>
+#include <fibrant/beam/lagrange.hpp>
+#include <fibrant/beam/mesh.hpp>
+#include <fibrant/beam/on_centreline.hpp>
+#include <fibrant/beam/quaternion.hpp>
+#include <fibrant/beam/rigid_section_rod.hpp>
+#include <fibrant/beam/section_law.hpp>

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Contact elements between fibres and with tools.
+
+#include <fibrant/contact/contact_detection.hpp>
+#include <fibrant/contact/contact_element.hpp>
+#include <fibrant/contact/contact_parameters.hpp>
+#include <fibrant/contact/contact_record.hpp>
+#include <fibrant/contact/contact_set.hpp>
+#include <fibrant/contact/contact_tangent.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
+#include <fibrant/contact/intermediate_geometry.hpp>
+#include <fibrant/contact/learned_contacts.hpp>
+#include <fibrant/contact/meeting_point.hpp>
+#include <fibrant/contact/normal_direction.hpp>
+#include <fibrant/contact/pair_rules.hpp>
+#include <fibrant/contact/particle.hpp>
+#include <fibrant/contact/section_extents.hpp>
+#include <fibrant/contact/side_index.hpp>
+#include <fibrant/contact/station_pairs.hpp>
+#include <fibrant/contact/support.hpp>
+#include <fibrant/contact/tool_contacts.hpp>
+#include <fibrant/contact/tool_element.hpp>
+#include <fibrant/contact/zone_stiffness.hpp>

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Loadings, simulators, their reports and checkpoints.
+
+#include <fibrant/simulation/checkpoint.hpp>
+#include <fibrant/simulation/energy_account.hpp>
+#include <fibrant/simulation/increment_file.hpp>
+#include <fibrant/simulation/loading.hpp>
+#include <fibrant/simulation/mean_motion.hpp>
+#include <fibrant/simulation/model.hpp>
+#include <fibrant/simulation/position.hpp>
+#include <fibrant/simulation/programme.hpp>
+#include <fibrant/simulation/refined_state.hpp>
+#include <fibrant/simulation/report.hpp>
+#include <fibrant/simulation/simulator.hpp>
+#include <fibrant/simulation/snapshot_of.hpp>
+#include <fibrant/simulation/state_file.hpp>
+#include <fibrant/simulation/stored_state.hpp>
+#include <fibrant/simulation/support_wrench.hpp>
