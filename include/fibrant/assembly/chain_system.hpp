@@ -8,6 +8,7 @@
 #include <fibrant/assembly/point_product.hpp>
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/core/parallel.hpp>
+#include <fibrant/scene/image_vectors.hpp>
 
 #include <algorithm>
 #include <array>
@@ -43,6 +44,7 @@ public:
     explicit ChainSystem(scene::DofLayout layout) : layout_{std::move(layout)} {
         Index nodes = 0;
         for (const scene::Chain& chain : layout_.chains) {
+            if (chain.closed) closed_.push_back(core::count(first_node_));
             first_node_.push_back(nodes);
             nodes += chain.nodes;
         }
@@ -64,7 +66,8 @@ public:
     /// The tangent has a part that `apply` leaves out, and `apply_skews` adds.
     bool unsymmetric() const noexcept { return !skews_.empty(); }
     /// y += F S x, S the part that is not symmetric, for an x that lies within the free directions.
-    void apply_skews(const Vector& x, Vector& y) const {
+    void apply_skews(const Vector& free, Vector& y) const {
+        const Vector& x = with_images(free);
         free_.setZero(x.size());
         for (const Skew& skew : skews_) {
             const Point& point = points_[core::at(skew.point)];
@@ -73,12 +76,13 @@ public:
             beam::spread(point.weights_j, force, point.first_j, free_);
             beam::spread(point.weights_i, Vec3(-force), point.first_i, free_);
         }
+        scene::fold_images(layout_, free_);
         scene::project_free(layout_, free_);
         y += free_;
     }
 
-    /// Number of terms that couple fibres.
-    Index couplings() const noexcept { return core::count(points_); }
+    /// Number of terms that couple what no band does: fibres, and the last nodes of a closed one with its first.
+    Index couplings() const noexcept { return core::count(points_) + core::count(closed_); }
 
     /// Sets the values of the current state, which preconditioners read.
     void place(const Vector& state) {
@@ -145,17 +149,20 @@ public:
         }
     }
 
-    /// y = K x, as if nothing were held.
-    void apply_unheld(const Vector& x, Vector& y) const {
+    /// y = K x, as if nothing were held; images count as their sources.
+    void apply_unheld(const Vector& free, Vector& y) const {
+        const Vector& x = with_images(free);
         const Index grain = scene::grain(layout_, band_.packs());
         core::parallel_for(band_.packs(), [&](Index p) {
             band_.apply(p, x, y);
             pairs_.find_motions(sides(p), x);
         }, grain);
         core::parallel_for(band_.packs(), [&](Index p) { pairs_.add_forces(sides(p), y); }, grain);
+        scene::fold_images(layout_, y);
     }
 
-    /// Lower block band of a fibre with its own part of every contact: block (a, d) is A(a, a - d).
+    /// Lower block band of a fibre with its own part of every contact: block (a, d) is A(a, a - d). The last nodes of a closed fibre are not coupled
+    /// with its first one in it: positive semidefinite where its elements are.
     void chain_band(Index fibre, Matrix& blocks) const {
         const Index size = nodes(fibre);
         blocks.setZero(size * block, (reach + 1) * block);
@@ -170,6 +177,7 @@ public:
             });
         });
         const scene::Chain& chain = layout_.chains[core::at(fibre)];
+        if (chain.closed) blocks.topLeftCorner<block, block>() += blocks.block<block, block>((size - 1) * block, 0);
         for (auto held = std::lower_bound(supports_.begin(), supports_.end(), std::pair<Index, double>(chain.first_vector, 0.0));
              held != supports_.end() && held->first < chain.first_vector + chain.nodes * chain.vectors_per_node; ++held) {
             const Index row = 3 * (held->first - chain.first_vector);
@@ -188,39 +196,40 @@ public:
     /// Every node's row of beam stiffness and every point once, in a fixed order; not projected.
     template <class Terms>
     void visit(Terms& terms) const {
-        std::array<Index, core::at((reach + 1) * B::vectors_per_node)> numbers{};
         Matrix dense;
-        for (Index f = 0; f < fibres(); ++f) {
-            for (Index a = 0; a < nodes(f); ++a) {
-                const Index before = std::min<Index>(a, reach), size = (before + 1) * block;
-                const Index first = layout_.chains[core::at(f)].first_vector + (a - before) * B::vectors_per_node;
-                for (Index k = 0; k < size / 3; ++k) numbers[core::at(k)] = first + k;
-                dense.setZero(size, size);
-                dense.bottomRows(block) = row(f, a).rightCols(size);
-                dense.rightCols(block).topRows(size - block) = dense.bottomRows(block).leftCols(size - block).transpose();
-                terms.dense(DenseTerm{std::span<const Index>(numbers.data(), core::at(size / 3)), dense});
-            }
-        }
+        for (Index f = 0; f < fibres(); ++f)
+            for (Index a = 0; a < nodes(f); ++a) visit_row(f, a, dense, terms);
         const double one = 1.0;
         for (const auto& [vector, stiffness] : supports_) {
             const Index alone = vector;
             terms.point(PointTerm{std::span<const Index>(&alone, 1), std::span<const double>(&one, 1), Mat3(stiffness * Mat3::Identity())});
         }
-        visit_couplings(terms);
+        visit_couplings(terms, 0, core::count(points_));
     }
-    /// The points alone: a beam's stiffness couples nothing beyond its chain's band.
+    /// The points, and where chains close: else a beam's stiffness couples nothing beyond its chain's band.
     template <class Terms>
     void visit_couplings(Terms& terms) const {
         visit_couplings(terms, 0, couplings());
     }
-    /// Points [first, last) of them; from several threads at once.
+    /// [first, last) of them; from several threads at once.
     template <class Terms>
     void visit_couplings(Terms& terms, Index first, Index last) const {
         constexpr Index stride = beam::TouchedOnCentreline<B> ? B::vectors_per_node : 1, weighted = vectors / stride;
         std::array<Index, core::at(2 * weighted)> both{};
         [[maybe_unused]] std::array<double, core::at(2 * weighted)> weights{};
+        const Index points = core::count(points_);
+        for (Index k = std::max(first, points); k < last; ++k) {
+            const Index fibre = closed_[core::at(k - points)];
+            Matrix dense;
+            visit_row(fibre, nodes(fibre) - 1, dense, terms);
+        }
+        first = std::min(first, points), last = std::min(last, points);
         for (const Point& point : std::span<const Point>(points_).subspan(core::at(first), core::at(last - first))) {
             for (Index k = 0; k < weighted; ++k) both[core::at(k)] = point.first_i / 3 + stride * k, both[core::at(weighted + k)] = point.first_j / 3 + stride * k;
+            if (!closed_.empty()) {
+                replace_images(point.fibre_i, std::span(both).first(core::at(weighted)));
+                replace_images(point.fibre_j, std::span(both).last(core::at(weighted)));
+            }
             if constexpr (beam::TurningSections<B>) {
                 visit_turning(point, both, terms);
             } else {
@@ -232,6 +241,34 @@ public:
     }
 
 private:
+    /// Vectors of images become those of their sources.
+    void replace_images(Index fibre, std::span<Index> vectors) const noexcept {
+        const scene::Chain& chain = layout_.chains[core::at(fibre)];
+        if (!chain.closed) return;
+        const Index own = (chain.nodes - 1) * chain.vectors_per_node;
+        for (Index& vector : vectors)
+            if (vector - chain.first_vector >= own) vector -= own;
+    }
+    /// x, with the values of images where there are any.
+    const Vector& with_images(const Vector& x) const {
+        if (closed_.empty()) return x;
+        whole_ = x;
+        scene::copy_to_images(layout_, whole_);
+        return whole_;
+    }
+    /// A node's row of a fibre's band, with its column.
+    template <class Terms>
+    void visit_row(Index f, Index a, Matrix& dense, Terms& terms) const {
+        std::array<Index, core::at((reach + 1) * B::vectors_per_node)> numbers{};
+        const Index before = std::min<Index>(a, reach), size = (before + 1) * block;
+        const Index first = layout_.chains[core::at(f)].first_vector + (a - before) * B::vectors_per_node;
+        for (Index k = 0; k < size / 3; ++k) numbers[core::at(k)] = first + k;
+        if (!closed_.empty()) replace_images(f, std::span(numbers).first(core::at(size / 3)));
+        dense.setZero(size, size);
+        dense.bottomRows(block) = row(f, a).rightCols(size);
+        dense.rightCols(block).topRows(size - block) = dense.bottomRows(block).leftCols(size - block).transpose();
+        terms.dense(DenseTerm{std::span<const Index>(numbers.data(), core::at(size / 3)), dense});
+    }
     /// see(node, vector, node, vector, block) of (w w^T) (x) stiffness, in the lower half.
     template <class See>
     static void each_pair(const beam::ElementWeights<B>& weights, const Mat3& stiffness, const See& see) {
@@ -297,13 +334,14 @@ private:
 
     scene::DofLayout layout_;
     std::vector<Index> first_node_;
+    std::vector<Index> closed_;  // fibres
     std::vector<Row> rows_;
     std::vector<Point> points_;
     std::vector<Skew> skews_;
     std::vector<std::pair<Index, double>> supports_;  // of tied vectors, sorted
     BandProduct<block, reach> band_;
     PointProduct<vectors, beam::Particle<B>> pairs_;
-    mutable Vector free_;  // scratch of a product: one system serves one thread at a time
+    mutable Vector free_, whole_;  // scratch of a product: one system serves one thread at a time
 };
 
 }  // namespace fibrant::assembly

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace fibrant::assembly {
@@ -78,6 +79,7 @@ public:
         ties_.begin(amplitudes);
         if constexpr (has_solid) solid_.hold(amplitudes, system_.layout().held, targets_);
         ties_.hold(system_.layout().held, targets_);
+        hold_images();
         if constexpr (has_solid) system_.share_held();
         reset_stresses(state);
     }
@@ -108,6 +110,7 @@ public:
             beam::spread(elements[core::at(k)].weights_j, Vec3(-force), elements[core::at(k)].first_j, right);
             beam::spread(elements[core::at(k)].weights_i, force, elements[core::at(k)].first_i, right);
         }
+        scene::fold_images(system_.layout(), right);
         scene::project_free(system_.layout(), right);
     }
 
@@ -120,7 +123,11 @@ public:
             step.segment<3>(3 * held[k].vector) = targets_[k] - (value - held[k].free * value);
         }
         ties_.add_closing(system_.layout(), step);
+        close_chains(step);
     }
+
+    /// Last nodes of closed fibres go where the first ones do.
+    void close_chains(Vector& step) const noexcept { scene::copy_to_images(system_.layout(), step); }
 
     /// Moves tied vectors of a state whose residual is known onto their conditions: where a body turns freely, a step leaves these missed by
     /// the square of what it turned, and how far is not in the residual.
@@ -129,6 +136,7 @@ public:
             for (int pass = 0; pass < 3 && !ties_.met(); ++pass) {
                 Vector step = Vector::Zero(state.size());
                 ties_.add_closing(system_.layout(), step);
+                close_chains(step);
                 state += step;
                 ties_.place(state, system_.layout());
             }
@@ -140,6 +148,7 @@ public:
         ties_.place(state, system_.layout());
         residual.setZero(state.size());
         contacts_->add_forces(residual);
+        scene::fold_images(system_.layout(), residual);
         const double contact = norm(residual);
         core::parallel_for(mesh_->fibre_count(), [&](Index f) {
             for (Index e = 0; e < mesh_->fibre(f).elements; ++e)
@@ -148,8 +157,10 @@ public:
         }, mesh_->grain());
         if constexpr (has_solid) solid_.add_forces(state, residual);
         if (damping_ > 0.0) residual += damping_force(state);
+        scene::fold_images(system_.layout(), residual);
         external_.setZero(state.size());
         load_.add_forces(amplitudes_, state, external_);
+        scene::fold_images(system_.layout(), external_);
         if constexpr (core::Active<Ties>) {
             ties_.hold_forces(system_.layout(), residual - external_);
             ties_.add_forces(system_.layout(), external_);
@@ -187,6 +198,7 @@ public:
             }
         }, mesh_->grain());
         load_.add_stiffness(amplitudes_, state, [&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
+        load_.add_element_stiffness(amplitudes_, [&](Index f, Index e, const beam::ElementMatrix<B>& stiffness) { system_.add(f, e, stiffness); });
         ties_.stiffen(system_.layout(), !tension_only);
         if constexpr (has_solid) {
             solid_.add_to_fibres([&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
@@ -222,6 +234,7 @@ public:
             const double length = system_.layout().length[core::at(v)];
             force.segment<3>(3 * v) = damping_ * length * length * (state.segment<3>(3 * v) - anchor_.segment<3>(3 * v));
         }
+        for (const scene::ImageVector& one : system_.layout().images) force.segment<3>(3 * one.image).setZero();
         for (Index f = 0; f < core::count(holding_); ++f)
             if (holding(f) != 1.0) for_vectors(f, [&](Index v, double) { force.segment<3>(3 * v) *= holding(f); });
         return force;
@@ -287,12 +300,23 @@ private:
             if (!column.isZero(0.0)) system_.skews().push_back({static_cast<std::int32_t>(points.size() - 1), column, element.normal});
         }
     }
+    /// Images are held, behind what holds and ties hold; where they go the sources say.
+    void hold_images() {
+        scene::DofLayout& layout = system_.layout();
+        if (layout.images.empty()) return;
+        std::vector<std::pair<scene::HeldVector, Vec3>> all;
+        for (std::size_t k = 0; k < layout.held.size(); ++k) all.emplace_back(layout.held[k], targets_[k]);
+        for (const scene::ImageVector& one : layout.images) all.emplace_back(scene::HeldVector{one.image, Mat3::Zero()}, Vec3::Zero());
+        std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first.vector < b.first.vector; });
+        layout.held.clear(), targets_.clear();
+        for (const auto& [one, target] : all) layout.held.push_back(one), targets_.push_back(target);
+    }
     double holding(Index f) const noexcept { return holding_.empty() ? 1.0 : holding_[core::at(f)]; }
-    /// body(vector, its length) of each nodal vector of a fibre.
+    /// body(vector, its length) of each nodal vector of a fibre but images.
     template <class Body>
     void for_vectors(Index f, const Body& body) const {
         const scene::Chain& chain = system_.layout().chains[core::at(f)];
-        for (Index v = chain.first_vector; v < chain.first_vector + chain.nodes * chain.vectors_per_node; ++v) body(v, system_.layout().length[core::at(v)]);
+        for (Index v = chain.first_vector; v < chain.first_vector + mesh_->own_nodes(f) * chain.vectors_per_node; ++v) body(v, system_.layout().length[core::at(v)]);
     }
     typename B::Stresses& stress(Index f, Index e) noexcept { return stresses_[core::at(mesh_->element_index(f, e))]; }
     template <class Body>

@@ -3,6 +3,7 @@
 /// @file Fibres cut into beam elements: numbering of the unknowns, rest configuration, positions along a fibre.
 
 #include <fibrant/beam/beam_element.hpp>
+#include <fibrant/beam/closed_frames.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/core/rotation.hpp>
 #include <fibrant/scene/assembly.hpp>
@@ -14,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -99,6 +101,7 @@ struct MeshFibre {
     scene::CrossSection section;
     scene::ElasticMaterial material;
     Index group;
+    bool closed = false;    ///< its last node is the image of its first one, and abscissae count modulo `elements`
 
     double length() const noexcept { return element_length * static_cast<double>(elements); }
 };
@@ -116,15 +119,20 @@ public:
         std::vector<Vec3> start;
         for (const scene::FibreSpecification& fibre : assembly.fibres()) {
             const Index nodes = fibre.elements * (B::nodes - 1) + 1;
-            const std::vector<scene::NodeFrame> frames =
-                fibre.curve ? scene::reference_frames(fibre.curve, nodes, fibre.director)
-                            : scene::straight_frames(fibre.from, fibre.to, nodes, fibre.director);
+            std::vector<scene::NodeFrame> starts, frames;
+            if (fibre.closed) {
+                closed_frames<B>(fibre, nodes, starts, frames);
+            } else {
+                frames = fibre.curve ? scene::reference_frames(fibre.curve, nodes, fibre.director)
+                                     : scene::straight_frames(fibre.from, fibre.to, nodes, fibre.director);
+                starts = fibre.start ? scene::reference_frames(fibre.start, nodes, fibre.director) : frames;
+            }
             double length = 0.0;
             for (std::size_t k = 1; k < frames.size(); ++k) length += (frames[k].position - frames[k - 1].position).norm();
             fibres_.push_back({first, fibre.elements, length / static_cast<double>(fibre.elements), fibre.section,
-                               fibre.material, fibre.group});
-            layout_.chains.push_back({first, nodes, B::vectors_per_node, B::reach, fibre.group});
-            const std::vector<scene::NodeFrame> starts = fibre.start ? scene::reference_frames(fibre.start, nodes, fibre.director) : frames;
+                               fibre.material, fibre.group, fibre.closed});
+            layout_.chains.push_back({first, nodes, B::vectors_per_node, B::reach, fibre.group, fibre.closed});
+            for (Index v = 0; fibre.closed && v < B::vectors_per_node; ++v) layout_.images.push_back({first + (nodes - 1) * B::vectors_per_node + v, first + v});
             frames_.insert(frames_.end(), starts.begin(), starts.end());
             for (const scene::NodeFrame& frame : starts)
                 for (const Vec3& vector : nodal_vectors<B>(frame, fibres_.back().element_length)) start.push_back(vector);
@@ -169,7 +177,11 @@ public:
     /// Number of element e of fibre f in the whole mesh.
     Index element_index(Index f, Index e) const noexcept { return first_element_[core::at(f)] + e; }
     Index node_count(Index f) const noexcept { return fibre(f).elements * (B::nodes - 1) + 1; }
+    /// Nodes that have unknowns of their own: all but the last one of a closed fibre.
+    Index own_nodes(Index f) const noexcept { return node_count(f) - (fibre(f).closed ? 1 : 0); }
+    /// A vector of a node; of the last node of a closed fibre that of its first one.
     Index node_vector(Index f, Index node, Index vector = 0) const noexcept {
+        if (node >= own_nodes(f)) node -= own_nodes(f);
         return fibre(f).first_vector + node * B::vectors_per_node + vector;
     }
     /// Where a run begins: at rest, but for fibres that say otherwise.
@@ -200,9 +212,21 @@ public:
     auto element(const Vector& state, Index f, Index e) const noexcept {
         return state.segment<element_unknowns>(first_unknown(f, e));
     }
-    /// Element that holds the abscissa u (clamped to the fibre), and its natural coordinate in [-1, 1].
+    /// Least and greatest abscissa of a fibre: none of a closed one, around which they go on.
+    std::pair<double, double> bounds(Index f) const noexcept {
+        constexpr double none = std::numeric_limits<double>::infinity();
+        return fibre(f).closed ? std::pair<double, double>{-none, none} : std::pair<double, double>{0.0, static_cast<double>(fibre(f).elements)};
+    }
+    /// The same particle's abscissa in [0, elements) of a closed fibre.
+    double wrapped(Index f, double u) const noexcept {
+        if (!fibre(f).closed) return u;
+        const double end = static_cast<double>(fibre(f).elements), inside = u - end * std::floor(u / end);
+        return inside < end ? inside : 0.0;
+    }
+    /// Element that holds the abscissa u (clamped to the fibre, or wrapped), and its natural coordinate in [-1, 1].
     std::pair<Index, double> locate(Index f, double u) const noexcept {
         const double end = static_cast<double>(fibre(f).elements);
+        if (fibre(f).closed) u = wrapped(f, u);
         const double inside = std::clamp(u, 0.0, end);
         const Index e = std::min(fibre(f).elements - 1, static_cast<Index>(inside));
         return {e, std::clamp(2.0 * (inside - static_cast<double>(e)) - 1.0, -1.0, 1.0)};
@@ -290,7 +314,8 @@ public:
         if constexpr (B::nodes > 2 || requires { B::centreline_bend_weights(0.0); }) {
             return second_derivative(state, f, u);
         } else {
-            const double last = static_cast<double>(node_count(f) - 1), middle = std::clamp(u, 0.5, std::max(0.5, last - 0.5));
+            const double last = static_cast<double>(node_count(f) - 1), middle = fibre(f).closed ? u : std::clamp(u, 0.5, std::max(0.5, last - 0.5));
+            if (fibre(f).closed) return derivative(state, f, middle + 0.5) - derivative(state, f, middle - 0.5);
             return derivative(state, f, std::min(last, middle + 0.5)) - derivative(state, f, middle - 0.5);
         }
     }
@@ -322,6 +347,9 @@ private:
             core::refuse("Assembly.start", std::to_string(state.size()) + " numbers", std::to_string(start_state_.size()) + ", as the fibres' nodes have");
         core::require(state.allFinite(), "Assembly.start", core::unset, "finite");
         start_state_ = state;
+        for (const scene::ImageVector& one : layout_.images)
+            core::require(state.segment<3>(3 * one.image) == state.segment<3>(3 * one.source), "Assembly.start: last node of a closed fibre",
+                          (state.segment<3>(3 * one.image) - state.segment<3>(3 * one.source)).norm(), "the first one");
         for (Index f = 0; f < fibre_count(); ++f)
             for (Index a = 0; a < node_count(f); ++a) {
                 const double u = static_cast<double>(a) / static_cast<double>(B::nodes - 1);

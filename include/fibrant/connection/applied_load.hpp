@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Dead forces and moments on nodal vectors.
+/// @file Dead forces and moments on nodal vectors, and line pressures.
 
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/core/rotation.hpp>
 
+#include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace fibrant::connection {
@@ -19,6 +21,8 @@ public:
             if (!there) core::refuse("load.vector", std::to_string(vector), "a vector of the beam's nodes");
             return Item{mesh.node_vector(load.at.fibre, station_node(mesh, load.at), vector), channels.find(load.channel), value};
         };
+        for (const scene::LinePressure& load : assembly.pressures())
+            pressures_.push_back({load.fibre, channels.find(load.channel), mesh.fibre(load.fibre).elements, mesh.first_unknown(load.fibre, 0), load.pressure, core::cross_matrix(load.axis)});
         if constexpr (beam::TurningSections<B>) {  // what acts on directors turns the section
             for (const scene::DeadForce& load : assembly.forces()) {
                 if (load.vector == scene::NodeVector::position) {
@@ -44,6 +48,17 @@ public:
 
     /// Adds the external forces at the given amplitudes.
     void add_forces(std::span<const double> amplitudes, const Vector& state, Vector& external) const {
+        for (const Pressure& load : pressures_) {
+            const Coupling G = coupling();
+            for (Index e = 0; e < load.elements; ++e) {
+                const Index first = load.first_unknown + 3 * beam::Mesh<B>::vectors_per_element_step * e;
+                for (Index a = 0; a < vectors; ++a) {
+                    Vec3 sum = Vec3::Zero();
+                    for (Index b = 0; b < vectors; ++b) sum += G(a, b) * state.segment<3>(first + 3 * b);
+                    external.segment<3>(first + 3 * a) += amplitudes[core::at(load.channel)] * load.value * (load.across * sum);
+                }
+            }
+        }
         for (const Item& item : forces_)
             external.segment<3>(3 * item.vector) += amplitudes[core::at(item.channel)] * item.value;
         for (const Item& item : turning_) {
@@ -83,7 +98,38 @@ public:
         }
     }
 
+    /// Calls add(fibre, element, matrix) with minus the derivative of line pressures, symmetrised.
+    template <class Add>
+    void add_element_stiffness(std::span<const double> amplitudes, const Add& add) const {
+        for (const Pressure& load : pressures_) {
+            const Coupling G = coupling();
+            beam::ElementMatrix<B> stiffness;
+            for (Index a = 0; a < vectors; ++a)
+                for (Index b = 0; b < vectors; ++b)
+                    stiffness.template block<3, 3>(3 * a, 3 * b) = -0.5 * amplitudes[core::at(load.channel)] * load.value * (G(a, b) - G(b, a)) * load.across;
+            for (Index e = 0; e < load.elements; ++e) add(load.fibre, e, stiffness);
+        }
+    }
+
 private:
+    static constexpr Index vectors = B::nodes * B::vectors_per_node;  // of an element
+    using Coupling = Eigen::Matrix<double, vectors, vectors>;
+    struct Pressure {
+        Index fibre, channel, elements, first_unknown;
+        double value;
+        Mat3 across;  // axis x
+    };
+    /// Integral of the weights of the centreline times those of its derivative: what the vectors of an element are to its forces under a line pressure.
+    static Coupling coupling() noexcept {
+        Coupling sum = Coupling::Zero();
+        const double place = std::sqrt(0.6);  // Gauss, exact to the fifth degree
+        for (const auto& [xi, weight] : {std::pair{-place, 5.0 / 9.0}, std::pair{0.0, 8.0 / 9.0}, std::pair{place, 5.0 / 9.0}}) {
+            const beam::ElementWeights<B> value = B::centreline_weights(xi), slope = B::centreline_derivative_weights(xi);
+            for (Index a = 0; a < vectors; ++a)
+                for (Index b = 0; b < vectors; ++b) sum(a, b) += weight * value[core::at(a)] * slope[core::at(b)];
+        }
+        return sum;
+    }
     struct Item {
         Index vector, channel;
         Vec3 value;
@@ -91,6 +137,7 @@ private:
     };
     static Vec3 director(const Vec3& psi, const Item& item) noexcept { return core::rotation(psi).col(item.director - 1); }
     std::vector<Item> forces_, moments_, turning_;
+    std::vector<Pressure> pressures_;
 };
 
 }  // namespace fibrant::connection

@@ -139,7 +139,7 @@ std::vector<Bond> find_bonds(const beam::Mesh<B>& mesh, const std::vector<scene:
     core::parallel_for(mesh.fibre_count(), [&](Index f) {
         const beam::MeshFibre& fibre = mesh.fibre(f);
         const double radius = fibre.section.radius();
-        for (Index a = 0; a < mesh.node_count(f); ++a) {
+        for (Index a = 0; a < mesh.own_nodes(f); ++a) {
             const Vec3 place = state.segment<3>(3 * mesh.node_vector(f, a));
             for (Index s = 0; s < core::count(solids); ++s) {
                 const solid::CellSearch::Found found = searches[core::at(s)].find(place);
@@ -151,7 +151,7 @@ std::vector<Bond> find_bonds(const beam::Mesh<B>& mesh, const std::vector<scene:
                 for (std::size_t k = 0; k < 8; ++k) bond.nodes[k] = first[core::at(s)] + solid.cells[core::at(found.cell)][k];
                 bond.weights = solid::shape(found.xi);
                 // The length that a node stands for: its share in the integral along an element.
-                const bool end = a == 0 || a + 1 == mesh.node_count(f);
+                const bool end = !fibre.closed && (a == 0 || a + 1 == mesh.node_count(f));
                 double share = end ? 0.5 : 1.0;
                 if constexpr (B::nodes == 3) share = a % 2 == 1 ? 4.0 / 6.0 : end ? 1.0 / 6.0 : 2.0 / 6.0;
                 const double length = share * fibre.element_length;

@@ -102,7 +102,7 @@ std::vector<Carrier> find_carriers(const beam::Mesh<B>& mesh, const std::vector<
     const detail::NearestPoint nearest(places);
     std::vector<Carrier> carriers(core::at(mesh.layout().vectors()));
     core::parallel_for(mesh.fibre_count(), [&](Index f) {
-        for (Index a = 0; a < mesh.node_count(f); ++a) {
+        for (Index a = 0; a < mesh.own_nodes(f); ++a) {
             const Index position = mesh.node_vector(f, a);
             const Vec3 place = state.segment<3>(3 * position);
             const Index b = own[core::at(position)] >= 0 ? own[core::at(position)] : nearest.find(place);

@@ -19,6 +19,7 @@ public:
     explicit Channels(const scene::Assembly& assembly) {
         for (const scene::Hold& hold : assembly.holds()) names_.push_back(hold.channel);
         for (const scene::DeadForce& force : assembly.forces()) names_.push_back(force.channel);
+        for (const scene::LinePressure& load : assembly.pressures()) names_.push_back(load.channel);
         for (const scene::Moment& moment : assembly.moments()) names_.push_back(moment.channel);
         for (const scene::Tool& tool : assembly.tools()) names_.push_back(tool.channel);
         const auto drive = [&](const scene::Coordinate& coordinate) {

@@ -12,6 +12,7 @@
 
 #include <Eigen/Geometry>
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,12 +31,25 @@ struct FibreSpecification {
     Index elements = 0;                       ///< along the fibre, >= 1
     Vec3 director = Vec3::Zero();             ///< g_1 at the first end, less its axial part; zero: any
     Index group = -1;                         ///< from Assembly::add_group, or -1
+    /// The end is the start: `start`, or `curve` where there is none, closes smoothly, and so do the directors. The rest shape may be open: of a
+    /// closed fibre that is given by its start alone it is straight.
+    bool closed = false;
+    double twist = 0.0;                       ///< of a closed fibre: by which it is turned along itself before it is closed [radian]
 
+    /// A closed fibre that is straight at rest, as long as its start is.
+    bool straightened() const noexcept { return closed && start && !curve && !from.allFinite() && !to.allFinite(); }
     void validate() const {
         section.validate();
         material.validate();
         core::require_at_least("fibre.elements", elements, 1);
-        if (!curve) {
+        core::require_finite("fibre.twist", twist);
+        if (closed) {
+            core::require_at_least("fibre.elements, of a closed fibre", elements, 3);
+            if (!start && !curve) core::refuse("fibre.closed", "a straight fibre", "a curve, or a start, that ends where it begins");
+        } else if (twist != 0.0) {
+            core::require(twist == 0.0, "fibre.twist", twist, "0, of a fibre that is not closed");
+        }
+        if (!curve && !straightened()) {
             for (int k = 0; k < 3; ++k) {
                 core::require_finite("fibre.from", from[k]);
                 core::require_finite("fibre.to", to[k]);
@@ -161,6 +175,13 @@ public:
         moments_.push_back(load);
     }
 
+    void apply(const LinePressure& load) {
+        check(first_end(load.fibre));
+        core::require_finite("LinePressure.pressure", load.pressure);
+        core::require(std::abs(load.axis.norm() - 1.0) < 1e-9, "LinePressure.axis: length", load.axis.norm(), "1");
+        pressures_.push_back(load);
+    }
+
     void force_order(const ForcedOrder& order) {
         for (const Index group : {order.above, order.below})
             if (group < 0 || group >= core::count(groups_))
@@ -258,6 +279,7 @@ public:
     const std::vector<Hold>& holds() const noexcept { return holds_; }
     const std::vector<DeadForce>& forces() const noexcept { return forces_; }
     const std::vector<Moment>& moments() const noexcept { return moments_; }
+    const std::vector<LinePressure>& pressures() const noexcept { return pressures_; }
     const std::vector<ForcedOrder>& orders() const noexcept { return orders_; }
     const std::vector<PairRule>& rules() const noexcept { return rules_; }
     const std::vector<Tool>& tools() const noexcept { return tools_; }
@@ -280,6 +302,7 @@ private:
     std::vector<Hold> holds_;
     std::vector<DeadForce> forces_;
     std::vector<Moment> moments_;
+    std::vector<LinePressure> pressures_;
     std::vector<ForcedOrder> orders_;
     std::vector<PairRule> rules_;
     std::vector<Tool> tools_;

@@ -60,6 +60,16 @@ struct Moment {
     std::string channel = "load";
 };
 
+/// A force per length of the line as it lies, across it: pressure * axis x tangent, so that it follows the fibre. Around a closed fibre in a plane,
+/// anticlockwise about the axis, it is that of a fluid outside, and has a potential: pressure times the area inside. Beyond the ends of an open one
+/// it has none, and the tangent is symmetrised.
+struct LinePressure {
+    Index fibre = -1;
+    double pressure = core::unset;  ///< at amplitude 1 [force / length]
+    Vec3 axis = Vec3::UnitZ();      ///< unit
+    std::string channel = "load";
+};
+
 /// Contact between the fibres of two groups, or within one, where it is not that of the laws. A fibre that is in no rule counts
 /// as one of the groups that its group belongs to.
 struct PairRule {

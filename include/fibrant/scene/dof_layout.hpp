@@ -16,6 +16,13 @@ struct Chain {
     Index vectors_per_node = 3;  ///< director beam 3, Hermite cable 2, bar 1
     Index reach = 0;             ///< furthest node coupled along the chain: quadratic element 2, linear 1, none 0
     Index group = -1;            ///< innermost group of the scene; -1 where it names none
+    bool closed = false;         ///< its last node is the image of its first one
+};
+
+/// A vector that is the same unknown as another one: the end of a closed chain in memory. It has the value of its source wherever values
+/// are read, forces on it act on its source, and a system holds it as if it were prescribed altogether.
+struct ImageVector {
+    Index image = -1, source = -1;
 };
 
 /// A rigid translation moves positions only; a rotation turns directions, and changes rotation vectors by its spin.
@@ -52,6 +59,7 @@ struct DofLayout {
     std::vector<Vec3> value;       ///< of each vector: current position [length] or director [1]
     std::vector<double> length;    ///< makes a vector a displacement: 1 for a position, the radius for a director
     std::vector<HeldVector> held;  ///< sorted by vector, each vector at most once
+    std::vector<ImageVector> images;  ///< of closed chains, sorted; each is among `held` too
     std::vector<Tie> ties;         ///< none, but for averages and periodic cells
     std::vector<TiedMotion> motions;  ///< of ties, that share no scalar
 

@@ -33,9 +33,9 @@ struct NodeFrame {
 
 namespace detail {
 
-/// Derivative of a curve by five-point differences that stay inside [0, 1].
-inline Vec3 curve_derivative(const Curve& curve, double t, double step) {
-    const double low = std::clamp(t - 2.0 * step, 0.0, 1.0 - 4.0 * step);
+/// Derivative of a curve by five-point differences that stay inside [0, 1], or of a closed one go on beyond.
+inline Vec3 curve_derivative(const Curve& curve, double t, double step, bool closed = false) {
+    const double low = closed ? t - 2.0 * step : std::clamp(t - 2.0 * step, 0.0, 1.0 - 4.0 * step);
     const double u = (t - low) / step;  // 2 inside, 0 and 4 at the ends
     Vec3 sum = Vec3::Zero();
     for (int k = 0; k < 5; ++k) {  // derivative of the Lagrange polynomial of node k at u
@@ -47,7 +47,8 @@ inline Vec3 curve_derivative(const Curve& curve, double t, double step) {
                 if (l != k && l != m) term *= (u - l) / (k - l);
             weight += term;
         }
-        sum += weight * curve(low + k * step);
+        const double at = low + k * step;
+        sum += weight * curve(closed ? at - std::floor(at) : at);
     }
     return sum / step;
 }
@@ -81,8 +82,9 @@ inline Vec3 any_perpendicular(const Vec3& tangent) {
 /// @param curve     regular (its derivative does not vanish)
 /// @param nodes     >= 2
 /// @param director  g_1 at the start is its part perpendicular to the tangent; zero: any
-/// @throws std::invalid_argument if the curve is not finite or stands still
-inline std::vector<NodeFrame> reference_frames(const Curve& curve, Index nodes, const Vec3& director = Vec3::Zero()) {
+/// @param closed    the curve ends where it begins, and its tangent there is that of a curve that goes on
+/// @throws std::invalid_argument if the curve is not finite, stands still, or does not close where it should
+inline std::vector<NodeFrame> reference_frames(const Curve& curve, Index nodes, const Vec3& director = Vec3::Zero(), bool closed = false) {
     core::require_at_least("reference_frames.nodes", nodes, 2);
     constexpr Index fine = 16;  // substeps between nodes, for arc length and transport
     const Index steps = (nodes - 1) * fine;
@@ -95,6 +97,10 @@ inline std::vector<NodeFrame> reference_frames(const Curve& curve, Index nodes, 
     }
     const double length = arc.back();
     core::require(std::isfinite(length) && length > 0.0, "fibre.curve: length", length, "finite and > 0");
+    if (closed) {
+        const double open = (last - curve(0.0)).norm();
+        core::require(open <= 1e-9 * length, "fibre.curve: distance from its end to its start", open, "nothing, of a closed fibre");
+    }
 
     const double difference = 0.25 / static_cast<double>(steps);
     std::vector<NodeFrame> frames;
@@ -110,7 +116,7 @@ inline std::vector<NodeFrame> reference_frames(const Curve& curve, Index nodes, 
             m == steps ? 1.0
                        : (static_cast<double>(k) + (wanted - arc[core::at(k)]) / span) / static_cast<double>(steps);
         const Vec3 position = curve(std::clamp(t, 0.0, 1.0));
-        const Vec3 tangent = detail::curve_derivative(curve, std::clamp(t, 0.0, 1.0), difference).normalized();
+        const Vec3 tangent = detail::curve_derivative(curve, std::clamp(t, 0.0, 1.0), difference, closed).normalized();
         if (m == 0) {
             const Vec3 start = director - director.dot(tangent) * tangent;
             frame.director_1 =
@@ -124,6 +130,23 @@ inline std::vector<NodeFrame> reference_frames(const Curve& curve, Index nodes, 
         if (m % fine == 0) frames.push_back(frame);
     }
     return frames;
+}
+
+/// Turns the sections about their tangents, evenly from nothing at the first one to an angle at the last one [radian].
+inline void turn_along(std::vector<NodeFrame>& frames, double angle) {
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+        NodeFrame& frame = frames[k];
+        const double turn = angle * static_cast<double>(k) / static_cast<double>(frames.size() - 1);
+        frame.director_1 = std::cos(turn) * frame.director_1 + std::sin(turn) * frame.director_2;
+        frame.director_2 = frame.tangent.cross(frame.director_1);
+    }
+}
+
+/// Angle by which the last section of a closed curve has to be turned to lie on the first one, in (-pi, pi] [radian]. Directors that are carried along
+/// a curve in space by parallel transport come back turned by 2 pi times its writhe (Fuller 1971).
+inline double closing_angle(const std::vector<NodeFrame>& frames) {
+    const NodeFrame &first = frames.front(), &last = frames.back();
+    return std::atan2(first.director_1.dot(last.director_2), first.director_1.dot(last.director_1));
 }
 
 /// Frames of a straight fibre.

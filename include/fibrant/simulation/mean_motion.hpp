@@ -128,7 +128,7 @@ private:
     template <beam::BeamElement B, class Body>
     static void each_centre(const beam::Mesh<B>& mesh, const Body& body) {
         for (Index f = 0; f < mesh.fibre_count(); ++f)
-            for (Index a = 0; a < mesh.node_count(f); ++a) body(core::at(mesh.fibre(f).group + 1), mesh.node_vector(f, a, 0));
+            for (Index a = 0; a < mesh.own_nodes(f); ++a) body(core::at(mesh.fibre(f).group + 1), mesh.node_vector(f, a, 0));
     }
     template <class Self, class Body>
     static void each_of(Self& self, const Body& body) {

@@ -2,6 +2,7 @@
 #pragma once
 /// @file A state on a finer mesh: how much of a result is the mesh's, from one and the same settled state.
 
+#include <fibrant/scene/image_vectors.hpp>
 #include <fibrant/simulation/stored_state.hpp>
 
 namespace fibrant::simulation {
@@ -43,6 +44,7 @@ StoredState<M> refined(const StoredState<M>& stored, const beam::Mesh<typename M
             put(2, beam::director_weights<B>(xi, 2));
         }
     }
+    scene::copy_to_images(finer.layout(), answer.state);
     for (auto& record : answer.records) record.u_i *= times, record.u_j *= times;
     for (contact::Zone& zone : answer.zones) {
         proximity::ProximityZone& span = zone.span;

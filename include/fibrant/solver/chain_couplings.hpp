@@ -90,7 +90,7 @@ private:
             const std::size_t half = term.vectors.size() / 2;
             if (half == 0 || term.vectors.size() != 2 * half) return;
             const Index step = half > 1 ? term.vectors[1] - term.vectors[0] : 1;
-            if (count != 0 && (half != count || step != stride)) return;
+            if (step < 1 || (count != 0 && (half != count || step != stride))) return;
             Pair pair;
             for (std::size_t side = 0; side < 2; ++side) {
                 const auto vectors = term.vectors.subspan(side * half, half);
