@@ -217,6 +217,17 @@ public:
         constexpr double none = std::numeric_limits<double>::infinity();
         return fibre(f).closed ? std::pair<double, double>{-none, none} : std::pair<double, double>{0.0, static_cast<double>(fibre(f).elements)};
     }
+    /// Abscissae around each fibre, 0 of open ones; empty if all are open.
+    std::vector<double> periods() const {
+        std::vector<double> all;
+        for (Index f = 0; f < fibre_count() && !layout_.images.empty(); ++f) all.push_back(fibre(f).closed ? static_cast<double>(fibre(f).elements) : 0.0);
+        return all;
+    }
+    /// Way along a fibre between two of its particles, of a closed one the shorter [elements].
+    double apart(Index f, double u, double v) const noexcept {
+        const double way = std::abs(u - v);
+        return fibre(f).closed ? std::abs(std::remainder(way, static_cast<double>(fibre(f).elements))) : way;
+    }
     /// The same particle's abscissa in [0, elements) of a closed fibre.
     double wrapped(Index f, double u) const noexcept {
         if (!fibre(f).closed) return u;

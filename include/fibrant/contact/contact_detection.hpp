@@ -139,6 +139,7 @@ struct SampledCentrelines {
             line.points = std::span<const Vec3>(points).subspan(core::at(piece.first_point), core::at(count + 1));
             line.inflation = std::span<const double>(inflation).subspan(core::at(piece.first_segment), core::at(count));
             line.radius = fibre_data.section.radius();
+            line.closed = fibre_data.closed;
             if (detection.self_contact) line.self_skip = self_contact_arc(fibre_data.section.radius(), fibre_data.element_length);
             centrelines.push_back(line);
             fibre.push_back(piece.fibre);

@@ -87,18 +87,24 @@ class ContactMemory {
 public:
     using Record = ContactRecord<Normal, Friction>;
 
+    ContactMemory() = default;
+    /// @param periods  of closed fibres, around which contacts may slip: as beam::Mesh::periods; empty if there are none
+    explicit ContactMemory(std::vector<double> periods, std::vector<Record> records = {}) : periods_{std::move(periods)} { assign(std::move(records)); }
+
     const std::vector<Record>& records() const noexcept { return records_; }
+    const std::vector<double>& periods() const noexcept { return periods_; }
     void assign(std::vector<Record> records) {
         records_ = std::move(records);
         if (!std::is_sorted(records_.begin(), records_.end())) std::stable_sort(records_.begin(), records_.end());
+        if (!periods_.empty()) mirror();
     }
 
     /// Nearest record of the pair within `range` on both fibres [elements], or null.
     const Record* nearest(Index i, Index j, double u_i, double u_j, double range) const noexcept {
         const Record* best = nullptr;
         double least = range;
-        visit(i, j, u_i, range, [&](const Record& record) {
-            const double distance = std::max(std::abs(record.u_i - u_i), std::abs(record.u_j - u_j));
+        visit(i, j, u_i, u_j, range, [&](const Record& record, double d_i, double d_j) {
+            const double distance = std::max(std::abs(d_i), std::abs(d_j));
             if (distance <= least && (!best || distance < least)) least = distance, best = &record;
         });
         return best;
@@ -112,8 +118,7 @@ public:
     {
         const Record *before = nullptr, *after = nullptr;
         double left = range, right = range;
-        visit(i, j, u_i, 2.0 * range, [&](const Record& record) {
-            const double d_i = record.u_i - u_i, d_j = record.u_j - u_j;
+        visit(i, j, u_i, u_j, 2.0 * range, [&](const Record& record, double d_i, double d_j) {
             if (std::max(std::abs(d_i), std::abs(d_j)) > 2.0 * range) return;
             const double signed_mean = std::copysign(0.5 * (std::abs(d_i) + std::abs(d_j)), d_i != 0.0 ? d_i : d_j);
             if (signed_mean <= 0.0 && -signed_mean < left) left = -signed_mean, before = &record;
@@ -135,27 +140,98 @@ public:
     /// Calls see(record) with the records between the two fibres of a zone, inside its interval of the first one.
     template <class See>
     void visit(const proximity::ProximityZone& zone, const See& see) const noexcept {
-        visit(zone.fibre_i, zone.fibre_j, 0.5 * (zone.a_i + zone.b_i), 0.5 * (zone.b_i - zone.a_i), see);
+        visit(records_, zone.fibre_i, zone.fibre_j, 0.5 * (zone.a_i + zone.b_i), 0.5 * (zone.b_i - zone.a_i), see);
+    }
+    /// Calls see(u_i, u_j) with where they lie; around closed fibres these are abscissae of the zone.
+    template <class See>
+    void visit_places(const proximity::ProximityZone& zone, const See& see) const noexcept {
+        if (periods_.empty()) return visit(zone, [&](const Record& record) { see(record.u_i, record.u_j); });
+        const double middle = 0.5 * (zone.a_i + zone.b_i), period = periods_[core::at(zone.fibre_j)];
+        visit(zone.fibre_i, zone.fibre_j, middle, 0.0, 0.5 * (zone.b_i - zone.a_i), [&](const Record& record, double d_i, double) {
+            const double u_i = middle + d_i, share = zone.b_i > zone.a_i ? (u_i - zone.a_i) / (zone.b_i - zone.a_i) : 0.5;
+            const double beside = zone.a_j + share * (zone.b_j - zone.a_j);
+            see(u_i, period > 0.0 ? beside + std::remainder(record.u_j - beside, period) : record.u_j);
+        });
+    }
+    /// Calls see(record, d_i, d_j) with the records of two fibres within `range` on the first, in order, and how far they lie from a pair of abscissae. On one
+    /// closed fibre a record is also seen with its two particles the other way around, if that is where it lies near.
+    template <class Visit>
+    void visit(Index i, Index j, double u_i, double u_j, double range, const Visit& see) const noexcept {
+        const double period_i = periods_.empty() ? 0.0 : periods_[core::at(i)], period_j = periods_.empty() ? 0.0 : periods_[core::at(j)];
+        if (period_i == 0.0 && period_j == 0.0)
+            return visit(records_, i, j, u_i, range, [&](const Record& record) { see(record, record.u_i - u_i, record.u_j - u_j); });
+        const double within = period_i > 0.0 ? std::min(range, 0.5 * period_i) : range;
+        for (const std::vector<Record>* records : {&records_, &mirrored_}) {
+            const auto take = [&](double by) {
+                visit(*records, i, j, u_i - by, within, [&](const Record& record) {
+                    const double d_j = record.u_j - u_j;
+                    see(record, record.u_i + by - u_i, period_j > 0.0 ? std::remainder(d_j, period_j) : d_j);
+                });
+            };
+            if (period_i == 0.0) {
+                take(0.0);
+                continue;
+            }
+            // Turns that bring [0, period) within reach; no record twice, but half-way around.
+            for (double turn = std::floor((u_i - within) / period_i); turn * period_i <= u_i + within; turn += 1.0) take(turn * period_i);
+        }
     }
 
 private:
     template <class Visit>
-    void visit(Index i, Index j, double u_i, double range, const Visit& see) const noexcept {
+    static void visit(const std::vector<Record>& records, Index i, Index j, double u_i, double range, const Visit& see) noexcept {
         Record first;
         first.fibre_i = static_cast<std::int32_t>(i), first.fibre_j = static_cast<std::int32_t>(j);
         first.u_i = u_i - range, first.u_j = -1.0;
-        for (auto it = std::lower_bound(records_.begin(), records_.end(), first);
-             it != records_.end() && it->fibre_i == i && it->fibre_j == j && it->u_i <= u_i + range; ++it)
+        for (auto it = std::lower_bound(records.begin(), records.end(), first);
+             it != records.end() && it->fibre_i == i && it->fibre_j == j && it->u_i <= u_i + range; ++it)
             see(*it);
     }
-    std::vector<Record> records_;
+    /// Records of closed fibres with themselves, the other way around.
+    void mirror() {
+        mirrored_.clear();
+        for (const Record& record : records_) {
+            if (record.fibre_i != record.fibre_j || periods_[core::at(Index{record.fibre_i})] == 0.0) continue;
+            Record other = record;
+            std::swap(other.u_i, other.u_j);
+            other.normal = -record.normal;
+            if constexpr (core::Active<Friction>) {  // the direction between both tangents is that of the second one
+                other.friction.along = -record.friction.sign * record.friction.along;
+                other.friction.across = record.friction.sign * record.friction.across;
+            }
+            mirrored_.push_back(other);
+        }
+        std::stable_sort(mirrored_.begin(), mirrored_.end());
+    }
+    std::vector<double> periods_;
+    std::vector<Record> records_, mirrored_;
 };
+
+/// The same where fibres are closed: of each element the records near it, and of each record the nearest of these elements.
+template <class Memory, class Element>
+void hand_multipliers_around(const Memory& memory, const proximity::ProximityZone& zone, std::span<Element> elements, double range) {
+    struct Near {
+        double u_i, u_j, distance, force;  // of the record, as it is kept
+        std::size_t element;
+    };
+    std::vector<Near> all;
+    for (std::size_t k = 0; k < elements.size(); ++k)
+        memory.visit(zone.fibre_i, zone.fibre_j, elements[k].u_i, elements[k].u_j, range, [&](const auto& record, double d_i, double d_j) {
+            const double distance = std::max(std::abs(d_i), std::abs(d_j));
+            const bool turned = zone.fibre_i == zone.fibre_j && record.u_i > record.u_j;
+            if (distance <= range) all.push_back({turned ? record.u_j : record.u_i, turned ? record.u_i : record.u_j, distance, record.multiplier.force, k});
+        });
+    std::sort(all.begin(), all.end(), [](const Near& a, const Near& b) { return std::tie(a.u_i, a.u_j, a.distance, a.element) < std::tie(b.u_i, b.u_j, b.distance, b.element); });
+    for (std::size_t k = 0; k < all.size(); ++k)
+        if (k == 0 || all[k].u_i != all[k - 1].u_i || all[k].u_j != all[k - 1].u_j) elements[all[k].element].shift.multiplier += all[k].force;
+}
 
 /// Hands each record's multiplier to the nearest of the new elements of its zone: their sum is kept, whatever their spacing.
 /// @param elements  of the zone, sorted by u_i
 template <class Memory, class Element>
 void hand_multipliers(const Memory& memory, const proximity::ProximityZone& zone, std::span<Element> elements) {
     const double range = 1.5;  // elements of the mesh
+    if (!memory.periods().empty()) return hand_multipliers_around(memory, zone, elements, range);
     memory.visit(zone, [&](const auto& record) {
         const auto distance = [&](const Element& e) { return std::max(std::abs(e.u_i - record.u_i), std::abs(e.u_j - record.u_j)); };
         auto element = std::lower_bound(elements.begin(), elements.end(), record.u_i - range,

@@ -31,7 +31,7 @@ public:
     ContactSet(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const ContactParameters& parameters,
                Search search, Normal normal, Friction friction)
         : mesh_{&mesh}, parameters_{core::validated(parameters)}, orders_{assembly, mesh}, rules_{assembly}, search_{std::move(search)},
-          normal_{normal}, friction_{friction} {}
+          normal_{normal}, friction_{friction}, accepted_{mesh.periods()} {}
 
     Normal& normal_law() noexcept { return normal_; }
     const Normal& normal_law() const noexcept { return normal_; }
@@ -61,8 +61,7 @@ public:
 
     /// Contact elements anew in the zones that stand.
     void regenerate(const Vector& state, const Vector& accepted) {
-        Memory last;
-        last.assign(records(state));
+        const Memory last(accepted_.periods(), records(state));
         const Memory& memory = last.records().empty() ? accepted_ : last;
         generate(state, accepted, memory);
         sides_.build(mesh_->fibre_count(), elements_);
@@ -193,7 +192,7 @@ public:
         }, mesh_->grain());
     }
 
-    /// Sides of contact elements on a fibre, in order.
+    /// Sides of elements on a fibre, in order.
     std::span<const std::int32_t> sides(Index fibre) const noexcept { return sides_.of(fibre); }
 
     /// Greatest gap or penetration of what carries force [length].
@@ -263,7 +262,7 @@ private:
 
     void inherit(Zone& zone, const Vector& state) const {
         rules_.apply(zone);
-        const Zone* before = predecessor(zones_, zone.span);
+        const Zone* before = predecessor(zones_, zone.span, 1.0, accepted_.periods());
         zone.stiffness = before ? before->stiffness : parameters_.stiffness.initial_fraction * zone.reference;
         if (!accepted_zones_.empty()) zone.deepest = before ? before->deepest : 0.0;
         if (zone.forced) return;
@@ -282,9 +281,8 @@ private:
             for (Index z = b * block; z < std::min(core::count(zones_), (b + 1) * block); ++z) {
                 Zone& zone = zones_[core::at(z)];
                 pairs.clear();
-                station_pairs(*mesh_, state, zone.span, zone.crossing, parameters_.spacing, pairs, [&](const auto& see) {
-                    memory.visit(zone.span, [&](const auto& record) { see(record.u_i, record.u_j); });
-                });
+                station_pairs(*mesh_, state, zone.span, zone.crossing, parameters_.spacing, pairs,
+                              [&](const auto& see) { memory.visit_places(zone.span, see); });
                 zone.first = core::count(made[core::at(b)]);
                 for (const StationPair& pair : pairs) {
                     Element element = make(zone, z, pair);

@@ -6,13 +6,15 @@
 
 namespace fibrant::contact {
 
-/// Jump of the centreline's derivative by u where element `node` begins and the one before it ends [length].
+/// Jump of the centreline's derivative by u where element `node` begins and the one before it ends [length]; around a closed fibre `node` may be 0 and
+/// the number of elements.
 template <class B>
 Vec3 kink(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, Index node) noexcept {
     const auto at = [&](Index e, double end) {
         return Vec3(2.0 * beam::Mesh<B>::centre(state, mesh.first_unknown(fibre, e), B::centreline_derivative_weights(end)));
     };
-    return at(node, -1.0) - at(node - 1, 1.0);
+    const Index elements = mesh.fibre(fibre).elements;
+    return at(node == elements ? 0 : node, -1.0) - at(node == 0 ? elements - 1 : node - 1, 1.0);
 }
 
 /// Derivative of the centreline by u [length], with its jump at a node shared by two elements evened out linearly over both.
@@ -24,8 +26,9 @@ template <class B>
 Vec3 contact_tangent(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u) noexcept {
     const auto [element, xi] = mesh.locate(fibre, u);
     Vec3 tangent = 2.0 * beam::Mesh<B>::centre(state, mesh.first_unknown(fibre, element), B::centreline_derivative_weights(xi));
-    if (element > 0) tangent -= 0.25 * (1.0 - xi) * kink(mesh, state, fibre, element);
-    if (element + 1 < mesh.fibre(fibre).elements) tangent += 0.25 * (1.0 + xi) * kink(mesh, state, fibre, element + 1);
+    const bool closed = mesh.fibre(fibre).closed;
+    if (element > 0 || closed) tangent -= 0.25 * (1.0 - xi) * kink(mesh, state, fibre, element);
+    if (element + 1 < mesh.fibre(fibre).elements || closed) tangent += 0.25 * (1.0 + xi) * kink(mesh, state, fibre, element + 1);
     return tangent;
 }
 

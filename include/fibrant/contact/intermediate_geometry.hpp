@@ -26,7 +26,8 @@ struct StationPair {
 /// contact_tangent: closest but for the kinks between elements, in which there would be two closest points.
 template <class B>
 StationPair closest_points(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, double u_i, double u_j) {
-    const double end_i = static_cast<double>(mesh.fibre(i).elements), end_j = static_cast<double>(mesh.fibre(j).elements);
+    const auto [low_i, end_i] = mesh.bounds(i);
+    const auto [low_j, end_j] = mesh.bounds(j);
     for (int iteration = 0; iteration < 30; ++iteration) {
         const Vec3 centres = mesh.position(state, j, u_j) - mesh.position(state, i, u_i);
         const Vec3 d_i = contact_tangent(mesh, state, i, u_i), d_j = contact_tangent(mesh, state, j, u_j);
@@ -35,18 +36,18 @@ StationPair closest_points(const beam::Mesh<B>& mesh, const Vector& state, Index
         // Gauss-Newton step with a bound on each variable: at a bound the other one alone
         const double determinant = std::max(a * c - b * b, 1e-12 * a * c);
         double step_i = (c * p - b * q) / determinant, step_j = (a * q - b * p) / determinant;
-        if ((u_i + step_i < 0.0 || u_i + step_i > end_i)) {
-            step_i = std::clamp(u_i + step_i, 0.0, end_i) - u_i;
+        if ((u_i + step_i < low_i || u_i + step_i > end_i)) {
+            step_i = std::clamp(u_i + step_i, low_i, end_i) - u_i;
             step_j = (q - b * step_i) / c;
         }
-        if ((u_j + step_j < 0.0 || u_j + step_j > end_j)) {
-            step_j = std::clamp(u_j + step_j, 0.0, end_j) - u_j;
-            step_i = std::clamp(u_i + (p - b * step_j) / a, 0.0, end_i) - u_i;
+        if ((u_j + step_j < low_j || u_j + step_j > end_j)) {
+            step_j = std::clamp(u_j + step_j, low_j, end_j) - u_j;
+            step_i = std::clamp(u_i + (p - b * step_j) / a, low_i, end_i) - u_i;
         }
         const double largest = std::max(std::abs(step_i), std::abs(step_j));
         const double shorten = largest > 1.0 ? 1.0 / largest : 1.0;
-        u_i = std::clamp(u_i + shorten * step_i, 0.0, end_i);
-        u_j = std::clamp(u_j + shorten * step_j, 0.0, end_j);
+        u_i = std::clamp(u_i + shorten * step_i, low_i, end_i);
+        u_j = std::clamp(u_j + shorten * step_j, low_j, end_j);
         if (largest < 1e-11) break;
     }
     return {u_i, u_j, true, false, false, 0.0};
@@ -56,12 +57,12 @@ StationPair closest_points(const beam::Mesh<B>& mesh, const Vector& state, Index
 template <class B>
 double plane_section(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, const Vec3& origin,
                      const Vec3& normal) {
-    const double end = static_cast<double>(mesh.fibre(fibre).elements);
+    const auto [low, end] = mesh.bounds(fibre);
     for (int iteration = 0; iteration < 12; ++iteration) {
         const double speed = mesh.derivative(state, fibre, u).dot(normal);
         if (speed == 0.0) break;
         const double step = std::clamp((origin - mesh.position(state, fibre, u)).dot(normal) / speed, -1.0, 1.0);
-        const double next = std::clamp(u + step, 0.0, end);
+        const double next = std::clamp(u + step, low, end);
         const bool still = std::abs(next - u) < 1e-11;
         u = next;
         if (still) break;

@@ -38,7 +38,8 @@ ElementExtents extents_along(const beam::Mesh<B>& mesh, const Vector& state, Ind
 /// @param direction  unit
 template <class B>
 double extent_kink(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, Index node, const Vec3& direction) noexcept {
-    return extents_along(mesh, state, fibre, node, direction).slope_at_first() - extents_along(mesh, state, fibre, node - 1, direction).slope_at_last();
+    const Index elements = mesh.fibre(fibre).elements, begins = node == elements ? 0 : node, ends = node == 0 ? elements - 1 : node - 1;
+    return extents_along(mesh, state, fibre, begins, direction).slope_at_first() - extents_along(mesh, state, fibre, ends, direction).slope_at_last();
 }
 
 }  // namespace fibrant::contact

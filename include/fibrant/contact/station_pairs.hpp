@@ -25,8 +25,8 @@ public:
     ZoneStations(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone, const ContactSpacing& spacing,
                  std::vector<StationPair>& pairs)
         : mesh_{mesh}, state_{state}, zone_{zone}, spacing_{spacing}, pairs_{pairs}, before_{pairs.size()}, i_{zone.fibre_i}, j_{zone.fibre_j},
-          h_i_{mesh.fibre(i_).element_length}, h_j_{mesh.fibre(j_).element_length}, end_i_{static_cast<double>(mesh.fibre(i_).elements)},
-          end_j_{static_cast<double>(mesh.fibre(j_).elements)},
+          h_i_{mesh.fibre(i_).element_length}, h_j_{mesh.fibre(j_).element_length}, low_i_{mesh.bounds(i_).first}, end_i_{mesh.bounds(i_).second}, low_j_{mesh.bounds(j_).first},
+          end_j_{mesh.bounds(j_).second},
           r_{0.5 * (mesh.fibre(i_).section.radius() + mesh.fibre(j_).section.radius())}, h_{0.5 * (h_i_ + h_j_)},
           step_{1.0 / spacing.points_per_element}, from_{mean_abscissa(zone.a_i, zone.a_j)}, to_{mean_abscissa(zone.b_i, zone.b_j)} {}
 
@@ -41,8 +41,8 @@ public:
         // A fibre's line goes on beyond its end, its end does not: the gap across both tangents is less than that of a cap, by 0.1 r where lines part by a quarter
         // of r. Then an end that slides to where the one kind begins would be sent back by the other for ever.
         const double nearly_none = 0.01 * r_;
-        pair.end_i = (pair.u_i <= 0.0 || pair.u_i >= end_i_) && off_i > nearly_none;
-        pair.end_j = (pair.u_j <= 0.0 || pair.u_j >= end_j_) && off_j > nearly_none;
+        pair.end_i = (pair.u_i <= low_i_ || pair.u_i >= end_i_) && off_i > nearly_none;
+        pair.end_j = (pair.u_j <= low_j_ || pair.u_j >= end_j_) && off_j > nearly_none;
         pairs_.push_back(pair);
     }
 
@@ -71,6 +71,7 @@ public:
             for (const bool of_i : {true, false}) {
                 const auto [u_i, u_j] = zone_point(s);
                 const double u = of_i ? u_i : u_j, end = nearest_end(of_i, u);
+                if (std::isinf(of_i ? end_i_ : end_j_)) continue;
                 if (std::abs(u - end) < 0.5 * step_) add_last_section(of_i, end, of_i ? u_j : u_i);
             }
         const auto begin = pairs_.begin() + static_cast<std::ptrdiff_t>(before_);
@@ -86,10 +87,10 @@ private:
 
     // In a bend the points of a fibre that are closest to each other are next to each other, or one.
     bool is_one(const StationPair& pair) const noexcept {
-        return i_ == j_ && std::abs(pair.u_j - pair.u_i) * h_i_ < self_contact_arc(r_, h_i_);
+        return i_ == j_ && mesh_.apart(i_, pair.u_i, pair.u_j) * h_i_ < self_contact_arc(r_, h_i_);
     }
     double mean_abscissa(double u_i, double u_j) const noexcept {
-        return 0.5 * (h_i_ * u_i + h_j_ * (zone_.b_j < zone_.a_j ? end_j_ - u_j : u_j)) / h_;
+        return 0.5 * (h_i_ * u_i + h_j_ * (zone_.b_j < zone_.a_j ? static_cast<double>(mesh_.fibre(j_).elements) - u_j : u_j)) / h_;
     }
     // Of the zone at a multiple k of the spacing.
     double share(double k) const noexcept { return to_ > from_ ? std::clamp((k * step_ - from_) / (to_ - from_), 0.0, 1.0) : 0.5; }
@@ -104,8 +105,8 @@ private:
     // Where a station lies that would be so many steps from one, as the zone's ends say.
     Station beside(const Station& station, double steps) const noexcept {
         const double per_step = to_ > from_ ? step_ / (to_ - from_) : 0.0;
-        return {std::clamp(station.u_i + steps * per_step * (zone_.b_i - zone_.a_i), 0.0, end_i_),
-                std::clamp(station.u_j + steps * per_step * (zone_.b_j - zone_.a_j), 0.0, end_j_), station.sine};
+        return {std::clamp(station.u_i + steps * per_step * (zone_.b_i - zone_.a_i), low_i_, end_i_),
+                std::clamp(station.u_j + steps * per_step * (zone_.b_j - zone_.a_j), low_j_, end_j_), station.sine};
     }
 
     // A fibre's end against the other fibre's side; the same end is paired once in a zone.
@@ -117,7 +118,7 @@ private:
         const Vec3 centre = mesh_.position(state_, self, u);
         const double low = of_i ? std::min(zone_.a_j, zone_.b_j) : zone_.a_i, high = of_i ? std::max(zone_.a_j, zone_.b_j) : zone_.b_i;
         double v = 0.5 * (low + high);
-        const double other_end = of_i ? end_j_ : end_i_;
+        const double other_low = of_i ? low_j_ : low_i_, other_end = of_i ? end_j_ : end_i_;
         double best = (mesh_.position(state_, other, v) - centre).squaredNorm();
         for (int k = 0; k <= 8; ++k) {  // a start close enough for the tangent planes to converge
             const double w = low + (high - low) * k / 8.0;
@@ -127,7 +128,7 @@ private:
         for (int iteration = 0; iteration < 12; ++iteration) {
             const Vec3 d = mesh_.derivative(state_, other, v);
             const double step = std::clamp((centre - mesh_.position(state_, other, v)).dot(d) / d.squaredNorm(), -1.0, 1.0);
-            v = std::clamp(v + step, 0.0, other_end);
+            v = std::clamp(v + step, other_low, other_end);
             if (std::abs(step) < 1e-11) break;
         }
         const Vec3 d = mesh_.derivative(state_, other, v);
@@ -141,7 +142,7 @@ private:
     // the other fibre ends before.
     bool add_last_section(bool of_i, double u, double v) {
         const Index self = of_i ? i_ : j_, other = of_i ? j_ : i_;
-        const double other_end = of_i ? end_j_ : end_i_;
+        const double other_low = of_i ? low_j_ : low_i_, other_end = of_i ? end_j_ : end_i_;
         const Vec3 origin = mesh_.position(state_, self, u);
         const Vec3 t = contact_tangent(mesh_, state_, self, u).normalized(), t_other = contact_tangent(mesh_, state_, other, v).normalized();
         const Vec3 tangent = mean_tangent(t, t_other);
@@ -150,7 +151,7 @@ private:
         for (std::size_t k = before_; k < pairs_.size(); ++k)
             if (std::abs((of_i ? pairs_[k].u_i : pairs_[k].u_j) - u) < near) return true;
         v = plane_section(mesh_, state_, other, v, origin, tangent);
-        if ((v <= 0.0 || v >= other_end) && std::abs((mesh_.position(state_, other, v) - origin).dot(tangent)) > 0.05 * r_) return false;
+        if ((v <= other_low || v >= other_end) && std::abs((mesh_.position(state_, other, v) - origin).dot(tangent)) > 0.05 * r_) return false;
         pairs_.push_back({of_i ? u : v, of_i ? v : u, false, false, false, 0.0});
         return true;
     }
@@ -165,8 +166,8 @@ private:
         u_j = plane_section(mesh_, state_, j_, u_j, middle, tangent);
         const double off_i = std::abs((mesh_.position(state_, i_, u_i) - middle).dot(tangent));
         const double off_j = std::abs((mesh_.position(state_, j_, u_j) - middle).dot(tangent));
-        const bool left_i = off_i > 0.05 * r_ && (u_i <= 0.0 || u_i >= end_i_);
-        const bool left_j = off_j > 0.05 * r_ && (u_j <= 0.0 || u_j >= end_j_);
+        const bool left_i = off_i > 0.05 * r_ && (u_i <= low_i_ || u_i >= end_i_);
+        const bool left_j = off_j > 0.05 * r_ && (u_j <= low_j_ || u_j >= end_j_);
         if (left_i || left_j) {
             const bool of_i = left_i;
             const double u = of_i ? u_i : u_j;
@@ -217,10 +218,10 @@ private:
         turns_.clear();
         for (const bool of_i : {true, false}) {
             const double from_u = of_i ? low.u_i : low.u_j, to_u = of_i ? high.u_i : high.u_j;
-            const double least = std::max(std::min(from_u, to_u), 0.5);
+            const double least = std::max(std::min(from_u, to_u), (of_i ? low_i_ : low_j_) + 0.5);
             double node = std::min(std::floor(std::max(from_u, to_u) - 1e-6), (of_i ? end_i_ : end_j_) - 1.0);
             for (; node > least; node -= 1.0) {
-                const Index fibre = of_i ? i_ : j_, next = static_cast<Index>(node);
+                const Index fibre = of_i ? i_ : j_, next = static_cast<Index>(mesh_.wrapped(fibre, node));
                 const double jump = (of_i ? -1.0 : 1.0) * kink(mesh_, state_, fibre, next).dot(across) - extent_kink(mesh_, state_, fibre, next, across);
                 turns_.push_back({(node - from_u) / (to_u - from_u), std::max(0.0, jump) / (of_i ? h_i_ : h_j_)});
             }
@@ -235,12 +236,32 @@ private:
     std::size_t before_;         // pairs of other zones
     Index i_, j_;
     double h_i_, h_j_;           // lengths of an element
-    double end_i_, end_j_;       // abscissae of the last ends
+    double low_i_, end_i_, low_j_, end_j_;  // abscissae of the ends; infinite of closed fibres
     double r_, h_;               // means of the two fibres
     double step_, from_, to_;    // of the mean abscissa
     std::array<bool, 4> met_{};  // first and last ends of i and of j that have their cap already
     std::vector<Turn> turns_;    // between the stations that are looked at
 };
+
+/// Puts stations on closed fibres into the form that is remembered: abscissae in [0, elements), on one fibre the lesser first; a zone that goes
+/// all around meets itself, and has its first stations once.
+/// @param first  pair of the zone
+template <class B>
+void wrap_stations(const beam::Mesh<B>& mesh, Index i, Index j, double points_per_element, std::size_t first, std::vector<StationPair>& pairs) {
+    if (!mesh.fibre(i).closed && !mesh.fibre(j).closed) return;
+    for (std::size_t k = first; k < pairs.size(); ++k) {
+        StationPair& pair = pairs[k];
+        pair.u_i = mesh.wrapped(i, pair.u_i), pair.u_j = mesh.wrapped(j, pair.u_j);
+        if (i != j || pair.u_i <= pair.u_j) continue;
+        std::swap(pair.u_i, pair.u_j), std::swap(pair.end_i, pair.end_j);
+    }
+    const auto begin = pairs.begin() + static_cast<std::ptrdiff_t>(first);
+    std::sort(begin, pairs.end(), [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
+    const double same = 0.02 / points_per_element;  // a sixth of the least spacing, which is halved three times [elements]
+    const auto one = [&](const StationPair& a, const StationPair& b) { return mesh.apart(i, a.u_i, b.u_i) < same && mesh.apart(j, a.u_j, b.u_j) < same; };
+    pairs.erase(std::unique(begin, pairs.end(), one), pairs.end());
+    if (pairs.size() > first + 1 && one(pairs[first], pairs.back())) pairs.pop_back();
+}
 
 }  // namespace detail
 
@@ -258,11 +279,13 @@ private:
 template <class B, class Earlier>
 void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone, bool crossing,
                    const ContactSpacing& spacing, std::vector<StationPair>& pairs, const Earlier& earlier) {
+    const std::size_t first = pairs.size();
     detail::ZoneStations<B> stations{mesh, state, zone, spacing, pairs};
     if (crossing)
         stations.place_crossing();
     else
         stations.place_along(earlier);
+    detail::wrap_stations(mesh, zone.fibre_i, zone.fibre_j, spacing.points_per_element, first, pairs);
 }
 
 /// Stations of a zone that had none before.

@@ -70,7 +70,7 @@ public:
             const double end = static_cast<double>(mesh_->fibre(f).elements);
             const auto stations = static_cast<Index>(std::ceil(end / step_ - 1e-9));
             for (Index t = 0; t < core::count(tools_); ++t)
-                for (Index s = 0; s <= stations; ++s) {
+                for (Index s = 0; s < stations + (mesh_->fibre(f).closed ? 0 : 1); ++s) {
                     const double u = std::min(end, static_cast<double>(s) * step_);
                     const Vec3 place = used_pose_[core::at(t)].material(mesh_->position(state, f, u));
                     const double radius = mesh_->fibre(f).section.radius();

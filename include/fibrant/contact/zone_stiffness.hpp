@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <vector>
 
 namespace fibrant::contact {
@@ -78,8 +79,25 @@ inline double section_stiffness(const scene::ElasticMaterial& material, double l
     return 0.5 * std::numbers::pi * material.young_modulus / (1.0 - nu * nu) * length;
 }
 
+/// The lesser of what two zones of the same fibres have in common on either one, around closed fibres; on one fibre with either part first.
+inline double common_around(const proximity::ProximityZone& a, const proximity::ProximityZone& b, std::span<const double> periods) noexcept {
+    const auto common = [](double a_1, double a_2, double b_1, double b_2, double period) {
+        const auto overlap = [&](double by) { return std::min(std::max(a_1, a_2) + by, std::max(b_1, b_2)) - std::max(std::min(a_1, a_2) + by, std::min(b_1, b_2)); };
+        double most = overlap(0.0);
+        for (const double turns : {-2.0, -1.0, 1.0, 2.0})
+            if (period > 0.0) most = std::max(most, overlap(turns * period));
+        return most;
+    };
+    const double period_i = periods[core::at(a.fibre_i)], period_j = periods[core::at(a.fibre_j)];
+    const double straight = std::min(common(a.a_i, a.b_i, b.a_i, b.b_i, period_i), common(a.a_j, a.b_j, b.a_j, b.b_j, period_j));
+    if (a.fibre_i != a.fibre_j || period_i == 0.0) return straight;
+    return std::max(straight, std::min(common(a.a_i, a.b_i, b.a_j, b.b_j, period_i), common(a.a_j, a.b_j, b.a_i, b.b_i, period_j)));
+}
+
 /// Zone of an earlier list (sorted by fibres) that overlaps `span` most, or null. Intervals are widened by `slack`.
-inline const Zone* predecessor(const std::vector<Zone>& zones, const proximity::ProximityZone& span, double slack = 1.0) {
+/// @param periods  of closed fibres, around which intervals may lie: as beam::Mesh::periods
+inline const Zone* predecessor(const std::vector<Zone>& zones, const proximity::ProximityZone& span, double slack = 1.0,
+                               std::span<const double> periods = {}) {
     const auto before = [](const Zone& zone, const proximity::ProximityZone& key) {
         return zone.span.fibre_i != key.fibre_i ? zone.span.fibre_i < key.fibre_i : zone.span.fibre_j < key.fibre_j;
     };
@@ -87,6 +105,11 @@ inline const Zone* predecessor(const std::vector<Zone>& zones, const proximity::
     double most = -slack;
     for (auto it = std::lower_bound(zones.begin(), zones.end(), span, before);
          it != zones.end() && it->span.fibre_i == span.fibre_i && it->span.fibre_j == span.fibre_j; ++it) {
+        if (!periods.empty()) {
+            const double common = common_around(it->span, span, periods);
+            if (common > most) most = common, best = &*it;
+            continue;
+        }
         const double common_i = std::min(it->span.b_i, span.b_i) - std::max(it->span.a_i, span.a_i);
         const double common_j = std::min(std::max(it->span.a_j, it->span.b_j), std::max(span.a_j, span.b_j)) -
                                 std::max(std::min(it->span.a_j, it->span.b_j), std::min(span.a_j, span.b_j));

@@ -24,6 +24,7 @@ struct Centreline {
     Index family = -1;                   ///< fibres of the same family >= 0 never pair
     /// Segments of the fibre itself pair only if the arc between their closest ends exceeds this [length].
     double self_skip = std::numeric_limits<double>::infinity();
+    bool closed = false;  ///< its last vertex is its first one: arcs and zones go on around it
 };
 
 /// Two close segments i < j, numbered from 0 over the fibres in order (the last vertex of a fibre starts none).
@@ -33,7 +34,8 @@ struct SegmentPair {
 };
 
 /// Part of two fibres along which they are close: an interval of each, in vertex units of its polyline
-/// (2.25 is a quarter of the way from vertex 2 to vertex 3).
+/// (2.25 is a quarter of the way from vertex 2 to vertex 3). Around a closed fibre it may reach beyond the last vertex, or begin before
+/// the first; a zone of a closed fibre with itself has either part first.
 struct ProximityZone {
     Index fibre_i = -1, fibre_j = -1;     ///< fibre_i <= fibre_j
     double a_i = 0, b_i = 0;              ///< a_i <= b_i

@@ -68,6 +68,11 @@ public:
     /// Whether segments i < j of one group may pair: only on one fibre, far enough along it.
     bool may_pair_in_group(std::int32_t i, std::int32_t j) const noexcept {
         if (!selfish_ || fibre(i) != fibre(j) || j - i < 2) return false;
+        if (const Centreline& line = centreline(fibre(i)); line.closed) {  // the other way around
+            const std::size_t end = core::at(first(fibre(i) + 1)) - 1;
+            const double whole = arc_[end] + length_[end], between = arc_[core::at(j)] + length_[core::at(j)] - arc_[core::at(i)];
+            if (!(whole - between > line.self_skip)) return false;
+        }
         return arc_[core::at(j)] - arc_[core::at(i)] - length_[core::at(i)] > centreline(fibre(i)).self_skip;
     }
 

@@ -3,6 +3,7 @@
 /// @file Joins close pairs of segments into proximity zones; the same function for every search.
 
 #include <fibrant/core/parallel.hpp>
+#include <fibrant/proximity/closed_zones.hpp>
 #include <fibrant/proximity/exact_filter.hpp>
 
 #include <algorithm>
@@ -23,31 +24,6 @@ std::vector<SegmentPair> counted_by(const std::vector<SegmentPair>& pairs, std::
     return sorted;
 }
 
-/// Moves `s` on towards `outside` while start + s chord stays closer than `threshold` to the other segment. The squared
-/// distance to a segment is convex and smooth, so Newton's method from outside comes down to the end without passing it.
-inline double extended(double s, double outside, const SegmentRecord& of, const SegmentRecord& other, double threshold) {
-    const double per = 1.0 / std::max(dot(other.chord, other.chord), 1.0e-300);
-    double slope = 0.0;
-    const auto excess = [&](double at) {
-        const Plain3 x{of.start.x + at * of.chord.x - other.start.x, of.start.y + at * of.chord.y - other.start.y,
-                       of.start.z + at * of.chord.z - other.start.z};
-        const double t = unit_clamped(dot(x, other.chord) * per);
-        const Plain3 w{x.x - t * other.chord.x, x.y - t * other.chord.y, x.z - t * other.chord.z};
-        slope = 2.0 * dot(w, of.chord);
-        return dot(w, w) - threshold * threshold;
-    };
-    if (s == outside || excess(s) >= 0.0) return s;  // another pair of the zone reaches as far
-    double end = outside;
-    for (int step = 0; step < 30; ++step) {
-        const double above = excess(end);
-        if (above <= 0.0) break;
-        const double before = end;
-        end = outside > s ? std::max(s, end - above / slope) : std::min(s, end - above / slope);
-        if (std::abs(end - before) < 1.0 / 4096.0) break;
-    }
-    return end;
-}
-
 /// Makes the zones of two fibres at a time; keeps its buffers from one to the next.
 class ZoneMaker {
 public:
@@ -57,6 +33,7 @@ public:
     /// @param pairs  all of these two, sorted by segment
     void append(std::span<const SegmentPair> pairs, std::vector<ProximityZone>& zones) {
         pairs_ = pairs;
+        if (table_.centreline(table_.fibre(pairs.front().i)).closed || table_.centreline(table_.fibre(pairs.front().j)).closed) return closed_.append(pairs, zones);
         const std::size_t n = pairs_.size();
         closest_.resize(n);
         sense_.resize(n);
@@ -183,6 +160,7 @@ private:
     }
 
     const SegmentTable& table_;
+    ClosedZoneMaker closed_{table_};
     std::span<const SegmentPair> pairs_;
     std::vector<SegmentDistance> closest_;
     std::vector<double> sense_;  // cosine of the two chords

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+// Closed fibres in contact: with each other, and with themselves.
+#include "simulation/closed_rings.hpp"
+
+#include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/solver/two_level_pcg.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cstdio>
+
+using namespace fibrant;
+
+namespace closed_contact_test {
+
+using test::pi;
+
+struct Rubbing {
+    using Beam = beam::DirectorBeam<3>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::RegularisedPenalty;
+    using Friction = law::RegularisedCoulomb;
+    using Solver = solver::TwoLevelPcg;
+};
+
+simulation::ModelParameters<Rubbing> parameters(double radius, double friction) {
+    simulation::ModelParameters<Rubbing> p;
+    p.normal.regularisation_depth = 1e-3 * radius;
+    p.contact.stiffness.allowed_penetration = 1e-2 * radius;
+    p.friction = {.friction_coefficient = friction, .reversible_displacement = 1e-2 * radius};
+    return p;
+}
+
+/// The node of a fibre of `nodes` at a share of the way around, where the first lies at `shift`.
+scene::Station at(Index fibre, Index nodes, double share, double shift) {
+    const double n = static_cast<double>(nodes), place = std::round((share - shift) * n) / n;
+    return {fibre, place - std::floor(place)};
+}
+
+/// Force [EI / R^2] of two linked rings that are pulled until each is 2.0702675 R long, as under F R^2 / EI = 0.5 in the plane elastica.
+double pull(double shift_a, double shift_b, double friction) {
+    const Index elements = 40, nodes = 2 * elements;
+    const double radius = 0.02, long_diameter = 2.0702675, between = 2.0 - 2.0 * radius;
+    scene::Assembly assembly;
+    for (const bool second : {false, true})
+        assembly.add({.curve = [=](double t) {
+                          const double a = 2.0 * pi * (t + (second ? shift_b : shift_a));
+                          return second ? Vec3(between + std::cos(a), 0, std::sin(a)) : Vec3(std::cos(a), std::sin(a), 0);
+                      },
+                      .section = scene::circular(radius),
+                      .material = {.young_modulus = 4.0 / (pi * std::pow(radius, 4)), .poisson_ratio = 0.3},
+                      .elements = elements,
+                      .closed = true});
+    const Mat3 across = Vec3(0, 1, 1).asDiagonal();
+    assembly.hold_position(at(0, nodes, 0.5, shift_a));
+    assembly.hold_position(at(0, nodes, 0.0, shift_a), across);
+    assembly.hold_position(at(0, nodes, 0.25, shift_a), Vec3(0, 0, 1).asDiagonal());
+    assembly.prescribe(at(1, nodes, 0.0, shift_b), Vec3(2.0 * long_diameter - 4.0, 0, 0));
+    assembly.hold_position(at(1, nodes, 0.5, shift_b), across);
+    assembly.hold_position(at(1, nodes, 0.25, shift_b), Vec3(0, 1, 0).asDiagonal());
+    simulation::ModelParameters<Rubbing> p = parameters(radius, friction);
+    p.iteration.linear_tolerance = 1e-8, p.iteration.step_tolerance = 1e-6, p.iteration.residual_tolerance = 1e-6;
+    p.iteration.contact_tolerance = 1e-5, p.iteration.normal_step_tolerance = 1e-5, p.iteration.normal_tolerance = 1e-6;
+    simulation::Simulator<Rubbing> simulator(assembly, p);
+    const simulation::Report report = simulator.run({.increments = 5});
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    CHECK(report.contact.greatest_penetration < 0.01 * radius);
+    return simulator.reaction(at(1, nodes, 0.0, shift_b)).x();
+}
+
+TEST_CASE("two linked rings pull as the elastica says, wherever their first nodes lie, at the contact too") {
+    const double away = pull(0.3, 0.1, 0.0);
+    std::printf("linked rings: F = %.6f EI / R^2\n", away);
+    CHECK(std::abs(away / 0.5 - 1.0) < 5e-3);  // r = R / 50: shear and stretch of 0.2 %, the penetration of 0.3 % of the pull
+    for (const double friction : {0.0, 0.2})
+        for (const double shift : {0.5, 0.2}) {
+            const double force = pull(0.0, shift, friction);
+            std::printf("first nodes at 0 and %.1f, friction %.1f: off by %.1e\n", shift, friction, force / away - 1.0);
+            CHECK(std::abs(force / away - 1.0) < 1e-5);  // passes settle to 1e-5 r
+        }
+}
+
+TEST_CASE("a trefoil of a straight fibre relaxes to a circle that it runs through twice, around a fibre's own seam") {
+    double energy = 0.0;
+    for (const Index first : {0, 13}) {
+        const Index elements = 48;
+        const double radius = 0.1, shift = static_cast<double>(first) / static_cast<double>(elements);
+        scene::Assembly assembly;
+        assembly.add({.start = [=](double t) {
+                          const double a = 2.0 * pi * (t + shift), rho = 1.0 + 0.4 * std::cos(3.0 * a);
+                          return Vec3(rho * std::cos(2.0 * a), rho * std::sin(2.0 * a), 0.4 * std::sin(3.0 * a));
+                      },
+                      .section = scene::circular(radius),
+                      .material = {.young_modulus = 4.0 / (pi * std::pow(radius, 4)), .poisson_ratio = 0.3},
+                      .elements = elements,
+                      .closed = true});
+        assembly.hold_position(at(0, 2 * elements, 0.0, shift));
+        for (const double third : {1.0 / 3.0, 2.0 / 3.0}) assembly.hold_position(at(0, 2 * elements, third, shift), Vec3(0, 0, 1).asDiagonal());
+        simulation::ModelParameters<Rubbing> p = parameters(radius, 0.0);
+        p.contact.detection.self_contact = true;
+        simulation::Stage<Rubbing> relax;
+        relax.name = "relax", relax.increments = 1, relax.most_increments = 100;
+        relax.damping = 2.0, relax.damping_decay = 0.7, relax.damping_calm = 0.3 * radius, relax.largest_displacement = 2.0 * radius;
+        relax.until = simulation::until_settled(1e-3 * radius, 0.02 * radius);
+        simulation::Simulator<Rubbing> simulator(assembly, p);
+        const simulation::Report report = simulator.run({.stages = {relax}});
+        CAPTURE(report.reason);
+        REQUIRE(report.converged);
+        const double length = simulator.mesh().fibre(0).length();
+        // Two turns of a helix on a torus: curvature a little below that of the circle.
+        const double circle = 0.5 * std::pow(4.0 * pi, 2) / length;
+        std::printf("trefoil: elastic energy %.6f, of the circle twice %.6f, %td contacts, deepest %.4f r\n", report.energy.elastic, circle,
+                    report.contact.active, report.contact.greatest_penetration / radius);
+        CHECK(report.energy.elastic > circle);
+        CHECK(report.energy.elastic < 1.1 * circle);
+        CHECK(report.contact.active >= 48);  // it lies beside itself all along: once half-way around its length, two points an element
+        CHECK(report.contact.greatest_penetration < 0.01 * radius);
+        if (first > 0) CHECK(std::abs(report.energy.elastic / energy - 1.0) < 1e-5);
+        energy = report.energy.elastic;
+        for (const auto& element : simulator.contacts().elements()) {
+            CHECK(element.u_i <= element.u_j);
+            CHECK(element.u_j < static_cast<double>(elements));
+        }
+    }
+}
+
+}  // namespace closed_contact_test
