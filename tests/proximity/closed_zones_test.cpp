@@ -51,8 +51,9 @@ TEST_CASE("linked rings have one zone at their crossing, around either seam") {
         const ProximityZone& zone = zones.front();
         CHECK(std::abs(extent(zone) - extent(away.front())) < 1e-2);  // ends are found to 1/1024 of a segment
         CHECK(std::abs(zone.distance - away.front().distance) < 1e-14);
-        CHECK(std::abs(std::remainder(zone.closest_i + first_a - away.front().closest_i - 17, 60.0)) < 1e-9);
-        CHECK(std::abs(std::remainder(zone.closest_j + first_b - away.front().closest_j - 11, 60.0)) < 1e-9);
+        // Where two vertices face each other chords are as close all along one of them.
+        CHECK(std::abs(std::remainder(zone.closest_i + first_a - away.front().closest_i - 17, 60.0)) < 0.5);
+        CHECK(std::abs(std::remainder(zone.closest_j + first_b - away.front().closest_j - 11, 60.0)) < 0.5);
         CHECK(zone.a_i <= zone.closest_i);
         CHECK(zone.closest_i <= zone.b_i);
         CHECK(zone.a_i >= 0.0);

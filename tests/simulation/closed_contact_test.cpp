@@ -3,11 +3,14 @@
 #include "simulation/closed_rings.hpp"
 
 #include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/simulation/refined_state.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
 
 #include <doctest/doctest.h>
 
 #include <cstdio>
+#include <filesystem>
+#include <string>
 
 using namespace fibrant;
 
@@ -37,48 +40,104 @@ scene::Station at(Index fibre, Index nodes, double share, double shift) {
     return {fibre, place - std::floor(place)};
 }
 
-/// Force [EI / R^2] of two linked rings that are pulled until each is 2.0702675 R long, as under F R^2 / EI = 0.5 in the plane elastica.
-double pull(double shift_a, double shift_b, double friction) {
-    const Index elements = 40, nodes = 2 * elements;
-    const double radius = 0.02, long_diameter = 2.0702675, between = 2.0 - 2.0 * radius;
-    scene::Assembly assembly;
-    for (const bool second : {false, true})
-        assembly.add({.curve = [=](double t) {
-                          const double a = 2.0 * pi * (t + (second ? shift_b : shift_a));
-                          return second ? Vec3(between + std::cos(a), 0, std::sin(a)) : Vec3(std::cos(a), std::sin(a), 0);
-                      },
-                      .section = scene::circular(radius),
-                      .material = {.young_modulus = 4.0 / (pi * std::pow(radius, 4)), .poisson_ratio = 0.3},
-                      .elements = elements,
-                      .closed = true});
-    const Mat3 across = Vec3(0, 1, 1).asDiagonal();
-    assembly.hold_position(at(0, nodes, 0.5, shift_a));
-    assembly.hold_position(at(0, nodes, 0.0, shift_a), across);
-    assembly.hold_position(at(0, nodes, 0.25, shift_a), Vec3(0, 0, 1).asDiagonal());
-    assembly.prescribe(at(1, nodes, 0.0, shift_b), Vec3(2.0 * long_diameter - 4.0, 0, 0));
-    assembly.hold_position(at(1, nodes, 0.5, shift_b), across);
-    assembly.hold_position(at(1, nodes, 0.25, shift_b), Vec3(0, 1, 0).asDiagonal());
-    simulation::ModelParameters<Rubbing> p = parameters(radius, friction);
-    p.iteration.linear_tolerance = 1e-8, p.iteration.step_tolerance = 1e-6, p.iteration.residual_tolerance = 1e-6;
-    p.iteration.contact_tolerance = 1e-5, p.iteration.normal_step_tolerance = 1e-5, p.iteration.normal_tolerance = 1e-6;
-    simulation::Simulator<Rubbing> simulator(assembly, p);
-    const simulation::Report report = simulator.run({.increments = 5});
-    CAPTURE(report.reason);
-    REQUIRE(report.converged);
-    CHECK(report.contact.greatest_penetration < 0.01 * radius);
-    return simulator.reaction(at(1, nodes, 0.0, shift_b)).x();
-}
+/// Two rings of unit radius and bending stiffness, one through the other at a right angle, pulled until each is 2.0702675 R long, as under
+/// F R^2 / EI = 0.5 in the plane elastica.
+struct LinkedRings {
+    double shift_a = 0.0, shift_b = 0.5;  // where the first nodes lie; they meet at 0 and 0.5
+    double friction = 0.0;
+    Index elements = 40;
+    static constexpr double radius = 0.02;
+
+    scene::Assembly assembly() const {
+        const Index nodes = 2 * elements;
+        scene::Assembly assembly;
+        for (const bool second : {false, true})
+            assembly.add({.curve = [second, shift = second ? shift_b : shift_a](double t) {
+                              const double a = 2.0 * pi * (t + shift);
+                              return second ? Vec3(2.0 - 2.0 * radius + std::cos(a), 0, std::sin(a)) : Vec3(std::cos(a), std::sin(a), 0);
+                          },
+                          .section = scene::circular(radius),
+                          .material = {.young_modulus = 4.0 / (pi * std::pow(radius, 4)), .poisson_ratio = 0.3},
+                          .elements = elements,
+                          .closed = true});
+        const Mat3 across = Vec3(0, 1, 1).asDiagonal();
+        assembly.hold_position(at(0, nodes, 0.5, shift_a));
+        assembly.hold_position(at(0, nodes, 0.0, shift_a), across);
+        assembly.hold_position(at(0, nodes, 0.25, shift_a), Vec3(0, 0, 1).asDiagonal());
+        assembly.prescribe(driven(), Vec3(2.0 * 2.0702675 - 4.0, 0, 0));
+        assembly.hold_position(at(1, nodes, 0.5, shift_b), across);
+        assembly.hold_position(at(1, nodes, 0.25, shift_b), Vec3(0, 1, 0).asDiagonal());
+        return assembly;
+    }
+    scene::Station driven() const { return at(1, 2 * elements, 0.0, shift_b); }
+    simulation::ModelParameters<Rubbing> tight() const {
+        simulation::ModelParameters<Rubbing> p = parameters(radius, friction);
+        p.iteration.linear_tolerance = 1e-8, p.iteration.step_tolerance = 1e-6, p.iteration.residual_tolerance = 1e-6;
+        p.iteration.contact_tolerance = 1e-5, p.iteration.normal_step_tolerance = 1e-5, p.iteration.normal_tolerance = 1e-6;
+        return p;
+    }
+    /// Force of the pull [EI / R^2].
+    double pull() const {
+        simulation::Simulator<Rubbing> simulator(assembly(), tight());
+        const simulation::Report report = simulator.run({.increments = 5});
+        CAPTURE(report.reason);
+        REQUIRE(report.converged);
+        CHECK(report.contact.greatest_penetration < 0.01 * radius);
+        return simulator.reaction(driven()).x();
+    }
+};
 
 TEST_CASE("two linked rings pull as the elastica says, wherever their first nodes lie, at the contact too") {
-    const double away = pull(0.3, 0.1, 0.0);
+    const double away = LinkedRings{0.3, 0.1}.pull();
     std::printf("linked rings: F = %.6f EI / R^2\n", away);
     CHECK(std::abs(away / 0.5 - 1.0) < 5e-3);  // r = R / 50: shear and stretch of 0.2 %, the penetration of 0.3 % of the pull
     for (const double friction : {0.0, 0.2})
         for (const double shift : {0.5, 0.2}) {
-            const double force = pull(0.0, shift, friction);
+            const double force = LinkedRings{0.0, shift, friction}.pull();
             std::printf("first nodes at 0 and %.1f, friction %.1f: off by %.1e\n", shift, friction, force / away - 1.0);
             CHECK(std::abs(force / away - 1.0) < 1e-5);  // passes settle to 1e-5 r
         }
+}
+
+TEST_CASE("an interrupted run of closed fibres goes on to the same bits, and on a finer mesh with the force that it had") {
+    const std::string file = (std::filesystem::temp_directory_path() / "fibrant_closed_contact_test.bin").string();
+    std::filesystem::remove(file);
+    const LinkedRings rings{0.0, 0.5, 0.2};
+    simulation::Loading<Rubbing> loading{.increments = 5};
+    simulation::Simulator<Rubbing> whole(rings.assembly(), rings.tight());
+    REQUIRE(whole.run(loading).converged);
+    struct Interruption {};
+    struct Interrupter {
+        void reported(const simulation::IncrementReport& increment) const {
+            if (increment.number == 3) throw Interruption{};
+        }
+    } interrupter;
+    loading.checkpoint = file;
+    simulation::Simulator<Rubbing> first(rings.assembly(), rings.tight());
+    CHECK_THROWS_AS(first.run(loading, interrupter), Interruption);
+    loading.resume = true;
+    simulation::Simulator<Rubbing> second(rings.assembly(), rings.tight());
+    REQUIRE(second.run(loading).converged);
+    CHECK(second.state() == whole.state());
+    CHECK(second.reaction(rings.driven()) == whole.reaction(rings.driven()));
+
+    LinkedRings finer = rings;
+    finer.elements = 80;
+    scene::Assembly assembly = finer.assembly();
+    const beam::Mesh<Rubbing::Beam> fine(assembly, whole.beam());
+    const auto stored = simulation::read_state<Rubbing>(file, whole.mesh());
+    simulation::write_state<Rubbing>(file, fine, simulation::refined<Rubbing>(stored, whole.mesh(), fine, 2));
+    simulation::Simulator<Rubbing> simulator(assembly, finer.tight());
+    simulator.start_from(file);
+    simulation::Stage<Rubbing> rest;
+    rest.name = "rest", rest.increments = 1;
+    rest.ramps = {{"motion", 1.0, false}};
+    const simulation::Report report = simulator.run({.stages = {rest}});
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    std::printf("on twice the elements: F off by %.1e\n", simulator.reaction(finer.driven()).x() / whole.reaction(rings.driven()).x() - 1.0);
+    CHECK(std::abs(simulator.reaction(finer.driven()).x() / whole.reaction(rings.driven()).x() - 1.0) < 5e-3);
+    std::filesystem::remove(file);
 }
 
 TEST_CASE("a trefoil of a straight fibre relaxes to a circle that it runs through twice, around a fibre's own seam") {

@@ -99,6 +99,7 @@ LeastGap least_gap(const Snapshot& snapshot, Search search) {
             owner.push_back(static_cast<Index>(k));
         }
         lines[k] = {fibre.position, radius, inflation[k], -1};
+        lines[k].closed = fibre.closed;
         first[k + 1] = core::count(owner);
         greatest_radius = std::max(greatest_radius, radius);
         for (const Vec3& node : fibre.position)

@@ -24,9 +24,11 @@ public:
         points_.push_back(point);
         return core::count(points_) - 1;
     }
-    /// Points [first, first + count) as a line. Cells are numbered vertices first, then lines, each in order.
-    void add_line(Index first, Index count) {
+    /// Points [first, first + count) as a line, which comes back to the first if it is closed. Cells are numbered vertices first, then lines, each in
+    /// order.
+    void add_line(Index first, Index count, bool closed = false) {
         for (Index k = 0; k < count; ++k) line_points_.push_back(first + k);
+        if (closed) line_points_.push_back(first);
         line_ends_.push_back(core::count(line_points_));
     }
     void add_vertex(Index point) { vertex_points_.push_back(point); }

@@ -20,6 +20,7 @@ struct FibreSnapshot {
     std::vector<double> curvature;   ///< of the centreline, |x' x x''| / |x'|^3 [1 / length]
     scene::CrossSection section;     ///< at rest
     Index group = -1;                ///< innermost group of the scene
+    bool closed = false;             ///< its last node is its first one
 };
 
 /// One contact element; fibre i < j, the normal points from i to j.

@@ -83,14 +83,20 @@ inline std::vector<SliceShape> slice_shapes(const Snapshot& snapshot, Index axis
             if (!strip.empty()) shapes.push_back({strip.outline(), static_cast<Index>(k), true});
             strip = {};
         };
-        for (std::size_t node = 0; node + 1 < fibre.position.size(); ++node) {
+        const std::size_t chords = fibre.position.size() - 1;
+        // Around a closed fibre from where it passes through: no strip is cut where it begins, unless all of it lies in the plane.
+        std::size_t start = 0;
+        const auto passes = [&](std::size_t node) { return std::abs((fibre.position[node + 1] - fibre.position[node]).normalized()[axis]) >= 0.5; };
+        while (fibre.closed && start < chords && !passes(start)) ++start;
+        for (std::size_t chord_number = 0; chord_number < chords; ++chord_number) {
+            const std::size_t node = (start + chord_number) % chords;
             const Vec3 &a = fibre.position[node], &b = fibre.position[node + 1];
             const Vec3 chord = b - a, tangent = chord.normalized();
             const double lean = tangent[axis], from = a[axis] - position, to = b[axis] - position;
             if (std::abs(lean) < 0.5) {
                 const Eigen::Vector2d direction = flat(tangent).normalized();
                 constexpr int parts = 8;
-                for (int part = node == 0 ? 0 : 1; part <= parts; ++part) {
+                for (int part = chord_number == 0 ? 0 : 1; part <= parts; ++part) {
                     const double s = static_cast<double>(part) / parts, beyond = from + s * (to - from);
                     // Middle of the chord that the plane cuts from the section there.
                     Vec3 across = -lean * tangent;

@@ -177,13 +177,14 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
         // elsewhere they are hidden and left out. At an end that faces the eye, the cut face before the last piece.
         const std::size_t last_piece = pieces.size() - 1;
         for (Index joint = 0; joint <= count; ++joint) {
-            const detail::ViewPiece before = pieces[std::max(first_piece + core::at(joint), first_piece + 1) - 1];
-            const detail::ViewPiece after = pieces[std::min(first_piece + core::at(joint), last_piece)];
+            const bool end = (joint == 0 || joint == count) && !fibre.closed;
+            const detail::ViewPiece before = fibre.closed && joint == 0 ? pieces[last_piece] : pieces[std::max(first_piece + core::at(joint), first_piece + 1) - 1];
+            const detail::ViewPiece after = fibre.closed && joint == count ? pieces[first_piece] : pieces[std::min(first_piece + core::at(joint), last_piece)];
             const Vec3 centre = at(joint, fibre.position);
             const Vec3 axis_1 = fibre.section.semi_axis_1 * at(joint, fibre.director_1);
             const Vec3 axis_2 = fibre.section.semi_axis_2 * at(joint, fibre.director_2);
             const Vec3 outwards = joint == 0 ? Vec3(-after.tangent) : before.tangent;
-            const bool face = (joint == 0 || joint == count) && outwards.dot(eye) > 0.0;
+            const bool face = end && outwards.dot(eye) > 0.0;
             const double radius = fibre.section.radius();
             detail::ViewPiece section{on_page(centre),
                                       on_page(centre),

@@ -11,7 +11,7 @@
 
 namespace fibrant::observe {
 
-/// A polyline a fibre; at the nodes radius, director_1, director_2, displacement, curvature; of the lines fibre, group.
+/// A polyline a fibre, that comes back to its first point where the fibre is closed; at the nodes radius, director_1, director_2, displacement, curvature; of the lines fibre, group.
 inline PolyData fibre_data(const Snapshot& snapshot) {
     PolyData data;
     std::vector<double> radius, curvature, number, group;
@@ -19,16 +19,17 @@ inline PolyData fibre_data(const Snapshot& snapshot) {
     for (std::size_t k = 0; k < snapshot.fibres.size(); ++k) {
         const FibreSnapshot& fibre = snapshot.fibres[k];
         Index first = 0;
-        for (std::size_t node = 0; node < fibre.position.size(); ++node) {
+        const Index nodes = core::count(fibre.position) - (fibre.closed ? 1 : 0);
+        for (std::size_t node = 0; node < core::at(nodes); ++node) {
             const Index point = data.add_point(fibre.position[node]);
             if (node == 0) first = point;
             radius.push_back(fibre.section.radius());
         }
-        data.add_line(first, core::count(fibre.position));
-        director_1.insert(director_1.end(), fibre.director_1.begin(), fibre.director_1.end());
-        director_2.insert(director_2.end(), fibre.director_2.begin(), fibre.director_2.end());
-        displacement.insert(displacement.end(), fibre.displacement.begin(), fibre.displacement.end());
-        curvature.insert(curvature.end(), fibre.curvature.begin(), fibre.curvature.end());
+        data.add_line(first, nodes, fibre.closed);
+        director_1.insert(director_1.end(), fibre.director_1.begin(), fibre.director_1.begin() + nodes);
+        director_2.insert(director_2.end(), fibre.director_2.begin(), fibre.director_2.begin() + nodes);
+        displacement.insert(displacement.end(), fibre.displacement.begin(), fibre.displacement.begin() + nodes);
+        curvature.insert(curvature.end(), fibre.curvature.begin(), fibre.curvature.begin() + nodes);
         number.push_back(static_cast<double>(k));
         group.push_back(static_cast<double>(fibre.group));
     }

@@ -19,7 +19,7 @@ observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const Vector& state)
     core::parallel_for(mesh.fibre_count(), [&](Index f) {
         observe::FibreSnapshot& fibre = shot.fibres[core::at(f)];
         fibre.section = mesh.fibre(f).section;
-        fibre.group = mesh.fibre(f).group;
+        fibre.group = mesh.fibre(f).group, fibre.closed = mesh.fibre(f).closed;
         for (Index a = 0; a < mesh.node_count(f); ++a) {
             const double u = static_cast<double>(a) / static_cast<double>(Beam::nodes - 1);
             const Vec3 position = mesh.position(state, f, u);

@@ -18,7 +18,10 @@ inline constexpr const char* checkpoint_format = "fibrant checkpoint 11";
 template <beam::BeamElement B>
 std::uint64_t outline_identity(const beam::Mesh<B>& mesh) {
     CheckpointWriter scene;
-    for (const beam::MeshFibre& fibre : mesh.fibres()) scene.put(fibre.first_vector), scene.put(fibre.elements), scene.put(fibre.group);
+    for (const beam::MeshFibre& fibre : mesh.fibres()) {
+        scene.put(fibre.first_vector), scene.put(fibre.elements), scene.put(fibre.group);
+        if (fibre.closed) scene.put(fibre.closed);
+    }
     return scene.identity();
 }
 /// Tells the fibres of a scene from others, to the bit.
