@@ -4,6 +4,7 @@
 
 #include <fibrant/beam/beam_element.hpp>
 #include <fibrant/beam/centre_weights.hpp>
+#include <fibrant/beam/closed_frames.hpp>
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/beam/director_points.hpp>
 #include <fibrant/beam/director_strains.hpp>

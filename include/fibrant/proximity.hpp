@@ -9,6 +9,7 @@
 #include <fibrant/proximity/bvh_search.hpp>
 #include <fibrant/proximity/candidate_sink.hpp>
 #include <fibrant/proximity/cell_grid.hpp>
+#include <fibrant/proximity/closed_zones.hpp>
 #include <fibrant/proximity/exact_filter.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/proximity/kd_tree_search.hpp>

@@ -7,6 +7,7 @@
 #include <fibrant/scene/cross_section.hpp>
 #include <fibrant/scene/dof_layout.hpp>
 #include <fibrant/scene/elastic_material.hpp>
+#include <fibrant/scene/image_vectors.hpp>
 #include <fibrant/scene/reference_shape.hpp>
 #include <fibrant/scene/rigid_body.hpp>
 #include <fibrant/scene/solid.hpp>

@@ -58,10 +58,12 @@ TEST_CASE("the polyline of a closed fibre comes back to its first point, which i
 }
 
 TEST_CASE("a closed fibre has no cut faces in a view") {
+    std::size_t open = 0;
     for (const double elevation : {20.0, 60.0, -30.0}) {
         CHECK(occurrences(svg_view(ring(0.1), {.elevation = elevation}), "class=\"f") == 0);
-        CHECK(occurrences(svg_view(ring(0.1, false), {.elevation = elevation}), "class=\"f") > 0);
+        open += occurrences(svg_view(ring(0.1, false), {.elevation = elevation}), "class=\"f");
     }
+    CHECK(open > 0);  // from some sides it hides them itself
 }
 
 TEST_CASE("a slice of a closed fibre is the same wherever its first node lies") {
