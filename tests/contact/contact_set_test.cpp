@@ -401,7 +401,7 @@ TEST_CASE("a rule for a pair of groups changes the friction and the penetration 
     scene::Assembly assembly;
     assembly.add_group("only");
     CHECK_THROWS_WITH(assembly.add(scene::PairRule{0, 1}), "PairRule.group = 1, but it must be a group of this assembly");
-    CHECK_THROWS_WITH(assembly.add(scene::PairRule{0, 0, -0.5}), "PairRule.friction_factor = -0.5, but it must be finite and >= 0");
+    CHECK_THROWS_WITH(assembly.add(scene::PairRule{0, 0, -0.5}), "PairRule.friction_factor = -0.5, but it must be finite and >= 0 (group 0 'only' and group 0 'only')");
 }
 
 /// Two families of four waving fibres that interlace, and an order between them.

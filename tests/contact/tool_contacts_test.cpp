@@ -383,9 +383,9 @@ TEST_CASE("a run with tools that is interrupted goes on to the same bits") {
 
 TEST_CASE("a tool that is not one, and a scene whose model knows no tools, are refused by name") {
     scene::Assembly assembly;
-    CHECK(test::refusal([&] { assembly.add(plane(Vec3::Zero(), Vec3::Zero())); }) == "Tool.axis: length = 0, but it must be finite and > 0");
+    CHECK(test::refusal([&] { assembly.add(plane(Vec3::Zero(), Vec3::Zero())); }) == "Tool.axis: length = 0, but it must be finite and > 0 (tool 0)");
     CHECK(test::refusal([&] { assembly.add(round(scene::ToolShape::sphere, Vec3::Zero(), Vec3::UnitZ(), -1.0)); }) ==
-          "Tool.radius = -1, but it must be finite and > 0");
+          "Tool.radius = -1, but it must be finite and > 0 (tool 0)");
     assembly.add(straight_fibre({0, 0, r}, {0.5, 0, r}, r, 6));
     assembly.add(plane(Vec3::Zero(), Vec3::UnitZ()));
     CHECK(test::refusal([&] { simulation::Simulator<test::Smooth>(assembly, test::tight_parameters<test::Smooth>(r)); }).find("assembly.tools = 1") == 0);

@@ -204,7 +204,7 @@ TEST_CASE("what a node does not have is neither held nor loaded: refused by name
     const auto refused = [](const scene::Assembly& assembly) {
         return test::refusal([&] { simulation::Simulator<LeastModel>(assembly, parameters()); });
     };
-    CHECK(refused(clamped) == "Hold.vector = 1, but it must be a vector of the beam's nodes");
+    CHECK(refused(clamped).starts_with("Hold.vector = 1, but it must be a vector of the beam's nodes (fibre 0, node 0 at ("));
     CHECK(refused(turned) == "load.vector = 1, but it must be a vector of the beam's nodes");
     CHECK(refused(pushed) == "load.vector = 2, but it must be a vector of the beam's nodes");
 }

@@ -61,6 +61,7 @@ public:
     const System& system() const noexcept { return system_; }
     const std::vector<Vec3>& targets() const noexcept { return targets_; }
     const beam::Mesh<B>& mesh() const noexcept { return *mesh_; }
+    const connection::PrescribedMotion<B>& motion() const noexcept { return motion_; }
     const Ties& ties() const noexcept { return ties_; }
     Ties& ties() noexcept { return ties_; }
     const Solid& solid() const noexcept { return solid_; }

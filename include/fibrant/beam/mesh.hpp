@@ -3,7 +3,7 @@
 /// @file Fibres cut into beam elements: numbering of the unknowns, rest configuration, positions along a fibre.
 
 #include <fibrant/beam/beam_element.hpp>
-#include <fibrant/beam/closed_frames.hpp>
+#include <fibrant/beam/followed_shape.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/core/rotation.hpp>
 #include <fibrant/scene/assembly.hpp>
@@ -16,7 +16,9 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace fibrant::beam {
@@ -102,6 +104,7 @@ struct MeshFibre {
     scene::ElasticMaterial material;
     Index group;
     bool closed = false;    ///< its last node is the image of its first one, and abscissae count modulo `elements`
+    std::string name{};  ///< what messages call it beside its number; may be empty
 
     double length() const noexcept { return element_length * static_cast<double>(elements); }
 };
@@ -119,18 +122,13 @@ public:
         std::vector<Vec3> start;
         for (const scene::FibreSpecification& fibre : assembly.fibres()) {
             const Index nodes = fibre.elements * (B::nodes - 1) + 1;
+            const std::string label = scene::label("fibre", core::count(fibres_), fibre.name);
             std::vector<scene::NodeFrame> starts, frames;
-            if (fibre.closed) {
-                closed_frames<B>(fibre, nodes, starts, frames);
-            } else {
-                frames = fibre.curve ? scene::reference_frames(fibre.curve, nodes, fibre.director)
-                                     : scene::straight_frames(fibre.from, fibre.to, nodes, fibre.director);
-                starts = fibre.start ? scene::reference_frames(fibre.start, nodes, fibre.director) : frames;
-            }
+            core::with_place([&] { return label; }, [&] { cut_fibre<B>(fibre, nodes, starts, frames); });
             double length = 0.0;
             for (std::size_t k = 1; k < frames.size(); ++k) length += (frames[k].position - frames[k - 1].position).norm();
             fibres_.push_back({first, fibre.elements, length / static_cast<double>(fibre.elements), fibre.section,
-                               fibre.material, fibre.group, fibre.closed});
+                               fibre.material, fibre.group, fibre.closed, fibre.name});
             layout_.chains.push_back({first, nodes, B::vectors_per_node, B::reach, fibre.group, fibre.closed});
             for (Index v = 0; fibre.closed && v < B::vectors_per_node; ++v) layout_.images.push_back({first + (nodes - 1) * B::vectors_per_node + v, first + v});
             frames_.insert(frames_.end(), starts.begin(), starts.end());
@@ -147,6 +145,9 @@ public:
             }
             first += nodes * B::vectors_per_node;
         }
+        // Contact elements keep the number of an unknown in 32 bits.
+        if (3 * first > std::numeric_limits<std::int32_t>::max())
+            core::refuse("assembly.fibres", std::to_string(3 * first) + " unknowns", "<= " + std::to_string(std::numeric_limits<std::int32_t>::max()));
         rest_state_.resize(3 * first);
         for (Index v = 0; v < first; ++v) rest_state_.segment<3>(3 * v) = layout_.value[core::at(v)];
         start_state_.resize(3 * first);
@@ -158,9 +159,27 @@ public:
         core::parallel_for(fibre_count(), [&](Index f) {
             const MeshFibre& fibre = fibres_[core::at(f)];
             for (Index e = 0; e < fibre.elements; ++e)
-                rest_[core::at(first_element_[core::at(f)] + e)] =
-                    beam.rest(fibre.section, fibre.material, element(rest_state_, f, e));
+                core::with_place([&] { return element_label(f, e); }, [&] {
+                    rest_[core::at(first_element_[core::at(f)] + e)] =
+                        beam.rest(fibre.section, fibre.material, element(rest_state_, f, e));
+                });
         }, grain());
+    }
+    /// What messages call a fibre, an element with the places of its ends at rest, and a node with its place where a run begins.
+    std::string label(Index f) const { return scene::label("fibre", f, fibre(f).name); }
+    std::string element_label(Index f, Index e) const {
+        const double u = static_cast<double>(e);
+        return label(f) + ", element " + std::to_string(e) + ", from " + scene::text(position(rest_state_, f, u)) + " to " +
+               scene::text(position(rest_state_, f, u + 1.0));
+    }
+    std::string node_label(Index f, Index node) const {
+        return label(f) + ", node " + std::to_string(node) + " at " + scene::text(frame(f, node).position);
+    }
+    /// The same for the node that has a nodal vector.
+    std::string vector_label(Index vector) const {
+        Index f = 0;
+        while (f + 1 < fibre_count() && fibre(f + 1).first_vector <= vector) ++f;
+        return node_label(f, (vector - fibre(f).first_vector) / B::vectors_per_node);
     }
 
     Index fibre_count() const noexcept { return core::count(fibres_); }
@@ -356,7 +375,9 @@ private:
     void begin_at(const Vector& state) {
         if (state.size() != start_state_.size())
             core::refuse("Assembly.start", std::to_string(state.size()) + " numbers", std::to_string(start_state_.size()) + ", as the fibres' nodes have");
-        core::require(state.allFinite(), "Assembly.start", core::unset, "finite");
+        for (Index v = 0; v < layout_.vectors(); ++v)
+            if (const Vec3 value = state.segment<3>(3 * v); !value.allFinite())
+                core::with_place([&] { return vector_label(v); }, [&] { core::refuse("Assembly.start", scene::text(value), "finite"); });
         start_state_ = state;
         for (const scene::ImageVector& one : layout_.images)
             core::require(state.segment<3>(3 * one.image) == state.segment<3>(3 * one.source), "Assembly.start: last node of a closed fibre",

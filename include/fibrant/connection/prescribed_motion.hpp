@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace fibrant::connection {
@@ -30,7 +32,9 @@ public:
             if constexpr (requires { B::hold(hold, Mat3()); })
                 if (!B::hold(hold, mesh.frame(hold.at.fibre, node).basis())) continue;
             if (static_cast<Index>(hold.vector) >= B::vectors_per_node)
-                core::refuse("Hold.vector", std::to_string(static_cast<int>(hold.vector)), "a vector of the beam's nodes");
+                core::with_place([&] { return mesh.node_label(hold.at.fibre, node); }, [&] {
+                    core::refuse("Hold.vector", std::to_string(static_cast<int>(hold.vector)), "a vector of the beam's nodes");
+                });
             Item item{mesh.node_vector(hold.at.fibre, node, static_cast<Index>(hold.vector)), channels.find(hold.channel),
                       mesh.frame(hold.at.fibre, node).basis(), Vec3::Zero(), hold};
             item.rest = mesh.start_state().template segment<3>(3 * item.vector);
@@ -99,7 +103,18 @@ public:
         }
     }
 
+    /// Throws std::invalid_argument where holds of one vector ask for different places in a direction that both hold, and, if `finite`,
+    /// where one asks for no place at all.
+    void check(std::span<const double> amplitudes, const beam::Mesh<B>& mesh, bool finite) const {
+        for (std::size_t first = 0, last = 0; first < items_.size(); first = last) {
+            while (last < items_.size() && items_[last].vector == items_[first].vector) ++last;
+            core::with_place([&] { return mesh.vector_label(items_[first].vector); },
+                             [&] { check_vector(std::span<const Item>(items_).subspan(first, last - first), amplitudes, finite); });
+        }
+    }
+
 private:
+    static constexpr double agreement = 1e-9;  ///< of goals, over their size: what rounding leaves of paths that are the same
     static constexpr bool turning = beam::TurningSections<B>;
     struct Item {
         Index vector, channel;
@@ -108,6 +123,49 @@ private:
         scene::Hold hold;
         bool whole = false;  ///< of a rotation: all three axes are held
     };
+
+    static void check_vector(std::span<const Item> items, std::span<const double> amplitudes, bool finite) {
+        Mat3 sum = Mat3::Zero();
+        Vec3 pull = Vec3::Zero();
+        std::vector<std::pair<Mat3, Vec3>> asked;
+        double size = 0.0;
+        for (const Item& item : items) {
+            const double amplitude = amplitudes[core::at(item.channel)];
+            if (finite) scene::require_at("Hold", amplitude, item.hold.path, item.hold.rotation);
+            if (items.size() == 1) continue;
+            const Mat3 turn = item.hold.rotation ? item.hold.rotation(amplitude) : Mat3(Mat3::Identity());
+            const Vec3 shift = item.hold.path ? item.hold.path(amplitude) : Vec3(amplitude * item.hold.displacement);
+            const bool position = item.hold.vector == scene::NodeVector::position;
+            Mat3 axes = item.hold.axes == scene::Axes::section ? Mat3(turn * item.basis) : turn;
+            Vec3 goal = shift + (position ? Vec3(item.hold.pivot + turn * (item.rest - item.hold.pivot)) : Vec3(turn * item.rest));
+            if (turning && !position) axes = item.basis, goal = core::rotation_vector(turn);
+            if (!axes.allFinite() || !goal.allFinite()) return;
+            asked.emplace_back(axes * item.hold.directions * axes.transpose(), goal);
+            sum += asked.back().first, pull += asked.back().first * goal;
+            size = std::max(size, goal.norm() + (position ? 0.0 : 1.0));
+        }
+        if (items.size() == 1) return;
+        // The place that meets all best: they agree if it meets each.
+        const Eigen::SelfAdjointEigenSolver<Mat3> solver(sum);
+        Vec3 best = Vec3::Zero();
+        for (int k = 0; k < 3; ++k)
+            if (solver.eigenvalues()[k] > agreement)
+                best += solver.eigenvectors().col(k) * (solver.eigenvectors().col(k).dot(pull) / solver.eigenvalues()[k]);
+        // Directors that may be stretched agree on none at all, wherever they point to.
+        const bool collapsed = !turning && items[0].hold.vector != scene::NodeVector::position && solver.eigenvalues()[0] > agreement &&
+                               best.norm() < 0.5 * items[0].rest.norm();
+        for (std::size_t k = asked.size(); k-- > 0;) {
+            const Vec3 missed = collapsed ? Vec3(asked[k].second - asked[0].second) : Vec3(asked[k].first * (asked[k].second - best));
+            if (missed.norm() <= agreement * size) continue;
+            core::refuse("Hold: what holds of " + kind(items[k]) + " ask for differs by", scene::text(collapsed ? missed : Vec3(2.0 * missed)),
+                         "0: holds agree in the directions that they share, at channel '" + items[k].hold.channel + "' = " +
+                         core::text(amplitudes[core::at(items[k].channel)]));
+        }
+    }
+    static std::string kind(const Item& item) {
+        return item.hold.vector == scene::NodeVector::position ? "a position" : "director " + std::to_string(static_cast<int>(item.hold.vector));
+    }
+
     std::vector<Item> items_;
 };
 

@@ -41,7 +41,10 @@ public:
         for (const scene::SolidHold& hold : assembly.solid_holds())
             for (const Index node : hold.nodes) taken[core::at(solids.vector({hold.solid, node}))] = 1;
         const auto take = [&](Index vector) {
-            if (taken[core::at(vector)] != 0) core::refuse("connection", "vector " + std::to_string(vector), "of a nodal vector that is neither held nor tied twice");
+            if (taken[core::at(vector)] != 0)
+                core::with_place([&] { return vector < mesh.layout().vectors() ? mesh.vector_label(vector) : "a node of a solid"; }, [&] {
+                    core::refuse("connection", "vector " + std::to_string(vector), "of a nodal vector that is neither held nor tied twice");
+                });
             taken[core::at(vector)] = 1;
         };
         const auto finish = [&](scene::Tie& tie, const Condition& condition, double support) {

@@ -53,7 +53,11 @@ public:
     /// Puts the tools where an increment wants them.
     /// @param amplitudes  of the channel of each tool
     void move(std::span<const double> amplitudes) {
-        for (std::size_t t = 0; t < tools_.size(); ++t) pose_[t] = scene::tool_pose(tools_[t], amplitudes[t]);
+        for (std::size_t t = 0; t < tools_.size(); ++t) {
+            core::with_place([&] { return scene::label("tool", static_cast<Index>(t), tools_[t].name); },
+                             [&] { scene::require_at("Tool", amplitudes[t], tools_[t].path, tools_[t].rotation); });
+            pose_[t] = scene::tool_pose(tools_[t], amplitudes[t]);
+        }
         used_pose_ = pose_;
     }
     /// Evaluates against the tools as they were in the last accepted state, or as they are.

@@ -60,6 +60,16 @@ inline void require_at_least(std::string_view field, std::ptrdiff_t value, std::
     if (value < low) refuse(field, std::to_string(value), ">= " + std::to_string(low));
 }
 
+/// Calls `body`; what it refuses is said with the place that `place()` tells: "field = value, but it must be bound (place)".
+template <class Place, class Body>
+decltype(auto) with_place(const Place& place, const Body& body) {
+    try {
+        return body();
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(std::string(error.what()) + " (" + place() + ")");
+    }
+}
+
 /// The parameters themselves, once their own check has passed.
 template <class Parameters>
 const Parameters& validated(const Parameters& parameters) {

@@ -5,6 +5,7 @@
 #include <fibrant/scene/conditions.hpp>
 #include <fibrant/scene/cross_section.hpp>
 #include <fibrant/scene/elastic_material.hpp>
+#include <fibrant/scene/places.hpp>
 #include <fibrant/scene/reference_shape.hpp>
 #include <fibrant/scene/rigid_body.hpp>
 #include <fibrant/scene/solid.hpp>
@@ -13,6 +14,7 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,24 +40,30 @@ struct FibreSpecification {
 
     /// A closed fibre that is straight at rest, as long as its start is.
     bool straightened() const noexcept { return closed && start && !curve && !from.allFinite() && !to.allFinite(); }
+    std::string name{};                       ///< what messages call it beside its number; may be left out
+
+    /// Curves are looked at when they are cut into elements.
     void validate() const {
         section.validate();
         material.validate();
         core::require_at_least("fibre.elements", elements, 1);
+        if (elements > most_elements)
+            core::refuse("fibre.elements", std::to_string(elements), "<= " + std::to_string(most_elements));
+        require_finite("fibre.director", director);
         core::require_finite("fibre.twist", twist);
         if (closed) {
             core::require_at_least("fibre.elements, of a closed fibre", elements, 3);
             if (!start && !curve) core::refuse("fibre.closed", "a straight fibre", "a curve, or a start, that ends where it begins");
-        } else if (twist != 0.0) {
+        } else {
             core::require(twist == 0.0, "fibre.twist", twist, "0, of a fibre that is not closed");
         }
-        if (!curve && !straightened()) {
-            for (int k = 0; k < 3; ++k) {
-                core::require_finite("fibre.from", from[k]);
-                core::require_finite("fibre.to", to[k]);
-            }
-        }
+        if (curve || straightened()) return;
+        require_finite("fibre.from", from);
+        require_finite("fibre.to", to);
+        core::require_positive("fibre.to: distance from fibre.from", (to - from).norm());
     }
+    /// Of one fibre: more than a million is a slip, and would run out of memory before anything else is said.
+    static constexpr Index most_elements = 1'000'000;
 };
 
 /// A named set of fibres and of other groups.
@@ -70,7 +78,13 @@ struct Group {
 /// until they are on their sides.
 struct ForcedOrder {
     Index above = -1, below = -1;  ///< groups
-    Vec3 axis = Vec3::UnitZ();     ///< from below to above, unit
+    Vec3 axis = Vec3::UnitZ();     ///< from below to above, unit; of all orders of a scene parallel
+
+    void validate() const {
+        require_finite("ForcedOrder.axis", axis);
+        core::require(std::abs(axis.norm() - 1.0) <= matrix_rounding, "ForcedOrder.axis: length", axis.norm(), "1");
+        if (above == below) core::refuse("ForcedOrder.above", std::to_string(above), "another group than below");
+    }
 };
 
 /// A scene: everything that does not depend on how it is computed.
@@ -79,9 +93,11 @@ public:
     /// @returns index of the fibre, counted from 0
     /// @throws std::invalid_argument naming the field that is wrong
     Index add(const FibreSpecification& fibre) {
-        fibre.validate();
-        if (fibre.group < -1 || fibre.group >= core::count(groups_))
-            core::refuse("fibre.group", std::to_string(fibre.group), "-1 or a group of this assembly");
+        core::with_place([&] { return label("fibre", core::count(fibres_), fibre.name); }, [&] {
+            fibre.validate();
+            if (fibre.group < -1 || fibre.group >= core::count(groups_))
+                core::refuse("fibre.group", std::to_string(fibre.group), "-1 or a group of this assembly");
+        });
         fibres_.push_back(fibre);
         return core::count(fibres_) - 1;
     }
@@ -96,7 +112,7 @@ public:
 
     /// Holds components of a nodal vector on a path.
     void hold(const Hold& condition) {
-        check(condition.at);
+        check(condition.at, condition);
         holds_.push_back(condition);
     }
 
@@ -163,22 +179,21 @@ public:
     }
 
     void apply(const DeadForce& load) {
-        check(load.at);
-        for (int k = 0; k < 3; ++k) core::require_finite("DeadForce.force", load.force[k]);
+        check(load.at, load);
         forces_.push_back(load);
     }
 
     void apply(const Moment& load) {
-        check(load.at);
-        for (int k = 0; k < 3; ++k) core::require_finite("Moment.moment", load.moment[k]);
-        if (load.director == NodeVector::position) core::refuse("Moment.director", "position", "a director");
+        check(load.at, load);
         moments_.push_back(load);
     }
 
     void apply(const LinePressure& load) {
         check(first_end(load.fibre));
-        core::require_finite("LinePressure.pressure", load.pressure);
-        core::require(std::abs(load.axis.norm() - 1.0) < 1e-9, "LinePressure.axis: length", load.axis.norm(), "1");
+        core::with_place([&] { return label("fibre", load.fibre, fibres_[core::at(load.fibre)].name); }, [&] {
+            core::require_finite("LinePressure.pressure", load.pressure);
+            core::require(std::abs(load.axis.norm() - 1.0) < 1e-9, "LinePressure.axis: length", load.axis.norm(), "1");
+        });
         pressures_.push_back(load);
     }
 
@@ -186,22 +201,34 @@ public:
         for (const Index group : {order.above, order.below})
             if (group < 0 || group >= core::count(groups_))
                 core::refuse("ForcedOrder.group", std::to_string(group), "a group of this assembly");
+        const auto place = [&] {
+            return label("order", core::count(orders_)) + ", of " + group_label(order.above) + " above " + group_label(order.below);
+        };
+        core::with_place(place, [&] {
+            order.validate();
+            const auto opposite = order_of_.find({order.below, order.above});
+            if (opposite != order_of_.end())
+                core::refuse("ForcedOrder.above", std::to_string(order.above), "below: " + label("order", opposite->second) + " says so");
+            const double sine = orders_.empty() ? 0.0 : orders_.front().axis.cross(order.axis).norm();
+            core::require(sine <= matrix_rounding, "ForcedOrder.axis: sine of the angle to that of order 0", sine, "0");
+        });
+        order_of_.emplace(std::pair{order.above, order.below}, core::count(orders_));
         orders_.push_back(order);
     }
 
     /// Rules for pairs of groups; the last one given for a pair decides.
     void add(const PairRule& rule) {
-        rule.validate();
         for (const Index group : {rule.first, rule.second})
             if (group < 0 || group >= core::count(groups_))
                 core::refuse("PairRule.group", std::to_string(group), "a group of this assembly");
+        core::with_place([&] { return group_label(rule.first) + " and " + group_label(rule.second); }, [&] { rule.validate(); });
         rules_.push_back(rule);
     }
 
     /// A rigid tool, for models that have a part `Tools`.
     /// @returns index of the tool, counted from 0
     Index add(Tool tool) {
-        tool.validate();
+        core::with_place([&] { return label("tool", core::count(tools_), tool.name); }, [&] { tool.validate(); });
         tool.axis.normalize();
         tools_.push_back(std::move(tool));
         return core::count(tools_) - 1;
@@ -211,25 +238,25 @@ public:
     /// @returns index of the body, counted from 0
     Index add(RigidBody body) {
         if (body.parent < -1 || body.parent >= core::count(bodies_)) core::refuse("RigidBody.parent", std::to_string(body.parent), "-1 or an earlier body");
-        const double error = (body.frame.transpose() * body.frame - Mat3::Identity()).cwiseAbs().maxCoeff();
-        core::require(error < 1e-9 && body.frame.determinant() > 0.0, "RigidBody.frame", error, "orthonormal and right-handed");
-        for (const auto* coordinates : {&body.translation, &body.rotation})
-            for (const Coordinate& coordinate : *coordinates) core::require_finite("RigidBody.coordinate", coordinate.value);
+        core::with_place([&] { return label("body", core::count(bodies_), body.name); }, [&] { body.validate(); });
         bodies_.push_back(std::move(body));
         return core::count(bodies_) - 1;
     }
 
     void connect(AverageConnection connection) {
         if (connection.body < 0 || connection.body >= core::count(bodies_)) core::refuse("AverageConnection.body", std::to_string(connection.body), "a body of this assembly");
-        if (connection.ends.empty() && connection.nodes.empty()) core::refuse("AverageConnection.ends", "none", "at least one");
-        for (const Station& at : connection.ends) check(at);
-        for (const SolidNode& at : connection.nodes)
-            if (at.solid < 0 || at.solid >= core::count(solids_) || at.node < 0 || at.node >= core::count(solids_[core::at(at.solid)].nodes))
-                core::refuse("AverageConnection.nodes", std::to_string(at.solid) + ":" + std::to_string(at.node), "a node of a solid of this assembly");
-        if (!connection.nodes.empty() && connection.vector != NodeVector::position)
-            core::refuse("AverageConnection.vector", "a director", "the position, where nodes of solids are tied");
-        const double error = (connection.directions.transpose() * connection.directions - Mat3::Identity()).cwiseAbs().maxCoeff();
-        core::require(error < 1e-9, "AverageConnection.directions", error, "orthonormal");
+        const auto place = [&] {
+            return label("connection", core::count(averages_)) + " to " + label("body", connection.body, bodies_[core::at(connection.body)].name);
+        };
+        core::with_place(place, [&] {
+            connection.validate();
+            for (const Station& at : connection.ends) check(at);
+            for (const SolidNode& at : connection.nodes)
+                if (at.solid < 0 || at.solid >= core::count(solids_) || at.node < 0 ||
+                    at.node >= core::count(solids_[core::at(at.solid)].nodes))
+                    core::refuse("AverageConnection.nodes", std::to_string(at.solid) + ":" + std::to_string(at.node),
+                                 "a node of a solid of this assembly");
+        });
         averages_.push_back(std::move(connection));
     }
 
@@ -242,19 +269,21 @@ public:
 
     /// @returns index of the cell, counted from 0
     Index add(PeriodicCell cell) {
-        core::require_positive("PeriodicCell.volume", cell.volume);
+        core::with_place([&] { return label("cell", core::count(cells_), cell.name); }, [&] { cell.validate(); });
         cells_.push_back(std::move(cell));
         return core::count(cells_) - 1;
     }
     void connect(const PeriodicPair& pair) {
         if (pair.cell < 0 || pair.cell >= core::count(cells_)) core::refuse("PeriodicPair.cell", std::to_string(pair.cell), "a cell of this assembly");
         check(pair.first), check(pair.last);
+        core::with_place([&] { return "from " + station_label(pair.first) + " to " + station_label(pair.last); },
+                         [&] { require_finite("PeriodicPair.period", pair.period); });
         pairs_.push_back(pair);
     }
     /// A solid, for models that have a part `Solid`.
     /// @returns index of the solid, counted from 0
     Index add(Solid solid) {
-        solid.validate();
+        core::with_place([&] { return label("solid", core::count(solids_)); }, [&] { solid.validate(); });
         solids_.push_back(std::move(solid));
         return core::count(solids_) - 1;
     }
@@ -265,6 +294,7 @@ public:
         for (const Index node : condition.nodes)
             if (node < 0 || node >= core::count(solids_[core::at(condition.solid)].nodes))
                 core::refuse("SolidHold.nodes", std::to_string(node), "a node of the solid");
+        core::with_place([&] { return label("solid", condition.solid); }, [&] { condition.validate(); });
         solid_holds_.push_back(condition);
     }
 
@@ -294,7 +324,17 @@ private:
     void check(const Station& at) const {
         if (at.fibre < 0 || at.fibre >= core::count(fibres_))
             core::refuse("Station.fibre", std::to_string(at.fibre), "a fibre of this assembly");
-        core::require_between("Station.fraction", at.fraction, 0.0, 1.0);
+        core::with_place([&] { return label("fibre", at.fibre, fibres_[core::at(at.fibre)].name); },
+                         [&] { core::require_between("Station.fraction", at.fraction, 0.0, 1.0); });
+    }
+    template <class Condition>
+    void check(const Station& at, const Condition& condition) const {
+        check(at);
+        core::with_place([&] { return station_label(at); }, [&] { condition.validate(); });
+    }
+    std::string group_label(Index group) const { return label("group", group, groups_[core::at(group)].name); }
+    std::string station_label(const Station& at) const {
+        return label("fibre", at.fibre, fibres_[core::at(at.fibre)].name) + ", at " + core::text(at.fraction) + " of its length";
     }
 
     std::vector<FibreSpecification> fibres_;
@@ -304,6 +344,7 @@ private:
     std::vector<Moment> moments_;
     std::vector<LinePressure> pressures_;
     std::vector<ForcedOrder> orders_;
+    std::map<std::pair<Index, Index>, Index> order_of_;  // by the groups above and below
     std::vector<PairRule> rules_;
     std::vector<Tool> tools_;
     std::vector<RigidBody> bodies_;

@@ -4,6 +4,7 @@
 
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/types.hpp>
+#include <fibrant/scene/places.hpp>
 
 #include <functional>
 #include <string>
@@ -25,6 +26,18 @@ enum class NodeVector : int { position = 0, director_1 = 1, director_2 = 2 };
 /// Axes in which directions are given: those of space, or (g_1, g_2, tangent) of the section at rest.
 enum class Axes { space, section };
 
+inline void require_vector(std::string_view field, NodeVector vector) {
+    const int number = static_cast<int>(vector);
+    if (number < 0 || number > 2) core::refuse(field, std::to_string(number), "a position or a director");
+}
+
+/// Throws unless what a path and a rotation give at an amplitude is finite, and a rotation; either may be empty.
+inline void require_at(const std::string& of, double amplitude, const std::function<Vec3(double)>& path,
+                       const std::function<Mat3(double)>& rotation) {
+    if (path) require_finite(of + ".path(" + core::text(amplitude) + ")", path(amplitude));
+    if (rotation) require_rotation(of + ".rotation(" + core::text(amplitude) + ")", rotation(amplitude));
+}
+
 /// Components of a nodal vector that follow a prescribed path.
 ///
 /// The vector is held at rotation(a) * rest + displacement(a) in the directions rotation(a) * directions; a is the
@@ -40,6 +53,14 @@ struct Hold {
     std::function<Vec3(double)> path{};  ///< displacement at amplitude a, where it is not proportional
     std::function<Mat3(double)> rotation{};  ///< at amplitude a; none: identity
     Vec3 pivot = Vec3::Zero();           ///< of the rotation of a position [length]
+
+    void validate() const {
+        require_vector("Hold.vector", vector);
+        require_projector("Hold.directions", directions);
+        require_finite("Hold.displacement", displacement);
+        require_finite("Hold.pivot", pivot);
+        require_at("Hold", 0.0, path, rotation);
+    }
 };
 
 /// A force that keeps its direction and size. On a director it is a force at the material point one length unit off the
@@ -49,6 +70,11 @@ struct DeadForce {
     NodeVector vector = NodeVector::position;
     Vec3 force = Vec3::Zero();  ///< at amplitude 1 [force], [force * length] on a director
     std::string channel = "load";
+
+    void validate() const {
+        require_vector("DeadForce.vector", vector);
+        require_finite("DeadForce.force", force);
+    }
 };
 
 /// A moment about a fixed axis, applied to a section through one director: force M x g / |g|^2 (METHOD 1.3). The moment
@@ -58,6 +84,12 @@ struct Moment {
     NodeVector director = NodeVector::director_1;
     Vec3 moment = Vec3::Zero();  ///< at amplitude 1 [force * length]
     std::string channel = "load";
+
+    void validate() const {
+        require_vector("Moment.director", director);
+        require_finite("Moment.moment", moment);
+        if (director == NodeVector::position) core::refuse("Moment.director", "position", "a director");
+    }
 };
 
 /// A force per length of the line as it lies, across it: pressure * axis x tangent, so that it follows the fibre. Around a closed fibre in a plane,

@@ -4,12 +4,14 @@
 
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/types.hpp>
+#include <fibrant/scene/places.hpp>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace fibrant::scene {
@@ -75,6 +77,108 @@ inline Vec3 any_perpendicular(const Vec3& tangent) {
     return (direction - direction.dot(tangent) * tangent).normalized();
 }
 
+/// What a curve may be like.
+///
+/// Slower than a ten-thousandth of its mean speed a curve stands still: differences of its points have lost the digits of its
+/// direction. Points that have been marched to in equal steps lie within a quarter of the distance of two nodes of each other,
+/// or the curve jumps; and nodes are apart by the same arc to one in a hundred, or elements would not be as long as they are
+/// taken to be. A parameter that runs unevenly is sampled more finely, until these hold or a sixteenth of the step does not help.
+inline constexpr double least_speed = 1e-4, longest_step = 0.25, largest_unevenness = 0.01;
+
+/// A curve cut into nodes.
+struct ReferenceShape {
+    std::vector<NodeFrame> frames;
+    std::vector<double> turn;  ///< of the tangent from each node to the next, along the curve [radian]
+    double length = 0.0;       ///< of the curve [length]
+};
+
+namespace detail {
+
+/// Place on a curve, for messages.
+inline std::string curve_place(double parameter, const Vec3& position) {
+    return ", at parameter " + core::text(parameter) + ", point " + text(position);
+}
+
+/// One march along a curve with `fine` steps between two nodes. @returns whether nodes came to be as far apart as they should;
+/// if `last`, throws where they did not.
+inline bool march(const Curve& curve, Index nodes, Index fine, const Vec3& director, const std::string& name, bool closed, bool last_attempt,
+                  ReferenceShape& shape) {
+    const Index steps = (nodes - 1) * fine;
+    std::vector<double> arc(core::at(steps + 1), 0.0);
+    Vec3 last = curve(0.0);
+    for (Index k = 0; k <= steps; ++k) {
+        const double t = static_cast<double>(k) / static_cast<double>(steps);
+        const Vec3 next = k > 0 ? curve(t) : last;
+        if (!next.allFinite()) core::refuse(name + ": point", text(next), "finite" + curve_place(t, next));
+        if (k > 0) arc[core::at(k)] = arc[core::at(k - 1)] + (next - last).norm();
+        last = next;
+    }
+    const double length = shape.length = arc.back(), mean = length / static_cast<double>(steps);
+    core::require(std::isfinite(length) && length > 0.0, name + ": length", length, "finite and > 0");
+    if (closed) {
+        const double open = (last - curve(0.0)).norm();
+        core::require(open <= 1e-9 * length, name + ": distance from its end to its start", open, "nothing, of a closed fibre");
+    }
+    for (Index k = 0; k < steps; ++k)
+        if (const double span = arc[core::at(k + 1)] - arc[core::at(k)]; !(span > least_speed * mean)) {
+            const double t = static_cast<double>(k) / static_cast<double>(steps);
+            core::refuse(name + ": speed", core::text(span / mean), "> " + core::text(least_speed) +
+                         " of its mean everywhere: its points repeat, or it stands still" + curve_place(t, curve(t)));
+        }
+
+    const double difference = 0.25 / static_cast<double>(steps);
+    shape.frames.clear(), shape.turn.clear();
+    shape.frames.reserve(core::at(nodes)), shape.turn.reserve(core::at(nodes));
+    NodeFrame frame;
+    Index k = 0;
+    double between = 0.0, turn = 0.0, longest = 0.0, at_longest = 0.0, uneven = 0.0, at_uneven = 0.0;
+    for (Index m = 0; m <= steps; ++m) {  // march through points of equal arc length
+        const double wanted = length * static_cast<double>(m) / static_cast<double>(steps);
+        while (k + 1 < steps && arc[core::at(k + 1)] < wanted) ++k;
+        const double span = arc[core::at(k + 1)] - arc[core::at(k)];
+        const double t = std::clamp(
+            m == steps ? 1.0
+                       : (static_cast<double>(k) + (wanted - arc[core::at(k)]) / span) / static_cast<double>(steps), 0.0, 1.0);
+        const Vec3 position = curve(t);
+        const Vec3 derivative = curve_derivative(curve, t, difference, closed), tangent = derivative.normalized();
+        if (!(derivative.norm() > least_speed * length))
+            core::refuse(name + ": speed", core::text(derivative.norm() / length), "> " + core::text(least_speed) +
+                         " of its mean everywhere: its points repeat, or it stands still" + curve_place(t, position));
+        if (m == 0) {
+            const Vec3 start = director - director.dot(tangent) * tangent;
+            frame.director_1 =
+                start.norm() > 1e-6 * director.norm() && director.norm() > 0.0 ? start.normalized() : any_perpendicular(tangent);
+        } else {
+            const Vec3 chord = position - frame.position;
+            const double step = chord.norm();
+            if (step > longest) longest = step, at_longest = t;
+            between += step, turn += std::atan2(frame.tangent.cross(tangent).norm(), frame.tangent.dot(tangent));
+            frame.director_1 = step > 0.0 ? transported(frame.director_1, chord, frame.tangent, tangent) : frame.director_1;
+        }
+        frame.position = position;
+        frame.tangent = tangent;
+        frame.director_2 = tangent.cross(frame.director_1);
+        if (m % fine != 0) continue;
+        shape.frames.push_back(frame);
+        if (m == 0) continue;
+        const double off = std::abs(between * static_cast<double>(nodes - 1) / length - 1.0);
+        if (off > uneven) uneven = off, at_uneven = t;
+        shape.turn.push_back(turn);
+        between = turn = 0.0;
+    }
+    const double spacing = length / static_cast<double>(nodes - 1);
+    if (longest <= longest_step * spacing && uneven <= largest_unevenness) return true;
+    if (last_attempt && longest > longest_step * spacing)
+        core::refuse(name + ": step", core::text(longest), "<= " + core::text(longest_step * spacing) + ", " + core::text(longest_step) +
+                     " of the distance of two nodes: it jumps, or its points are too uneven" + curve_place(at_longest, curve(at_longest)));
+    if (last_attempt)
+        core::refuse(name + ": unevenness of nodes", core::text(uneven), "<= " + core::text(largest_unevenness) +
+                     ": its points are too uneven" + curve_place(at_uneven, curve(at_uneven)));
+    return false;
+}
+
+}  // namespace detail
+
 /// Frames at `nodes` points of equal arc length.
 ///
 /// Directors are carried along by parallel transport: rest directors that twist about the axis would cost an error of
@@ -82,54 +186,19 @@ inline Vec3 any_perpendicular(const Vec3& tangent) {
 /// @param curve     regular (its derivative does not vanish)
 /// @param nodes     >= 2
 /// @param director  g_1 at the start is its part perpendicular to the tangent; zero: any
+/// @param name      what messages call the curve
 /// @param closed    the curve ends where it begins, and its tangent there is that of a curve that goes on
-/// @throws std::invalid_argument if the curve is not finite, stands still, or does not close where it should
-inline std::vector<NodeFrame> reference_frames(const Curve& curve, Index nodes, const Vec3& director = Vec3::Zero(), bool closed = false) {
+/// @throws std::invalid_argument if the curve is not finite, stands still, jumps, runs too unevenly or does not close where it should; it says where
+inline ReferenceShape reference_shape(const Curve& curve, Index nodes, const Vec3& director = Vec3::Zero(),
+                                      const std::string& name = "fibre.curve", bool closed = false) {
     core::require_at_least("reference_frames.nodes", nodes, 2);
-    constexpr Index fine = 16;  // substeps between nodes, for arc length and transport
-    const Index steps = (nodes - 1) * fine;
-    std::vector<double> arc(core::at(steps + 1), 0.0);
-    Vec3 last = curve(0.0);
-    for (Index k = 1; k <= steps; ++k) {
-        const Vec3 next = curve(static_cast<double>(k) / static_cast<double>(steps));
-        arc[core::at(k)] = arc[core::at(k - 1)] + (next - last).norm();
-        last = next;
-    }
-    const double length = arc.back();
-    core::require(std::isfinite(length) && length > 0.0, "fibre.curve: length", length, "finite and > 0");
-    if (closed) {
-        const double open = (last - curve(0.0)).norm();
-        core::require(open <= 1e-9 * length, "fibre.curve: distance from its end to its start", open, "nothing, of a closed fibre");
-    }
-
-    const double difference = 0.25 / static_cast<double>(steps);
-    std::vector<NodeFrame> frames;
-    frames.reserve(core::at(nodes));
-    NodeFrame frame;
-    Index k = 0;
-    for (Index m = 0; m <= steps; ++m) {  // march through points of equal arc length
-        const double wanted = length * static_cast<double>(m) / static_cast<double>(steps);
-        while (k + 1 < steps && arc[core::at(k + 1)] < wanted) ++k;
-        const double span = arc[core::at(k + 1)] - arc[core::at(k)];
-        core::require(span > 0.0, "fibre.curve: speed", span, "> 0 everywhere");
-        const double t =
-            m == steps ? 1.0
-                       : (static_cast<double>(k) + (wanted - arc[core::at(k)]) / span) / static_cast<double>(steps);
-        const Vec3 position = curve(std::clamp(t, 0.0, 1.0));
-        const Vec3 tangent = detail::curve_derivative(curve, std::clamp(t, 0.0, 1.0), difference, closed).normalized();
-        if (m == 0) {
-            const Vec3 start = director - director.dot(tangent) * tangent;
-            frame.director_1 =
-                start.norm() > 1e-6 * director.norm() && director.norm() > 0.0 ? start.normalized() : any_perpendicular(tangent);
-        } else {
-            frame.director_1 = detail::transported(frame.director_1, position - frame.position, frame.tangent, tangent);
-        }
-        frame.position = position;
-        frame.tangent = tangent;
-        frame.director_2 = tangent.cross(frame.director_1);
-        if (m % fine == 0) frames.push_back(frame);
-    }
-    return frames;
+    constexpr Index fine = 16, finest = 256;  // substeps between nodes, for arc length and transport
+    ReferenceShape shape;
+    for (Index steps = fine; !detail::march(curve, nodes, steps, director, name, closed, steps >= finest, shape);) steps *= 4;
+    return shape;
+}
+inline std::vector<NodeFrame> reference_frames(const Curve& curve, Index nodes, const Vec3& director = Vec3::Zero(), bool closed = false) {
+    return reference_shape(curve, nodes, director, "fibre.curve", closed).frames;
 }
 
 /// Turns the sections about their tangents, evenly from nothing at the first one to an angle at the last one [radian].

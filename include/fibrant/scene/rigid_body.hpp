@@ -34,6 +34,13 @@ struct RigidBody {
     Mat3 frame = Mat3::Identity();  ///< columns: from the master to the other three nodes at the start, orthonormal
     Index parent = -1;              ///< an earlier body, or -1 for space
     std::array<Coordinate, 3> translation{}, rotation{};
+
+    void validate() const {
+        require_finite("RigidBody.position", position);
+        require_rotation("RigidBody.frame", frame);
+        for (const auto* coordinates : {&translation, &rotation})
+            for (const Coordinate& coordinate : *coordinates) core::require_finite("RigidBody.coordinate", coordinate.value);
+    }
 };
 
 /// A node of a solid of the scene.
@@ -53,6 +60,15 @@ struct AverageConnection {
     std::array<bool, 3> tied{true, true, true};       ///< which of them
     Vec3 displacement = Vec3::Zero();                 ///< of the mean along the directions at amplitude 1 [length]
     std::string channel = "motion";
+
+    void validate() const {
+        if (ends.empty() && nodes.empty()) core::refuse("AverageConnection.ends", "none", "at least one");
+        require_vector("AverageConnection.vector", vector);
+        if (!nodes.empty() && vector != NodeVector::position)
+            core::refuse("AverageConnection.vector", "a director", "the position, where nodes of solids are tied");
+        require_orthonormal("AverageConnection.directions", directions);
+        require_finite("AverageConnection.displacement", displacement);
+    }
 };
 
 /// Displacement gradient of a repeating cell: what one period more in direction j moves in direction i.
@@ -61,6 +77,10 @@ struct PeriodicCell {
     double volume = 1.0;                     ///< a force of a free component is its stress times this [length^3], > 0
     std::array<Coordinate, 9> gradient{};    ///< component (i, j) at i + 3 j [1]; free ones under a stress
 
+    void validate() const {
+        core::require_positive("PeriodicCell.volume", volume);
+        for (const Coordinate& coordinate : gradient) core::require_finite("PeriodicCell.gradient", coordinate.value);
+    }
     Coordinate& component(int i, int j) noexcept { return gradient[static_cast<std::size_t>(i + 3 * j)]; }
     const Coordinate& component(int i, int j) const noexcept { return gradient[static_cast<std::size_t>(i + 3 * j)]; }
 };

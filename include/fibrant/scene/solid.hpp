@@ -4,6 +4,7 @@
 
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/types.hpp>
+#include <fibrant/scene/conditions.hpp>
 #include <fibrant/scene/elastic_material.hpp>
 
 #include <array>
@@ -25,8 +26,8 @@ struct Solid {
         core::require(material.poisson_ratio > -1.0 && material.poisson_ratio < 0.5, "Solid.material.poisson_ratio",
                       material.poisson_ratio, "> -1 and < 0.5");
         core::require_at_least("Solid.cells", core::count(cells), 1);
-        for (const Vec3& node : nodes)
-            for (int k = 0; k < 3; ++k) core::require_finite("Solid.nodes", node[k]);
+        for (std::size_t n = 0; n < nodes.size(); ++n)
+            if (!nodes[n].allFinite()) core::refuse("Solid.nodes[" + std::to_string(n) + "]", text(nodes[n]), "finite");
         for (const std::array<Index, 8>& cell : cells)
             for (const Index node : cell)
                 if (node < 0 || node >= core::count(nodes)) core::refuse("Solid.cells", std::to_string(node), "a node of the solid");
@@ -44,6 +45,12 @@ struct SolidHold {
     std::function<Mat3(double)> rotation{};  ///< at amplitude a; none: identity
     Vec3 pivot = Vec3::Zero();               ///< of the rotation [length]
 
+    void validate() const {
+        require_projector("SolidHold.directions", directions);
+        require_finite("SolidHold.displacement", displacement);
+        require_finite("SolidHold.pivot", pivot);
+        require_at("SolidHold", 0.0, path, rotation);
+    }
     /// Where a node that is at `rest` goes.
     Vec3 goal(const Vec3& rest, double amplitude) const {
         const Mat3 turn = rotation ? rotation(amplitude) : Mat3(Mat3::Identity());

@@ -4,6 +4,7 @@
 
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/types.hpp>
+#include <fibrant/scene/conditions.hpp>
 
 #include <functional>
 #include <string>
@@ -30,10 +31,9 @@ struct Tool {
     std::function<Mat3(double)> rotation{};  ///< at amplitude a, about the origin; none: identity
 
     void validate() const {
-        for (int k = 0; k < 3; ++k) {
-            core::require_finite("Tool.origin", origin[k]);
-            core::require_finite("Tool.displacement", displacement[k]);
-        }
+        require_finite("Tool.origin", origin);
+        require_finite("Tool.displacement", displacement);
+        require_at("Tool", 0.0, path, rotation);
         core::require_positive("Tool.axis: length", axis.norm());
         if (shape != ToolShape::plane) core::require_positive("Tool.radius", radius);
         core::require_not_negative("Tool.friction_factor", friction_factor);

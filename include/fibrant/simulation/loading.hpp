@@ -74,6 +74,8 @@ struct Loading {
         core::require_between("Loading.smallest_fraction", smallest_fraction, 1e-9, 1.0);
         core::require_not_negative("Loading.checkpoint_seconds", checkpoint_seconds);
         core::require(growth > 1.0, "Loading.growth", growth, "> 1");
+        core::require_finite("Loading.growth", growth);
+        core::require_at_least("Loading.most_rejected", most_rejected, 0);
         for (const Stage<M>& stage : stages) {
             core::require_at_least("Stage.increments", stage.increments, 1);
             core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);

@@ -8,6 +8,7 @@
 #include <fibrant/simulation/increment_file.hpp>
 #include <fibrant/simulation/mean_motion.hpp>
 #include <fibrant/simulation/position.hpp>
+#include <fibrant/simulation/scene_checks.hpp>
 #include <fibrant/simulation/state_file.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 
@@ -17,6 +18,7 @@
 #include <concepts>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -50,6 +52,8 @@ public:
             core::refuse("assembly.bodies", std::to_string(bodies), "none, for a model without a part Connections");
         if constexpr (HasSolid<M>) state_ = equilibrium_.solid().with_rest(state_);
         else if (!assembly.solids().empty()) core::refuse("assembly.solids", std::to_string(assembly.solids().size()), "none, for a model without a part Solid");
+        require_agreement(equilibrium_.motion(), mesh_, channels_);
+        loose_ = loose_direction(assembly, mesh_);
         radius_ = mesh_.fibre(0).section.radius();
         for (const beam::MeshFibre& fibre : mesh_.fibres()) radius_ = std::min(radius_, fibre.section.radius());
     }
@@ -71,7 +75,10 @@ public:
             for (const std::string& name : channels_.names()) stages.back().ramps.push_back({name, 1.0, false});
         }
         check_ramps(stages, channels_, amplitudes_);
+        require_paths(stages, equilibrium_.motion(), mesh_, channels_, amplitudes_);
         Report report;
+        report.reason = unheld(stages, loose_);
+        if (!report.reason.empty()) return report;
         position_ = {};
         position_.from = amplitudes_;
         position_.holding.assign(core::at(mesh_.fibre_count()), 1.0);
@@ -375,6 +382,7 @@ private:
     Vector state_;
     std::vector<double> amplitudes_;
     double radius_ = 0.0;
+    std::optional<Vec3> loose_;  ///< what nothing holds the scene along
     std::vector<Index> tool_channels_;
     Position position_;
     MeanMotion motion_;
