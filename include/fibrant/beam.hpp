@@ -8,6 +8,7 @@
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/beam/director_points.hpp>
 #include <fibrant/beam/director_strains.hpp>
+#include <fibrant/beam/followed_shape.hpp>
 #include <fibrant/beam/kirchhoff_cable.hpp>
 #include <fibrant/beam/lagrange.hpp>
 #include <fibrant/beam/mesh.hpp>

@@ -8,6 +8,7 @@
 #include <fibrant/scene/dof_layout.hpp>
 #include <fibrant/scene/elastic_material.hpp>
 #include <fibrant/scene/image_vectors.hpp>
+#include <fibrant/scene/places.hpp>
 #include <fibrant/scene/reference_shape.hpp>
 #include <fibrant/scene/rigid_body.hpp>
 #include <fibrant/scene/solid.hpp>
