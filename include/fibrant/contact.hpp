@@ -14,6 +14,7 @@
 #include <fibrant/contact/meeting_point.hpp>
 #include <fibrant/contact/normal_direction.hpp>
 #include <fibrant/contact/pair_rules.hpp>
+#include <fibrant/contact/passage.hpp>
 #include <fibrant/contact/particle.hpp>
 #include <fibrant/contact/section_extents.hpp>
 #include <fibrant/contact/side_index.hpp>

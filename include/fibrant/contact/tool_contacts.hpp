@@ -48,6 +48,8 @@ public:
     const std::vector<ContactResponse>& responses() const noexcept { return responses_; }
     const std::vector<law::FrictionResponse<typename Friction::History>>& frictions() const noexcept { return frictions_; }
     const scene::ToolPose& pose(Index tool) const noexcept { return pose_[core::at(tool)]; }
+    /// Where it was in the last accepted state.
+    const scene::ToolPose& accepted_pose(Index tool) const noexcept { return accepted_pose_[core::at(tool)]; }
     double stiffness(const Element& element) const noexcept { return stiffness_[slot(element.fibre, element.tool)]; }
 
     /// Puts the tools where an increment wants them.

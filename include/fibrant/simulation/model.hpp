@@ -5,6 +5,7 @@
 #include <fibrant/assembly/solid_system.hpp>
 #include <fibrant/beam/beam_element.hpp>
 #include <fibrant/contact/contact_set.hpp>
+#include <fibrant/contact/passage.hpp>
 #include <fibrant/law/friction_law.hpp>
 #include <fibrant/law/normal_law.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
@@ -54,6 +55,11 @@ concept HasTools = requires { typename M::Tools; } && core::Policy<typename M::T
 template <class M>
 concept HasConnections = requires { typename M::Connections; } && core::Policy<typename M::Connections> && core::Active<typename M::Connections>;
 
+/// Before an increment is accepted, its motion is checked for fibres that would pass through each other unseen. A model whose scenes rule
+/// that out says so: `using Passage = contact::NoPassage;`. May be left out, and then nothing is.
+template <class M>
+concept HasPassage = requires { typename M::Passage; } && core::Policy<typename M::Passage>;
+
 /// A model names its Beam, Proximity, Normal, Friction and Solver, each of which satisfies its own contract.
 template <class M>
 concept Model = HasBeam<M> && HasProximity<M> && HasNormal<M> && HasFriction<M> && HasSolver<M>;
@@ -67,6 +73,15 @@ template <Model M>
     requires HasTools<M>
 struct ContactsOf<M> {
     using Type = contact::ContactsWithTools<typename M::Beam, typename M::Proximity, typename M::Normal, typename M::Friction>;
+};
+template <Model M>
+struct PassageOf {
+    using Type = typename contact::Swept::template Of<typename M::Beam>;
+};
+template <Model M>
+    requires HasPassage<M>
+struct PassageOf<M> {
+    using Type = typename M::Passage::template Of<typename M::Beam>;
 };
 template <Model M>
 struct ConnectionsOf {

@@ -33,13 +33,15 @@ public:
     using Contacts = typename detail::ContactsOf<M>::Type;
     using Solid = typename detail::SolidOf<M>::Type;
     using Equilibrium = assembly::Equilibrium<Beam, Contacts, typename detail::ConnectionsOf<M>::Type, Solid>;
+    using Passage = typename detail::PassageOf<M>::Type;
 
     /// @throws std::invalid_argument naming the field that is wrong
     Simulator(const scene::Assembly& assembly, const ModelParameters<M>& parameters)
         : parameters_{checked(parameters)}, beam_{parameters.beam}, mesh_{assembly, beam_}, channels_{assembly},
           contacts_{assembly, mesh_, parameters.contact, typename M::Proximity(parameters.proximity),
                     typename M::Normal(parameters.normal), typename M::Friction(parameters.friction)},
-          equilibrium_{assembly, mesh_, beam_, contacts_, channels_, Solid(parameters.solid)}, linear_{parameters.solver},
+          equilibrium_{assembly, mesh_, beam_, contacts_, channels_, Solid(parameters.solid)}, passage_{mesh_, parameters.contact.detection},
+          linear_{parameters.solver},
           state_{mesh_.start_state()}, amplitudes_(channels_.names().size(), 0.0) {
         if (mesh_.fibre_count() == 0) core::refuse("assembly.fibres", "none", "at least one fibre");
         if constexpr (HasTools<M>) {
@@ -220,13 +222,14 @@ private:
             move_tools(amplitudes);
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping, position_.holding);
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
-            solver::NestedLoops<Equilibrium, Contacts, typename M::Solver> loops(
-                equilibrium_, contacts_, linear_, parameters_.iteration, radius_, touching, clock_);
+            solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
+                equilibrium_, contacts_, linear_, passage_, parameters_.iteration, radius_, touching, clock_);
             // A limited gap moves fibres by about the limit: the search looks that far ahead.
             const double ahead = std::max(position_.displacement, stage.forced_orders ? stage.gap_limit.value_or(0.0) : 0.0);
-            const solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, stage.looseness, stage.largest_displacement);
+            solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, stage.looseness, stage.largest_displacement);
             increment.counts += attempt.counts;
             attempt_newton = static_cast<double>(attempt.counts.newton) / static_cast<double>(std::max<Index>(1, attempt.counts.normal_passes));
+            if (touching && attempt.converged) refuse_passage(trial, stage.forced_orders, attempt);
             // What nothing foretells would be held back: a first solution tells where it goes.
             if (attempt.converged && stage.damping_carried && stage.damping > 0.0 && !rehearsed && !motion_.foretells(change)) {
                 motion_.learn(mesh_, state_, trial, change);
@@ -281,6 +284,16 @@ private:
         report.counts += increment.counts;
         report.increments.push_back(increment);
         return true;
+    }
+
+    /// An attempt that ends with fibres on another side of each other, or of a tool, than they began has failed.
+    void refuse_passage([[maybe_unused]] const Vector& trial, [[maybe_unused]] bool forced, [[maybe_unused]] solver::AttemptReport& attempt) {
+        if constexpr (core::Active<Passage>) {
+            const auto passed = clock_.time(core::Part::search, [&] { return passage_.first(state_, trial, contacts_, forced, true); });
+            if (!passed) return;
+            attempt.converged = false, attempt.reason = contact::text(*passed);
+            attempt.unsettled.resize(0);  // whoever moved most is not at fault
+        }
     }
 
     template <class Observer>
@@ -378,6 +391,7 @@ private:
     connection::Channels channels_;
     Contacts contacts_;
     Equilibrium equilibrium_;
+    [[no_unique_address]] Passage passage_;
     typename M::Solver linear_;
     Vector state_;
     std::vector<double> amplitudes_;

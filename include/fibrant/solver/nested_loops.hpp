@@ -25,12 +25,12 @@ struct AttemptReport {
 };
 
 /// Solves increments; loops inside are solved to a part of the last change of the loop outside.
-template <class Equilibrium, class Contacts, class Linear>
+template <class Equilibrium, class Contacts, class Linear, class Passage>
 class NestedLoops {
 public:
-    NestedLoops(Equilibrium& equilibrium, Contacts& contacts, Linear& linear, const IterationParameters& parameters,
+    NestedLoops(Equilibrium& equilibrium, Contacts& contacts, Linear& linear, const Passage& passage, const IterationParameters& parameters,
                 double radius, bool contact_possible, core::StageClock& clock)
-        : equilibrium_{&equilibrium}, contacts_{&contacts}, linear_{&linear}, parameters_{core::validated(parameters)},
+        : equilibrium_{&equilibrium}, contacts_{&contacts}, linear_{&linear}, passage_{&passage}, parameters_{core::validated(parameters)},
           radius_{radius}, contact_possible_{contact_possible}, clock_{&clock} {}
 
     /// @param state     in: last accepted state; out: the converged one
@@ -93,6 +93,7 @@ public:
             change = equilibrium_->greatest(travel);
             if (moved) {
                 ++moves;
+                step_back(state, searched, forced);
                 continue;
             }
             if (!contact_possible_) break;
@@ -110,6 +111,18 @@ public:
     }
 
 private:
+    /// What is driven moves by more than a search reaches where nothing is in its way. What it passed through on the way from the last
+    /// search is met where they touch, and the next search sees it.
+    void step_back(Vector& state, const Vector& searched, bool forced) {
+        if constexpr (core::Active<Passage>) {
+            if (!contact_possible_) return;
+            const auto passed = clock_->time(core::Part::search, [&] { return passage_->first(searched, state, *contacts_, forced, false); });
+            if (!passed) return;
+            state = searched + passed->touch * (state - searched);
+            equilibrium_->reset_stresses(state);
+        }
+    }
+
     /// Contacts of a law with multipliers carry them on at the next pass, and are not yet where they should be.
     bool multipliers_change() const {
         if constexpr (requires { contacts_->normal_law().largest_penetration(); })
@@ -182,6 +195,7 @@ private:
     Equilibrium* equilibrium_;
     Contacts* contacts_;
     Linear* linear_;
+    const Passage* passage_;
     IterationParameters parameters_;
     double radius_;
     bool contact_possible_;
