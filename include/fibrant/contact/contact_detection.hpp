@@ -20,6 +20,9 @@ struct Detection {
     double chord_bound = 0.02;    ///< deviation of a curve from its segments, over the radius [1], > 0
     Index finest_cut = 8;         ///< segments an element, at most; what they miss is added to the reach
     bool self_contact = false;    ///< search each fibre against itself, beyond an arc of max(pi r, 2 elements)
+    /// Reach that the motion of an increment asks for, which the loops set [length]. The smallest radius bounds the reach of a search; that of
+    /// a thicker fibre is bounded by its own, and a pair reaches as far as the mean of its two.
+    double wanted = 0.0;
     void validate() const {
         core::require_positive("Detection.chord_bound", chord_bound);
         core::require_at_least("Detection.finest_cut", finest_cut, 1);
@@ -147,6 +150,19 @@ struct SampledCentrelines {
         }
     }
 
+    /// Gives thicker fibres the reach that is wanted, as far as their radius over the smallest one allows.
+    void widen(double reach, double wanted) {
+        if (!(wanted > reach)) return;
+        double least = std::numeric_limits<double>::infinity();
+        for (const proximity::Centreline& line : centrelines) least = std::min(least, line.radius);
+        std::size_t first = 0;
+        for (const proximity::Centreline& line : centrelines) {
+            const double more = 0.5 * (std::min(wanted, reach * (line.radius / least)) - reach);
+            for (std::size_t k = first; k < first + line.inflation.size() && more > 0.0; ++k) inflation[k] += more;
+            first += line.inflation.size();
+        }
+    }
+
     /// A zone of the polylines, in fibres and elements of the mesh.
     proximity::ProximityZone in_elements(proximity::ProximityZone zone) const {
         const std::size_t i = core::at(zone.fibre_i), j = core::at(zone.fibre_j);
@@ -166,7 +182,8 @@ template <class B, proximity::ProximitySearch Search>
 std::vector<Zone> find_zones(const beam::Mesh<B>& mesh, const Vector& state, Search& search, const Detection& detection,
                              const ForcedOrders& orders, double reach, bool forced) {
     std::vector<Zone> zones;
-    const SampledCentrelines<B> lines(mesh, state, detection, Mat3::Identity(), [](Index) { return true; });
+    SampledCentrelines<B> lines(mesh, state, detection, Mat3::Identity(), [](Index) { return true; });
+    lines.widen(reach, detection.wanted);
     for (const proximity::ProximityZone& found : search.find(lines.centrelines, reach)) {
         Zone zone;
         zone.span = lines.in_elements(found);

@@ -48,6 +48,7 @@ public:
         equilibrium_->prescribed_step(state, driven);
         if (const double least = equilibrium_->greatest(driven); least > 0.0) expected = 1.1 * std::max(expected, least);
         const double reach = std::clamp(2.0 * expected, parameters_.margin * radius_, parameters_.largest_margin * radius_);
+        contacts_->parameters().detection.wanted = 2.0 * expected;
         const double bound = contact_possible_ ? std::max(reach, radius_) : std::numeric_limits<double>::infinity();
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass

@@ -22,7 +22,7 @@ struct IterationParameters {
     double inexact = 0.3;                 ///< inner tolerance over the last change of the loop outside [1], in [0, 1]
     /// Slope of the energy at the end of a Newton step over that at its start, beyond which the step is cut [1], > 0.
     double overshoot = std::numeric_limits<double>::infinity();
-    double largest_approach = 0.5;        ///< relative motion of a contact in one Newton step [radius], > 0
+    double largest_approach = 0.5;        ///< relative motion of a contact in one Newton step [mean radius of its two fibres], > 0
     Index newton_limit = 15;              ///< iterations of one inner loop
     Index normal_limit = 6;               ///< normal passes of one set of contact elements
     Index contact_limit = 8;              ///< contact passes of an increment
@@ -251,7 +251,10 @@ private:
         const auto& elements = contacts_->elements();
         const double most = core::largest(core::count(elements), 0.0, [&](Index k) {
             const auto& element = elements[core::at(k)];
-            return contacts_->forced(element) ? 0.0 : std::abs(element.normal.dot(element.motion(step)));  // a forced side is prescribed
+            if (contacts_->forced(element)) return 0.0;  // a forced side is prescribed
+            const auto& mesh = equilibrium_->mesh();
+            const double radius = 0.5 * (mesh.fibre(element.fibre_i).section.radius() + mesh.fibre(element.fibre_j).section.radius());
+            return std::abs(element.normal.dot(element.motion(step))) * (radius_ / radius);
         });
         const double bound = parameters_.largest_approach * radius_;
         return most > bound ? bound / most : 1.0;
