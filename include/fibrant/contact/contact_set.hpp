@@ -6,6 +6,7 @@
 #include <fibrant/contact/contact_element.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
+#include <fibrant/contact/element_normal.hpp>
 #include <fibrant/contact/meeting_point.hpp>
 #include <fibrant/contact/pair_rules.hpp>
 #include <fibrant/contact/side_index.hpp>
@@ -340,16 +341,7 @@ private:
     }
 
     Vec3 normal(const Element& element, const Vector& state, const Vec3& remembered) const {
-        const Index i = element.fibre_i, j = element.fibre_j;
-        const Vec3 centres = mesh_->position(state, j, element.u_j) - mesh_->position(state, i, element.u_i);
-        if (element.end_i || element.end_j) {
-            const Vec3 side = remembered.isZero() ? centres : remembered;
-            return unit_or(centres.dot(side) > 0.0 ? centres : side, Vec3::UnitZ());
-        }
-        return normal_direction(parameters_.normal, centres, tangent_of_i(element, state),
-                                contact_tangent(*mesh_, state, j, element.u_j).normalized(), remembered,
-                                element.crossing ? std::numeric_limits<double>::infinity()
-                                                 : mesh_->fibre(i).section.radius() + mesh_->fibre(j).section.radius());
+        return element_normal(*mesh_, state, element, parameters_.normal, remembered);
     }
     /// Unit tangent of fibre i.
     Vec3 tangent_of_i(const Element& element, const Vector& state) const {

@@ -2,6 +2,7 @@
 #pragma once
 /// @file Direction of the contact normal between two fibres, by the angle between them, with a remembered orientation.
 
+#include <fibrant/contact/section_gap.hpp>
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/types.hpp>
 
@@ -61,20 +62,47 @@ inline Vec3 mean_tangent(const Vec3& t_i, const Vec3& t_j) noexcept {
     return sum.normalized();
 }
 
+/// Sections that are round, or taken to be: what the normal of two fibres has to know of them.
+struct RoundSections {
+    double touching = std::numeric_limits<double>::infinity();  ///< sum of the radii [length]
+
+    double touching_along(const Vec3&) const noexcept { return touching; }
+    /// Direction across `tangent` in which the two are furthest apart: between the centres.
+    /// @param across  from centre to centre, across the tangent, not zero [length]
+    Vec3 furthest(const Vec3& across, const Vec3&, const Vec3&) const noexcept { return across.normalized(); }
+};
+
+/// Sections that are not round: ellipses in space, in any strain.
+struct FlatSections {
+    SectionAxes i, j;
+    bool anywhere = false;  ///< the pair is the closest one of a crossing
+
+    /// Sum of their half extents along a direction [length].
+    double touching_along(const Vec3& direction) const noexcept {
+        return anywhere ? std::numeric_limits<double>::infinity() : i.extent(direction) + j.extent(direction);
+    }
+    /// Direction across `tangent` in which the two are furthest apart, on the side of `side`.
+    Vec3 furthest(const Vec3& across, const Vec3& tangent, const Vec3& side) const noexcept {
+        const Vec3 flat = side - side.dot(tangent) * tangent;
+        return furthest_direction(across, i, j, tangent, unit_or(flat, across.normalized()));
+    }
+};
+
 /// Normal from fibre i to fibre j.
 ///
 /// The chapter says only that the rule depends on the angle and must be oriented so that fibres do not pass through each
-/// other; the cross product for crossing fibres, the direction between centres for parallel ones and the smooth blend
-/// between them are ours. The sign is that of `remembered`: taken from the last normal of this contact while it lives,
-/// never from present positions, which is how fibres would get through.
+/// other; the cross product for crossing fibres, the direction in which the sections are furthest apart for parallel ones, that
+/// of the centres if both are round, and the smooth blend between them are ours. The sign is that of `remembered`: taken from the
+/// last normal of this contact while it lives, never from present positions, which is how fibres would get through.
 /// @param centres     x_j - x_i [length]
 /// @param t_i, t_j    unit tangents
 /// @param remembered  last normal, or zero for a contact that is new: then the side is taken from `centres`
-/// @param touching    sum of the radii [length], for a pair that need not be the closest one of a crossing: the cross
+/// @param sections    touch at a sum of half extents aside, for a pair that need not be the closest one of a crossing: the cross
 ///                    product fades out where the centres are 1/4 to 1/2 of it apart across itself. Fibres that part in
 ///                    one plane would otherwise be in contact along its normal, with the greatest penetration there is.
-inline Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const Vec3& t_i, const Vec3& t_j, const Vec3& remembered,
-                             double touching = std::numeric_limits<double>::infinity()) noexcept {
+template <class Sections>
+Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const Vec3& t_i, const Vec3& t_j, const Vec3& remembered,
+                      const Sections& sections) noexcept {
     const auto smooth_step = [](double t) { return t <= 0.0 ? 0.0 : t >= 1.0 ? 1.0 : t * t * (3.0 - 2.0 * t); };
     const Vec3 side = remembered.isZero() ? centres : remembered;
     const double angle = angle_between_deg(t_i, t_j);
@@ -88,11 +116,12 @@ inline Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const 
         weight = angle >= rule.crossing_angle_deg
                      ? 1.0
                      : smooth_step((angle - rule.parallel_angle_deg) / (rule.crossing_angle_deg - rule.parallel_angle_deg));
-        const double aside = (across - across.dot(crossing) * crossing).norm();
-        weight *= 1.0 - smooth_step(4.0 * aside / touching - 1.0);
+        const Vec3 beside = across - across.dot(crossing) * crossing;
+        const double aside = beside.norm();
+        weight *= 1.0 - smooth_step(4.0 * aside / sections.touching_along(aside > 0.0 ? Vec3(beside / aside) : crossing) - 1.0);
         if (weight == 1.0) return crossing;
     }
-    Vec3 parallel = across.norm() > 1e-9 * (1e-300 + side.norm()) ? Vec3(across.normalized())
+    Vec3 parallel = across.norm() > 1e-9 * (1e-300 + side.norm()) ? sections.furthest(across, tangent, side)
                                                                   : unit_or(side - side.dot(tangent) * tangent, Vec3::Zero());
     if (parallel.isZero()) {  // coincident centrelines without a memory: any side will do, but the same one each time
         Index axis = 0;
@@ -102,6 +131,13 @@ inline Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const 
     if (parallel.dot(side) < 0.0)  // the centres have passed each other: push them back the way they came
         parallel = unit_or(side - side.dot(tangent) * tangent, -parallel);
     return weight > 0.0 ? unit_or(weight * crossing + (1.0 - weight) * parallel, parallel) : parallel;
+}
+
+/// The same of round sections.
+/// @param touching  sum of the radii [length]; infinite for the closest pair of a crossing
+inline Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const Vec3& t_i, const Vec3& t_j, const Vec3& remembered,
+                             double touching = std::numeric_limits<double>::infinity()) noexcept {
+    return normal_direction(rule, centres, t_i, t_j, remembered, RoundSections{touching});
 }
 
 }  // namespace fibrant::contact

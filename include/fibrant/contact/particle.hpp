@@ -5,6 +5,7 @@
 #include <fibrant/core/types.hpp>
 #include <fibrant/scene/cross_section.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fibrant::contact {
@@ -26,7 +27,8 @@ inline Particle support_particle(const scene::CrossSection& section, const Vec3&
                                  const Vec3& direction, bool at_end) noexcept {
     const double p = section.semi_axis_1 * g_1.dot(direction), q = section.semi_axis_2 * g_2.dot(direction);
     const double reach = std::sqrt(p * p + q * q);
-    if (at_end || reach < 0.1 * section.radius()) return {0.0, 0.0, section.radius()};
+    if (at_end || reach < 0.1 * std::min(section.semi_axis_1, section.semi_axis_2))  // seen along the fibre
+        return {0.0, 0.0, section.radius()};
     return {section.semi_axis_1 * p / reach, section.semi_axis_2 * q / reach, 0.0};
 }
 

@@ -5,6 +5,7 @@
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/contact/particle.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fibrant::contact {
@@ -51,7 +52,7 @@ void section_stiffness_term([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_
     const double p = section.semi_axis_1 * beam::Mesh<B>::template director<1>(state, first, w_1).dot(normal);
     const double q = section.semi_axis_2 * beam::Mesh<B>::template director<2>(state, first, w_2).dot(normal);
     const double h = std::hypot(p, q);
-    if (h < 0.1 * section.radius()) return;
+    if (h < 0.1 * std::min(section.semi_axis_1, section.semi_axis_2)) return;
     beam::ElementWeights<B> weights;
     for (std::size_t a = 0; a < weights.size(); ++a)
         weights[a] = (-section.semi_axis_1 * q * w_1[a] + section.semi_axis_2 * p * w_2[a]) / h;
