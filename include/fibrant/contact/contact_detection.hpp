@@ -95,6 +95,22 @@ private:
     Index group_count_ = 0;
 };
 
+/// Radius that a fibre's sections reach in a state: at rest, or as they are pressed flat; what they widen by less than a part of it is
+/// left to the reach of a search, and zones end where they do without [length].
+template <class B>
+double widest_extent(const beam::Mesh<B>& mesh, const Vector& state, Index fibre) noexcept {
+    const scene::CrossSection& section = mesh.fibre(fibre).section;
+    double widest = section.radius();
+    if constexpr (beam::DeformableSections<B>) {
+        const double unnoticed = 1.05;  // half of the least margin of a search
+        for (Index node = 0; node < mesh.node_count(fibre); ++node) {
+            const auto [g_1, g_2] = mesh.directors(state, fibre, static_cast<double>(node) / (B::nodes - 1));
+            widest = std::max(widest, section.greatest_extent(g_1, g_2) / unnoticed);
+        }
+    }
+    return widest;
+}
+
 /// Polylines of all fibres in a state; owns the points that the centrelines look at.
 template <class B>
 struct SampledCentrelines {
@@ -141,7 +157,7 @@ struct SampledCentrelines {
             proximity::Centreline line;
             line.points = std::span<const Vec3>(points).subspan(core::at(piece.first_point), core::at(count + 1));
             line.inflation = std::span<const double>(inflation).subspan(core::at(piece.first_segment), core::at(count));
-            line.radius = fibre_data.section.radius();
+            line.radius = widest_extent(mesh, state, piece.fibre);
             line.closed = fibre_data.closed;
             if (detection.self_contact) line.self_skip = self_contact_arc(fibre_data.section.radius(), fibre_data.element_length);
             centrelines.push_back(line);

@@ -2,6 +2,7 @@
 #pragma once
 /// @file Contact points of a proximity zone: planes across the mean of its two lines, closest points, fibre ends.
 
+#include <fibrant/contact/element_normal.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/normal_direction.hpp>
 #include <fibrant/contact/section_extents.hpp>
@@ -28,7 +29,7 @@ public:
           h_i_{mesh.fibre(i_).element_length}, h_j_{mesh.fibre(j_).element_length}, low_i_{mesh.bounds(i_).first}, end_i_{mesh.bounds(i_).second}, low_j_{mesh.bounds(j_).first},
           end_j_{mesh.bounds(j_).second},
           r_{0.5 * (mesh.fibre(i_).section.radius() + mesh.fibre(j_).section.radius())}, h_{0.5 * (h_i_ + h_j_)},
-          step_{1.0 / spacing.points_per_element}, from_{mean_abscissa(zone.a_i, zone.a_j)}, to_{mean_abscissa(zone.b_i, zone.b_j)} {}
+          thin_{0.5 * (thinnest(mesh.fibre(i_).section) + thinnest(mesh.fibre(j_).section))}, step_{1.0 / spacing.points_per_element}, from_{mean_abscissa(zone.a_i, zone.a_j)}, to_{mean_abscissa(zone.b_i, zone.b_j)} {}
 
     /// The mutual closest points; with an end beyond which the other fibre goes on, its cap.
     void place_crossing() {
@@ -85,6 +86,20 @@ private:
     struct Station { double u_i, u_j, sine; };  // sine of the angle between the fibres
     struct Turn { double at, angle; };          // of a fibre towards the other one where two of its elements meet, at a part of the way
 
+    static double thinnest(const scene::CrossSection& section) noexcept { return std::min(section.semi_axis_1, section.semi_axis_2); }
+    // Direction between two sections, and the length over which lines that slant past each other part: the distance of the centres of round
+    // ones. Of others, what their contours are curved by where they face each other: little where flat, more where they stand on edge.
+    std::pair<Vec3, double> facing(double u_i, double u_j) const noexcept {
+        const Vec3 centres = mesh_.position(state_, j_, u_j) - mesh_.position(state_, i_, u_i);
+        const auto round = [&](Index f) { return mesh_.fibre(f).section.semi_axis_1 == mesh_.fibre(f).section.semi_axis_2; };
+        if ((round(i_) && round(j_)) || beam::CentreTouched<B>) return {centres.normalized(), 2.0 * r_};
+        const Vec3 tangent = mean_tangent(mesh_.derivative(state_, i_, u_i).normalized(), mesh_.derivative(state_, j_, u_j).normalized());
+        const SectionAxes axes_i = section_axes(mesh_, state_, i_, u_i), axes_j = section_axes(mesh_, state_, j_, u_j);
+        const Vec3 across = centres - centres.dot(tangent) * tangent;
+        const Vec3 normal = furthest_direction(across, axes_i, axes_j, tangent, unit_or(across, tangent.unitOrthogonal()));
+        const double sharpest = 0.1;  // of the thinner half axis: sections that are deep in each other have no direction that is furthest
+        return {normal, std::max(sharpest * thin_, normal_turn(across, axes_i, axes_j, tangent, normal).length)};
+    }
     // In a bend the points of a fibre that are closest to each other are next to each other, or one.
     bool is_one(const StationPair& pair) const noexcept {
         return i_ == j_ && mesh_.apart(i_, pair.u_i, pair.u_j) * h_i_ < self_contact_arc(r_, h_i_);
@@ -147,7 +162,7 @@ private:
         const Vec3 t = contact_tangent(mesh_, state_, self, u).normalized(), t_other = contact_tangent(mesh_, state_, other, v).normalized();
         const Vec3 tangent = mean_tangent(t, t_other);
         // A station next to it will do, unless the fibres come closer by more than may go unseen between the two.
-        const double near = std::min(0.1 * step_, spacing_.largest_unseen * r_ / (h_ * std::max(sine_between(t, t_other), 1e-3)));
+        const double near = std::min(0.1 * step_, spacing_.largest_unseen * thin_ / (h_ * std::max(sine_between(t, t_other), 1e-3)));
         for (std::size_t k = before_; k < pairs_.size(); ++k)
             if (std::abs((of_i ? pairs_[k].u_i : pairs_[k].u_j) - u) < near) return true;
         v = plane_section(mesh_, state_, other, v, origin, tangent);
@@ -183,13 +198,13 @@ private:
     // spacing is halved then.
     void add_between(Index k, const Station& low, const Station& high, const std::vector<double>& earlier) {
         const double u_i = 0.5 * (low.u_i + high.u_i), u_j = 0.5 * (low.u_j + high.u_j), sine = std::max(low.sine, high.sine);
-        const Vec3 across = (mesh_.position(state_, j_, u_j) - mesh_.position(state_, i_, u_i)).normalized();
+        const auto [across, parting] = facing(u_i, u_j);
         const Vec3 bend = mesh_.second_derivative(state_, j_, u_j) / (h_j_ * h_j_) - mesh_.second_derivative(state_, i_, u_i) / (h_i_ * h_i_);
-        const auto bulge = [&](Index fibre, double u, double length) {
-            return extents_along(mesh_, state_, fibre, mesh_.locate(fibre, u).first, across).second() / (length * length);
+        const auto bulge = [&, &normal = across](Index fibre, double u, double length) {
+            return extents_along(mesh_, state_, fibre, mesh_.locate(fibre, u).first, normal).second() / (length * length);
         };
         const double bending = std::max(0.0, bend.dot(across) - bulge(i_, u_i, h_i_) - bulge(j_, u_j, h_j_));
-        const double smooth = 0.125 * step_ * h_ * step_ * h_ * (sine * sine / (2.0 * r_) + bending);
+        const double smooth = 0.125 * step_ * h_ * step_ * h_ * (sine * sine / parting + bending);
         find_turns(low, high, across);
         const auto unseen = [&](int parts) {
             double depth = smooth / (parts * parts);
@@ -206,7 +221,7 @@ private:
             });
         };
         int parts = 1;
-        while (parts < 8 && (unseen(parts) > spacing_.largest_unseen * r_ || was_halved(parts))) parts *= 2;
+        while (parts < 8 && (unseen(parts) > spacing_.largest_unseen * thin_ || was_halved(parts))) parts *= 2;
         for (int m = 1; m < parts; ++m) {
             const double at = static_cast<double>(k) + static_cast<double>(m) / parts;
             if (at * step_ > from_ && at * step_ < to_) add_station(share(at), step_ * h_ / parts);
@@ -237,7 +252,7 @@ private:
     Index i_, j_;
     double h_i_, h_j_;           // lengths of an element
     double low_i_, end_i_, low_j_, end_j_;  // abscissae of the ends; infinite of closed fibres
-    double r_, h_;               // means of the two fibres
+    double r_, h_, thin_;        // means of the two fibres; of their least half axes
     double step_, from_, to_;    // of the mean abscissa
     std::array<bool, 4> met_{};  // first and last ends of i and of j that have their cap already
     std::vector<Turn> turns_;    // between the stations that are looked at

@@ -2,14 +2,17 @@
 #pragma once
 /// @file True least distance between the surfaces of all fibres.
 
+#include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/observe/nodal_curve.hpp>
 #include <fibrant/observe/snapshot.hpp>
+#include <fibrant/observe/surface_gap.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
 #include <fibrant/proximity/segment_distance.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <tuple>
@@ -71,28 +74,33 @@ inline void closest_points(const NodalCurve& a, const NodalCurve& b, double a_fr
 
 }  // namespace detail
 
+/// Whether a fibre is also held against itself, beyond the arc that contact leaves out.
+enum class OwnTurns : std::uint8_t { left_out, counted };
+
 /// The least distance between the surfaces of any two fibres, which owes nothing to contact elements: what lies deeper in
 /// another one than they say, beside a crossing or where a mesh is too coarse for a section, is seen here.
 ///
 /// Fibres are those of three-node elements. Their ends are flat, and count.
-/// A search over the half elements, inflated by their deviation from the chord, gives the candidates; the closest
-/// points are then found on the curves, and the sections' extents taken along the line that joins them. Candidates
+/// A search over the half elements, inflated by their deviation from the chord, gives the candidates. Round sections are closest
+/// where the curves are, along the line that joins these points; others are searched by `PairedPieces`. Candidates
 /// whose lower bound exceeds the best gap so far are passed over. Never quadratic: the reach grows from zero until a
 /// pair is met.
+/// @param own_turns  counted: a fibre against itself, where two places of it beyond that arc are closer than those beside them
 template <proximity::ProximitySearch Search>
-LeastGap least_gap(const Snapshot& snapshot, Search search) {
+LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns = OwnTurns::left_out) {
     const auto fibres = core::count(snapshot.fibres);
     std::vector<proximity::Centreline> lines(core::at(fibres));
     std::vector<std::vector<double>> inflation(core::at(fibres));
     std::vector<Index> first(core::at(fibres) + 1, 0), owner;
+    std::vector<FibreSurface> surfaces;
+    std::vector<char> round;
     double greatest_radius = 0.0, extent = 0.0;
     for (std::size_t k = 0; k < lines.size(); ++k) {
         const FibreSnapshot& fibre = snapshot.fibres[k];
-        const NodalCurve curve{fibre.position};
-        double radius = 0.0;  // of the section as it is deformed
-        for (std::size_t node = 0; node < fibre.position.size(); ++node)
-            radius = std::max({radius, fibre.section.semi_axis_1 * fibre.director_1[node].norm(),
-                               fibre.section.semi_axis_2 * fibre.director_2[node].norm()});
+        surfaces.emplace_back(fibre);
+        round.push_back(surfaces.back().round() ? 1 : 0);
+        const NodalCurve& curve = surfaces.back().curve();
+        const double radius = surfaces.back().greatest_extent();
         // Half an element deviates from its chord by |x''| (1/2)^2 / 2, x'' over the parameter of one node interval.
         for (std::size_t piece = 0; piece + 1 < fibre.position.size(); ++piece) {
             inflation[k].push_back(curve.second(static_cast<double>(piece)).norm() / 8.0);
@@ -100,6 +108,8 @@ LeastGap least_gap(const Snapshot& snapshot, Search search) {
         }
         lines[k] = {fibre.position, radius, inflation[k], -1};
         lines[k].closed = fibre.closed;
+        if (own_turns == OwnTurns::counted)
+            lines[k].self_skip = contact::self_contact_arc(fibre.section.radius(), curve.length(0.0, curve.end()) / static_cast<double>(curve.elements()));
         first[k + 1] = core::count(owner);
         greatest_radius = std::max(greatest_radius, radius);
         for (const Vec3& node : fibre.position)
@@ -138,22 +148,38 @@ LeastGap least_gap(const Snapshot& snapshot, Search search) {
             if (a.bound != b.bound) return a.bound < b.bound;
             return std::tie(a.i, a.p, a.j, a.q) < std::tie(b.i, b.p, b.j, b.q);
         });
-        for (const Candidate& candidate : candidates) {
-            if (candidate.bound >= least.gap) break;
-            const FibreSnapshot &fibre_i = snapshot.fibres[core::at(candidate.i)],
-                                         &fibre_j = snapshot.fibres[core::at(candidate.j)];
-            const NodalCurve a{fibre_i.position}, b{fibre_j.position};
+        const auto measured = [&](const Candidate& candidate) {
+            const FibreSurface &i = surfaces[core::at(candidate.i)], &j = surfaces[core::at(candidate.j)];
             double t = candidate.t, u = candidate.u;
-            detail::closest_points(a, b, static_cast<double>(candidate.p), static_cast<double>(candidate.q), t, u);
-            const Vec3 p = a.position(t), q = b.position(u), apart = q - p;
+            detail::closest_points(i.curve(), j.curve(), static_cast<double>(candidate.p), static_cast<double>(candidate.q), t, u);
+            if (round[core::at(candidate.i)] == 0 || round[core::at(candidate.j)] == 0)
+                return PairedPieces(i, j, static_cast<double>(candidate.p), static_cast<double>(candidate.q)).closest(t, u);
+            const Vec3 apart = j.curve().position(u) - i.curve().position(t);
             const double distance = apart.norm();
             const Vec3 direction = distance > 0.0 ? Vec3(apart / distance) : Vec3(Vec3::UnitZ());
-            const double gap =
-                distance - section_extent(fibre_i, a, t, direction) - section_extent(fibre_j, b, u, direction);
-            if (gap >= least.gap) continue;
-            const double radius = std::min({fibre_i.section.semi_axis_1, fibre_i.section.semi_axis_2,
-                                            fibre_j.section.semi_axis_1, fibre_j.section.semi_axis_2});
-            least = {gap, gap / radius, candidate.i, candidate.j, 0.5 * (p + q)};
+            return SurfaceGap{distance - i.extent(t, direction) - j.extent(u, direction), t, u, direction};
+        };
+        // Block by block: what is passed over depends on the blocks, and these on nothing else.
+        constexpr std::size_t together = 256;
+        std::vector<SurfaceGap> found(together);
+        for (std::size_t start = 0; start < candidates.size() && candidates[start].bound < least.gap; start += together) {
+            const std::size_t count = std::min(together, candidates.size() - start);
+            core::parallel_for<core::Share::turns>(static_cast<Index>(count), [&](Index k) { found[core::at(k)] = measured(candidates[start + core::at(k)]); });
+            for (std::size_t k = 0; k < count; ++k) {
+                if (!(found[k].gap < least.gap)) continue;
+                const Candidate& candidate = candidates[start + k];
+                // Of one fibre only what is closest there and not beside, where the arc that is left out begins.
+                const double nearest = 1e-6;
+                const double p = static_cast<double>(candidate.p), q = static_cast<double>(candidate.q);
+                const bool around = snapshot.fibres[core::at(candidate.i)].closed && q - p > 0.5 * surfaces[core::at(candidate.i)].curve().end();
+                if (candidate.i == candidate.j && (around ? found[k].t < p + nearest || found[k].u > q + 1.0 - nearest
+                                                          : found[k].t > p + 1.0 - nearest || found[k].u < q + nearest))
+                    continue;
+                const FibreSurface &i = surfaces[core::at(candidate.i)], &j = surfaces[core::at(candidate.j)];
+                const scene::CrossSection &one = snapshot.fibres[core::at(candidate.i)].section, &other = snapshot.fibres[core::at(candidate.j)].section;
+                const double radius = std::min({one.semi_axis_1, one.semi_axis_2, other.semi_axis_1, other.semi_axis_2});
+                least = {found[k].gap, found[k].gap / radius, candidate.i, candidate.j, 0.5 * (i.curve().position(found[k].t) + j.curve().position(found[k].u))};
+            }
         }
         if (reach > 2.0 * extent) break;  // a single fibre
     }

@@ -39,6 +39,12 @@ struct CrossSection {
         const double p = semi_axis_1 * g_1.dot(direction), q = semi_axis_2 * g_2.dot(direction);
         return std::sqrt(p * p + q * q);
     }
+    /// Greatest half extent, in any direction, of the section that the directors deform [length].
+    double greatest_extent(const Vec3& g_1, const Vec3& g_2) const noexcept {
+        const double pp = semi_axis_1 * semi_axis_1 * g_1.squaredNorm(), qq = semi_axis_2 * semi_axis_2 * g_2.squaredNorm();
+        const double mixed = semi_axis_1 * semi_axis_2 * g_1.dot(g_2), half = 0.5 * (pp - qq);
+        return std::sqrt(0.5 * (pp + qq) + std::sqrt(half * half + mixed * mixed));  // greatest singular value of the two half axes
+    }
     /// True over kinematic torsion constant of the ellipse, 4 a^2 b^2 / (a^2 + b^2)^2 [1]; 1 for a circle.
     double torsion_factor() const noexcept {
         const double p = semi_axis_1 * semi_axis_1, q = semi_axis_2 * semi_axis_2;
