@@ -9,6 +9,7 @@
 #include <fibrant/contact/contact_set.hpp>
 #include <fibrant/contact/contact_tangent.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
+#include <fibrant/contact/element_normal.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/learned_contacts.hpp>
 #include <fibrant/contact/meeting_point.hpp>
@@ -17,6 +18,7 @@
 #include <fibrant/contact/passage.hpp>
 #include <fibrant/contact/particle.hpp>
 #include <fibrant/contact/section_extents.hpp>
+#include <fibrant/contact/section_gap.hpp>
 #include <fibrant/contact/side_index.hpp>
 #include <fibrant/contact/station_pairs.hpp>
 #include <fibrant/contact/support.hpp>
