@@ -68,7 +68,7 @@ TEST_CASE("two parallel flat fibres that are pressed together askew come to rest
     CHECK(apart.converged);
     CHECK(std::abs(apart.true_gap - 0.0172) < 2e-3);
     CHECK(std::abs(apart.push) < 1e-12);
-    check(pressed(fibres, {0.0, 0.0, -0.2 * b}, 4));
+    check(pressed(fibres, {0.0, 0.0, -0.2 * b}, 16));  // the stiffness follows the depth from increment to increment
 }
 
 TEST_CASE("flat fibres that cross at small angles come to rest where their surfaces touch") {

@@ -93,10 +93,9 @@ public:
         bool found = climb(0.0, best);
         if (found && best.value.gap >= 0.0) return true;
         // The thinnest directions of both, where -h has its peaks, and the line of the centres.
-        const double right = 0.5 * std::numbers::pi;
-        for (double start : {ellipse_[0].thin_angle(), ellipse_[1].thin_angle(), std::atan2(d_[1], d_[0])}) {
+        const double right = 0.5 * std::numbers::pi, centres = d_[0] > 0.0 ? std::atan2(d_[1], d_[0]) : 0.0;
+        for (const double start : {ellipse_[0].thin_angle(), ellipse_[1].thin_angle(), centres}) {
             const double turned = std::remainder(start, 2.0 * right);
-            if (start == std::atan2(d_[1], d_[0]) && d_[0] <= 0.0) continue;
             Greatest other;
             if (!(std::abs(turned) < right) || !climb(turned, other)) continue;
             const double noise = 1e-9 * (std::abs(best.value.gap) + std::abs(other.value.gap));

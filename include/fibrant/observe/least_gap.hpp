@@ -90,7 +90,7 @@ template <proximity::ProximitySearch Search>
 LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns = OwnTurns::left_out) {
     const auto fibres = core::count(snapshot.fibres);
     std::vector<proximity::Centreline> lines(core::at(fibres));
-    std::vector<std::vector<double>> inflation(core::at(fibres));
+    std::vector<std::vector<double>> inflation(core::at(fibres)), wide(core::at(fibres));  // of each node interval
     std::vector<Index> first(core::at(fibres) + 1, 0), owner;
     std::vector<FibreSurface> surfaces;
     std::vector<char> round;
@@ -100,10 +100,12 @@ LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns =
         surfaces.emplace_back(fibre);
         round.push_back(surfaces.back().round() ? 1 : 0);
         const NodalCurve& curve = surfaces.back().curve();
-        const double radius = surfaces.back().greatest_extent();
+        double radius = 0.0;  // of the sections as they are deformed
         // Half an element deviates from its chord by |x''| (1/2)^2 / 2, x'' over the parameter of one node interval.
         for (std::size_t piece = 0; piece + 1 < fibre.position.size(); ++piece) {
             inflation[k].push_back(curve.second(static_cast<double>(piece)).norm() / 8.0);
+            wide[k].push_back(surfaces.back().greatest_extent(piece));
+            radius = std::max(radius, wide[k].back());
             owner.push_back(static_cast<Index>(k));
         }
         lines[k] = {fibre.position, radius, inflation[k], -1};
@@ -135,8 +137,8 @@ LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns =
             const Vec3 u = a[core::at(p + 1)] - a[core::at(p)], v = b[core::at(q + 1)] - b[core::at(q)];
             const auto near = proximity::segment_distance(a[core::at(p)], u, b[core::at(q)], v);
             candidates[core::at(n)] = {std::sqrt(near.squared) - inflation[core::at(i)][core::at(p)] -
-                                           inflation[core::at(j)][core::at(q)] - lines[core::at(i)].radius -
-                                           lines[core::at(j)].radius,
+                                           inflation[core::at(j)][core::at(q)] - wide[core::at(i)][core::at(p)] -
+                                           wide[core::at(j)][core::at(q)],
                                        static_cast<double>(p) + near.s,
                                        static_cast<double>(q) + near.t,
                                        i,

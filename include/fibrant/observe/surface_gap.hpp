@@ -35,10 +35,10 @@ public:
     }
     /// Half extent of the section at t along a unit direction [length].
     double extent(double t, const Vec3& direction) const noexcept { return std::hypot(axis(0, t).dot(direction), axis(1, t).dot(direction)); }
-    /// Greatest half extent of any section in any direction, but for what directors rise between nodes [length].
-    double greatest_extent() const noexcept {
+    /// Greatest half extent in any direction of the sections of an element's nodes, the one that holds a node interval [length].
+    double greatest_extent(std::size_t piece) const noexcept {
         double most = 0.0;
-        for (std::size_t node = 0; node < fibre_->position.size(); ++node)
+        for (std::size_t node = piece - piece % 2, last = node + 2; node <= last; ++node)
             most = std::max(most, fibre_->section.greatest_extent(fibre_->director_1[node], fibre_->director_2[node]));
         return most;
     }
