@@ -32,7 +32,10 @@ public:
         const double area = p_[0] * q_[1] - p_[1] * q_[0];
         square_ = area * area;
         // of a section that is seen along its plane: else its two ends would be kinks of the support function
-        least_ = 1e-6 * std::sqrt(p_.squaredNorm() + q_.squaredNorm()) + 1e-300;
+        const double squares = p_.squaredNorm() + q_.squaredNorm();
+        least_ = 1e-6 * std::sqrt(squares) + 1e-300;
+        const double wide = 0.5 * (squares + std::sqrt(std::max(0.0, squares * squares - 4.0 * square_)));  // the larger half axis, squared
+        sharpest_ = wide > 0.0 ? square_ / (wide * std::sqrt(wide)) : 0.0;
     }
     /// Support function by the angle of the direction, its derivative, and the radius of curvature where it touches [length].
     struct Support {
@@ -42,6 +45,8 @@ public:
         const double p = p_.dot(n), q = q_.dot(n), h = std::max(least_, std::sqrt(p * p + q * q));
         return {h, (p * p_.dot(across) + q * q_.dot(across)) / h, square_ / (h * h * h)};
     }
+    /// Least radius of curvature of its contour: b^2 / a [length].
+    double sharpest() const noexcept { return sharpest_; }
     /// Angle of the direction in which the ellipse is thinnest, and of that in which it is widest.
     double thin_angle() const noexcept { return wide_angle() + 0.5 * std::numbers::pi; }
     double wide_angle() const noexcept {
@@ -50,7 +55,7 @@ public:
 
 private:
     Vec2 p_, q_;
-    double square_, least_;
+    double square_, least_, sharpest_ = 0.0;
 };
 
 /// Gap of two ellipses in a plane as a function of the direction: F(n) = d.n - h_i(n) - h_j(n), n = (cos phi, sin phi).
@@ -87,11 +92,12 @@ public:
     /// Greatest gap among directions less than a right angle from angle 0, the side from which contact has come; false if it only
     /// grows until there: the sections have passed each other.
     ///
-    /// Where sections are apart there is one maximum with F > 0, the truth. Where they are deep in each other there may be several:
-    /// the greatest, and of two that are the same the one that is uphill of angle 0.
+    /// Where sections are apart there is one maximum with F > 0, the truth. One that is less deep than the contours' least radii of
+    /// curvature together is the greatest: a circle of that radius rolls in the sum of both sections, and touches it there alone. Deeper
+    /// there may be several: the greatest, and of two that are the same the one that is uphill of angle 0.
     bool greatest_on_side(Greatest& best) const noexcept {
         bool found = climb(0.0, best);
-        if (found && best.value.gap >= 0.0) return true;
+        if (found && best.value.gap >= -(ellipse_[0].sharpest() + ellipse_[1].sharpest())) return true;
         // The thinnest directions of both, where -h has its peaks, and the line of the centres.
         const double right = 0.5 * std::numbers::pi, centres = d_[0] > 0.0 ? std::atan2(d_[1], d_[0]) : 0.0;
         for (const double start : {ellipse_[0].thin_angle(), ellipse_[1].thin_angle(), centres}) {
@@ -108,7 +114,7 @@ private:
     /// The maximum uphill of a start; false if that leads off the side.
     bool climb(double start, Greatest& top) const noexcept {
         const double right = 0.5 * std::numbers::pi, stride = 0.1;  // narrower than the peaks of sections up to ten times as wide as thick
-        const double settled = 1e-13;                               // [radian]
+        const double settled = 1e-8;                                // [radian]; what is left after such a step of Newton's method is its square
         double low = start, high = start;
         Value here = at(start);
         const double up = here.slope >= 0.0 ? 1.0 : -1.0;
@@ -124,7 +130,7 @@ private:
             angle += step;
             if (!between && std::abs(angle) >= right) return false;
             here = at(angle);
-            if (std::abs(step) < settled) break;
+            if (std::abs(step) < settled && here.second < 0.0) break;
             if (between) {
                 (here.slope > 0.0 ? low : high) = angle;
             } else if (here.slope * up < 0.0) {

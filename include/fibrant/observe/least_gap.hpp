@@ -154,18 +154,21 @@ LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns =
             const FibreSurface &i = surfaces[core::at(candidate.i)], &j = surfaces[core::at(candidate.j)];
             double t = candidate.t, u = candidate.u;
             detail::closest_points(i.curve(), j.curve(), static_cast<double>(candidate.p), static_cast<double>(candidate.q), t, u);
-            if (round[core::at(candidate.i)] == 0 || round[core::at(candidate.j)] == 0)
-                return PairedPieces(i, j, static_cast<double>(candidate.p), static_cast<double>(candidate.q)).closest(t, u);
             const Vec3 apart = j.curve().position(u) - i.curve().position(t);
             const double distance = apart.norm();
+            if (distance - wide[core::at(candidate.i)][core::at(candidate.p)] - wide[core::at(candidate.j)][core::at(candidate.q)] > least.gap) return SurfaceGap{};
+            if (round[core::at(candidate.i)] == 0 || round[core::at(candidate.j)] == 0)
+                return PairedPieces(i, j, static_cast<double>(candidate.p), static_cast<double>(candidate.q)).closest(t, u);
             const Vec3 direction = distance > 0.0 ? Vec3(apart / distance) : Vec3(Vec3::UnitZ());
             return SurfaceGap{distance - i.extent(t, direction) - j.extent(u, direction), t, u, direction};
         };
         // Block by block: what is passed over depends on the blocks, and these on nothing else.
-        constexpr std::size_t together = 256;
-        std::vector<SurfaceGap> found(together);
-        for (std::size_t start = 0; start < candidates.size() && candidates[start].bound < least.gap; start += together) {
-            const std::size_t count = std::min(together, candidates.size() - start);
+        constexpr std::size_t most = 256;
+        std::vector<SurfaceGap> found(most);
+        std::size_t together = 16;  // the first few show how little is left to look for
+        for (std::size_t start = 0, count = 0; start < candidates.size() && candidates[start].bound < least.gap; start += count) {
+            count = std::min(together, candidates.size() - start);
+            together = std::min(most, 2 * together);
             core::parallel_for<core::Share::turns>(static_cast<Index>(count), [&](Index k) { found[core::at(k)] = measured(candidates[start + core::at(k)]); });
             for (std::size_t k = 0; k < count; ++k) {
                 if (!(found[k].gap < least.gap)) continue;

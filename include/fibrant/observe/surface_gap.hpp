@@ -173,7 +173,7 @@ private:
             if (!(slope(low, gap) >= 0.0)) continue;
             if (gap > most) most = gap, best = low;
             if (!(slope(high, gap) <= 0.0)) continue;
-            for (int halving = 0; halving < 50 && high - low > 1e-13; ++halving) {
+            for (int halving = 0; halving < 50 && high - low > 1e-9; ++halving) {
                 const double middle = 0.5 * (low + high);
                 (slope(middle, gap) > 0.0 ? low : high) = middle;
             }
@@ -203,7 +203,7 @@ private:
             if (found.gap < least.gap) least = found;
         }
         if (!std::isfinite(least.gap)) return least;
-        for (; width > 1e-7; width *= 0.5)  // down to where Newton's method takes over
+        for (; width > 1e-4; width *= 0.5)  // down to where Newton's method takes over
             for (const double s : {least.t - 0.5 * width, least.t + 0.5 * width}) {
                 if (s < low || s > high) continue;
                 const SurfaceGap found = at(s);
