@@ -13,6 +13,7 @@
 #include <fibrant/observe/progress_printer.hpp>
 #include <fibrant/observe/snapshot.hpp>
 #include <fibrant/observe/solid_writer.hpp>
+#include <fibrant/observe/surface_gap.hpp>
 #include <fibrant/observe/svg.hpp>
 #include <fibrant/observe/svg_curves.hpp>
 #include <fibrant/observe/svg_plot.hpp>

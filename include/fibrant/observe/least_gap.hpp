@@ -156,7 +156,8 @@ LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns =
             detail::closest_points(i.curve(), j.curve(), static_cast<double>(candidate.p), static_cast<double>(candidate.q), t, u);
             const Vec3 apart = j.curve().position(u) - i.curve().position(t);
             const double distance = apart.norm();
-            if (distance - wide[core::at(candidate.i)][core::at(candidate.p)] - wide[core::at(candidate.j)][core::at(candidate.q)] > least.gap) return SurfaceGap{};
+            const double widest = wide[core::at(candidate.i)][core::at(candidate.p)] + wide[core::at(candidate.j)][core::at(candidate.q)];
+            if (distance - widest > least.gap) return SurfaceGap{};
             if (round[core::at(candidate.i)] == 0 || round[core::at(candidate.j)] == 0)
                 return PairedPieces(i, j, static_cast<double>(candidate.p), static_cast<double>(candidate.q)).closest(t, u);
             const Vec3 direction = distance > 0.0 ? Vec3(apart / distance) : Vec3(Vec3::UnitZ());
@@ -183,7 +184,8 @@ LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns =
                 const FibreSurface &i = surfaces[core::at(candidate.i)], &j = surfaces[core::at(candidate.j)];
                 const scene::CrossSection &one = snapshot.fibres[core::at(candidate.i)].section, &other = snapshot.fibres[core::at(candidate.j)].section;
                 const double radius = std::min({one.semi_axis_1, one.semi_axis_2, other.semi_axis_1, other.semi_axis_2});
-                least = {found[k].gap, found[k].gap / radius, candidate.i, candidate.j, 0.5 * (i.curve().position(found[k].t) + j.curve().position(found[k].u))};
+                const Vec3 middle = 0.5 * (i.curve().position(found[k].t) + j.curve().position(found[k].u));
+                least = {found[k].gap, found[k].gap / radius, candidate.i, candidate.j, middle};
             }
         }
         if (reach > 2.0 * extent) break;  // a single fibre
