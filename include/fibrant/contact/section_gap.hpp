@@ -121,16 +121,18 @@ private:
         double angle = start;
         bool between = false;  // two angles have the top between them
         for (int iteration = 0; iteration < 60; ++iteration) {
-            double step = here.second < 0.0 ? -here.slope / here.second : up * stride;
+            bool newton = here.second < 0.0;
+            double step = newton ? -here.slope / here.second : up * stride;
             if (!between) {
                 step = up * std::min(std::abs(step), stride);
             } else if (!(angle + step > low && angle + step < high)) {
                 step = 0.5 * (low + high) - angle;
+                newton = false;
             }
             angle += step;
             if (!between && std::abs(angle) >= right) return false;
             here = at(angle);
-            if (std::abs(step) < settled && here.second < 0.0) break;
+            if (newton && std::abs(step) < settled) break;
             if (between) {
                 (here.slope > 0.0 ? low : high) = angle;
             } else if (here.slope * up < 0.0) {
