@@ -6,6 +6,7 @@
 #include <fibrant/solver/automatic_solver.hpp>
 #include <fibrant/solver/block_band_cholesky.hpp>
 #include <fibrant/solver/block_cholesky.hpp>
+#include <fibrant/solver/chain_closing.hpp>
 #include <fibrant/solver/chain_clusters.hpp>
 #include <fibrant/solver/chain_couplings.hpp>
 #include <fibrant/solver/chain_factors.hpp>

@@ -105,14 +105,16 @@ TEST_CASE("all strategies give the same ring") {
 TEST_CASE("Love's ring: under line pressure an ellipse grows as 1 / (1 - p / p_c), p_c = 3 EI / R^3") {
     using B = beam::DirectorBeam<3>;
     using M = AnyModel<B>;
-    Ring ring{.elements = 40, .ellipse = 1e-4};
+    Ring ring{.elements = 40, .radius = 0.01, .ellipse = 1e-4};
     for (const double load : {1.5, 2.4}) {
         scene::Assembly assembly;
         assembly.add(ring.specification<B>());
         for (const double side : {0.0, 0.5}) assembly.hold_position(ring.at<B>(side), Vec3(0, 1, 1).asDiagonal());
         assembly.hold_position(ring.at<B>(0.25), Vec3(1, 0, 1).asDiagonal());
         assembly.apply(scene::LinePressure{.fibre = 0, .pressure = load});
-        simulation::Simulator<M> simulator(assembly, parameters<B>(ring, "automatic"));
+        auto p = parameters<B>(ring, "automatic");
+        p.iteration.step_tolerance = 1e-5;  // rounding, 1e-16 E A, moves a ring by a thousand times as much that is about to buckle
+        simulation::Simulator<M> simulator(assembly, p);
         const auto ellipse = [&] {
             return 0.5 * ((simulator.value(ring.at<B>(0.0)) - simulator.value(ring.at<B>(0.5))).norm() -
                           (simulator.value(ring.at<B>(0.25)) - simulator.value(ring.at<B>(0.75))).norm());

@@ -164,26 +164,30 @@ public:
     /// Lower block band of a fibre with its own part of every contact: block (a, d) is A(a, a - d). The last nodes of a closed fibre are not coupled
     /// with its first one in it: positive semidefinite where its elements are.
     void chain_band(Index fibre, Matrix& blocks) const {
-        const Index size = nodes(fibre);
-        blocks.setZero(size * block, (reach + 1) * block);
-        for (Index a = 0; a < size; ++a)
-            for (Index d = 0; d <= std::min<Index>(a, reach); ++d)
-                blocks.block<block, block>(a * block, d * block) = row(fibre, a).template block<block, block>(0, (reach - d) * block);
-        pairs_.add_own(pairs_.sides(first_node_[core::at(fibre)], first_node_[core::at(fibre + 1)]),
-                       [&](std::int32_t first, const beam::Particle<B>& weights, const Mat3& stiffness) {
-            const Index node = (first - first_unknown(fibre)) / block;
-            each_pair(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
-                blocks.block<3, 3>((node + a) * block + 3 * v, (a - b) * block + 3 * w) += product;
-            });
-        });
+        unheld_band(fibre, blocks);
         const scene::Chain& chain = layout_.chains[core::at(fibre)];
-        if (chain.closed) blocks.topLeftCorner<block, block>() += blocks.block<block, block>((size - 1) * block, 0);
+        if (chain.closed) blocks.topLeftCorner<block, block>() += blocks.block<block, block>((chain.nodes - 1) * block, 0);
         for (auto held = std::lower_bound(supports_.begin(), supports_.end(), std::pair<Index, double>(chain.first_vector, 0.0));
              held != supports_.end() && held->first < chain.first_vector + chain.nodes * chain.vectors_per_node; ++held) {
             const Index row = 3 * (held->first - chain.first_vector);
             blocks.block<3, 3>(row, row % block).diagonal().array() += held->second;
         }
         project_band(fibre, blocks);
+    }
+    /// Of a closed fibre the columns of its first node in the last nodes, as many as are coupled with it, in order: what chain_band leaves out.
+    void chain_corner(Index fibre, Matrix& corner) const {
+        Matrix blocks;
+        unheld_band(fibre, blocks);
+        const scene::Chain& chain = layout_.chains[core::at(fibre)];
+        const Index own = chain.nodes - 1;
+        corner.resize(reach * block, block);
+        for (Index d = 1; d <= reach; ++d)
+            corner.middleRows<block>((reach - d) * block) = blocks.block<block, block>(own * block, d * block).transpose();
+        for (const scene::HeldVector& held : layout_.held) {
+            const Index v = held.vector - chain.first_vector, last = v - (own - reach) * B::vectors_per_node;
+            if (v >= 0 && v < B::vectors_per_node) corner.middleCols<3>(3 * v) = (corner.middleCols<3>(3 * v) * held.free).eval();
+            if (last >= 0 && last < reach * B::vectors_per_node) corner.middleRows<3>(3 * last) = (held.free * corner.middleRows<3>(3 * last)).eval();
+        }
     }
 
     /// Diagonal blocks of a fibre's nodes.
@@ -241,6 +245,21 @@ public:
     }
 
 private:
+    /// The band as if nothing were held, and the last node of a closed fibre were one of its own.
+    void unheld_band(Index fibre, Matrix& blocks) const {
+        const Index size = nodes(fibre);
+        blocks.setZero(size * block, (reach + 1) * block);
+        for (Index a = 0; a < size; ++a)
+            for (Index d = 0; d <= std::min<Index>(a, reach); ++d)
+                blocks.block<block, block>(a * block, d * block) = row(fibre, a).template block<block, block>(0, (reach - d) * block);
+        pairs_.add_own(pairs_.sides(first_node_[core::at(fibre)], first_node_[core::at(fibre + 1)]),
+                       [&](std::int32_t first, const beam::Particle<B>& weights, const Mat3& stiffness) {
+            const Index node = (first - first_unknown(fibre)) / block;
+            each_pair(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
+                blocks.block<3, 3>((node + a) * block + 3 * v, (a - b) * block + 3 * w) += product;
+            });
+        });
+    }
     /// Vectors of images become those of their sources.
     void replace_images(Index fibre, std::span<Index> vectors) const noexcept {
         const scene::Chain& chain = layout_.chains[core::at(fibre)];

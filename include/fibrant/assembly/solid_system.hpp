@@ -94,6 +94,7 @@ public:
             blocks.block<3, 3>(3 * n, 0) = (held.free * blocks.block<3, 3>(3 * n, 0) * held.free + Mat3::Identity() - held.free).eval();
         }
     }
+    void chain_corner(Index chain, Matrix& corner) const { fibres_.chain_corner(chain, corner); }
     void node_blocks(Index chain, Matrix& blocks) const {
         if (chain < core::count(fibres_.layout().chains)) return fibres_.node_blocks(chain, blocks);
         chain_band(chain, blocks);

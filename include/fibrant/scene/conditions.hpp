@@ -14,7 +14,7 @@ namespace fibrant::scene {
 /// A material point on a fibre's centreline; it falls on the nearest node.
 struct Station {
     Index fibre = -1;
-    double fraction = 0.0;  ///< of the rest length, in [0, 1]
+    double fraction = 0.0;  ///< of the rest length, in [0, 1]; of a closed fibre 1 is 0
 };
 
 inline Station first_end(Index fibre) { return {fibre, 0.0}; }

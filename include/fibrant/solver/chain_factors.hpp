@@ -3,6 +3,7 @@
 /// @file Factors of all chains of a system: the preconditioner that is exact while nothing touches.
 
 #include <fibrant/solver/block_band_cholesky.hpp>
+#include <fibrant/solver/chain_closing.hpp>
 #include <fibrant/solver/linear_solver.hpp>
 
 #include <algorithm>
@@ -25,10 +26,10 @@ public:
     /// Sorts the chains into packs of equal shape, and of one class each.
     /// @param class_of  of each chain, from 0 to classes - 1; none: all are of one class
     void analyse(const scene::DofLayout& layout, std::span<const int> class_of = {}, int classes = 1) {
-        std::map<std::tuple<int, int, int, int>, std::vector<Index>> kinds;
+        std::map<std::tuple<int, int, int, int, bool>, std::vector<Index>> kinds;
         for (Index c = 0; c < core::count(layout.chains); ++c) {
             const BandShape shape = shape_of(layout.chains[core::at(c)]);
-            kinds[{class_of.empty() ? 0 : class_of[core::at(c)], shape.nodes, shape.block, shape.reach}].push_back(c);
+            kinds[{class_of.empty() ? 0 : class_of[core::at(c)], shape.nodes, shape.block, shape.reach, layout.chains[core::at(c)].closed}].push_back(c);
         }
         std::vector<Pack> before = std::move(packs_);
         packs_.clear();
@@ -41,7 +42,8 @@ public:
                 const std::size_t take = left >= lanes ? lanes : left > 2 ? left : 1;  // two lanes of eight are no gain
                 packs_.push_back({std::vector<Index>(chains.begin() + static_cast<std::ptrdiff_t>(first),
                                                      chains.begin() + static_cast<std::ptrdiff_t>(first + take)),
-                                  take_or_make(before, shape_of(layout.chains[core::at(chains[first])]), take > 1)});
+                                  take_or_make(before, shape_of(layout.chains[core::at(chains[first])]), take > 1),
+                                  {}, {}});
                 first += take;
             }
         }
@@ -57,7 +59,7 @@ public:
         std::vector<SolveStatus> status(packs_.size(), SolveStatus::converged);
         core::parallel_for(core::count(packs_), [&](Index p) {
             Pack& pack = packs_[core::at(p)];
-            status[core::at(p)] = std::visit([&](auto& band) { return prepare(system, pack.chains, band, see); }, pack.factor);
+            status[core::at(p)] = std::visit([&](auto& band) { return prepare(system, pack.chains, band, see, pack.closing(band)); }, pack.factor);
         }, grain(system.layout(), core::count(packs_)));
         SolveStatus worst = SolveStatus::converged;
         for (const SolveStatus s : status) {
@@ -71,14 +73,6 @@ public:
         return prepare(system, [](Index, const Matrix&) {});
     }
 
-    /// z = B^-1 r
-    void apply(const scene::DofLayout& layout, const Vector& r, Vector& z) const {
-        core::parallel_for(core::count(packs_), [&](Index p) {
-            const Pack& pack = packs_[core::at(p)];
-            std::visit([&](const auto& band) { solve(layout, pack.chains, band, r, z); }, pack.factor);
-        }, grain(layout, core::count(packs_)));
-    }
-
     /// Calls body(pack, chains, factor) for the packs of one class, from several threads at once: their number, from 0 to packs() - 1, the
     /// chains of the first lanes, and their BlockBandCholesky.
     template <class Body>
@@ -90,6 +84,13 @@ public:
         }, grain(layout, last - first));
     }
     Index packs() const noexcept { return core::count(packs_); }
+    /// values <- B^-1 values of the chains of a pack, by its factor.
+    template <int Block, int Lanes, class Kept>
+    void solve(Index pack, const BlockBandCholesky<Block, Lanes>& factor, std::vector<Kept>& values) const {
+        const auto& closing = packs_[core::at(pack)].closing(factor);
+        if (closing.empty()) factor.solve(values.data());
+        else closing.apply(values, [&](std::vector<Kept>& rest) { factor.solve(rest.data()); });
+    }
 
     /// Values of the chains of a pack, a chain a lane; lanes beyond the chains repeat the first.
     template <int Block, int Lanes>
@@ -111,6 +112,18 @@ public:
             for (std::size_t k = 0; k < values.size(); ++k) to[k] = static_cast<double>(values[k][static_cast<Index>(lane)]);
         }
     }
+    /// z = B^-1 r
+    void apply(const scene::DofLayout& layout, const Vector& r, Vector& z) const {
+        core::parallel_for(core::count(packs_), [&](Index p) {
+            const Pack& pack = packs_[core::at(p)];
+            std::visit([&](const auto& band) {
+                auto values = to_lanes(layout, pack.chains, band, r);
+                solve(p, band, values);
+                from_lanes(layout, pack.chains, values, z);
+            }, pack.factor);
+        }, grain(layout, core::count(packs_)));
+    }
+
     static std::size_t unknowns(const BandShape& shape) { return core::at(static_cast<Index>(shape.nodes) * shape.block); }
 
     /// Bytes of the factors.
@@ -130,6 +143,18 @@ private:
     struct Pack {
         std::vector<Index> chains;  // fewer than the lanes: the others repeat the first
         Factor factor;
+        ChainClosing<Eigen::Array<float, 1, 1>> closing_one;  // of closed chains
+        ChainClosing<Eigen::Array<float, static_cast<int>(lanes), 1>> closing_several;
+        template <int Block, int Lanes>
+        auto& closing(const BlockBandCholesky<Block, Lanes>&) noexcept {
+            if constexpr (Lanes == 1) return closing_one;
+            else return closing_several;
+        }
+        template <int Block, int Lanes>
+        const auto& closing(const BlockBandCholesky<Block, Lanes>&) const noexcept {
+            if constexpr (Lanes == 1) return closing_one;
+            else return closing_several;
+        }
     };
 
     static BandShape shape_of(const scene::Chain& chain) {
@@ -156,10 +181,11 @@ private:
         return make(shape, several);
     }
 
-    template <class System, int Block, int Lanes, class See>
+    template <class System, int Block, int Lanes, class See, class Closing>
     static SolveStatus prepare(const System& system, const std::vector<Index>& chains,
-                               BlockBandCholesky<Block, Lanes>& factor, const See& see) {
+                               BlockBandCholesky<Block, Lanes>& factor, const See& see, Closing& closing) {
         std::array<Matrix, core::at(Lanes)> bands;
+        closing.clear();
         for (std::size_t lane = 0; lane < bands.size(); ++lane) {
             if (lane >= chains.size()) {
                 bands[lane] = bands[0];
@@ -168,12 +194,20 @@ private:
             system.chain_band(chains[lane], bands[lane]);
             if (!bands[lane].allFinite()) return SolveStatus::not_finite;
             see(chains[lane], std::as_const(bands[lane]));
+            if constexpr (requires(Matrix corner) { system.chain_corner(chains[lane], corner); }) {
+                const scene::Chain& chain = system.layout().chains[core::at(chains[lane])];
+                if (!chain.closed) continue;
+                Matrix corner;
+                system.chain_corner(chains[lane], corner);
+                closing.take(lane, bands[lane], corner, factor.shape().block, chain.nodes - 1);
+            }
         }
         SolveStatus status = SolveStatus::converged;
         std::array<Matrix, core::at(Lanes)> shifted;
         for (int attempt = 0;; ++attempt) {
             const auto accepted = factor.factor(std::span<const Matrix, core::at(Lanes)>(attempt == 0 ? bands : shifted), least_pivot);
-            if (std::find(accepted.begin(), accepted.end(), false) == accepted.end()) return status;
+            if (std::find(accepted.begin(), accepted.end(), false) == accepted.end())
+                return closing.finish([&](auto& values) { factor.solve(values.data()); }) ? status : SolveStatus::indefinite;
             if (attempt == 0) shifted = bands;
             if (attempt > 0) status = SolveStatus::indefinite;  // the least shift cures what merely floats
             for (std::size_t lane = 0; lane < bands.size(); ++lane) {
@@ -198,14 +232,6 @@ private:
         for (Index k = 0; k < band.rows(); ++k) {
             shifted(k, k % m) += share * std::max(std::abs(band(k, k % m)), 1e-9 * largest);
         }
-    }
-
-    template <int Block, int Lanes>
-    static void solve(const scene::DofLayout& layout, const std::vector<Index>& chains,
-                      const BlockBandCholesky<Block, Lanes>& factor, const Vector& r, Vector& z) {
-        auto values = to_lanes(layout, chains, factor, r);
-        factor.solve(values.data());
-        from_lanes(layout, chains, values, z);
     }
 
     std::vector<Pack> packs_;        // class by class

@@ -52,7 +52,7 @@ public:
             factors_.for_class(layout, k, [&](Index pack, const auto& chains, const auto& factor) {
                 auto y = ChainFactors::to_lanes(layout, chains, factor, r);
                 for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.subtract_earlier(chains[lane], line(y, lane));
-                factor.solve(y.data());
+                factors_.solve(pack, factor, y);
                 for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.keep(chains[lane], line(y, lane));
                 values_[core::at(pack)].assign(y.front().data(), y.front().data() + y.front().size() * core::count(y));
             });
@@ -70,7 +70,7 @@ public:
                 bool coupled = false;
                 for (std::size_t lane = 0; lane < chains.size(); ++lane)
                     if (couplings_.couples(chains[lane])) couplings_.subtract(chains[lane], line(values, lane)), coupled = true;
-                if (coupled) factor.solve(values.data());
+                if (coupled) factors_.solve(pack, factor, values);
                 if (product != nullptr) {  // y + c - z
                     auto opposite = ChainFactors::to_lanes(layout, chains, factor, motion_);
                     for (std::size_t i = 0; i < opposite.size(); ++i) opposite[i] -= values[i];
