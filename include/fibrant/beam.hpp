@@ -16,3 +16,4 @@
 #include <fibrant/beam/quaternion.hpp>
 #include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/beam/section_law.hpp>
+#include <fibrant/beam/section_sides.hpp>

@@ -30,4 +30,5 @@
 #include <fibrant/solver/stabilised_biconjugate_gradient.hpp>
 #include <fibrant/solver/supernodes.hpp>
 #include <fibrant/solver/tied_chains.hpp>
+#include <fibrant/solver/tolerance_use.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>

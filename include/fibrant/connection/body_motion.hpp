@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace fibrant::connection {
@@ -61,6 +62,21 @@ public:
         follow();
     }
     void accept() { accepted_poses_ = poses_, accepted_gradients_ = gradients_; }
+
+    /// Greatest turn of a body that amplitudes prescribe, with those of the bodies it hangs on, and the body [radian].
+    std::pair<double, Index> greatest_turn(std::span<const double> from, std::span<const double> to) const {
+        std::vector<Vec3> change(poses_.size(), Vec3::Zero());
+        for (const Driven& driven : held_)
+            if (!driven.of.of_cell && driven.of.component >= 3)
+                change[core::at(driven.of.owner)][driven.of.component - 3] = amplitude(driven, to) - amplitude(driven, from);
+        std::pair<double, Index> most{0.0, -1};
+        for (Index body = 0; body < bodies(); ++body) {
+            double sum = 0.0;
+            for (Index b = body; b >= 0; b = parent(b)) sum += change[core::at(b)].norm();
+            if (sum > most.first) most = {sum, body};
+        }
+        return most;
+    }
 
     Index bodies() const noexcept { return core::count(poses_); }
     Index cells() const noexcept { return core::count(gradients_); }

@@ -9,6 +9,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 #include <utility>
@@ -101,6 +102,34 @@ public:
                 free -= fresh * fresh.transpose();
             }
         }
+    }
+
+    /// Greatest turn of a held section on the way between amplitudes, which may be several times around, and the vector that is
+    /// turned [radian]. Rotations and paths are looked at in between, so that up to half as many turns are told as there are looks.
+    std::pair<double, Index> greatest_turn(std::span<const double> from, std::span<const double> to) const {
+        constexpr int looks = 64;
+        std::pair<double, Index> most{0.0, -1};
+        for (const Item& item : items_) {
+            const double a = from[core::at(item.channel)], b = to[core::at(item.channel)];
+            const bool position = item.hold.vector == scene::NodeVector::position, led = item.hold.path || !item.hold.displacement.isZero(0.0);
+            if (a == b || position || (!item.hold.rotation && !(led && !turning))) continue;
+            double sum = 0.0;
+            Mat3 turn_before;
+            Vec3 vector_before;
+            for (int k = 0; k <= looks; ++k) {
+                const double amplitude = a + (b - a) * k / looks;
+                const Mat3 turn = item.hold.rotation ? item.hold.rotation(amplitude) : Mat3(Mat3::Identity());
+                const Vec3 vector = turn * item.rest + (item.hold.path ? item.hold.path(amplitude) : Vec3(amplitude * item.hold.displacement));
+                if (k > 0) {
+                    const double by_turn = core::rotation_vector(Mat3(turn_before.transpose() * turn)).norm();
+                    const double by_vector = turning ? 0.0 : std::atan2(vector_before.cross(vector).norm(), vector_before.dot(vector));
+                    sum += std::max(by_turn, by_vector);
+                }
+                turn_before = turn, vector_before = vector;
+            }
+            if (sum > most.first) most = {sum, item.vector};
+        }
+        return most;
     }
 
     /// Throws std::invalid_argument where holds of one vector ask for different places in a direction that both hold, and, if `finite`,

@@ -22,7 +22,7 @@
 
 namespace fibrant::contact {
 
-/// The contacts of a mesh. Fibres and abscissae fix the order of elements and sums: the number of threads changes no bit.
+/// The contacts of a mesh. Fibres and abscissae fix orders: threads change no bit.
 template <beam::BeamElement B, proximity::ProximitySearch Search, law::NormalLaw Normal, law::FrictionLaw Friction>
 class ContactSet {
 public:
@@ -42,6 +42,7 @@ public:
     const std::vector<ContactResponse>& responses() const noexcept { return responses_; }
     const std::vector<law::FrictionResponse<typename Friction::History>>& frictions() const noexcept { return frictions_; }
     const std::vector<Zone>& zones() const noexcept { return zones_; }
+    std::vector<Zone>& zones() noexcept { return zones_; }
     const Memory& accepted_memory() const noexcept { return accepted_; }
     const ForcedOrders& orders() const noexcept { return orders_; }
     /// The element's normal is prescribed by a forced order.
@@ -193,10 +194,10 @@ public:
         }, mesh_->grain());
     }
 
-    /// Sides of elements on a fibre, in order.
+    /// Sides of elements, in order.
     std::span<const std::int32_t> sides(Index fibre) const noexcept { return sides_.of(fibre); }
 
-    /// Greatest gap or penetration of what carries force [length].
+    /// Greatest gap or depth of what carries force [length].
     double misfit() const {
         double most = 0.0;
         for (std::size_t k = 0; k < elements_.size(); ++k)
@@ -243,7 +244,7 @@ public:
         accepted_zones_ = zones_;
     }
 
-    /// Back to what was accepted last.
+    /// Back to what was accepted.
     void restore() {
         zones_ = accepted_zones_;
         elements_.clear(), responses_.clear(), frictions_.clear();

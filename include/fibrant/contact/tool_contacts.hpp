@@ -237,13 +237,31 @@ public:
         return most;
     }
 
+    /// Greatest penetration that stiffness adapts to, but for gaps that a law limits [length].
+    double deepest() const {
+        double most = 0.0;
+        for (std::size_t k = 0; k < responses_.size(); ++k)
+            if (!(elements_[k].shift.value() > 0.0)) most = std::max(most, adapting_penetration(elements_[k], responses_[k]));
+        return most;
+    }
+    /// Stiffens pairs of a fibre and a tool that are deeper than allowed. @returns whether any became stiffer
+    bool stiffen(const Normal& normal, const StiffnessAdaptation& adaptation) {
+        const std::vector<double> depth = depths();
+        bool any = false;
+        for (Index f = 0; f < mesh_->fibre_count(); ++f)
+            for (Index t = 0; t < core::count(tools_); ++t) {
+                if (!(depth[slot(f, t)] > adaptation.allowed_penetration)) continue;
+                double& own = stiffness_[slot(f, t)];
+                const double before = own;
+                own = adapted_stiffness(adaptation, normal, own, reference_[core::at(f)], depth[slot(f, t)]);
+                any = any || own > before;
+            }
+        return any;
+    }
+
     void accept(const Vector& state, const Normal& normal, const StiffnessAdaptation& adaptation) {
         accepted_ = records(state);
-        std::vector<double> deepest(stiffness_.size(), 0.0);
-        for (std::size_t k = 0; k < elements_.size(); ++k) {
-            double& depth = deepest[slot(elements_[k].fibre, elements_[k].tool)];
-            depth = std::max(depth, adapting_penetration(elements_[k], responses_[k]));
-        }
+        const std::vector<double> deepest = depths();
         for (Index f = 0; f < mesh_->fibre_count(); ++f)
             for (Index t = 0; t < core::count(tools_); ++t) {
                 double& own = stiffness_[slot(f, t)];
@@ -285,6 +303,15 @@ private:
     /// of a radius apart. A fibre that lies on a plate and sags keeps its sections.
     static constexpr double slanted = 0.3;
 
+    /// Penetration of each fibre in each tool [length].
+    std::vector<double> depths() const {
+        std::vector<double> depth(stiffness_.size(), 0.0);
+        for (std::size_t k = 0; k < elements_.size(); ++k) {
+            double& own = depth[slot(elements_[k].fibre, elements_[k].tool)];
+            own = std::max(own, adapting_penetration(elements_[k], responses_[k]));
+        }
+        return depth;
+    }
     std::size_t slot(Index fibre, Index tool) const noexcept { return core::at(fibre * core::count(tools_) + tool); }
     Vec3 tangent(const Element& element, const Vector& state) const {
         return contact_tangent(*mesh_, state, element.fibre, element.u).normalized();

@@ -62,6 +62,22 @@ struct Position {
             for (double& factor : holding) factor = std::max(1.0, share * factor);
     }
 
+    /// Begins the next stage. @param amplitudes  now
+    template <Model M>
+    void next_stage(const std::vector<Stage<M>>& stages, const std::vector<double>& amplitudes) {
+        const double left = damping * stages[core::at(stage)].damping;
+        ++stage;
+        in_stage = 0, easy = 0, progress = 0.0, fraction = 1.0;
+        damping = 1.0;
+        if (stage >= core::count(stages) || !stages[core::at(stage)].damping_goes_on) damping_floor = 0.0;
+        if (stage < core::count(stages)) {
+            const Stage<M>& next = stages[core::at(stage)];
+            if (next.damping_goes_on && next.damping > 0.0) damping = std::min(left / next.damping, 1.0);
+        }
+        stage_over = false;
+        from = amplitudes;
+    }
+
     /// Damping of the fibre that is held hardest, over that of the stage.
     double hardest() const { return damping * (holding.empty() ? 1.0 : *std::max_element(holding.begin(), holding.end())); }
 

@@ -41,6 +41,8 @@ struct IncrementReport {
     /// Springs of the damping over those of the stage: of all fibres, and of the fibre that is held hardest. Cuts make them harder. Both are
     /// 1 for increments from before a resume.
     double springs = 1, hardest_springs = 1;
+    /// What it was accepted at, over the tolerances that are stated: at most 1 each, but in stages that are loose by their own word.
+    solver::ToleranceUse use;
     contact::ContactFigures contact;
     EnergyBalance energy;
     double seconds = 0;         ///< wall time of the increment
@@ -67,6 +69,8 @@ struct Report {
     solver::IterationCounts counts;
     double residual = 0;                 ///< at the end [1]
     contact::ContactFigures contact;     ///< at the end
+    solver::ToleranceUse use;            ///< of the last increment: what the end was accepted at, over what is stated [1]
+    solver::ToleranceUse most_use;       ///< greatest of all increments
     EnergyBalance energy;
     std::string solver;                  ///< what a linear solver that chooses has used and why, in this process; empty for others
     std::array<double, core::part_count> seconds{};  ///< by core::Part

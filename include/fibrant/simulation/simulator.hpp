@@ -4,6 +4,7 @@
 
 #include <fibrant/core/stage_clock.hpp>
 #include <fibrant/observe/observer.hpp>
+#include <fibrant/simulation/acceptance.hpp>
 #include <fibrant/simulation/energy_account.hpp>
 #include <fibrant/simulation/increment_file.hpp>
 #include <fibrant/simulation/mean_motion.hpp>
@@ -90,7 +91,7 @@ public:
         auto saved = start;
         bool unsaved = false;
         for (Index k = 0; k < position_.stage; ++k) take_laws(stages[core::at(k)]);  // they stay in force
-        for (; position_.stage < core::count(stages); next_stage(stages)) {
+        for (; position_.stage < core::count(stages); position_.next_stage(stages, amplitudes_)) {
             const Stage<M>& stage = stages[core::at(position_.stage)];
             take_laws(stage);
             while (!position_.stage_over) {
@@ -183,20 +184,6 @@ private:
         if (stage.friction) contacts_.friction_law() = *stage.friction;
     }
 
-    void next_stage(const std::vector<Stage<M>>& stages) {
-        const double left = position_.damping * stages[core::at(position_.stage)].damping;
-        ++position_.stage;
-        position_.in_stage = 0, position_.easy = 0, position_.progress = 0.0, position_.fraction = 1.0;
-        position_.damping = 1.0;
-        if (position_.stage >= core::count(stages) || !stages[core::at(position_.stage)].damping_goes_on) position_.damping_floor = 0.0;
-        if (position_.stage < core::count(stages)) {
-            const Stage<M>& next = stages[core::at(position_.stage)];
-            if (next.damping_goes_on && next.damping > 0.0) position_.damping = std::min(left / next.damping, 1.0);
-        }
-        position_.stage_over = false;
-        position_.from = amplitudes_;
-    }
-
     /// One accepted increment, after as many cuts as it takes; gave_up(attempt) is told of those.
     template <class GaveUp>
     bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report, const GaveUp& gave_up) {
@@ -218,6 +205,13 @@ private:
             }
             contacts_.allow_penetration(stage.allowed_penetration.value_or(parameters_.contact.stiffness.allowed_penetration));
             const std::vector<double> amplitudes = amplitudes_at(stage, progress, position_, channels_, amplitudes_), change = difference(amplitudes, amplitudes_);
+            if (const std::string reason = turned_too_far(mesh_, equilibrium_, amplitudes_, amplitudes); !reason.empty()) {
+                ++increment.cuts, position_.fraction *= 0.5, position_.easy = 0;
+                gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, 2.0 * position_.fraction, position_.damping, 0, reason, core::seconds_since(start)});
+                if (position_.fraction >= loading.smallest_fraction) continue;
+                report.reason = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": " + reason;
+                return false;
+            }
             Vector trial = state_;
             move_tools(amplitudes);
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping, position_.holding);
@@ -229,7 +223,10 @@ private:
             solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, stage.looseness, stage.largest_displacement);
             increment.counts += attempt.counts;
             attempt_newton = static_cast<double>(attempt.counts.newton) / static_cast<double>(std::max<Index>(1, attempt.counts.normal_passes));
-            if (touching && attempt.converged) refuse_passage(trial, stage.forced_orders, attempt);
+            if (attempt.converged) {
+                attempt.reason = clock_.time(core::Part::search, [&] { return refusal(mesh_, beam_, passage_, contacts_, state_, trial, stage.forced_orders, touching); });
+                if (!attempt.reason.empty()) attempt.converged = false, attempt.unsettled.resize(0);  // whoever moved most is not at fault
+            }
             // What nothing foretells would be held back: a first solution tells where it goes.
             if (attempt.converged && stage.damping_carried && stage.damping > 0.0 && !rehearsed && !motion_.foretells(change)) {
                 motion_.learn(mesh_, state_, trial, change);
@@ -244,7 +241,7 @@ private:
                 equilibrium_.ties().accept();
                 energy_.rewind(mesh_, state_);
                 amplitudes_ = amplitudes;
-                increment.residual = attempt.residual;
+                increment.residual = attempt.residual, increment.use = attempt.use;
                 increment.displacement = attempt.displacement;
                 increment.damping = attempt.force_scale > 0.0 ? equilibrium_.norm(energy_.damping()) / attempt.force_scale : 0.0;
                 increment.fraction = position_.fraction;
@@ -286,16 +283,6 @@ private:
         return true;
     }
 
-    /// An attempt that ends with fibres on another side of each other, or of a tool, than they began has failed.
-    void refuse_passage([[maybe_unused]] const Vector& trial, [[maybe_unused]] bool forced, [[maybe_unused]] solver::AttemptReport& attempt) {
-        if constexpr (core::Active<Passage>) {
-            const auto passed = clock_.time(core::Part::search, [&] { return passage_.first(state_, trial, contacts_, forced, true); });
-            if (!passed) return;
-            attempt.converged = false, attempt.reason = contact::text(*passed);
-            attempt.unsettled.resize(0);  // whoever moved most is not at fault
-        }
-    }
-
     template <class Observer>
     static void tell([[maybe_unused]] Observer& observer, [[maybe_unused]] const FailedAttempt& attempt) {
         if constexpr (requires { observer.gave_up(attempt); }) observer.gave_up(attempt);
@@ -316,7 +303,9 @@ private:
         if (!report.increments.empty()) {
             report.contact = report.increments.back().contact;
             report.residual = report.increments.back().residual;
+            report.use = report.increments.back().use;
         }
+        for (const IncrementReport& increment : report.increments) report.most_use.add(increment.use);
         report.energy = energy_.balance();
         if constexpr (requires { { linear_.account() } -> std::convertible_to<std::string>; }) report.solver = linear_.account();
         report.seconds = clock_.seconds();

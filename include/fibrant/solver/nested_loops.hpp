@@ -2,7 +2,9 @@
 #pragma once
 /// @file The three nested loops of an increment: contact elements, normal directions, Newton (Durville, section 15.3.2).
 
+#include <fibrant/contact/allowed_depth.hpp>
 #include <fibrant/solver/newton.hpp>
+#include <fibrant/solver/tolerance_use.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +22,7 @@ struct AttemptReport {
     double force_scale = 0.0;   ///< norm of those [force]
     double step = 0.0;          ///< last Newton step [length]
     double displacement = 0.0;  ///< greatest of the increment [length]
+    ToleranceUse use;           ///< of one that has converged
     Vector unsettled;           ///< last step, or displacement of the last pass or of the whole, of an attempt that has failed
     double allowed = 0.0;       ///< what that may be anywhere without harm [length]
 };
@@ -37,7 +40,8 @@ public:
     /// @param accepted  last accepted state
     /// @param expected  displacement that the search should reach over [length]
     /// @param forced    keep forced orders
-    /// @param looseness multiplies the tolerances of normal and contact passes, >= 1: for paths that are only a means
+    /// @param looseness multiplies the tolerances of normal and contact passes, >= 1: for paths that are only a means. At 1 nothing is accepted
+    ///                  beyond what is stated: a residual that passes left is solved for, and zones that are too deep become stiffer
     /// @param furthest  displacement beyond which the attempt is given up [length]
     AttemptReport solve(Vector& state, const Vector& accepted, double expected, bool forced, double looseness = 1.0,
                         double furthest = std::numeric_limits<double>::infinity()) {
@@ -53,7 +57,8 @@ public:
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
         Vector searched, travel;                                  // state of the last search, displacement of the last pass
-        Index passes = 0, searches = 0, moves = 0, renewals = 0;
+        const bool strict = looseness <= 1.0;
+        Index passes = 0, searches = 0, moves = 0, renewals = 0, stiffenings = 0;
         // Further than so many searches reach: what hardly anything holds goes on for ever, and where displacements have a bound,
         // more damping or a smaller increment costs less than to follow it.
         const Index most_moves = std::isfinite(furthest) ? 2 : 6;
@@ -98,20 +103,64 @@ public:
                 continue;
             }
             if (!contact_possible_) break;
+            // Passes before were of another stiffness, and do not count.
+            const auto stiffer = [&] {
+                return strict && stiffenings < most_stiffenings && contact::stiffen_deep_zones(*contacts_, contacts_->parameters().stiffness) && ++stiffenings > 0;
+            };
+            if (stiffer()) continue;
             if (change >= contact_tolerance) {
                 ++passes;
-            } else if (!multipliers_change()) {
-                break;
-            } else if (++renewals > parameters_.multiplier_limit) {
+                continue;
+            }
+            if (!multipliers_change()) {
+                if (!strict || report.residual <= parameters_.residual_tolerance) break;
+                // Inner loops are solved to a part of what the outer ones move: what is accepted is solved to what is stated.
+                const NewtonReport last = newton.solve(state, parameters_.step_tolerance * radius_, searched, bound, report.counts);
+                if (last.status == NewtonStatus::converged) equilibrium_->close_ties(state);
+                report.residual = last.residual.relative(), report.force_scale = last.residual.scale, report.step = last.step;
+                if (last.status == NewtonStatus::moved) {
+                    ++moves;
+                    continue;
+                }
+                if (last.status != NewtonStatus::converged) {
+                    report.reason = reason(last), report.unsettled = newton.last_step();
+                    return report;
+                }
+                report.displacement = equilibrium_->greatest(state - accepted);
+                change = equilibrium_->greatest(state - before_pass);
+                if (stiffer()) continue;
+                if (change >= contact_tolerance) {
+                    ++passes;
+                    continue;
+                }
+                if (!multipliers_change()) break;
+            }
+            if (++renewals > parameters_.multiplier_limit) {
                 report.reason = "multipliers do not settle: a contact misses its surface by " + core::text(contacts_->misfit() / radius_) + " radii";
                 return report;
             }
+        }
+        report.use = {report.residual / parameters_.residual_tolerance, turn_ / parameters_.normal_tolerance,
+                      contact_possible_ ? change / (parameters_.contact_tolerance * radius_) : 0.0,
+                      contact_possible_ ? contact::depth_over_allowed(*contacts_, contacts_->parameters().stiffness) : 0.0};
+        if (strict && report.use.penetration > 1.0 && adapts()) {
+            report.reason = "contact is " + core::text(report.use.penetration) + " times as deep as allowed, as stiff as it may be";
+            return report;
         }
         report.converged = true;
         return report;
     }
 
 private:
+    /// Of zones, within an increment: each a factor StiffnessAdaptation.largest_change, so that ten are five decades by default.
+    static constexpr Index most_stiffenings = 10;
+
+    /// A penalty whose floor and cap are one is as stiff as a user wants it, and as deep as that makes it.
+    bool adapts() const {
+        const contact::StiffnessAdaptation& adaptation = contacts_->parameters().stiffness;
+        return adaptation.floor_fraction < adaptation.cap_fraction;
+    }
+
     /// What is driven moves by more than a search reaches where nothing is in its way. What it passed through on the way from the last
     /// search is met where they touch, and the next search sees it.
     void step_back(Vector& state, const Vector& searched, bool forced) {
@@ -140,7 +189,7 @@ private:
         Vector travel, last_travel;  // displacement of this pass and of the one before
         for (Index pass = 0; pass < parameters_.normal_limit; ++pass) {
             if (pass > 0) {
-                const double turn = clock_->time(core::Part::contact, [&] { return contacts_->refresh(state, accepted); });
+                const double turn = turn_ = clock_->time(core::Part::contact, [&] { return contacts_->refresh(state, accepted); });
                 // The contact elements will move on all the same: no need to be finer than a part of what this pass moved.
                 const bool settled = turn < looseness * parameters_.normal_tolerance && change < enough;
                 if (settled || change < std::max(0.1 * parameters_.inexact * first, 0.1 * enough)) break;
@@ -199,6 +248,7 @@ private:
     const Passage* passage_;
     IterationParameters parameters_;
     double radius_;
+    double turn_ = 0.0;  // of normals, in the last normal pass
     bool contact_possible_;
     core::StageClock* clock_;
 };

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Penetration of contact elements against what is allowed, and zones that are stiffened until it is kept.
+
+#include <fibrant/contact/contact_element.hpp>
+#include <fibrant/contact/zone_stiffness.hpp>
+
+#include <algorithm>
+
+namespace fibrant::contact {
+
+namespace detail {
+/// Of the elements of a zone but those whose gap a law limits: these are on their way [length].
+template <class Contacts>
+double depth_of(const Contacts& contacts, const Zone& zone) {
+    double depth = 0.0;
+    for (Index k = zone.first; k < zone.last; ++k) {
+        const auto& element = contacts.elements()[core::at(k)];
+        if (!(element.shift.value() > 0.0)) depth = std::max(depth, adapting_penetration(element, contacts.responses()[core::at(k)]));
+    }
+    return depth;
+}
+}  // namespace detail
+
+/// Greatest penetration of what was evaluated last over what is allowed of it [1]: by zone, of laws with multipliers what they leave.
+/// Forced orders and limited gaps are not asked: they are on their way.
+template <class Contacts>
+double depth_over_allowed(const Contacts& contacts, const StiffnessAdaptation& adaptation) {
+    if constexpr (requires { contacts.normal_law().largest_penetration(); }) {
+        return contacts.misfit() / contacts.normal_law().largest_penetration();
+    } else {
+        double most = 0.0;
+        for (const Zone& zone : contacts.zones())
+            if (!zone.forced) most = std::max(most, detail::depth_of(contacts, zone) / (adaptation.allowed_penetration * zone.penetration_factor));
+        if constexpr (requires { contacts.tools(); }) most = std::max(most, contacts.tools().deepest() / adaptation.allowed_penetration);
+        return most;
+    }
+}
+
+/// Stiffens every zone that is deeper than allowed, as after an increment. @returns whether any became stiffer
+template <class Contacts>
+bool stiffen_deep_zones(Contacts& contacts, const StiffnessAdaptation& adaptation) {
+    bool any = false;
+    if constexpr (!requires { contacts.normal_law().largest_penetration(); }) {
+        for (Zone& zone : contacts.zones()) {
+            const double depth = zone.forced ? 0.0 : detail::depth_of(contacts, zone);
+            if (!(depth > adaptation.allowed_penetration * zone.penetration_factor)) continue;
+            const double before = zone.stiffness;
+            zone.stiffness = adapted_stiffness(adaptation, contacts.normal_law(), before, zone.reference, depth, zone.penetration_factor);
+            any = any || zone.stiffness > before;
+        }
+        if constexpr (requires { contacts.tools(); }) any = contacts.tools().stiffen(contacts.normal_law(), adaptation) || any;
+    }
+    return any;
+}
+
+}  // namespace fibrant::contact
