@@ -103,7 +103,7 @@ void check_reaches_solution(Solver solver) {
     }
 }
 
-/// Held components of x are those of b, as A is the identity there.
+/// Held components of x are those of b, over the stiffness that A has there.
 template <solver::LinearSolver<SyntheticSystem> Solver>
 void check_held(Solver solver) {
     for (const SyntheticSystem& system : solvable_systems()) {
@@ -111,7 +111,7 @@ void check_held(Solver solver) {
         Vector x;
         solve(solver, system, b, 1e-3, x);
         for (const scene::HeldVector& held : system.layout().held) {
-            const Vec3 difference = x.segment<3>(3 * held.vector) - b.segment<3>(3 * held.vector);
+            const Vec3 difference = x.segment<3>(3 * held.vector) - b.segment<3>(3 * held.vector) / system.layout().held_stiffness(held.vector);
             // To the rounding of a projection of x, or of a factor that mixes its components.
             CHECK((difference - held.free * difference).norm() <= 1e-13 * x.segment<3>(3 * held.vector).norm());
         }

@@ -128,7 +128,7 @@ public:
         std::sort(supports_.begin(), supports_.end());
     }
 
-    /// y = A x, the identity outside the free directions of held vectors.
+    /// y = A x.
     void apply(const Vector& x, Vector& y) const {
         const auto is_free = [&](const scene::HeldVector& held) {
             return Vec3(held.free * x.segment<3>(3 * held.vector)) == x.segment<3>(3 * held.vector);
@@ -143,7 +143,7 @@ public:
             scene::complete_ties(layout_, x, y);
         }
         for (const scene::HeldVector& held : layout_.held) {
-            const Vec3 whole = x.segment<3>(3 * held.vector);
+            const Vec3 whole = layout_.held_stiffness(held.vector) * x.segment<3>(3 * held.vector);
             y.segment<3>(3 * held.vector) =
                 held.free * y.segment<3>(3 * held.vector) + whole - held.free * whole;
         }
@@ -343,7 +343,7 @@ private:
                 blocks.block<3, block>(a * block + 3 * v, d * block) = (held->free * blocks.block<3, block>(a * block + 3 * v, d * block)).eval();
             for (Index d = 0; d <= std::min<Index>(chain.nodes - 1 - a, reach); ++d)  // its column, in rows below
                 blocks.block<block, 3>((a + d) * block, d * block + 3 * v) = (blocks.block<block, 3>((a + d) * block, d * block + 3 * v) * held->free).eval();
-            blocks.block<3, 3>(a * block + 3 * v, 3 * v) += Mat3::Identity() - held->free;
+            blocks.block<3, 3>(a * block + 3 * v, 3 * v) += layout_.held_stiffness(held->vector) * (Mat3::Identity() - held->free);
         }
     }
 

@@ -46,7 +46,7 @@ public:
           load_{assembly, mesh, channels}, ties_{assembly, mesh, channels}, solid_{taken(solid, assembly, mesh, channels)},
           system_{system(mesh, solid_)}, stresses_(core::at(mesh.element_count())) {
         // Strains keep the digits of coordinates over an element's length, and E A of them is a force at each node.
-        const double extent = mesh.rest_state().size() > 0 ? mesh.rest_state().cwiseAbs().maxCoeff() : 0.0;
+        const double extent = scene::extent_of(mesh.layout(), mesh.rest_state());
         double sum = 0.0;
         for (Index f = 0; f < mesh.fibre_count(); ++f) {
             const beam::MeshFibre& fibre = mesh.fibre(f);
@@ -144,6 +144,16 @@ public:
         }
     }
 
+    /// Adds the forces of fibres and solids in a state.
+    void add_internal_forces(const Vector& state, Vector& forces) {
+        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
+            for (Index e = 0; e < mesh_->fibre(f).elements; ++e)
+                forces.template segment<element_unknowns>(mesh_->first_unknown(f, e)) +=
+                    beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e));
+        }, mesh_->grain());
+        if constexpr (has_solid) solid_.add_forces(state, forces);
+    }
+
     /// Residual of a state whose contacts have been evaluated.
     ResidualFigures residual(const Vector& state, Vector& residual) {
         ties_.place(state, system_.layout());
@@ -151,12 +161,7 @@ public:
         contacts_->add_forces(residual);
         scene::fold_images(system_.layout(), residual);
         const double contact = norm(residual);
-        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
-            for (Index e = 0; e < mesh_->fibre(f).elements; ++e)
-                residual.template segment<element_unknowns>(mesh_->first_unknown(f, e)) +=
-                    beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e));
-        }, mesh_->grain());
-        if constexpr (has_solid) solid_.add_forces(state, residual);
+        add_internal_forces(state, residual);
         if (damping_ > 0.0) residual += damping_force(state);
         scene::fold_images(system_.layout(), residual);
         external_.setZero(state.size());
@@ -243,6 +248,7 @@ public:
     /// External forces, and forces on held components, of the last residual.
     const Vector& external() const noexcept { return external_; }
     const Vector& reaction() const noexcept { return reaction_; }
+    Vector& reaction() noexcept { return reaction_; }
 
     /// Norm with forces on directors divided by the radius [force].
     double norm(const Vector& forces) const {
@@ -259,6 +265,16 @@ public:
         return std::sqrt(core::largest(core::count(length), 0.0, [&](Index v) {
             return step.segment<3>(3 * v).squaredNorm() * length[core::at(v)] * length[core::at(v)];
         }));
+    }
+
+    /// Scalar product of the displacements of two steps, directors counted at the surface [length^2].
+    double product(const Vector& a, const Vector& b) const {
+        const std::vector<double>& length = system_.layout().length;
+        return core::ordered_sum(core::count(length), 0.0, [&](Index first, Index last) {
+            double sum = 0.0;
+            for (Index v = first; v < last; ++v) sum += a.segment<3>(3 * v).dot(b.segment<3>(3 * v)) * length[core::at(v)] * length[core::at(v)];
+            return sum;
+        });
     }
 
     /// Of each fibre the greatest displacement of a step, directors counted at the surface [length]; empty if the step is not finite.

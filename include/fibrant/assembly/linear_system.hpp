@@ -14,7 +14,8 @@ namespace fibrant::assembly {
 
 /// The symmetric tangent A of one iteration, known by what it does.
 ///
-/// With K the sum of all terms and F the projector of the held vectors (the identity elsewhere), A = F K F + (I - F).
+/// With K the sum of all terms and F the projector of the held vectors (the identity elsewhere), A = F K F + (I - F) H, H the
+/// layout's stiffness of held vectors.
 /// m = 3 vectors_per_node is the size of a chain's node block.
 /// - apply(x, y): y = A x. Both have layout().unknowns() entries, x and y are different vectors.
 /// - node_blocks(chain, blocks): nodes m x m, the diagonal block of node a at row a m.
@@ -72,15 +73,18 @@ public:
     }
     /// x <- F x
     void project(Vector& x) const { scene::project_free(*layout_, x); }
-    /// y <- F y + (I - F) x: makes A x of y = K F x.
+    /// y <- F y + (I - F) H x: makes A x of y = K F x.
     void complete(const Vector& x, Vector& y) const {
         for (const scene::HeldVector& held : layout_->held) {
-            const Vec3 difference = y.segment<3>(3 * held.vector) - x.segment<3>(3 * held.vector);
-            y.segment<3>(3 * held.vector) = x.segment<3>(3 * held.vector) + held.free * difference;
+            const Vec3 whole = layout_->held_stiffness(held.vector) * x.segment<3>(3 * held.vector);
+            const Vec3 difference = y.segment<3>(3 * held.vector) - whole;
+            y.segment<3>(3 * held.vector) = whole + held.free * difference;
         }
         scene::complete_ties(*layout_, x, y);
     }
-    /// block <- F_i block F_j, for a 3 x 3 block of K between the vectors i and j. I - F is left to the caller.
+    /// (I - F) H of a held vector.
+    Mat3 held_part(const scene::HeldVector& held) const { return layout_->held_stiffness(held.vector) * (Mat3::Identity() - held.free); }
+    /// block <- F_i block F_j, for a 3 x 3 block of K between the vectors i and j. (I - F) H is left to the caller.
     void project(Index i, Index j, Mat3& block) const noexcept {
         if (const Mat3* left = free(i)) block = (*left * block).eval();
         if (const Mat3* right = free(j)) block = (block * *right).eval();

@@ -73,7 +73,7 @@ public:
             scene::complete_ties(layout_, x, y);
         }
         for (const scene::HeldVector& held : layout_.held) {
-            const Vec3 whole = x.segment<3>(3 * held.vector);
+            const Vec3 whole = layout_.held_stiffness(held.vector) * x.segment<3>(3 * held.vector);
             y.segment<3>(3 * held.vector) = held.free * y.segment<3>(3 * held.vector) + whole - held.free * whole;
         }
     }
@@ -91,7 +91,7 @@ public:
         for (const scene::HeldVector& held : layout_.held) {
             const Index n = held.vector - solid_->first_vector();
             if (n < 0) continue;
-            blocks.block<3, 3>(3 * n, 0) = (held.free * blocks.block<3, 3>(3 * n, 0) * held.free + Mat3::Identity() - held.free).eval();
+            blocks.block<3, 3>(3 * n, 0) = (held.free * blocks.block<3, 3>(3 * n, 0) * held.free + layout_.held_stiffness(held.vector) * (Mat3::Identity() - held.free)).eval();
         }
     }
     void chain_corner(Index chain, Matrix& corner) const { fibres_.chain_corner(chain, corner); }

@@ -95,7 +95,7 @@ public:
             add(i, j, block, a);
         });
         for (const scene::HeldVector& vector : system.layout().held) {
-            add(vector.vector, vector.vector, Mat3::Identity() - vector.free, a);
+            add(vector.vector, vector.vector, held.held_part(vector), a);
         }
     }
 

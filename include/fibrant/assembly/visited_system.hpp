@@ -121,7 +121,7 @@ void chain_bands_from_terms(const System& system, std::vector<Matrix>& bands) {
     for (const scene::HeldVector& vector : layout.held) {
         const Index c = places.chain(vector.vector), k = places.number(vector.vector);
         const Index per_node = layout.chains[core::at(c)].vectors_per_node;
-        bands[core::at(c)].block<3, 3>(3 * k, 3 * (k % per_node)) += Mat3::Identity() - vector.free;
+        bands[core::at(c)].block<3, 3>(3 * k, 3 * (k % per_node)) += held.held_part(vector);
     }
 }
 

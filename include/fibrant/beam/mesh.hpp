@@ -148,6 +148,7 @@ public:
         // Contact elements keep the number of an unknown in 32 bits.
         if (3 * first > std::numeric_limits<std::int32_t>::max())
             core::refuse("assembly.fibres", std::to_string(3 * first) + " unknowns", "<= " + std::to_string(std::numeric_limits<std::int32_t>::max()));
+        find_units();
         rest_state_.resize(3 * first);
         for (Index v = 0; v < first; ++v) rest_state_.segment<3>(3 * v) = layout_.value[core::at(v)];
         start_state_.resize(3 * first);
@@ -322,8 +323,8 @@ public:
             const Vec3 tangent = centre(state, first, B::centreline_derivative_weights(xi)).normalized(), across = tangent.unitOrthogonal();
             return {across, tangent.cross(across)};
         } else if constexpr (TurningSections<B>) {
-            const Vec3 middle = centre(state, first, B::centreline_weights(xi));
-            return {point(state, first, B::particle_weights(xi, 1.0, 0.0)) - middle, point(state, first, B::particle_weights(xi, 0.0, 1.0)) - middle};
+            const Mat3 turn = B::particle_weights(xi, 0.0, 0.0).turn(state.segment<element_unknowns>(first));
+            return {turn.col(0), turn.col(1)};
         } else {
             return {director<1>(state, first, director_weights<B>(xi, 1)), director<2>(state, first, director_weights<B>(xi, 2))};
         }
@@ -360,6 +361,16 @@ public:
     }
 
 private:
+    /// The units of the scene: its smallest radius, and E r, the stiffness of a fibre over a length of its radius.
+    void find_units() {
+        if (fibres_.empty()) return;
+        double radius = fibres_.front().section.radius(), stiffness = 0.0;
+        for (const MeshFibre& fibre : fibres_) {
+            radius = std::min(radius, fibre.section.radius());
+            stiffness = std::max(stiffness, fibre.material.young_modulus * fibre.section.radius());
+        }
+        layout_.unit_length = scene::power_of_two(radius), layout_.unit_stiffness = scene::power_of_two(stiffness);
+    }
     /// Weighted sum of one vector of each node of an element; of all if Of < 0.
     template <int Of>
     static Vec3 point_of(const Vector& state, Index first_unknown, const ElementWeights<B>& weights) noexcept {

@@ -33,7 +33,7 @@ struct Wrench {
 template <beam::BeamElement B>
 class BodyTies {
 public:
-    BodyTies(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const Channels& channels) : motion_{assembly, channels} {
+    BodyTies(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const Channels& channels) : mesh_{&mesh}, motion_{assembly, channels} {
         const SolidPlaces solids(assembly, mesh.start_state());
         std::vector<char> taken(core::at(solids.state.size() / 3), 0);
         for (const scene::Hold& hold : assembly.holds())
@@ -94,7 +94,7 @@ public:
 
     /// Conditions count from this state from now on, with the bodies where they were at the start.
     void anchor(const Vector& state) {
-        extent_ = state.size() > 0 ? state.cwiseAbs().maxCoeff() : 0.0;
+        extent_ = scene::extent_of(mesh_->layout(), state);
         for (std::size_t k = 0; k < conditions_.size(); ++k) {
             Condition& condition = conditions_[k];
             const Vec3 sum = combination(ties_[k], state);
@@ -137,7 +137,7 @@ public:
             change.setZero();
             double most = 0.0;
             for (Group& group : groups_) most = std::max(most, fit(group, change));
-            if (most <= 1e-14 * extent_) break;
+            if (most <= 1e-14) break;
             motion_.move(change);
         }
         gap_.resize(scalars_);
@@ -170,7 +170,12 @@ public:
     }
 
     /// Whether they are met but for rounding.
-    bool met() const { return ties_.empty() || misfit() <= 1e-13 * extent_; }
+    bool met() const {
+        for (std::size_t k = 0; k < conditions_.size(); ++k)
+            for (Index a = 0; a < ties_[k].count; ++a)
+                if (std::abs(gap_[ties_[k].first + a]) > 1e-13 * conditions_[k].root * unit_of(conditions_[k])) return false;
+        return true;
+    }
 
     void add_forces(const scene::DofLayout& layout, Vector& external) const {
         if (groups_.empty()) return;
@@ -305,17 +310,20 @@ private:
         return free.of_cell && free.owner == condition.owner && !condition.director;
     }
 
-    /// Change of a group's coordinates that brings the tied vectors and them together as far as it can; what scalars change by.
+    /// What a gap of a condition is measured by: the extent of the scene, or a director.
+    double unit_of(const Condition& condition) const noexcept { return condition.director ? 1.0 : extent_; }
+
+    /// Change of a group's coordinates that brings the tied vectors and them together as far as it can; what scalars change by, over their units.
     double fit(Group& group, Vector& change) {
         const Index rows = core::count(group.scalars), columns = core::count(group.coordinates);
         Matrix slope = Matrix::Zero(rows, columns);
-        Vector gaps(rows), size = Vector::Ones(columns);
+        Vector gaps(rows), unit(rows), size = Vector::Ones(columns);
         Index row = 0;
         for (const Index c : group.conditions) {
             const Condition& condition = conditions_[core::at(c)];
             const Vec3 sum = closed(core::at(c));
             for (Index a = 0; a < ties_[core::at(c)].count; ++a, ++row) {
-                gaps[row] = gap(core::at(c), a);
+                gaps[row] = gap(core::at(c), a), unit[row] = unit_of(condition);
                 for (Index j = 0; j < columns; ++j) {
                     const Index k = group.coordinates[core::at(j)];
                     if (!depends(condition, k)) continue;
@@ -330,9 +338,14 @@ private:
             }
         }
         for (Index j = 0; j < columns; ++j) {  // angles and displacements alike
-            const double norm = slope.col(j).norm();
             const FreeCoordinate& free = motion_.free(group.coordinates[core::at(j)]);
-            if (norm > 1e-7 * (!free.of_cell && free.component < 3 ? 1.0 : extent_)) size[j] = 1.0 / norm;
+            const bool moves = !free.of_cell && free.component < 3;
+            // Levers that are rounding would mix the places of ends with the turns of their sections.
+            for (Index i = 0; i < rows; ++i)
+                if (std::abs(slope(i, j)) <= 1e-14 * (moves ? 1.0 : unit[i])) slope(i, j) = 0.0;
+            const double norm = slope.col(j).norm();
+            if ((moves ? norm : slope.col(j).cwiseQuotient(unit).norm()) > 1e-7) size[j] = 1.0 / norm;
+            else if (!moves) size[j] = 1.0 / extent_;
             slope.col(j) *= size[j];
         }
         const Eigen::JacobiSVD<Matrix> svd(slope, Eigen::ComputeThinU | Eigen::ComputeThinV);
@@ -343,7 +356,7 @@ private:
         const Vector along = group.modes.transpose() * gaps;
         const Vector own = group.pull * along;
         for (Index j = 0; j < columns; ++j) change[group.coordinates[core::at(j)]] = own[j];
-        return along.size() > 0 ? along.cwiseAbs().maxCoeff() : 0.0;
+        return along.size() > 0 ? (group.modes * along).cwiseQuotient(unit).cwiseAbs().maxCoeff() : 0.0;
     }
 
     /// Puts what is held behind what is tied, and numbers the scalars of all.
@@ -399,6 +412,7 @@ private:
         }
     }
 
+    const beam::Mesh<B>* mesh_;
     BodyMotion motion_;
     std::vector<scene::Tie> ties_;  // the first `tied_` are ties, all others hold one vector each
     std::vector<Condition> conditions_;

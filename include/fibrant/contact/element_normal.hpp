@@ -39,12 +39,12 @@ Vec3 element_normal(const beam::Mesh<B>& mesh, const Vector& state, const Elemen
         return unit_or(centres.dot(side) > 0.0 ? centres : side, Vec3::UnitZ());
     }
     const Vec3 t_i = contact_tangent(mesh, state, i, element.u_i).normalized(), t_j = contact_tangent(mesh, state, j, element.u_j).normalized();
+    const double radii = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
     if (flat_sections(mesh, i, j))
         return normal_direction(rule, centres, t_i, t_j, remembered,
-                                FlatSections{section_axes(mesh, state, i, element.u_i), section_axes(mesh, state, j, element.u_j), element.crossing});
+                                FlatSections{section_axes(mesh, state, i, element.u_i), section_axes(mesh, state, j, element.u_j), element.crossing, radii});
     return normal_direction(rule, centres, t_i, t_j, remembered,
-                            RoundSections{element.crossing ? std::numeric_limits<double>::infinity()
-                                                           : mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius()});
+                            RoundSections{element.crossing ? std::numeric_limits<double>::infinity() : radii, radii});
 }
 
 }  // namespace fibrant::contact

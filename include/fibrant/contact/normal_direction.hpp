@@ -65,6 +65,7 @@ inline Vec3 mean_tangent(const Vec3& t_i, const Vec3& t_j) noexcept {
 /// Sections that are round, or taken to be: what the normal of two fibres has to know of them.
 struct RoundSections {
     double touching = std::numeric_limits<double>::infinity();  ///< sum of the radii [length]
+    double size = 0.0;  ///< of the pair: centres that are a 1e-9th of it apart coincide [length]
 
     double touching_along(const Vec3&) const noexcept { return touching; }
     /// Direction across `tangent` in which the two are furthest apart: between the centres.
@@ -76,6 +77,7 @@ struct RoundSections {
 struct FlatSections {
     SectionAxes i, j;
     bool anywhere = false;  ///< the pair is the closest one of a crossing
+    double size = 0.0;      ///< of the pair: centres that are a 1e-9th of it apart coincide [length]
 
     /// Sum of their half extents along a direction [length].
     double touching_along(const Vec3& direction) const noexcept {
@@ -121,7 +123,7 @@ Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const Vec3& t
         weight *= 1.0 - smooth_step(4.0 * aside / sections.touching_along(aside > 0.0 ? Vec3(beside / aside) : crossing) - 1.0);
         if (weight == 1.0) return crossing;
     }
-    Vec3 parallel = across.norm() > 1e-9 * (1e-300 + side.norm()) ? sections.furthest(across, tangent, side)
+    Vec3 parallel = across.norm() > 1e-9 * std::max(sections.size, centres.norm()) ? sections.furthest(across, tangent, side)
                                                                   : unit_or(side - side.dot(tangent) * tangent, Vec3::Zero());
     if (parallel.isZero()) {  // coincident centrelines without a memory: any side will do, but the same one each time
         Index axis = 0;

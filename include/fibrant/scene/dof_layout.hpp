@@ -4,6 +4,8 @@
 
 #include <fibrant/core/types.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -62,10 +64,30 @@ struct DofLayout {
     std::vector<ImageVector> images;  ///< of closed chains, sorted; each is among `held` too
     std::vector<Tie> ties;         ///< none, but for averages and periodic cells
     std::vector<TiedMotion> motions;  ///< of ties, that share no scalar
+    /// Of the scene, powers of two, so that to measure by them changes no bit: a radius [length], and a stiffness of positions.
+    /// What a solver compares, or keeps in few bits, it measures by them: no number of its own depends on the units of a scene.
+    double unit_length = 1.0, unit_stiffness = 1.0;
 
     Index vectors() const noexcept { return core::count(kind); }
     Index unknowns() const noexcept { return 3 * vectors(); }
+    /// Stiffness that a vector has where it is held, as the others have theirs [force / length times length^2].
+    double held_stiffness(Index vector) const noexcept {
+        const double own = length[static_cast<std::size_t>(vector)];
+        return unit_stiffness * own * own;
+    }
 };
+
+/// The power of two next to a number, by its logarithm. @param value > 0
+inline double power_of_two(double value) noexcept { return std::exp2(std::round(std::log2(value))); }
+
+/// Largest coordinate of a state's positions [length]; vectors beyond the layout are positions.
+inline double extent_of(const DofLayout& layout, const Vector& state) noexcept {
+    double extent = 0.0;
+    for (Index v = 0; v < state.size() / 3; ++v)
+        if (v >= layout.vectors() || layout.kind[core::at(v)] == VectorKind::position)
+            extent = std::max(extent, state.segment<3>(3 * v).cwiseAbs().maxCoeff());
+    return extent;
+}
 
 /// Grain of a parallel loop over `items` that share a system: below some thousand unknowns threads cost more than they save.
 inline Index grain(const DofLayout& layout, Index items) noexcept { return layout.unknowns() < 8192 ? items : 1; }

@@ -53,12 +53,26 @@ inline void project_ties(const DofLayout& layout, Vector& x) {
     add_tied(layout, Vector(-scalars), x);
 }
 
-/// y <- F y + (I - F) x for the projector F of project_ties.
+/// y <- F y + (I - F) H (I - F) x for the projector F of project_ties, H the stiffness of what is held.
 inline void complete_ties(const DofLayout& layout, const Vector& x, Vector& y) {
     if (layout.ties.empty()) return;
-    Vector scalars = tied_part(layout, x) - tied_part(layout, y);
+    Vector scalars = tied_part(layout, x);
+    remove_motions(layout, scalars);
+    for (const Tie& tie : layout.ties) scalars.segment(tie.first, tie.count) *= layout.held_stiffness(tie.vectors.front());
+    scalars -= tied_part(layout, y);
     remove_motions(layout, scalars);
     add_tied(layout, scalars, y);
+}
+
+/// Adds to x what the right side b of a system holds outside the free directions, over the stiffness there.
+/// @param free  F b
+inline void add_held(const DofLayout& layout, const Vector& b, const Vector& free, Vector& x) {
+    const auto add = [&](Index vector, double stiffness) {
+        x.segment<3>(3 * vector) = (b.segment<3>(3 * vector) - free.segment<3>(3 * vector)) / stiffness;
+    };
+    for (const HeldVector& held : layout.held) add(held.vector, layout.held_stiffness(held.vector));
+    for (const Tie& tie : layout.ties)
+        for (const Index vector : tie.vectors) add(vector, layout.held_stiffness(tie.vectors.front()));
 }
 
 /// x <- F x: what held vectors and ties leave free of a vector of unknowns.

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <span>
 #include <utility>
@@ -154,9 +155,16 @@ public:
     /// x <- A^-1 x
     void solve(Vector& x) {
         work_.resize(unknowns());
+        double largest = 0.0;
+        for (int v = 0; v < supernodes_.vertices(); ++v) {
+            auto own = x.segment(input_[core::at(v)], size(supernodes_.place(v)));
+            own = own.cwiseProduct(scale_of(supernodes_.place(v))).eval();
+            largest = std::max(largest, own.cwiseAbs().maxCoeff());
+        }
+        const double unit = largest > 0.0 && std::isfinite(largest) ? std::exp2(std::ilogb(largest)) : 1.0;
         for (int v = 0; v < supernodes_.vertices(); ++v) {
             work_.segment(offset_[core::at(supernodes_.place(v))], size(supernodes_.place(v))) =
-                x.segment(input_[core::at(v)], size(supernodes_.place(v))).template cast<Real>();
+                (x.segment(input_[core::at(v)], size(supernodes_.place(v))) / unit).template cast<Real>();
         }
         const auto& list = supernodes_.list();
         for (std::size_t s = 0; s < list.size(); ++s) {
@@ -189,7 +197,8 @@ public:
         }
         for (int v = 0; v < supernodes_.vertices(); ++v) {
             x.segment(input_[core::at(v)], size(supernodes_.place(v))) =
-                work_.segment(offset_[core::at(supernodes_.place(v))], size(supernodes_.place(v))).template cast<double>();
+                unit * scale_of(supernodes_.place(v)).cwiseProduct(
+                           work_.segment(offset_[core::at(supernodes_.place(v))], size(supernodes_.place(v))).template cast<double>());
         }
     }
 
@@ -201,6 +210,7 @@ private:
         Pivots pivots;
         const auto& list = supernodes_.list();
         if (compressing_ != (left_out_ > 0)) lay_out(left_out_ > 0);
+        find_scale();
         // What fronts leave to their parents lies on two stacks that levels of the tree take by turns: children lie on top of one
         // when their parent puts its own part on the other. They are kept: pages that are new to a process are slow.
         for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) stack_[k].resize(stack_size_[k]);
@@ -223,7 +233,7 @@ private:
                 const double* entry = value_.data() + entry_[core::at(k)];
                 const auto take = [&](int other) {
                     panel.block(local[core::at(other)], local[core::at(k)], size(other), size(k)) +=
-                        Eigen::Map<const Matrix>(entry, size(other), size(k)).template cast<Real>();
+                        (scale_of(other).asDiagonal() * Eigen::Map<const Matrix>(entry, size(other), size(k)) * scale_of(k).asDiagonal()).template cast<Real>();
                     entry += size(other) * size(k);
                 };
                 take(k);
@@ -310,13 +320,27 @@ private:
         }
     }
 
+    /// A is factored as S A S, S of powers of two, an entry for each vector, that make its diagonal numbers of order one: floats would not
+    /// hold it in all units, and no bit depends on them.
+    void find_scale() {
+        scale_.resize(unknowns());
+        for (int k = 0; k < supernodes_.vertices(); ++k)
+            for (int i = 0; i < size(k); i += 3) {
+                double largest = 0.0;
+                for (int j = i; j < i + 3; ++j) largest = std::max(largest, std::abs(value_[core::at(entry_[core::at(k)] + j * (size(k) + 1))]));
+                const double root = largest > 0.0 && std::isfinite(largest) ? std::exp2(-(std::ilogb(largest) / 2)) : 1.0;
+                scale_.segment<3>(offset_[core::at(k)] + i).setConstant(root);
+            }
+    }
+    auto scale_of(int place) const { return scale_.segment(offset_[core::at(place)], size(place)); }
+
     /// What pivots of the places [first, last) are compared with: the diagonal, and of a vector that is nearly nothing in one
     /// direction the others'.
     RealVector pivot_scale(int first, int last) const {
         RealVector scale(offset_[core::at(last)] - offset_[core::at(first)]);
         Index row = 0;
         for (int k = first; k < last; ++k)
-            for (int i = 0; i < size(k); ++i) scale[row++] = static_cast<Real>(value_[core::at(entry_[core::at(k)] + i * (size(k) + 1))]);
+            for (int i = 0; i < size(k); ++i) scale[row] = static_cast<Real>(std::pow(scale_[offset_[core::at(k)] + i], 2) * value_[core::at(entry_[core::at(k)] + i * (size(k) + 1))]), ++row;
         for (Index k = 0; k < scale.size(); k += 3) {
             const Real largest = scale.template segment<3>(k).maxCoeff();
             for (Index i = k; i < k + 3; ++i) {
@@ -393,6 +417,7 @@ private:
     bool compressing_ = false;
     std::array<core::LargeArray<Real>, 2> stack_;
     RealVector work_, gathered_;
+    Vector scale_;  // S
     bool uniform_ = true;  // all blocks have the same size
 };
 

@@ -61,7 +61,8 @@ public:
             for (Index k = 0; k < rows; ++k)
                 for (Index c = 0; c < m; ++c) answer(k, c) = static_cast<double>(answers_[core::at(k * m + c)][static_cast<Index>(lane)]);
             const Matrix bound = side.column.transpose() * answer;
-            const Vector scale = side.first.diagonal().cwiseMax(1e-9 * side.first.diagonal().maxCoeff()).cwiseSqrt().cwiseInverse();
+            Vector scale = side.first.diagonal();
+            for (Index v = 0; v < m; v += 3) scale.segment<3>(v) = scale.segment<3>(v).cwiseMax(1e-9 * scale.segment<3>(v).maxCoeff()).cwiseSqrt().cwiseInverse().eval();
             const Eigen::SelfAdjointEigenSolver<Matrix> parts(scale.asDiagonal() * (side.first - 0.5 * (bound + bound.transpose())) * scale.asDiagonal());
             if (!(parts.eigenvalues()[0] > -rounding)) definite = false;
             const Matrix root = scale.asDiagonal() * parts.eigenvectors() * parts.eigenvalues().cwiseMax(least).cwiseSqrt().cwiseInverse().asDiagonal();

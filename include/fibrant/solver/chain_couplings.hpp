@@ -15,8 +15,8 @@
 
 namespace fibrant::solver {
 
-/// L + L^T, the part of A between different chains that (w w^T) (x) K of two particles makes, in float; L couples a chain with those of
-/// earlier classes.
+/// L + L^T, the part of A between different chains that (w w^T) (x) K of two particles makes, in float and in the units of the layout;
+/// L couples a chain with those of earlier classes.
 ///
 /// What else couples chains, dense
 /// terms and points of more than two chains, is left out: sweeps are positive definite with any L.
@@ -28,6 +28,7 @@ public:
     struct Line {
         Real* first;
         std::size_t stride;
+        Real unit = 1;  ///< what the values are in units of the couplings: forces that are taken off them, or displacements that are kept
         Real& operator[](std::size_t unknown) const noexcept { return first[stride * unknown]; }
     };
 
@@ -82,6 +83,7 @@ private:
     /// Finds the pairs among the terms. All have as many weights, and the same stride between their vectors.
     struct Collector {
         const assembly::VectorPlaces& places;
+        double over_stiffness;
         std::size_t& count;
         Index& stride;
         Part& part;
@@ -101,7 +103,7 @@ private:
             }
             if (pair.chain[0] == pair.chain[1]) return;
             if (count == 0) count = half, stride = step;
-            for (Index k = 0; k < 9; ++k) pair.stiffness[core::at(k)] = static_cast<float>(term.stiffness.data()[k]);
+            for (Index k = 0; k < 9; ++k) pair.stiffness[core::at(k)] = static_cast<float>(over_stiffness * term.stiffness.data()[k]);
             part.pairs.push_back(pair);
             for (const double weight : term.weights) part.weights.push_back(static_cast<float>(weight));
         }
@@ -110,13 +112,14 @@ private:
     template <class System>
     void collect(const System& system) {
         const assembly::VectorPlaces places(system.layout());
+        const double over_stiffness = 1.0 / system.layout().unit_stiffness;
         weights_each_ = 0, stride_ = 1;
         Part all;
         if constexpr (assembly::DivisibleCouplings<System>) {
             constexpr Index block = 2048;
             const Index terms = system.couplings();
             const auto take = [&](Index first, Index last, Part& part) {
-                Collector collector{places, weights_each_, stride_, part};
+                Collector collector{places, over_stiffness, weights_each_, stride_, part};
                 system.visit_couplings(collector, first, last);
             };
             Index seen = 0;  // until it is known how many weights there are
@@ -131,7 +134,7 @@ private:
             });
             core::join(pairs, pairs_), core::join(weights, pair_weights_);
         } else {
-            Collector collector{places, weights_each_, stride_, all};
+            Collector collector{places, over_stiffness, weights_each_, stride_, all};
             assembly::visit_couplings(system, collector);
             pairs_ = std::move(all.pairs), pair_weights_ = std::move(all.weights);
         }
@@ -225,7 +228,7 @@ private:
                     for (std::size_t k = 0; k < fixed.count; ++k) forces[k] += weights[k] * force;
                 }
                 for (std::size_t k = 0; k < fixed.count; ++k)
-                    for (std::size_t i = 0; i < 3; ++i) line[3 * (core::at(start) + k * fixed.stride) + i] -= static_cast<Real>(forces[k][static_cast<Index>(i)]);
+                    for (std::size_t i = 0; i < 3; ++i) line[3 * (core::at(start) + k * fixed.stride) + i] -= line.unit * static_cast<Real>(forces[k][static_cast<Index>(i)]);
             }
         });
         if (first == last) return;
@@ -237,12 +240,13 @@ private:
     }
     template <class Real>
     void keep(std::int32_t first, std::int32_t last, Line<Real> line) {
+        const Real over = 1 / line.unit;
         with_particle([&](auto fixed, Value* values) {
             for (std::int32_t s = first; s < last;) {
                 const std::int32_t start = sides_[core::at(s)].first;
                 for (std::size_t k = 0; k < fixed.count; ++k) {
                     const std::size_t v = 3 * (core::at(start) + k * fixed.stride);
-                    values[k] = Value(static_cast<float>(line[v]), static_cast<float>(line[v + 1]), static_cast<float>(line[v + 2]), 0.0f);
+                    values[k] = Value(static_cast<float>(over * line[v]), static_cast<float>(over * line[v + 1]), static_cast<float>(over * line[v + 2]), 0.0f);
                 }
                 for (; s < last && sides_[core::at(s)].first == start; ++s) {
                     const float* weights = weights_.data() + fixed.count * static_cast<std::size_t>(s);

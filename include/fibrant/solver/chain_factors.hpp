@@ -17,6 +17,8 @@
 namespace fibrant::solver {
 
 /// B^-1 of the block diagonal B that has the band of each chain, its contact elements included, as a block.
+///
+/// Factors and values in lanes are measured by the units of the layout: floats would not hold forces in all units.
 class ChainFactors {
 public:
     static constexpr double least_pivot = 1e-12;  ///< over the diagonal entry: below it a chain counts as not held
@@ -92,24 +94,32 @@ public:
         else closing.apply(values, [&](std::vector<Kept>& rest) { factor.solve(rest.data()); });
     }
 
+    /// What forces and displacements are in lanes: over the layout's units, powers of two.
+    static double unit_force(const scene::DofLayout& layout) noexcept { return layout.unit_stiffness * layout.unit_length; }
+    static double unit_motion(const scene::DofLayout& layout) noexcept { return layout.unit_length; }
+
     /// Values of the chains of a pack, a chain a lane; lanes beyond the chains repeat the first.
+    /// @param unit  that they are measured by
     template <int Block, int Lanes>
-    static auto to_lanes(const scene::DofLayout& layout, const std::vector<Index>& chains, const BlockBandCholesky<Block, Lanes>& factor, const Vector& r) {
+    static auto to_lanes(const scene::DofLayout& layout, const std::vector<Index>& chains, const BlockBandCholesky<Block, Lanes>& factor, const Vector& r,
+                         double unit) {
+        const double over = 1.0 / unit;
         std::vector<typename BlockBandCholesky<Block, Lanes>::Kept> values(unknowns(factor.shape()));
         std::array<Index, core::at(Lanes)> start{};
         for (std::size_t lane = 0; lane < start.size(); ++lane) {
             start[lane] = 3 * layout.chains[core::at(chains[lane < chains.size() ? lane : 0])].first_vector;
         }
         for (Index k = 0; k < core::count(values); ++k)
-            for (int lane = 0; lane < Lanes; ++lane) values[core::at(k)][lane] = static_cast<float>(r[start[core::at(lane)] + k]);
+            for (int lane = 0; lane < Lanes; ++lane) values[core::at(k)][lane] = static_cast<float>(over * r[start[core::at(lane)] + k]);
         return values;
     }
-    /// And back to where the chains have them.
+    /// Displacements back to where the chains have them.
     template <class Kept>
     static void from_lanes(const scene::DofLayout& layout, const std::vector<Index>& chains, const std::vector<Kept>& values, Vector& z) {
+        const double unit = unit_motion(layout);
         for (std::size_t lane = 0; lane < chains.size(); ++lane) {
             double* to = z.data() + 3 * layout.chains[core::at(chains[lane])].first_vector;
-            for (std::size_t k = 0; k < values.size(); ++k) to[k] = static_cast<double>(values[k][static_cast<Index>(lane)]);
+            for (std::size_t k = 0; k < values.size(); ++k) to[k] = unit * static_cast<double>(values[k][static_cast<Index>(lane)]);
         }
     }
     /// z = B^-1 r
@@ -117,7 +127,7 @@ public:
         core::parallel_for(core::count(packs_), [&](Index p) {
             const Pack& pack = packs_[core::at(p)];
             std::visit([&](const auto& band) {
-                auto values = to_lanes(layout, pack.chains, band, r);
+                auto values = to_lanes(layout, pack.chains, band, r, unit_force(layout));
                 solve(p, band, values);
                 from_lanes(layout, pack.chains, values, z);
             }, pack.factor);
@@ -194,11 +204,13 @@ private:
             system.chain_band(chains[lane], bands[lane]);
             if (!bands[lane].allFinite()) return SolveStatus::not_finite;
             see(chains[lane], std::as_const(bands[lane]));
+            bands[lane] /= system.layout().unit_stiffness;
             if constexpr (requires(Matrix corner) { system.chain_corner(chains[lane], corner); }) {
                 const scene::Chain& chain = system.layout().chains[core::at(chains[lane])];
                 if (!chain.closed) continue;
                 Matrix corner;
                 system.chain_corner(chains[lane], corner);
+                corner /= system.layout().unit_stiffness;
                 closing.take(lane, bands[lane], corner, factor.shape().block, chain.nodes - 1);
             }
         }
@@ -211,26 +223,28 @@ private:
             if (attempt == 0) shifted = bands;
             if (attempt > 0) status = SolveStatus::indefinite;  // the least shift cures what merely floats
             for (std::size_t lane = 0; lane < bands.size(); ++lane) {
-                if (!accepted[lane]) shift(factor.shape(), bands[lane], attempt, shifted[lane]);
+                if (!accepted[lane]) shift(system.layout(), chains[lane < chains.size() ? lane : 0], bands[lane], attempt, shifted[lane]);
             }
         }
     }
 
     /// Band that a refused one is replaced by: ever closer to a positive diagonal, which is reached in the end.
-    static void shift(const BandShape& shape, const Matrix& band, int attempt, Matrix& shifted) {
-        const int m = shape.block;
+    static void shift(const scene::DofLayout& layout, Index chain, const Matrix& band, int attempt, Matrix& shifted) {
+        const scene::Chain& of = layout.chains[core::at(chain)];
+        const Index m = 3 * of.vectors_per_node;
+        const auto square = [&](Index k) { return std::pow(layout.length[core::at(of.first_vector + k / 3)], 2); };
         shifted = band;
         if (attempt == 0) {
             shifted.leftCols(m) *= 1.0 + least_shift;
             return;
         }
         double largest = 0.0;
-        for (Index k = 0; k < band.rows(); ++k) largest = std::max(largest, std::abs(band(k, k % m)));
+        for (Index k = 0; k < band.rows(); ++k) largest = std::max(largest, std::abs(band(k, k % m)) / square(k));
         if (largest == 0.0) largest = 1.0;
         const double share = std::pow(10.0, attempt - 5);  // 1e-4, 1e-3, ... 100 times the magnitude of the diagonal
         if (attempt > 7) shifted.setZero();
         for (Index k = 0; k < band.rows(); ++k) {
-            shifted(k, k % m) += share * std::max(std::abs(band(k, k % m)), 1e-9 * largest);
+            shifted(k, k % m) += share * std::max(std::abs(band(k, k % m)), 1e-9 * largest * square(k));
         }
     }
 

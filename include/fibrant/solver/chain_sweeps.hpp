@@ -47,21 +47,22 @@ public:
             return false;
         }
         const int classes = couplings_.classes();
+        const double force = ChainFactors::unit_force(layout), motion = ChainFactors::unit_motion(layout);
         values_.resize(core::at(factors_.packs()));
         for (int k = 0; k < classes; ++k)
             factors_.for_class(layout, k, [&](Index pack, const auto& chains, const auto& factor) {
-                auto y = ChainFactors::to_lanes(layout, chains, factor, r);
+                auto y = ChainFactors::to_lanes(layout, chains, factor, r, force);
                 for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.subtract_earlier(chains[lane], line(y, lane));
                 factors_.solve(pack, factor, y);
                 for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.keep(chains[lane], line(y, lane));
                 values_[core::at(pack)].assign(y.front().data(), y.front().data() + y.front().size() * core::count(y));
             });
         left_.setZero(r.size()), motion_.setZero(r.size());
-        const auto of = [&](Vector& all, Index chain) { return ChainCouplings::Line<double>{all.data() + 3 * layout.chains[core::at(chain)].first_vector, 1}; };
+        const auto of = [&](Vector& all, Index chain, double unit) { return ChainCouplings::Line<double>{all.data() + 3 * layout.chains[core::at(chain)].first_vector, 1, unit}; };
         const Index chains = core::count(layout.chains);
-        core::parallel_for(chains, [&](Index chain) { couplings_.subtract_later(chain, of(left_, chain)); }, grain(layout, chains));
+        core::parallel_for(chains, [&](Index chain) { couplings_.subtract_later(chain, of(left_, chain, force)); }, grain(layout, chains));
         correct(std::as_const(left_), motion_);
-        core::parallel_for(chains, [&](Index chain) { couplings_.keep_for_later(chain, of(motion_, chain)); }, grain(layout, chains));
+        core::parallel_for(chains, [&](Index chain) { couplings_.keep_for_later(chain, of(motion_, chain, motion)); }, grain(layout, chains));
         // z = y - B^-1 (L^T z + L c)
         for (int k = classes - 1; k >= 0; --k)
             factors_.for_class(layout, k, [&](Index pack, const auto& chains, const auto& factor) {
@@ -72,7 +73,7 @@ public:
                     if (couplings_.couples(chains[lane])) couplings_.subtract(chains[lane], line(values, lane)), coupled = true;
                 if (coupled) factors_.solve(pack, factor, values);
                 if (product != nullptr) {  // y + c - z
-                    auto opposite = ChainFactors::to_lanes(layout, chains, factor, motion_);
+                    auto opposite = ChainFactors::to_lanes(layout, chains, factor, motion_, motion);
                     for (std::size_t i = 0; i < opposite.size(); ++i) opposite[i] -= values[i];
                     for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.keep_for_later(chains[lane], line(opposite, lane));
                 }
@@ -83,7 +84,7 @@ public:
             });
         if (product == nullptr) return false;
         *product = r;
-        core::parallel_for(chains, [&](Index chain) { couplings_.subtract_earlier(chain, of(*product, chain)); }, grain(layout, chains));
+        core::parallel_for(chains, [&](Index chain) { couplings_.subtract_earlier(chain, of(*product, chain, force)); }, grain(layout, chains));
         return true;
     }
     /// z = B^-1 r

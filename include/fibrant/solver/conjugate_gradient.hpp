@@ -70,11 +70,7 @@ SolveReport conjugate_gradient(const System& system, const Precondition& precond
 
     cg.r = b;
     held.project(cg.r);
-    for (const scene::HeldVector& h : layout.held) {
-        x.segment<3>(3 * h.vector) = b.segment<3>(3 * h.vector) - cg.r.segment<3>(3 * h.vector);
-    }
-    for (const scene::Tie& tie : layout.ties)
-        for (const Index v : tie.vectors) x.segment<3>(3 * v) = b.segment<3>(3 * v) - cg.r.segment<3>(3 * v);
+    scene::add_held(layout, b, cg.r, x);
     cg.z.resize(b.size());
     cg.product.resize(b.size());
     cg.p.setZero(b.size());

@@ -178,7 +178,7 @@ private:
         system.visit(sum);
         for (const scene::HeldVector& vector : system.layout().held) {
             const Place place = work_->place[core::at(vector.vector)];
-            work_->factor.entry(place.node, place.node).add(place.vector, place.vector, Mat3::Identity() - vector.free);
+            work_->factor.entry(place.node, place.node).add(place.vector, place.vector, held.held_part(vector));
         }
         return sum.complete;
     }

@@ -282,12 +282,13 @@ private:
         complete_held(system, matrix);
         return complete;
     }
-    /// The identity outside the free directions.
+    /// What held nodes have outside their free directions.
     template <class System>
     static void complete_held(const System& system, BlockCholesky<float>& matrix) {
+        const assembly::HeldProjector projector(system.layout());
         for (const scene::HeldVector& held : system.layout().held) {
             const Index n = held.vector - system.solid().first_vector();
-            if (n >= 0) matrix.entry(static_cast<int>(n), static_cast<int>(n)).add(0, 0, Mat3(Mat3::Identity() - held.free));
+            if (n >= 0) matrix.entry(static_cast<int>(n), static_cast<int>(n)).add(0, 0, projector.held_part(held));
         }
     }
 

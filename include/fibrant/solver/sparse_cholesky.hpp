@@ -37,6 +37,8 @@ public:
         Work& work = *work_;
         assemble(system);
         work.pivots.resize(0);
+        work.scale.resize(system.layout().unknowns());
+        for (Index k = 0; k < work.scale.size(); ++k) work.scale[k] = system.layout().held_stiffness(k / 3);
         if (!Eigen::Map<const Vector>(work.a.valuePtr(), work.a.nonZeros()).allFinite()) {
             return work.status = SolveStatus::not_finite;
         }
@@ -49,8 +51,10 @@ public:
             work.pivots.resize(0);
             return work.status;
         }
-        const double least = work.pivots.size() > 0 ? work.pivots.minCoeff() : 1.0;
-        work.curvature = least > 0.0 ? 1.0 : least / work.pivots.cwiseAbs().maxCoeff();
+        // Measured by what vectors have where they are held: the stiffness of directions has other units than that of positions.
+        work.scale = (work.factor.permutationP() * work.scale).eval();
+        const double least = work.pivots.size() > 0 ? work.pivots.cwiseQuotient(work.scale).minCoeff() : 1.0;
+        work.curvature = least > 0.0 ? 1.0 : least / work.pivots.cwiseQuotient(work.scale).cwiseAbs().maxCoeff();
         if (least > 0.0) work.status = SolveStatus::converged;
         return work.status;
     }
@@ -99,7 +103,7 @@ private:
         ConjugateGradientVectors vectors;
         SparseMatrix a;
         Eigen::SimplicialLDLT<SparseMatrix> factor;
-        Vector pivots, residual;
+        Vector pivots, scale, residual;
         SolveStatus status = SolveStatus::not_finite;
         double curvature = 0.0;
     };
@@ -125,14 +129,14 @@ private:
         const Work& work = *work_;
         if (work.pivots.size() == 0) {
             const Vector diagonal = work.a.diagonal().cwiseAbs();
-            const double floor = 1e-12 * diagonal.maxCoeff();
-            x = floor > 0.0 ? Vector(b.cwiseQuotient(diagonal.cwiseMax(floor))) : b;
+            const double floor = 1e-12 * diagonal.cwiseQuotient(work.scale).maxCoeff();
+            x = floor > 0.0 ? Vector(b.cwiseQuotient(diagonal.cwiseMax(floor * work.scale))) : Vector(b.cwiseQuotient(work.scale));
             return;
         }
         const Vector magnitude = work.pivots.cwiseAbs();
         x = work.factor.permutationP() * b;
         work.factor.matrixL().solveInPlace(x);
-        x = x.cwiseQuotient(magnitude.cwiseMax(1e-14 * magnitude.maxCoeff())).eval();
+        x = x.cwiseQuotient(magnitude.cwiseMax(1e-14 * magnitude.cwiseQuotient(work.scale).maxCoeff() * work.scale)).eval();
         work.factor.matrixU().solveInPlace(x);
         x = (work.factor.permutationPinv() * x).eval();
     }

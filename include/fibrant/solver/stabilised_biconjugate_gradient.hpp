@@ -40,9 +40,7 @@ SolveReport stabilised_biconjugate_gradient(const System& system, const Precondi
     };
     work.r = b;
     held.project(work.r);
-    for (const scene::HeldVector& h : layout.held) x.segment<3>(3 * h.vector) = b.segment<3>(3 * h.vector) - work.r.segment<3>(3 * h.vector);
-    for (const scene::Tie& tie : layout.ties)
-        for (const Index v : tie.vectors) x.segment<3>(3 * v) = b.segment<3>(3 * v) - work.r.segment<3>(3 * v);
+    scene::add_held(layout, b, work.r, x);
     for (Vector* vector : {&work.p, &work.v, &work.t, &work.preconditioned_p, &work.preconditioned_s}) vector->setZero(b.size());
     SolveReport report{SolveStatus::iteration_limit, 0, scaled_norm(layout, work.r) / norm, core::unset};
     double rho = 0.0, alpha = 0.0, omega = 0.0;
