@@ -13,9 +13,10 @@ using beam::DirectorBeamOptions;
 using beam::ElasticLaw;
 using beam::QuadraticStrain;
 using beam::SectionSampling;
+using beam::TwistStrain;
 
-template <int Nodes, ElasticLaw Law, SectionSampling Sampling, QuadraticStrain Quadratic>
-using Variant = DirectorBeam<Nodes, DirectorBeamOptions{Law, Sampling, Quadratic}>;
+template <int Nodes, ElasticLaw Law, SectionSampling Sampling, QuadraticStrain Quadratic, TwistStrain Twist = TwistStrain::metric>
+using Variant = DirectorBeam<Nodes, DirectorBeamOptions{Law, Sampling, Quadratic, Twist}>;
 
 #define FIBRANT_VARIANTS_OF(nodes, law)                                         \
     Variant<nodes, law, SectionSampling::nodal, QuadraticStrain::none>,         \
@@ -24,10 +25,15 @@ using Variant = DirectorBeam<Nodes, DirectorBeamOptions{Law, Sampling, Quadratic
         Variant<nodes, law, SectionSampling::gauss, QuadraticStrain::none>,     \
         Variant<nodes, law, SectionSampling::gauss, QuadraticStrain::mean>,     \
         Variant<nodes, law, SectionSampling::gauss, QuadraticStrain::complete>
-/// All 24.
+/// Of all laws and samplings, and of both numbers of nodes, one each that tells torsion by the turn of sections.
+#define FIBRANT_TURN_VARIANTS                                                                            \
+    Variant<3, ElasticLaw::split, SectionSampling::nodal, QuadraticStrain::none, TwistStrain::turn>,     \
+        Variant<2, ElasticLaw::split, SectionSampling::nodal, QuadraticStrain::mean, TwistStrain::turn>, \
+        Variant<3, ElasticLaw::full, SectionSampling::gauss, QuadraticStrain::complete, TwistStrain::turn>
+/// All 24 of Green's strain, and those.
 #define FIBRANT_ALL_VARIANTS                                                             \
     FIBRANT_VARIANTS_OF(2, ElasticLaw::split), FIBRANT_VARIANTS_OF(2, ElasticLaw::full), \
-        FIBRANT_VARIANTS_OF(3, ElasticLaw::split), FIBRANT_VARIANTS_OF(3, ElasticLaw::full)
+        FIBRANT_VARIANTS_OF(3, ElasticLaw::split), FIBRANT_VARIANTS_OF(3, ElasticLaw::full), FIBRANT_TURN_VARIANTS
 
 template <class B>
 inline constexpr int unknowns = B::nodes* B::dofs_per_node;

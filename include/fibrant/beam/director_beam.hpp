@@ -19,12 +19,13 @@ struct DirectorBeamOptions {
     ElasticLaw law = ElasticLaw::split;
     SectionSampling sampling = SectionSampling::nodal;
     QuadraticStrain quadratic = QuadraticStrain::none;
+    TwistStrain twist = TwistStrain::metric;
 };
 
 /// Beam x = x_0 + xi_1 g_1 + xi_2 g_2 with 9 unknowns a node (Durville, eq. 1 and 2), Nodes - 1 Gauss points.
 ///
 /// All strains are quadratic in the unknowns, eps_c = y.H_c y/2 - rest; the force is sum w S_c H_c y and the tangent
-/// sum w (B^T C B + S_c H_c (x) I_3), exact and symmetric. Two Gauss points on three nodes and section strains sampled at
+/// sum w (B^T C B + S_c H_c (x) I_3), exact and symmetric; but for TwistStrain::turn, a quotient of two such. Two Gauss points on three nodes and section strains sampled at
 /// the nodes leave no locking; exactly the six rigid motions have no energy. Keep an element below 90 degrees of turn.
 template <int Nodes = 3, DirectorBeamOptions Options = DirectorBeamOptions{}>
 class DirectorBeam {
@@ -179,7 +180,7 @@ public:
 
 private:
     static constexpr bool nodal = Options.sampling == SectionSampling::nodal;
-    using Kernel = DirectorStrains<Options.law, Options.quadratic, !nodal>;
+    using Kernel = DirectorStrains<Options.law, Options.quadratic, !nodal, Options.twist>;
     using Values = typename Interpolation::Values;
 
     static constexpr ElementWeights node_weights(const Values& N, double xi1, double xi2) noexcept {
@@ -241,7 +242,7 @@ private:
                             const Stresses& s, ElementVector& force) noexcept {
         force.setZero();
         for (std::size_t p = 0; p < y.size(); ++p) {
-            const DirectorFields f = rest.point[p].weight * y[p] * Kernel::geometric(rest.law, s.value[p]);
+            const DirectorFields f = rest.point[p].weight * y[p] * Kernel::geometric(rest.law, y[p], s.value[p]);
             Interpolation::add_force(rest.point[p], p, f, force);
         }
         if constexpr (nodal) Section::add_force(current, Section::gather(rest.point, s.value), force);
@@ -250,7 +251,7 @@ private:
                               const Stresses& geometric, ElementMatrix& tangent) noexcept {
         std::array<typename Kernel::FieldTangent, points> D;
         for (std::size_t p = 0; p < D.size(); ++p) {
-            Kernel::tangent(rest.law, y[p], Kernel::geometric(rest.law, geometric.value[p]), rest.point[p].weight,
+            Kernel::tangent(rest.law, y[p], Kernel::geometric(rest.law, y[p], geometric.value[p]), geometric.value[p], rest.point[p].weight,
                             D[p]);
         }
         double* out = tangent.data();

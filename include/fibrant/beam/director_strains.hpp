@@ -61,13 +61,41 @@ double strain_rate(const DirectorFields& current, const DirectorFields& step) no
 
 }  // namespace detail
 
+/// Torsion over the mean square of the directors, t = T/m with T = g_2.g_1' - g_1.g_2' and m = g_1.g_1 + g_2.g_2: c12 = s - t and
+/// c21 = s + t then, s = (c12 + c21)/2 as ever.
+namespace detail {
+struct TurnStrain {
+    double m, t;
+    explicit TurnStrain(const DirectorFields& y) noexcept
+        : m{y.col(1).squaredNorm() + y.col(2).squaredNorm()}, t{(y.col(2).dot(y.col(3)) - y.col(1).dot(y.col(4))) / m} {}
+    /// Of the directions of the fields g_1, g_2, g_1', g_2', each of which gets a column.
+    Eigen::Matrix<double, 3, 4> slope(const DirectorFields& y) const noexcept {
+        Eigen::Matrix<double, 3, 4> by;
+        by.col(0) = (-y.col(4) - 2.0 * t * y.col(1)) / m;
+        by.col(1) = (y.col(3) - 2.0 * t * y.col(2)) / m;
+        by.col(2) = y.col(2) / m;
+        by.col(3) = -y.col(1) / m;
+        return by;
+    }
+    double rate(const DirectorFields& y, const DirectorFields& step) const noexcept { return slope(y).cwiseProduct(step.rightCols<4>()).sum(); }
+    /// What it is more than in another state, to the digits of `change`.
+    static double change(const DirectorFields& rest, const DirectorFields& change) noexcept {
+        const TurnStrain before(rest);
+        const double T = product_change(rest.col(2), change.col(2), rest.col(3), change.col(3)) -
+                         product_change(rest.col(1), change.col(1), rest.col(4), change.col(4));
+        const double m = 2.0 * (half_square_change(rest.col(1), change.col(1)) + half_square_change(rest.col(2), change.col(2)));
+        return (T - before.t * m) / (before.m + m);
+    }
+};
+}  // namespace detail
+
 /// Strains at a point and what follows from them; `Section` tells whether E_11, E_22, 2 E_12 are evaluated here.
-template <ElasticLaw Law, QuadraticStrain Quadratic, bool Section>
+template <ElasticLaw Law, QuadraticStrain Quadratic, bool Section, TwistStrain Twist = TwistStrain::metric>
 struct DirectorStrains {
     using Elastic = SectionLaw<Law, Quadratic>;
     using Strains = typename Elastic::Strains;
     static constexpr int first = Section ? 0 : 3;  ///< strains below belong to the nodes
-    static constexpr bool mean = Quadratic != QuadraticStrain::none;
+    static constexpr bool mean = Quadratic != QuadraticStrain::none, turn = Twist == TwistStrain::turn;
     /// Second derivative of (stress . strain) with respect to the fields: scalars, times the unit matrix.
     using FieldMatrix = Eigen::Matrix<double, 5, 5>;
     /// Second derivative of the energy: 15 x 15, one unused row that keeps columns aligned.
@@ -81,19 +109,28 @@ struct DirectorStrains {
             e[strain::e33] += law.mean_1() * detail::half_square_change(rest.col(3), change.col(3)) +
                               law.mean_2() * detail::half_square_change(rest.col(4), change.col(4));
         }
+        if constexpr (turn) take_twist(e, detail::TurnStrain::change(rest, change));
     }
     /// Adds the derivatives in the direction `step` to the strains from `first` on.
     static void add_rate(const Elastic& law, const DirectorFields& current, const DirectorFields& step, Strains& e) {
+        const double before = 0.5 * (e[strain::c21] - e[strain::c12]);
         detail::unrolled<first, Elastic::strains>(
             [&](auto c) { e[c()] += detail::strain_rate<c()>(current, step); });
+        if constexpr (turn) take_twist(e, before + detail::TurnStrain(current).rate(current, step));
         if constexpr (mean) {
             e[strain::e33] += law.mean_1() * current.col(3).dot(step.col(3)) +
                               law.mean_2() * current.col(4).dot(step.col(4));
         }
     }
     /// sum_c s_c H_c: the force on the fields is `current * geometric(...)`.
-    static FieldMatrix geometric(const Elastic& law, const Strains& s) {
+    static FieldMatrix geometric(const Elastic& law, const DirectorFields& y, Strains s) {
         FieldMatrix H = FieldMatrix::Zero();
+        if constexpr (turn) {  // the conjugate of t goes by T and m
+            const detail::TurnStrain twist(y);
+            const double even = 0.5 * (s[strain::c12] + s[strain::c21]), torque = s[strain::c21] - s[strain::c12];
+            s[strain::c12] = even - torque / twist.m, s[strain::c21] = even + torque / twist.m;
+            H(1, 1) = H(2, 2) = -2.0 * twist.t * torque / twist.m;
+        }
         detail::unrolled<first, Elastic::strains>([&](auto c) {
             constexpr detail::FieldPair f = detail::strain_fields[c()];
             H(f.first, f.second) += s[c()];
@@ -106,7 +143,8 @@ struct DirectorStrains {
         return H;
     }
     /// weight (B^T C B + G (x) I_3); with nodal section strains, without their coupling to E_33.
-    static void tangent(const Elastic& law, const DirectorFields& y, const FieldMatrix& G, double weight,
+    /// @param s  that G is made of
+    static void tangent(const Elastic& law, const DirectorFields& y, const FieldMatrix& G, [[maybe_unused]] const Strains& s, double weight,
                         FieldTangent& D) {
         D.setZero();
         const auto add = [&](auto row, auto column, double factor, const Vec3& u, const Vec3& v) {
@@ -122,6 +160,7 @@ struct DirectorStrains {
         constexpr auto f4 = std::integral_constant<int, 4>{};
         const Vec3 a = y.col(0), g1 = y.col(1), g2 = y.col(2), h1 = y.col(3), h2 = y.col(4);
         detail::unrolled<first, Elastic::strains>([&](auto c) {
+            if constexpr (turn && (c() == strain::c12 || c() == strain::c21)) return;
             constexpr detail::FieldPair f = detail::strain_fields[c()];
             constexpr auto p = std::integral_constant<int, f.first>{};
             constexpr auto q = std::integral_constant<int, f.second>{};
@@ -133,7 +172,25 @@ struct DirectorStrains {
                 add(q, q, k, v, v);
             }
         });
-        if (const double k = weight * law.twist_coupling(); k != 0.0) {
+        if constexpr (turn) {
+            const detail::TurnStrain twist(y);
+            const Eigen::Matrix<double, 3, 4> by_t = twist.slope(y);
+            Eigen::Matrix<double, 3, 4> by_s, by_m = Eigen::Matrix<double, 3, 4>::Zero();
+            by_s << 0.5 * h2, 0.5 * h1, 0.5 * g2, 0.5 * g1;
+            by_m.col(0) = 2.0 * g1, by_m.col(1) = 2.0 * g2;
+            const Eigen::Matrix<double, 3, 4> force_s = weight * (law.even() * by_s + law.odd() * by_t);
+            const Eigen::Matrix<double, 3, 4> force_t = weight * (law.odd() * by_s + law.twist() * by_t -
+                                                                 (s[strain::c21] - s[strain::c12]) / twist.m * by_m);
+            const Eigen::Matrix<double, 3, 4> force_m = -weight * (s[strain::c21] - s[strain::c12]) / twist.m * by_t;
+            detail::unrolled<1, 5>([&](auto q) {
+                detail::unrolled<1, q() + 1>([&](auto p) {
+                    add(p, q, 1.0, force_s.col(p() - 1), by_s.col(q() - 1));
+                    add(p, q, 1.0, force_t.col(p() - 1), by_t.col(q() - 1));
+                    add(p, q, 1.0, force_m.col(p() - 1), by_m.col(q() - 1));
+                });
+            });
+        }
+        if (const double k = weight * law.twist_coupling(); !turn && k != 0.0) {
             add(f1, f2, k, h2, h1);
             add(f1, f3, k, h2, g2);
             add(f2, f4, k, h1, g1);
@@ -174,6 +231,13 @@ struct DirectorStrains {
                 }
             }
         }
+    }
+
+private:
+    /// Writes c12 and c21 for another torsion.
+    static void take_twist(Strains& e, double t) noexcept {
+        const double even = 0.5 * (e[strain::c12] + e[strain::c21]);
+        e[strain::c12] = even - t, e[strain::c21] = even + t;
     }
 };
 

@@ -29,6 +29,12 @@ enum class QuadraticStrain {
     complete,  ///< and its deviation from the mean
 };
 
+/// What the torsion of a section is measured by, t = (c21 - c12)/2 or less of it.
+enum class TwistStrain {
+    metric,  ///< Green's: a section that narrows by d is twisted by d^2 less, so it narrows, and M is (r t)^2 (1 - nu)/(1 + nu) short of G J t
+    turn,    ///< over the mean square of the directors: what the section turns by along the fibre, however wide it is; M = G J t
+};
+
 /// Generalised strains: coefficients of the Green-Lagrange strain as a polynomial in (xi_1, xi_2), less those at rest.
 namespace strain {
 inline constexpr int e11 = 0, e22 = 1, e12 = 2;                   ///< E_11, E_22, 2 E_12 of the section [1]
@@ -138,6 +144,10 @@ public:
     double coupling() const noexcept { return coupling_; }
     /// Between c12 and c21.
     double twist_coupling() const noexcept { return twist_coupling_; }
+    /// Of s = (c12 + c21)/2 and t = (c21 - c12)/2, as the energy is half of even s^2 + twist t^2 + 2 odd s t.
+    double even() const noexcept { return diagonal(strain::c12) + diagonal(strain::c21) + 2.0 * twist_coupling_; }
+    double twist() const noexcept { return diagonal(strain::c12) + diagonal(strain::c21) - 2.0 * twist_coupling_; }
+    double odd() const noexcept { return diagonal(strain::c21) - diagonal(strain::c12); }
     /// Between q11 and q22.
     double quadratic_coupling() const noexcept { return quadratic_coupling_; }
     /// Mean of xi_a^2 over the section [length^2].
