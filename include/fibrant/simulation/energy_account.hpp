@@ -5,6 +5,8 @@
 #include <fibrant/core/types.hpp>
 #include <fibrant/simulation/report.hpp>
 
+#include <cmath>
+
 namespace fibrant::simulation {
 
 /// Books what an increment took, stored and lost.
@@ -22,10 +24,34 @@ public:
     /// Force of the damping at the end of the last increment [force].
     const Vector& damping() const noexcept { return damping_; }
 
-    /// Energies stored at the start count as work done before.
-    void start(double elastic, double contact) {
-        balance_.elastic = elastic, balance_.contact = contact;
-        balance_.external = elastic + contact;
+    /// What fibres and solids store in a state that a run begins with counts as work done before. What held them so lets go over the
+    /// first increment.
+    template <class Equilibrium>
+    void start(Equilibrium& equilibrium, const Vector& state) {
+        const double elastic = equilibrium.elastic_energy(state);
+        balance_.external += elastic - balance_.elastic;
+        balance_.elastic = elastic;
+        external_ = contact_.size() == state.size() ? contact_ : Vector(Vector::Zero(state.size()));
+        equilibrium.add_internal_forces(state, external_);
+        damping_.resize(0);
+    }
+    /// The same with contacts that stand there. @param before  the state as they know it, the first part of `state`
+    template <class Equilibrium, class Contacts>
+    void start(Equilibrium& equilibrium, const Vector& state, const Contacts& contacts, const Vector& before) {
+        const double stored = contacts.figures(before).work;
+        balance_.external += stored - balance_.contact;
+        balance_.contact = stored;
+        Vector forces = Vector::Zero(before.size());
+        contacts.add_forces(forces);
+        contact_ = Vector::Zero(state.size());
+        contact_.head(before.size()) = forces;
+        start(equilibrium, state);
+    }
+    /// The same where another run stored something else in the state that it left: of other fibres, or of other elements.
+    template <class Equilibrium>
+    void start_from_other(Equilibrium& equilibrium, const Vector& state) {
+        const double elastic = equilibrium.elastic_energy(state);
+        if (!(std::abs(elastic - balance_.elastic) <= 1e-9 * elastic)) start(equilibrium, state);
     }
 
     /// An increment that has converged; contacts are evaluated at its end, before and after.
@@ -62,10 +88,10 @@ public:
         balance_.elastic = elastic;
     }
 
-    /// Follows vectors that are told in another way from now on.
+    /// Follows vectors that are told in another way from now on. @param reaction  what else does
     template <class Mesh>
-    void rewind(const Mesh& mesh, Vector& state) {
-        mesh.rewind(state, {&external_, &damping_, &contact_});
+    void rewind(const Mesh& mesh, Vector& state, Vector& reaction) {
+        mesh.rewind(state, {&external_, &damping_, &contact_, &reaction});
     }
 
     /// All that a checkpoint needs: vectors first.

@@ -59,6 +59,7 @@ public:
         loose_ = loose_direction(assembly, mesh_);
         radius_ = mesh_.fibre(0).section.radius();
         for (const beam::MeshFibre& fibre : mesh_.fibres()) radius_ = std::min(radius_, fibre.section.radius());
+        if (mesh_.start_state() != mesh_.rest_state()) energy_.start(equilibrium_, state_);
     }
     Simulator(const Simulator&) = delete;  // its parts look at each other
     Simulator& operator=(const Simulator&) = delete;
@@ -124,6 +125,7 @@ public:
         CheckpointReader file(checkpoint);
         read_state(file, false, 0);
         if constexpr (HasConnections<M>) equilibrium_.ties().anchor(state_);
+        energy_.start_from_other(equilibrium_, state_);
     }
 
     const Beam& beam() const noexcept { return beam_; }
@@ -149,8 +151,7 @@ public:
         return shot;
     }
 
-    /// Takes over contacts and what they remember from a run of the same fibres, whose state the assembly begins at. What is
-    /// stored at the start counts as work done before.
+    /// Takes over contacts and what they remember from a run of the same fibres, whose state the assembly begins at.
     /// @throws std::invalid_argument if the fibres are not where that run left them
     template <Model Other>
     void go_on_from(const Simulator<Other>& other) {
@@ -158,7 +159,7 @@ public:
         if (before.size() > state_.size() || before != state_.head(before.size()))
             core::refuse("Simulator.state", "another", "that of the run to go on from: use Assembly::begin_at");
         contacts_.resume(other.contacts().accepted_memory().records(), other.contacts().accepted_zones());
-        energy_.start(equilibrium_.elastic_energy(state_), other.contacts().figures(before).work);
+        energy_.start(equilibrium_, state_, other.contacts(), before);
     }
 
 private:
@@ -239,7 +240,7 @@ private:
                 if (stage.damping_carried) motion_.learn(mesh_, state_, trial, change);
                 state_ = trial;
                 equilibrium_.ties().accept();
-                energy_.rewind(mesh_, state_);
+                energy_.rewind(mesh_, state_, equilibrium_.reaction());
                 amplitudes_ = amplitudes;
                 increment.residual = attempt.residual, increment.use = attempt.use;
                 increment.displacement = attempt.displacement;
