@@ -15,7 +15,7 @@ using namespace fibrant;
 namespace two_ply = compositions::two_ply;
 
 struct TwoPly {
-    using Beam = beam::DirectorBeam<>;
+    using Beam = beam::DirectorBeam<3, beam::DirectorBeamOptions{.twist = beam::TwistStrain::turn}>;
     using Proximity = proximity::GridSearch;
     using Normal = law::Augmented<law::RegularisedPenalty>;
     using Friction = law::RegularisedCoulomb;

@@ -22,7 +22,7 @@ namespace two_ply_test {
 namespace two_ply = compositions::two_ply;
 
 struct Frictionless {
-    using Beam = beam::DirectorBeam<3>;
+    using Beam = beam::DirectorBeam<3, beam::DirectorBeamOptions{.twist = beam::TwistStrain::turn}>;
     using Proximity = proximity::GridSearch;
     using Normal = law::Augmented<law::RegularisedPenalty>;
     using Friction = law::Frictionless;

@@ -3,8 +3,11 @@
 /// @file Two straight rods side by side, wound around each other by carriers that turn: scene, measures and the theory.
 
 #include <fibrant/core/parameters.hpp>
+#include <fibrant/core/rotation.hpp>
 #include <fibrant/scene/assembly.hpp>
 #include <fibrant/simulation/support_wrench.hpp>
+
+#include <Eigen/SVD>
 
 #include <array>
 #include <cmath>
@@ -24,6 +27,9 @@ struct TwoPlyParameters {
     scene::ElasticMaterial material;
     Index elements = 40;          ///< along each rod
     double force = core::unset;   ///< that pulls both together, shared equally [force], >= 0
+    /// Places along the ply where the middle between the rods is kept on the axis, for models that have a part `Connections`; >= 0. Without, a
+    /// ply of length L buckles like any rod once its torque M has M^2 > 4 B F + (9 B / L)^2, B = 2 E I (Greenhill's limit).
+    Index guides = 0;
     double bending_stiffness() const noexcept { return 0.25 * material.young_modulus * std::numbers::pi * radius * radius * radius * radius; }
     double torsion_stiffness() const noexcept { return bending_stiffness() / (1.0 + material.poisson_ratio); }
     void validate() const {
@@ -31,6 +37,7 @@ struct TwoPlyParameters {
         core::require_positive("TwoPlyParameters.length", length);
         core::require_not_negative("TwoPlyParameters.force", force);
         core::require_at_least("TwoPlyParameters.elements", elements, 2);
+        core::require_at_least("TwoPlyParameters.guides", guides, 0);
         material.validate();
     }
 };
@@ -59,6 +66,13 @@ inline scene::Assembly straight_rods(const TwoPlyParameters& parameters) {
         }
         assembly.apply(scene::DeadForce{scene::last_end(fibre), scene::NodeVector::position, Vec3(0, 0, 0.5 * parameters.force), pull});
     }
+    if (parameters.guides > 0) {
+        const Index axis = assembly.add(scene::RigidBody{.name = "axis"});
+        for (Index k = 1; k <= parameters.guides; ++k) {
+            const double at = static_cast<double>(k) / static_cast<double>(parameters.guides + 1);
+            assembly.connect({.ends = {{0, at}, {1, at}}, .body = axis, .tied = {true, true, false}});
+        }
+    }
     return assembly;
 }
 
@@ -67,9 +81,19 @@ struct TwoPlyState {
     double torque = 0.0;        ///< of the pair about the axis [force * length]
     double helix_angle = 0.0;   ///< of the rods to the axis [radian]
     double radius = 0.0;        ///< of the helix [length]
-    double twist = 0.0;         ///< of the material, a length at rest [radian / length]
+    double twist = 0.0;         ///< that sections turn by about their line, torsion of the line included, a length at rest [radian / length]
     double line_load = 0.0;     ///< between the rods over the middle fifth, a length at rest [force / length]
 };
+
+/// Turn of a section, whatever its strain. @param mesh  of any beam
+template <class Mesh>
+Mat3 section_turn(const Mesh& mesh, const Vector& state, Index fibre, double u) {
+    const auto [g_1, g_2] = mesh.directors(state, fibre, u);
+    Mat3 section;
+    section << g_1, g_2, g_1.cross(g_2).normalized();
+    const Eigen::JacobiSVD<Mat3> polar(section, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    return polar.matrixU() * polar.matrixV().transpose();
+}
 
 template <simulation::Model M>
 TwoPlyState measure(const simulation::Simulator<M>& simulator, const TwoPlyParameters& parameters) {
@@ -86,14 +110,13 @@ TwoPlyState measure(const simulation::Simulator<M>& simulator, const TwoPlyParam
             const Vec3 tangent = mesh.derivative(now, fibre, u).normalized(), centre = mesh.position(now, fibre, u);
             sum.helix_angle += std::acos(tangent.z());
             sum.radius += centre.head<2>().norm();
+            // From end to end of the element, exact on a helix: its sections turn about one axis, at one angle to the line.
+            const Mat3 before = section_turn(mesh, now, fibre, u - 0.5), after = section_turn(mesh, now, fibre, u + 0.5);
+            sum.twist += core::rotation_vector(after * before.transpose()).dot(tangent) / mesh.fibre(fibre).element_length;
         }
         state.helix_angle += 0.5 * sum.helix_angle / samples;
         state.radius += 0.5 * sum.radius / samples;
-        // The ends are held along the axis: what they exert about it is the twisting moment, and that is the same all along.
-        Vec3 moment = Vec3::Zero();
-        for (const scene::NodeVector vector : {scene::NodeVector::director_1, scene::NodeVector::director_2})
-            moment += simulator.value(scene::last_end(fibre), vector).cross(simulator.reaction(scene::last_end(fibre), vector));
-        state.twist += 0.5 * moment.z() / parameters.torsion_stiffness();
+        state.twist += 0.5 * sum.twist / samples;
     }
     for (std::size_t k = 0; k < simulator.contacts().elements().size(); ++k) {
         const double u = simulator.contacts().elements()[k].u_i / static_cast<double>(parameters.elements);
