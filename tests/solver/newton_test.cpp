@@ -23,15 +23,21 @@ struct Bounded {
         }
         Matrix row(Index, Index) const { return Matrix::Identity(3, 3); }
     };
+    struct Fibre {
+        scene::CrossSection section{.semi_axis_1 = 0.1, .semi_axis_2 = 0.1};
+    };
     struct Mesh {
+        Fibre only;
         Index fibre_count() const { return 0; }
         Index node_count(Index) const { return 0; }
+        const Fibre& fibre(Index) const { return only; }
     };
     System own{{.chains = {{.nodes = 1, .vectors_per_node = 1}}, .kind = {scene::VectorKind::position}, .value = {Vec3::Zero()}, .length = {1.0}, .held = {}, .ties = {}, .motions = {}}, 0.0};
     Mesh fibres;
     Vector stiffness;
     const System& system() const { return own; }
     const Mesh& mesh() const { return fibres; }
+    void close_chains(Vector&) const {}
     void prescribed_step(const Vector& x, Vector& step) const {
         step = Vector::Zero(x.size());
         if (x.size() > 3) step[3] = 1.0 - x[3];
@@ -53,6 +59,7 @@ struct Bounded {
 struct Untouched {
     struct Element {
         Vec3 normal;
+        Index fibre_i = 0, fibre_j = 1;
         Vec3 motion(const Vector&) const { return Vec3::Zero(); }
     };
     std::vector<Element> none;
@@ -121,6 +128,7 @@ struct Walls {
     struct Element {
         Index node;
         Vec3 normal = Vec3::UnitX();  // of the wall from the node
+        Index fibre_i = 0, fibre_j = 1;
         Vec3 motion(const Vector& step) const { return -step.segment<3>(3 * node); }
     };
     std::vector<double> place;
