@@ -9,6 +9,7 @@
 #include <fibrant/simulation/loading.hpp>
 #include <fibrant/simulation/mean_motion.hpp>
 #include <fibrant/simulation/model.hpp>
+#include <fibrant/simulation/part_overlaps.hpp>
 #include <fibrant/simulation/position.hpp>
 #include <fibrant/simulation/programme.hpp>
 #include <fibrant/simulation/refined_state.hpp>

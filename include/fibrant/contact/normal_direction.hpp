@@ -19,9 +19,13 @@ namespace fibrant::contact {
 struct NormalRule {
     double parallel_angle_deg = 10.0;  ///< below: direction between the centres [degree]
     double crossing_angle_deg = 30.0;  ///< above: cross product of the tangents [degree]
+    /// Part of the distance at which sections touch, within which fibres side by side keep their last normal, and fade over to the
+    /// direction between the centres beyond half of it, >= 0: for fibres that start deep in each other and part by one side.
+    double kept_within = 0.0;
     void validate() const {
         core::require_between("NormalRule.parallel_angle_deg", parallel_angle_deg, 0.0, 90.0);
         core::require_between("NormalRule.crossing_angle_deg", crossing_angle_deg, parallel_angle_deg, 90.0);
+        core::require_not_negative("NormalRule.kept_within", kept_within);
     }
 };
 
@@ -129,6 +133,10 @@ Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const Vec3& t
         Index axis = 0;
         tangent.cwiseAbs().minCoeff(&axis);
         parallel = tangent.cross(Vec3(Vec3::Unit(axis))).normalized();
+    }
+    if (rule.kept_within > 0.0 && !remembered.isZero() && parallel.dot(side) > 0.0) {
+        const double keep = 1.0 - smooth_step(2.0 * across.norm() / (rule.kept_within * touching) - 1.0);
+        if (keep > 0.0) parallel = unit_or(keep * unit_or(side - side.dot(tangent) * tangent, parallel) + (1.0 - keep) * parallel, parallel);
     }
     if (parallel.dot(side) < 0.0)  // the centres have passed each other: push them back the way they came
         parallel = unit_or(side - side.dot(tangent) * tangent, -parallel);

@@ -13,6 +13,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -114,6 +115,11 @@ public:
     void hold(const Hold& condition) {
         check(condition.at, condition);
         holds_.push_back(condition);
+    }
+
+    /// Takes away all holds of some fibres.
+    void release(const std::vector<Index>& fibres) {
+        std::erase_if(holds_, [&](const Hold& hold) { return std::find(fibres.begin(), fibres.end(), hold.at.fibre) != fibres.end(); });
     }
 
     /// Holds the centre of a section in the given directions.

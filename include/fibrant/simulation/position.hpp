@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace fibrant::simulation {
@@ -109,6 +110,18 @@ private:
         for (auto& factor : self.holding) body(factor);
     }
 };
+
+/// The stages of a loading; with none, one that takes all channels to 1.
+template <Model M>
+std::vector<Stage<M>> stages_of(const Loading<M>& loading, const connection::Channels& channels) {
+    std::vector<Stage<M>> stages = loading.stages;
+    if (!stages.empty()) return stages;
+    stages.emplace_back();
+    stages.back().increments = loading.increments;
+    stages.back().most_increments = std::max(loading.increments, stages.back().most_increments);
+    for (const std::string& name : channels.names()) stages.back().ramps.push_back({name, 1.0, false});
+    return stages;
+}
 
 /// Amplitudes at a progress of a stage, in [0, 1]; `amplitudes` are those now.
 template <Model M>

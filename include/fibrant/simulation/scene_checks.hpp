@@ -3,6 +3,7 @@
 /// @file What is looked at before a run: holds that agree and have a place all along the loading, and that something is held.
 
 #include <fibrant/connection/prescribed_motion.hpp>
+#include <fibrant/contact/overlaps.hpp>
 #include <fibrant/simulation/position.hpp>
 
 #include <Eigen/Eigenvalues>
@@ -79,5 +80,43 @@ std::string unheld(const std::vector<Stage<M>>& stages, const std::optional<Vec3
                    ", but it must be such that the scene cannot move as a whole: hold a station, tie it to a body, or give the stage a damping";
     return {};
 }
+
+/// Overlap of the sections of two fibres where a run begins, over the radius of the thinner one, beyond which it is not begun without a
+/// limited gap [1]: the axis of one is in the other, and by which side they are to part is a guess.
+inline constexpr double deepest_start = 1.0;
+
+/// look(contacts) at the contacts of a simulator as they would be made now; the last accepted ones stay.
+/// @param forced  keep forced orders
+template <class Simulator, class Look>
+auto look_at_contacts(Simulator& simulator, bool forced, const Look& look) {
+    auto& contacts = simulator.contacts();
+    contacts.detect(simulator.state(), simulator.state(), 0.0, forced);
+    const auto seen = look(contacts);
+    contacts.restore();
+    return seen;
+}
+
+/// Fibres that are in each other where a run begins, deeper than allowed.
+struct StartOverlap {
+    std::string said;       ///< empty: none are
+    bool too_deep = false;
+
+    /// @param first   stage of the run; one that limits the gap may begin anywhere
+    /// @param begins  the run, and does not go on
+    template <class Simulator, Model M>
+    StartOverlap(Simulator& simulator, const Stage<M>& first, bool begins) {
+        constexpr bool limits = requires(typename M::Normal law) { law.with_limit(1.0); };
+        if (!begins || (limits && first.gap_limit)) return;
+        const contact::Overlap deepest = look_at_contacts(simulator, false, [&](const auto& contacts) {
+            return contact::deepest_overlap(contacts, simulator.mesh(), simulator.state(), true);
+        });
+        if (deepest.depth <= simulator.contacts().parameters().stiffness.allowed_penetration) return;
+        too_deep = deepest.depth > deepest_start * deepest.radius;
+        said = "where the scene begins, " + contact::text(deepest, simulator.mesh()) +
+               ": simulation::part_overlaps parts them, or stages with a gap_limit of a law that has one";
+    }
+    /// What it adds to the reason why a first increment has failed.
+    std::string remark() const { return said.empty() ? said : "; " + said; }
+};
 
 }  // namespace fibrant::simulation

@@ -71,13 +71,7 @@ public:
     Report run(const Loading<M>& loading, Observers&... observers) {
         loading.validate();
         const auto start = std::chrono::steady_clock::now();
-        std::vector<Stage<M>> stages = loading.stages;
-        if (stages.empty()) {
-            stages.emplace_back();
-            stages.back().increments = loading.increments;
-            stages.back().most_increments = std::max(loading.increments, stages.back().most_increments);
-            for (const std::string& name : channels_.names()) stages.back().ramps.push_back({name, 1.0, false});
-        }
+        const std::vector<Stage<M>> stages = stages_of(loading, channels_);
         check_ramps(stages, channels_, amplitudes_);
         require_paths(stages, equilibrium_.motion(), mesh_, channels_, amplitudes_);
         Report report;
@@ -89,6 +83,11 @@ public:
         motion_ = MeanMotion(mesh_, amplitudes_.size());
         if (loading.resume && !loading.checkpoint.empty() && std::filesystem::exists(loading.checkpoint))
             read_checkpoint(loading.checkpoint, stages, report);
+        const StartOverlap begun(*this, stages.front(), position_.accepted == 0);
+        if (begun.too_deep) {
+            report.reason = begun.said;
+            return report;
+        }
         auto saved = start;
         bool unsaved = false;
         for (Index k = 0; k < position_.stage; ++k) take_laws(stages[core::at(k)]);  // they stay in force
@@ -98,6 +97,7 @@ public:
             while (!position_.stage_over) {
                 const auto gave_up = [&](const FailedAttempt& attempt) { (tell(observers, attempt), ...); };
                 if (!advance(loading, stages, stage, report, gave_up)) {
+                    if (position_.accepted == 0) report.reason += begun.remark();
                     if (unsaved) write_checkpoint(loading.checkpoint, stages, report);
                     finish(report, start);
                     return report;
@@ -132,6 +132,7 @@ public:
     const Mesh& mesh() const noexcept { return mesh_; }
     const Vector& state() const noexcept { return state_; }
     const Contacts& contacts() const noexcept { return contacts_; }
+    Contacts& contacts() noexcept { return contacts_; }
     const Equilibrium& equilibrium() const noexcept { return equilibrium_; }
     const typename M::Solver& linear_solver() const noexcept { return linear_; }
     double amplitude(const std::string& channel) const { return amplitudes_[core::at(channels_.find(channel))]; }
