@@ -135,6 +135,7 @@ Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const Vec3& t
         parallel = tangent.cross(Vec3(Vec3::Unit(axis))).normalized();
     }
     if (rule.kept_within > 0.0 && !remembered.isZero() && parallel.dot(side) > 0.0) {
+        const double touching = sections.touching_along(unit_or(across, parallel));
         const double keep = 1.0 - smooth_step(2.0 * across.norm() / (rule.kept_within * touching) - 1.0);
         if (keep > 0.0) parallel = unit_or(keep * unit_or(side - side.dot(tangent) * tangent, parallel) + (1.0 - keep) * parallel, parallel);
     }

@@ -181,7 +181,9 @@ private:
     contact::Overlap deepest(Simulator<Parted>& simulator, std::vector<Index>& deep) const {
         contact::Overlap found = overlap(simulator, false, deep);
         if constexpr (M::Beam::nodes == 3) {
-            const observe::LeastGap least = observe::least_gap(simulator.snapshot(), typename M::Proximity(parameters_.proximity));
+            const observe::LeastGap least = observe::least_gap(
+                simulator.snapshot(), typename M::Proximity(parameters_.proximity),
+                parameters_.contact.detection.self_contact ? observe::OwnTurns::counted : observe::OwnTurns::left_out);
             if (-least.gap > found.depth) {
                 const double radius = std::min(simulator.mesh().fibre(least.fibre_i).section.radius(), simulator.mesh().fibre(least.fibre_j).section.radius());
                 found = {least.fibre_i, least.fibre_j, 0.0, 0.0, -least.gap, radius, radius, least.position};
