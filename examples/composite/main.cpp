@@ -74,8 +74,9 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     const composite::CurvePoint end = point(parts::edge_wrench(simulator, composite));
     composite::write_curve(output, end);
     composite::write_pictures(output, simulator.snapshot(), fabric);
-    composite::write_summary(output, simulator, report, end, cloth::smallest_radius(fabric));
-    return report.converged;
+    const simulation::Audit audit = example::audit(output, simulator, cloth::smallest_radius(fabric));
+    composite::write_summary(output, simulator, report, audit, end, cloth::smallest_radius(fabric));
+    return report.converged && audit.clean();
 }
 
 int main(int argc, char** argv) {

@@ -5,6 +5,7 @@
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/observe/loading_curve.hpp>
 #include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/simulation/audit.hpp>
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
 
@@ -47,5 +48,7 @@ int main() {
     const simulation::Report report = simulator.run({.increments = 10}, curve);
     for (const auto& [progress, force] : curve.points()) std::printf("%.4f mm  %.3e N\n", progress * approach, force);
     if (!report.converged) std::printf("stopped: %s\n", report.reason.c_str());
-    return report.converged ? 0 : 1;
+    const simulation::Audit audit = simulation::audit(simulator);
+    if (!audit.clean()) std::printf("fibres %td and %td are %.2e mm deep in each other\n", audit.least_gap.fibre_i, audit.least_gap.fibre_j, -audit.least_gap.gap);
+    return report.converged && audit.clean() ? 0 : 1;
 }

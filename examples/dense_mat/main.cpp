@@ -71,11 +71,12 @@ bool solve(example::TomlReader& file, const example::Output& output) {
         });
         mat::LevelRecord<Mat> record(simulator, parameters);
         const simulation::Report report = simulator.run(mat::pressing_by_levels<Mat>(parameters, levels), recorder, record);
-        converged = converged && report.converged;
+        const simulation::Audit audit = example::audit(own, simulator, 1.0);
+        converged = converged && report.converged && audit.clean();
         plot.lines.push_back(write_levels(table, parameters.seed, record.levels()));
         if (!plot.lines.back().points.empty()) observe::write_file(output.folder / "pressure.svg", observe::log_log_svg(plot));
         example::write_pictures(own, simulator.snapshot(), -60.0, 25.0);
-        example::write_summary(own, report, 1.0, {{"exponent", observe::fitted_order(plot.lines.back().points)}});
+        example::write_summary(own, report, audit, 1.0, {{"exponent", observe::fitted_order(plot.lines.back().points)}});
     }
     return converged;
 }

@@ -69,9 +69,9 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     for (const auto& figure : cloth::load_figures(scene, simulator, snapshot)) figures.push_back(figure);
     for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"crimp_before", before.warp}, {"crimp_after", after.warp}, {"dissipated", report.energy.dissipated}, {"damped", report.energy.damped}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()}})
         figures.emplace_back(name, value);
-    figures.push_back(example::least_gap(snapshot));
-    example::write_summary(output, report, radius, figures);
-    return report.converged;
+    const simulation::Audit audit = example::audit(output, simulator, radius);
+    example::write_summary(output, report, audit, radius, figures);
+    return report.converged && audit.clean();
 }
 
 int main(int argc, char** argv) {

@@ -74,9 +74,10 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     const simulation::Report report = simulator.run(loading, recorder);
     const knot::KnotState state = knot::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -90.0, 60.0);
-    example::write_summary(output, report, radius, {{"force", state.force}, {"force_of_loose_knots", loose(state)}, {"shortening", state.shortening},
+    const simulation::Audit audit = example::audit(output, simulator, radius);
+    example::write_summary(output, report, audit, radius, {{"force", state.force}, {"force_of_loose_knots", loose(state)}, {"shortening", state.shortening},
                            {"radius_over_loop_radius", 2.0 * std::numbers::pi * radius / state.shortening}, {"imbalance", state.imbalance}});
-    return report.converged;
+    return report.converged && audit.clean();
 }
 
 int main(int argc, char** argv) {

@@ -62,9 +62,10 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     const simulation::Report report = simulator.run(loading, recorder);
     const mat::MatState state = mat::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 25.0);
-    example::write_summary(output, report, radius, {example::least_gap(simulator.snapshot()), {"volume_fraction", state.volume_fraction}, {"pressure", state.pressure}, {"lower_pressure", state.lower_pressure},
+    const simulation::Audit audit = example::audit(output, simulator, radius);
+    example::write_summary(output, report, audit, radius, {{"volume_fraction", state.volume_fraction}, {"pressure", state.pressure}, {"lower_pressure", state.lower_pressure},
                            {"contacts_per_fibre", state.contacts_per_fibre}, {"contacts_without_bulk", state.contacts_without_bulk}});
-    return report.converged;
+    return report.converged && audit.clean();
 }
 
 int main(int argc, char** argv) {

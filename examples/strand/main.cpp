@@ -58,9 +58,9 @@ bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters&
     figures.insert(figures.begin(), {{"force", state.force}, {"torque", state.torque}, {"metal_stiffness", parameters.metal_stiffness()},
                                      {"force_over_metal_stiffness_and_strain", state.force / (parameters.metal_stiffness() * given.strain)}});
     figures.insert(figures.end(), {{"external_work", report.energy.external}, {"dissipated", report.energy.dissipated}, {"energy_error", report.energy.error()}});
-    figures.push_back(example::least_gap(simulator.snapshot()));
-    example::write_summary(output, report, radius, figures);
-    return report.converged;
+    const simulation::Audit audit = example::audit(output, simulator, radius);
+    example::write_summary(output, report, audit, radius, figures);
+    return report.converged && audit.clean();
 }
 
 bool solve(example::TomlReader& file, const example::Output& output) {

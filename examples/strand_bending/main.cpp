@@ -93,14 +93,15 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     const simulation::Report report = simulator.run(loading, recorder);
     const strand::BendingState state = strand::measure_bending(simulator, parameters, bending);
     example::write_pictures(output, simulator.snapshot(), -90.0, 10.0);
-    example::write_summary(output, report, radius, {example::least_gap(simulator.snapshot()), {"wires", static_cast<double>(wires)}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
+    const simulation::Audit audit = example::audit(output, simulator, radius);
+    example::write_summary(output, report, audit, radius, {{"wires", static_cast<double>(wires)}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
                            {"length_over_radius", parameters.length / radius}, {"angle_deg", state.angle * 180.0 / std::numbers::pi},
                            {"moment", state.moment}, {"moment_at_plate", state.at_plate},
                            {"moment_of_loose_wires", strand::loose_stiffness(parameters) * full / parameters.length},
                            {"moment_of_a_solid", strand::solid_stiffness(parameters) * full / parameters.length},
                            {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius},
                            {"dissipated", report.energy.dissipated}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()}});
-    return report.converged;
+    return report.converged && audit.clean();
 }
 
 int main(int argc, char** argv) {

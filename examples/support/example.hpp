@@ -8,11 +8,10 @@
 
 #include <fibrant/observe/csv_writer.hpp>
 #include <fibrant/observe/json.hpp>
-#include <fibrant/observe/least_gap.hpp>
 #include <fibrant/observe/svg_slice.hpp>
 #include <fibrant/observe/svg_view.hpp>
 #include <fibrant/observe/vtk_writer.hpp>
-#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/simulation/audit.hpp>
 #include <fibrant/simulation/report.hpp>
 
 #include <CLI/CLI.hpp>
@@ -39,6 +38,9 @@ struct Output {
     observe::Start start() const noexcept { return resume ? observe::Start::resumed : observe::Start::anew; }
     std::string checkpoint() const { return (folder / "checkpoint.bin").string(); }
     std::string unit = "mm";  ///< of lengths, for the pictures
+    /// How deep fibres may be in each other at the end, anywhere, over the radius of the thinnest; unset: as deep as contact is allowed to be, and
+    /// what contact points may leave unseen.
+    double deepest_over_radius = fibrant::core::unset;
 };
 
 /// Runs solve(reader, output) with the command line NAME SCENE.toml --output DIR [--set section.key=value]... [--threads N]
@@ -64,6 +66,7 @@ int run(int argc, char** argv, const char* name, const char* description, const 
         reader.read("output", "paraview", output.paraview);
         reader.read("output", "pictures", output.pictures);
         reader.read("output", "unit", output.unit);
+        reader.read("output", "deepest_over_radius", output.deepest_over_radius);
         output.folder = folder, output.scene = scene;
         std::filesystem::create_directories(output.folder);
 #if defined(_OPENMP)
@@ -137,16 +140,28 @@ inline void write_pictures(const Output& output, const observe::Snapshot& snapsh
     observe::write_file(output.folder / "section.svg", observe::svg_slice(snapshot, slice));
 }
 
-/// For a summary: the true least gap, which no contact element has a say in. Of fibres with three nodes an element.
-inline std::pair<std::string, double> least_gap(const observe::Snapshot& snapshot) {
-    return {"least_gap_over_radius", observe::least_gap(snapshot, fibrant::proximity::GridSearch{}).gap_over_radius};
+/// Audits the state that a run has come to, and says what is wrong with it. What it finds decides the exit status.
+/// @param radius  of the thinnest fibre [length]
+template <class Simulator>
+fibrant::simulation::Audit audit(const Output& output, const Simulator& simulator, double radius) {
+    const fibrant::simulation::Audit answer = fibrant::simulation::audit(simulator, output.deepest_over_radius * radius);
+    const observe::LeastGap& least = answer.least_gap;
+    if (answer.inside_out) std::fprintf(stderr, "audit: %s\n", fibrant::beam::text(*answer.inside_out).c_str());
+    if (least.gap < -answer.allowed)
+        std::fprintf(stderr, "audit: fibres %td and %td are %.4f radii deep in each other at (%g, %g, %g), and may be %.4f\n", least.fibre_i, least.fibre_j, -least.gap / radius,
+                     least.position.x(), least.position.y(), least.position.z(), answer.allowed / radius);
+    return answer;
 }
 
 /// summary.json: what every run says, and what `figures` adds.
-inline void write_summary(const Output& output, const fibrant::simulation::Report& report, double radius,
+inline void write_summary(const Output& output, const fibrant::simulation::Report& report, const fibrant::simulation::Audit& audit, double radius,
                           const std::vector<std::pair<std::string, double>>& figures) {
     observe::JsonObject json;
-    json.add("converged", report.converged).add("reason", report.reason);
+    json.add("converged", report.converged).add("audit_clean", audit.clean()).add("reason", report.reason);
+    json.add("least_gap_over_radius", audit.least_gap.gap_over_radius).add("deepest_allowed_over_radius", audit.allowed / radius);
+    // Of the last increment, then the most of any, over what is stated: 1 or less where that was kept.
+    json.add("residual_over_tolerance", report.use.residual).add("penetration_over_allowed", report.use.penetration);
+    json.add("most_residual_over_tolerance", report.most_use.residual).add("most_penetration_over_allowed", report.most_use.penetration);
     for (const auto& [name, value] : figures) json.add(name, value);
     json.add("increments", report.increments.empty() ? fibrant::Index{0} : report.increments.back().number)
         .add("rejected_increments", report.rejected_increments)

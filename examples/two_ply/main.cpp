@@ -61,10 +61,11 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     const simulation::Report report = simulator.run(loading, recorder);
     const two_ply::TwoPlyState state = two_ply::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 15.0, std::pair{Index{2}, 0.5 * parameters.length});
-    example::write_summary(output, report, radius, {example::least_gap(simulator.snapshot()), {"torque", state.torque}, {"torque_of_helices", theory(state).torque},
+    const simulation::Audit audit = example::audit(output, simulator, radius);
+    example::write_summary(output, report, audit, radius, {{"torque", state.torque}, {"torque_of_helices", theory(state).torque},
                            {"helix_angle_deg", state.helix_angle * 180.0 / std::numbers::pi}, {"line_load", state.line_load},
                            {"line_load_of_helices", theory(state).line_load}});
-    return report.converged;
+    return report.converged && audit.clean();
 }
 
 int main(int argc, char** argv) {

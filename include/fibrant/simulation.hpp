@@ -3,6 +3,7 @@
 /// @file Loadings, simulators, their reports and checkpoints.
 
 #include <fibrant/simulation/acceptance.hpp>
+#include <fibrant/simulation/audit.hpp>
 #include <fibrant/simulation/checkpoint.hpp>
 #include <fibrant/simulation/energy_account.hpp>
 #include <fibrant/simulation/increment_file.hpp>

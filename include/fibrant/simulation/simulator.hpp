@@ -128,6 +128,7 @@ public:
         energy_.start_from_other(equilibrium_, state_);
     }
 
+    const ModelParameters<M>& parameters() const noexcept { return parameters_; }
     const Beam& beam() const noexcept { return beam_; }
     const Mesh& mesh() const noexcept { return mesh_; }
     const Vector& state() const noexcept { return state_; }
