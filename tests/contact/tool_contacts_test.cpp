@@ -83,8 +83,8 @@ Vector forces(const Tools& tools, Index size) {
 simulation::ModelParameters<Pressing> parameters(double mu) {
     auto all = test::tight_parameters<Pressing>(1e-3 * r);
     all.friction = {.friction_coefficient = mu, .reversible_displacement = 0.02 * r};
-    all.contact.stiffness.largest_change = 1.0 + 1e-12;  // else reactions creep where nothing moves
-    all.contact.stiffness.initial_fraction = 10.0;
+    // As it is given, or reactions would creep where nothing moves.
+    all.contact.stiffness.initial_fraction = all.contact.stiffness.floor_fraction = all.contact.stiffness.cap_fraction = 10.0;
     return all;
 }
 
@@ -283,7 +283,7 @@ TEST_CASE("a stuck fibre that turns with its tool feels nothing of it") {
             assembly.hold(hold);
         }
     auto all = parameters(0.3);
-    all.contact.stiffness.initial_fraction = 0.1;
+    all.contact.stiffness.initial_fraction = all.contact.stiffness.floor_fraction = all.contact.stiffness.cap_fraction = 0.1;
     Simulator simulator(assembly, all);
     simulation::Report report = simulator.run(test::stage<Pressing>({{"turn", -1.0}}, 1));
     report = simulator.run(test::stage<Pressing>({{"turn", 0.0}}, 4));

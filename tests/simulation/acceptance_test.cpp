@@ -170,7 +170,7 @@ TEST_CASE("a penalty that is given as one number stays it, however deep that is,
 
 TEST_CASE("contact that even the stiffest penalty leaves too deep is refused by its depth") {
     auto parameters = test::model_parameters<Smooth>(r);
-    parameters.contact.stiffness.cap_fraction = 0.06;  // a little above where it begins
+    parameters.contact.stiffness.cap_fraction = 0.06, parameters.contact.stiffness.reserve = 1.0;  // a little above where it begins
     simulation::Simulator<Smooth> simulator(crossed(25, 0, 10, 8), parameters);
     const simulation::Report report = simulator.run({.increments = 4});
     CHECK_FALSE(report.converged);

@@ -24,7 +24,7 @@ struct Bounded {
         Matrix row(Index, Index) const { return Matrix::Identity(3, 3); }
     };
     struct Fibre {
-        scene::CrossSection section{.semi_axis_1 = 0.1, .semi_axis_2 = 0.1};
+        scene::CrossSection section{.semi_axis_1 = 1e3, .semi_axis_2 = 1e3};
     };
     struct Mesh {
         Fibre only;

@@ -35,8 +35,7 @@ simulation::ModelParameters<M> parameters(double fraction, double largest) {
     } else {
         own.normal = {.regularisation_depth = 1e-3 * r};
     }
-    own.contact.stiffness.initial_fraction = fraction;
-    own.contact.stiffness.largest_change = 1.0 + 1e-12;
+    own.contact.stiffness.initial_fraction = own.contact.stiffness.floor_fraction = own.contact.stiffness.cap_fraction = fraction;
     return own;
 }
 

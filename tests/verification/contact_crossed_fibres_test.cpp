@@ -88,7 +88,9 @@ private:
                 axial.channel = "stretch";
                 axial.displacement = (end - 0.5) * c.strain * c.length * along;
                 assembly.hold(axial);
-                assembly.clamp({fibre, end}, upper ? Vec3(0, 0, -c.approach) : Vec3(Vec3::Zero()));
+                axial.directions = Mat3::Identity() - axial.directions, axial.channel = "motion", axial.displacement = upper ? Vec3(0, 0, -c.approach) : Vec3(Vec3::Zero());
+                assembly.hold(axial);
+                assembly.hold_rotation({fibre, end});
             }
             assembly.apply(scene::DeadForce{{fibre, 0.5}, scene::NodeVector::director_1, Vec3(0, 0, r * c.force), "relief"});
         }
@@ -123,7 +125,7 @@ TEST_CASE("two crossed fibres push each other apart as the rods of the reference
             CHECK((each->support(0) + each->support(1)).norm() < 1e-6 * c.force);
             CHECK(std::abs(each->report.contact.reaction_sum / each->support(0).z() - 1.0) < 1e-6);
             CHECK(each->report.contact.active == 1);
-            CHECK(each->report.contact.greatest_penetration < 2e-3 * r);  // the greatest force meets the cap of the stiffness
+            CHECK(each->report.contact.greatest_penetration <= 1e-3 * r);  // as allowed
         }
     }
 }

@@ -84,8 +84,8 @@ void check_turning_pair(double angle_deg, Index increments) {
 
     simulation::ModelParameters<Rough> parameters = test::tight_parameters<Rough>(1e-2 * r);
     parameters.friction = {.friction_coefficient = 0.3, .reversible_displacement = range};
-    parameters.contact.stiffness.largest_change = 1.0 + 1e-12;  // else the penetration creeps while the pair turns
-    parameters.contact.stiffness.initial_fraction = 0.01;
+    // As it is given, or the penetration would creep while the pair turns.
+    parameters.contact.stiffness.initial_fraction = parameters.contact.stiffness.floor_fraction = parameters.contact.stiffness.cap_fraction = 0.01;
     parameters.iteration.step_tolerance = 1e-8;  // tolerances are in radii, and friction lives on a fiftieth of one
     parameters.iteration.residual_tolerance = 1e-9;
     parameters.iteration.normal_step_tolerance = 1e-7;

@@ -46,7 +46,7 @@ bool stiffen_deep_zones(Contacts& contacts, const StiffnessAdaptation& adaptatio
             const double depth = zone.forced ? 0.0 : detail::depth_of(contacts, zone);
             if (!(depth > adaptation.allowed_penetration * zone.penetration_factor)) continue;
             const double before = zone.stiffness;
-            zone.stiffness = adapted_stiffness(adaptation, contacts.normal_law(), before, zone.reference, depth, zone.penetration_factor);
+            zone.stiffness = strictly_adapted_stiffness(adaptation, contacts.normal_law(), before, zone.reference, depth, zone.penetration_factor);
             any = any || zone.stiffness > before;
         }
         if constexpr (requires { contacts.tools(); }) any = contacts.tools().stiffen(contacts.normal_law(), adaptation) || any;

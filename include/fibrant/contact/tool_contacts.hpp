@@ -253,7 +253,7 @@ public:
                 if (!(depth[slot(f, t)] > adaptation.allowed_penetration)) continue;
                 double& own = stiffness_[slot(f, t)];
                 const double before = own;
-                own = adapted_stiffness(adaptation, normal, own, reference_[core::at(f)], depth[slot(f, t)]);
+                own = strictly_adapted_stiffness(adaptation, normal, own, reference_[core::at(f)], depth[slot(f, t)]);
                 any = any || own > before;
             }
         return any;

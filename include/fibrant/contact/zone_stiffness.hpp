@@ -40,7 +40,8 @@ struct StiffnessAdaptation {
     double target_fraction = 0.45;             ///< of p_max that a zone is adapted to, since it is deeper between points [1], in (0, 1)
     double initial_fraction = 0.05;            ///< of k_el, for zones without a predecessor [1], > 0
     double largest_change = 3.0;               ///< factor at one adaptation [1], > 1
-    double cap_fraction = 10.0;                ///< of k_el, never exceeded [1], > 0
+    double cap_fraction = 10.0;                ///< of k_el, not exceeded by what is no deeper than allowed [1], > 0
+    double reserve = 100.0;                    ///< on the cap, for what is deeper than allowed all the same [1], >= 1
     double floor_fraction = 1e-3;              ///< of k_el [1], > 0
     void validate() const {
         core::require_positive("StiffnessAdaptation.allowed_penetration", allowed_penetration);
@@ -48,16 +49,21 @@ struct StiffnessAdaptation {
         core::require_positive("StiffnessAdaptation.initial_fraction", initial_fraction);
         core::require(largest_change > 1.0, "StiffnessAdaptation.largest_change", largest_change, "> 1");
         core::require_positive("StiffnessAdaptation.cap_fraction", cap_fraction);
+        core::require_at_least("StiffnessAdaptation.reserve", reserve, 1.0);
         core::require_positive("StiffnessAdaptation.floor_fraction", floor_fraction);
     }
 
-    /// Stiffness after an increment in which the zone's largest penetration was `penetration` [length].
+    /// A penalty whose floor and cap are one is as stiff as a user wants it, and as deep as that makes it.
+    bool adapts() const noexcept { return floor_fraction < cap_fraction; }
+
+    /// Stiffness after an increment in which the zone's largest penetration was `penetration` [length]. One that is beyond the cap stays there
+    /// until it may be less.
     double adapted(double stiffness, double reference, double penetration, double regularisation_depth) const noexcept {
         if (!(penetration > 0.0)) return stiffness;
         const double lost = std::min(0.5 * regularisation_depth, 0.5 * target_fraction * allowed_penetration);
         const double ratio = std::max(penetration - lost, 0.0) / (target_fraction * allowed_penetration - lost);
         return std::clamp(stiffness * std::clamp(ratio, 1.0 / largest_change, largest_change),
-                          floor_fraction * reference, cap_fraction * reference);
+                          floor_fraction * reference, std::max(cap_fraction * reference, adapts() ? stiffness : 0.0));
     }
 };
 
@@ -70,6 +76,14 @@ double adapted_stiffness(StiffnessAdaptation adaptation, const Normal& normal, d
     adaptation.allowed_penetration *= factor;
     const double adapted = adaptation.adapted(stiffness, reference, penetration, law::regularisation_depth(normal));
     return law::Augmenting<Normal> ? std::max(stiffness, adapted) : adapted;
+}
+
+/// The same for what must not be accepted as it is: with the reserve.
+template <law::NormalLaw Normal>
+double strictly_adapted_stiffness(StiffnessAdaptation adaptation, const Normal& normal, double stiffness, double reference,
+                                  double penetration, double factor = 1.0) noexcept {
+    if (adaptation.adapts()) adaptation.cap_fraction *= adaptation.reserve;
+    return adapted_stiffness(adaptation, normal, stiffness, reference, penetration, factor);
 }
 
 /// Compliance of two opposite line loads on a section, as a stiffness over a length: (pi / 2) E / (1 - nu^2) * length

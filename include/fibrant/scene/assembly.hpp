@@ -153,14 +153,18 @@ public:
         condition.at = at;
         condition.channel = channel;
         condition.pivot = pivot;
-        if (rotation.norm() > 0.0) {
-            condition.rotation = [rotation](double amplitude) {
-                return Mat3(Eigen::AngleAxisd(amplitude * rotation.norm(), rotation.normalized()));
-            };
-        }
+        condition.rotation = by_amplitude(rotation);
         condition.displacement = displacement;
         hold(condition);
-        condition.displacement = Vec3::Zero();
+        hold_rotation(at, rotation, channel);
+    }
+
+    /// The rotation of a clamp alone, where the position is held by other conditions.
+    void hold_rotation(Station at, const Vec3& rotation = Vec3::Zero(), const std::string& channel = "motion") {
+        Hold condition;
+        condition.at = at;
+        condition.channel = channel;
+        condition.rotation = by_amplitude(rotation);
         condition.axes = Axes::section;
         condition.vector = NodeVector::director_1;
         condition.directions = Vec3(0, 1, 1).asDiagonal();  // not its own stretch
@@ -327,6 +331,10 @@ public:
     const std::vector<SolidHold>& solid_holds() const noexcept { return solid_holds_; }
 
 private:
+    static std::function<Mat3(double)> by_amplitude(const Vec3& rotation) {
+        if (!(rotation.norm() > 0.0)) return {};
+        return [rotation](double amplitude) { return Mat3(Eigen::AngleAxisd(amplitude * rotation.norm(), rotation.normalized())); };
+    }
     void check(const Station& at) const {
         if (at.fibre < 0 || at.fibre >= core::count(fibres_))
             core::refuse("Station.fibre", std::to_string(at.fibre), "a fibre of this assembly");

@@ -143,7 +143,7 @@ public:
         report.use = {report.residual / parameters_.residual_tolerance, turn_ / parameters_.normal_tolerance,
                       contact_possible_ ? change / (parameters_.contact_tolerance * radius_) : 0.0,
                       contact_possible_ ? contact::depth_over_allowed(*contacts_, contacts_->parameters().stiffness) : 0.0};
-        if (strict && report.use.penetration > 1.0 && adapts()) {
+        if (strict && report.use.penetration > 1.0 && contacts_->parameters().stiffness.adapts()) {
             report.reason = "contact is " + core::text(report.use.penetration) + " times as deep as allowed, as stiff as it may be";
             return report;
         }
@@ -154,12 +154,6 @@ public:
 private:
     /// Of zones, within an increment: each a factor StiffnessAdaptation.largest_change, so that ten are five decades by default.
     static constexpr Index most_stiffenings = 10;
-
-    /// A penalty whose floor and cap are one is as stiff as a user wants it, and as deep as that makes it.
-    bool adapts() const {
-        const contact::StiffnessAdaptation& adaptation = contacts_->parameters().stiffness;
-        return adaptation.floor_fraction < adaptation.cap_fraction;
-    }
 
     /// What is driven moves by more than a search reaches where nothing is in its way. What it passed through on the way from the last
     /// search is met where they touch, and the next search sees it.
