@@ -220,7 +220,7 @@ private:
     /// Multiple of the last travel that a geometric series of passes still has before it, bounded; 0 if there is none.
     double extrapolation(const Vector& travel, const Vector& last_travel, double change) const {
         if (travel.size() == 0 || last_travel.size() == 0) return 0.0;
-        const double ratio = core::dot(travel, last_travel) / core::dot(last_travel, last_travel);
+        const double ratio = equilibrium_->product(travel, last_travel) / equilibrium_->product(last_travel, last_travel);
         if (!(ratio > 0.4)) return 0.0;
         const double series = ratio < 0.8 ? ratio / (1.0 - ratio) : 4.0;
         return std::min(series, 0.25 * radius_ / change);

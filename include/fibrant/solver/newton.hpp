@@ -106,7 +106,7 @@ public:
                 return report;
             }
             // A prescribed motion has a residual that is not that of one energy.
-            const bool watched = std::isfinite(parameters_.overshoot) && prescribed_.norm() <= 1e-3 * step_.norm();
+            const bool watched = std::isfinite(parameters_.overshoot) && equilibrium.product(prescribed_, prescribed_) <= 1e-6 * equilibrium.product(step_, step_);
             if (watched) equilibrium.learned().begin_step(*contacts_);
             const double slope = watched ? residual_.dot(step_) : 0.0;
             step_ += prescribed_;
