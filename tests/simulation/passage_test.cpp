@@ -239,7 +239,7 @@ TEST_CASE("a tool that is too fast for a fibre is refused by name, and a slower 
             if (shape == scene::ToolShape::plane) {  // clamped ends are pressed through it: there is no answer
                 CHECK_FALSE(report.converged);
                 CHECK(z < 0.5 * r);
-                if (increments == 1) CHECK(failures.name("with tool 0"));
+                if (increments == 1) CHECK(failures.name("contact of fibre 0 with tool 0 is"));
                 continue;
             }
             if (increments > 1) REQUIRE(report.converged);

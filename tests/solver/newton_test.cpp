@@ -52,6 +52,7 @@ struct Bounded {
     void reset_stresses(const Vector&) {}
     double greatest(const Vector& step) const { return step.norm(); }
     double norm(const Vector& forces) const { return forces.norm(); }
+    double product(const Vector& a, const Vector& b) const { return a.dot(b); }
     contact::LearnedContacts memory;
     contact::LearnedContacts& learned() { return memory; }
     void add_learned(Vector&) const {}

@@ -6,6 +6,7 @@
 #include <fibrant/contact/zone_stiffness.hpp>
 
 #include <algorithm>
+#include <string>
 
 namespace fibrant::contact {
 
@@ -22,17 +23,39 @@ double depth_of(const Contacts& contacts, const Zone& zone) {
 }
 }  // namespace detail
 
-/// Greatest penetration of what was evaluated last over what is allowed of it [1]: by zone, of laws with multipliers what they leave.
+/// What is deepest over what it is allowed.
+struct DepthOverAllowed {
+    double value = 0.0;                     ///< [1]
+    Index fibre = -1, other = -1;           ///< fibres, or a fibre and a tool; -1 where laws have multipliers
+    bool tool = false;
+};
+
+/// For a report.
+inline std::string text(const DepthOverAllowed& depth) {
+    std::string what = "contact";
+    if (depth.fibre >= 0) {
+        what += " of fibre " + std::to_string(depth.fibre) + " with ";
+        what += depth.tool ? "tool " + std::to_string(depth.other) : depth.fibre == depth.other ? "itself" : "fibre " + std::to_string(depth.other);
+    }
+    return what + " is " + core::text(depth.value) + " times as deep as allowed, as stiff as it may be";
+}
+
+/// Greatest penetration of what was evaluated last over what is allowed of it: by zone, of laws with multipliers what they leave.
 /// Forced orders and limited gaps are not asked: they are on their way.
 template <class Contacts>
-double depth_over_allowed(const Contacts& contacts, const StiffnessAdaptation& adaptation) {
+DepthOverAllowed depth_over_allowed(const Contacts& contacts, const StiffnessAdaptation& adaptation) {
     if constexpr (requires { contacts.normal_law().largest_penetration(); }) {
-        return contacts.misfit() / contacts.normal_law().largest_penetration();
+        return {.value = contacts.misfit() / contacts.normal_law().largest_penetration()};
     } else {
-        double most = 0.0;
-        for (const Zone& zone : contacts.zones())
-            if (!zone.forced) most = std::max(most, detail::depth_of(contacts, zone) / (adaptation.allowed_penetration * zone.penetration_factor));
-        if constexpr (requires { contacts.tools(); }) most = std::max(most, contacts.tools().deepest() / adaptation.allowed_penetration);
+        DepthOverAllowed most;
+        for (const Zone& zone : contacts.zones()) {
+            if (zone.forced) continue;
+            const double over = detail::depth_of(contacts, zone) / (adaptation.allowed_penetration * zone.penetration_factor);
+            if (over > most.value) most = {over, zone.span.fibre_i, zone.span.fibre_j, false};
+        }
+        if constexpr (requires { contacts.tools(); })
+            if (const auto deepest = contacts.tools().deepest(); deepest.depth > most.value * adaptation.allowed_penetration)
+                most = {deepest.depth / adaptation.allowed_penetration, deepest.fibre, deepest.tool, true};
         return most;
     }
 }

@@ -237,11 +237,18 @@ public:
         return most;
     }
 
-    /// Greatest penetration that stiffness adapts to, but for gaps that a law limits [length].
-    double deepest() const {
-        double most = 0.0;
-        for (std::size_t k = 0; k < responses_.size(); ++k)
-            if (!(elements_[k].shift.value() > 0.0)) most = std::max(most, adapting_penetration(elements_[k], responses_[k]));
+    struct Deepest {
+        double depth = 0.0;  ///< [length]
+        Index fibre = -1, tool = -1;
+    };
+    /// Greatest penetration that stiffness adapts to, but for gaps that a law limits.
+    Deepest deepest() const {
+        Deepest most;
+        for (std::size_t k = 0; k < responses_.size(); ++k) {
+            if (elements_[k].shift.value() > 0.0) continue;
+            const double depth = adapting_penetration(elements_[k], responses_[k]);
+            if (depth > most.depth) most = {depth, elements_[k].fibre, elements_[k].tool};
+        }
         return most;
     }
     /// Stiffens pairs of a fibre and a tool that are deeper than allowed. @returns whether any became stiffer

@@ -140,11 +140,13 @@ public:
                 return report;
             }
         }
+        contact::DepthOverAllowed depth;
+        if (contact_possible_) depth = contact::depth_over_allowed(*contacts_, contacts_->parameters().stiffness);
         report.use = {report.residual / parameters_.residual_tolerance, turn_ / parameters_.normal_tolerance,
                       contact_possible_ ? change / (parameters_.contact_tolerance * radius_) : 0.0,
-                      contact_possible_ ? contact::depth_over_allowed(*contacts_, contacts_->parameters().stiffness) : 0.0};
+                      depth.value};
         if (strict && report.use.penetration > 1.0 && contacts_->parameters().stiffness.adapts()) {
-            report.reason = "contact is " + core::text(report.use.penetration) + " times as deep as allowed, as stiff as it may be";
+            report.reason = contact::text(depth);
             return report;
         }
         report.converged = true;
