@@ -49,7 +49,7 @@ struct StiffnessAdaptation {
         core::require_positive("StiffnessAdaptation.initial_fraction", initial_fraction);
         core::require(largest_change > 1.0, "StiffnessAdaptation.largest_change", largest_change, "> 1");
         core::require_positive("StiffnessAdaptation.cap_fraction", cap_fraction);
-        core::require_at_least("StiffnessAdaptation.reserve", reserve, 1.0);
+        core::require(reserve >= 1.0, "StiffnessAdaptation.reserve", reserve, ">= 1");
         core::require_positive("StiffnessAdaptation.floor_fraction", floor_fraction);
     }
 
