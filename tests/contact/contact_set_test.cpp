@@ -43,7 +43,7 @@ struct BareElement {
     beam::ElementWeights<Beam> weights_i, weights_j;
     Vec3 normal;
     double cap;
-    std::int32_t fibre_i, fibre_j, first_i, first_j, zone;
+    std::int32_t fibre_i, fibre_j, first_i, first_j, zone, place;
     bool crossing, end_i, end_j;
     Vec3 from_i, from_j;
     double depth;

@@ -7,6 +7,7 @@
 #include <fibrant/assembly/linear_system.hpp>
 #include <fibrant/assembly/point_product.hpp>
 #include <fibrant/beam/mesh.hpp>
+#include <fibrant/contact/sliding_place.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/scene/image_vectors.hpp>
 
@@ -57,6 +58,10 @@ public:
     std::vector<Point>& points() noexcept { return points_; }
     const std::vector<Point>& points() const noexcept { return points_; }
 
+    /// Stiffness of contacts whose places slide: few scenes have any. It reaches beyond elements: bands and node blocks do without, products
+    /// and terms have it.
+    std::vector<contact::SlidingStiffness>& slides() noexcept { return slides_; }
+
     /// Part of a point term that is not symmetric: `column` (x) `row` beside its stiffness [force / length, 1].
     struct Skew {
         std::int32_t point;
@@ -81,8 +86,8 @@ public:
         y += free_;
     }
 
-    /// Number of terms that couple what no band does: fibres, and the last nodes of a closed one with its first.
-    Index couplings() const noexcept { return core::count(points_) + core::count(closed_); }
+    /// Number of terms that couple what no band does: points, slides, and the last nodes of a closed one with its first.
+    Index couplings() const noexcept { return core::count(points_) + core::count(slides_) + core::count(closed_); }
 
     /// Sets the values of the current state, which preconditioners read.
     void place(const Vector& state) {
@@ -158,6 +163,12 @@ public:
             pairs_.find_motions(sides(p), x);
         }, grain);
         core::parallel_for(band_.packs(), [&](Index p) { pairs_.add_forces(sides(p), y); }, grain);
+        for (const contact::SlidingStiffness& slide : slides_) {
+            Vector motion(slide.rows.cols());
+            for (std::size_t k = 0; k < slide.vectors.size(); ++k) motion.segment<3>(3 * static_cast<Index>(k)) = x.segment<3>(3 * slide.vectors[k]);
+            const Vector force = slide.rows.transpose() * (slide.stiffness * (slide.rows * motion));
+            for (std::size_t k = 0; k < slide.vectors.size(); ++k) y.segment<3>(3 * slide.vectors[k]) += force.segment<3>(3 * static_cast<Index>(k));
+        }
         scene::fold_images(layout_, y);
     }
 
@@ -208,7 +219,7 @@ public:
             const Index alone = vector;
             terms.point(PointTerm{std::span<const Index>(&alone, 1), std::span<const double>(&one, 1), Mat3(stiffness * Mat3::Identity())});
         }
-        visit_couplings(terms, 0, core::count(points_));
+        visit_couplings(terms, 0, core::count(points_) + core::count(slides_));
     }
     /// The points, and where chains close: else a beam's stiffness couples nothing beyond its chain's band.
     template <class Terms>
@@ -221,11 +232,16 @@ public:
         constexpr Index stride = beam::TouchedOnCentreline<B> ? B::vectors_per_node : 1, weighted = vectors / stride;
         std::array<Index, core::at(2 * weighted)> both{};
         [[maybe_unused]] std::array<double, core::at(2 * weighted)> weights{};
-        const Index points = core::count(points_);
-        for (Index k = std::max(first, points); k < last; ++k) {
-            const Index fibre = closed_[core::at(k - points)];
+        const Index points = core::count(points_), open = points + core::count(slides_);
+        for (Index k = std::max(first, open); k < last; ++k) {
+            const Index fibre = closed_[core::at(k - open)];
             Matrix dense;
             visit_row(fibre, nodes(fibre) - 1, dense, terms);
+        }
+        for (Index k = std::max(first, points); k < std::min(last, open); ++k) {
+            const contact::SlidingStiffness& slide = slides_[core::at(k - points)];
+            const Matrix dense = slide.rows.transpose() * slide.stiffness * slide.rows;
+            terms.dense(DenseTerm{slide.vectors, dense});
         }
         first = std::min(first, points), last = std::min(last, points);
         for (const Point& point : std::span<const Point>(points_).subspan(core::at(first), core::at(last - first))) {
@@ -357,6 +373,7 @@ private:
     std::vector<Row> rows_;
     std::vector<Point> points_;
     std::vector<Skew> skews_;
+    std::vector<contact::SlidingStiffness> slides_;
     std::vector<std::pair<Index, double>> supports_;  // of tied vectors, sorted
     BandProduct<block, reach> band_;
     PointProduct<vectors, beam::Particle<B>> pairs_;

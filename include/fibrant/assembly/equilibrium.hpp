@@ -211,6 +211,7 @@ public:
             solid_.linearise(state, tension_only, shift + damping_);
         }
         gather_points();
+        gather_slides(tension_only);
         system_.index_points();
     }
 
@@ -219,6 +220,7 @@ public:
     void outline(const Vector& state) {
         system_.place(state);
         gather_points();
+        gather_slides(false);
     }
 
     double elastic_energy(const Vector& state) const {
@@ -303,7 +305,7 @@ private:
         for (Index k = 0; k < core::count(elements); ++k) {
             const bool carries = contacts_->carries(k);
             if (!carries && learned_.empty()) continue;
-            Mat3 tangent = contacts_->tangent(k);
+            Mat3 tangent = contacts_->point_tangent(k);
             if (!learned_.empty()) {
                 const Mat3 learned = learned_.stiffness(*contacts_, k);
                 if (!carries && learned.isZero(0.0)) continue;
@@ -316,6 +318,13 @@ private:
             const Vec3 column = contacts_->friction_by_gap(k);
             if (!column.isZero(0.0)) system_.skews().push_back({static_cast<std::int32_t>(points.size() - 1), column, element.normal});
         }
+    }
+    /// @param positive  without negative parts
+    void gather_slides(bool positive) {
+        system_.slides().clear();
+        if (contacts_->places().none()) return;
+        for (Index k = 0; k < core::count(contacts_->elements()); ++k)
+            if (contacts_->slides(k) && contacts_->responses()[core::at(k)].slope != 0.0) system_.slides().push_back(contacts_->sliding(k, positive));
     }
     /// Images are held, behind what holds and ties hold; where they go the sources say.
     void hold_images() {

@@ -46,6 +46,7 @@ public:
 
     // The fibres' bands and points.
     auto& points() noexcept { return fibres_.points(); }
+    auto& slides() noexcept { return fibres_.slides(); }
     auto& skews() noexcept { return fibres_.skews(); }
     bool unsymmetric() const noexcept { return fibres_.unsymmetric(); }
     void clear(Index fibre) { fibres_.clear(fibre); }

@@ -61,6 +61,7 @@ struct ContactElement {
     std::int32_t fibre_i = -1, fibre_j = -1;
     std::int32_t first_i = 0, first_j = 0;  ///< first unknown of each side's element
     std::int32_t zone = -1;
+    std::int32_t place = -1;               ///< of a crossing that is followed, or -1
     bool crossing = false, end_i = false, end_j = false;
     [[no_unique_address]] GapShift<Normal> shift;
     [[no_unique_address]] MeetingPoint<B> meeting;

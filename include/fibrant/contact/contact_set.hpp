@@ -6,7 +6,8 @@
 #include <fibrant/contact/contact_element.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
-#include <fibrant/contact/element_normal.hpp>
+#include <fibrant/contact/element_directions.hpp>
+#include <fibrant/contact/followed_places.hpp>
 #include <fibrant/contact/meeting_point.hpp>
 #include <fibrant/contact/pair_rules.hpp>
 #include <fibrant/contact/side_index.hpp>
@@ -32,7 +33,7 @@ public:
     ContactSet(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const ContactParameters& parameters,
                Search search, Normal normal, Friction friction)
         : mesh_{&mesh}, parameters_{core::validated(parameters)}, orders_{assembly, mesh}, rules_{assembly}, search_{std::move(search)},
-          normal_{normal}, friction_{friction}, accepted_{mesh.periods()} {}
+          normal_{normal}, friction_{friction}, accepted_{mesh.periods()}, places_{parameters.places} {}
 
     Normal& normal_law() noexcept { return normal_; }
     const Normal& normal_law() const noexcept { return normal_; }
@@ -66,6 +67,7 @@ public:
         const Memory last(accepted_.periods(), records(state));
         const Memory& memory = last.records().empty() ? accepted_ : last;
         generate(state, accepted, memory);
+        places_.number(elements_, zones_, accepted);
         sides_.build(mesh_->fibre_count(), elements_);
     }
 
@@ -75,6 +77,7 @@ public:
         std::vector<double> turned(elements_.size(), 0.0);
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
+            if (slides(k)) return;  // it is where it should be
             const Vec3 before = element.normal;
             place_particles(element, state, accepted, before);
             if (k < core::count(responses_) && responses_[core::at(k)].reaction > 0.0)
@@ -99,10 +102,12 @@ public:
         if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
+            if (slides(k) && !start) follow(k, state);
             Vec3 slip = Vec3::Zero();
             if constexpr (core::Active<Friction>)
                 if (!start) slip = element.friction_offset(state) - element.friction.accepted_offset;
             follow_particles(*mesh_, state, element);
+            if (slides(k)) places_.take(*mesh_, state, element);
             const double apart = element.gap(state);
             const Zone& zone = zones_[core::at(element.zone)];
             const bool none = start && apart < -2.0 * zone.deepest;
@@ -124,7 +129,7 @@ public:
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
             if (element.crossing) return;
-            element.normal = normal(element, start, element.normal);
+            element.normal = element_normal(*mesh_, start, element, parameters_.normal, element.normal);
             find_meeting_point(*mesh_, start, element);
         });
         return present;
@@ -156,6 +161,24 @@ public:
         return sum;
     }
 
+    /// Crossings whose places and normals are those of the moment.
+    FollowedPlaces<B>& places() noexcept { return places_; }
+    const FollowedPlaces<B>& places() const noexcept { return places_; }
+    /// Element k is one: its normal force acts on patches, and has a stiffness of its own beside what its particles have.
+    bool slides(Index k) const noexcept { return elements_[core::at(k)].place >= 0; }
+    SlidingStiffness sliding(Index k, bool positive) const {
+        const ContactResponse& response = responses_[core::at(k)];
+        return sliding_stiffness(places_.of(elements_[core::at(k)]), elements_[core::at(k)].normal, response.reaction, response.slope, positive);
+    }
+    /// Of `force` and of `tangent`, what acts on the particles.
+    Vec3 point_force(Index k) const noexcept {
+        return slides(k) ? Vec3(force(k) + responses_[core::at(k)].reaction * elements_[core::at(k)].normal) : force(k);
+    }
+    Mat3 point_tangent(Index k) const noexcept {
+        const Vec3& normal = elements_[core::at(k)].normal;
+        return slides(k) ? Mat3(tangent(k) + responses_[core::at(k)].slope * normal * normal.transpose()) : tangent(k);
+    }
+
     /// Friction is bounded by the reactions of the moment.
     bool follows() const noexcept { return core::Active<Friction> && parameters_.friction_bound == FrictionBound::following; }
     /// What `tangent` leaves out where the bound follows: slope of element k's friction force by its gap [force / length].
@@ -172,6 +195,7 @@ public:
         for (const std::int32_t side : sides(fibre)) {
             const Index k = side / 2;
             const Element& element = elements_[core::at(k)];
+            if (slides(k)) continue;
             const double reaction = responses_[core::at(k)].reaction;
             if (side % 2 == 1)
                 section_stiffness_term(*mesh_, state, fibre, element.u_j, element.first_j, element.normal, reaction, element.end_j, add);
@@ -188,7 +212,8 @@ public:
                 if (!carries(k)) continue;
                 const Element& element = elements_[core::at(k)];
                 const bool of_j = side % 2 == 1;
-                const Vec3 value = of_j ? force(k) : Vec3(-force(k));
+                const Vec3 value = of_j ? point_force(k) : Vec3(-point_force(k));
+                if (slides(k)) spread(of_j ? places_.of(element).j : places_.of(element).i, (of_j ? -1.0 : 1.0) * responses_[core::at(k)].reaction * element.normal, residual);
                 beam::spread(of_j ? element.weights_j : element.weights_i, value, of_j ? element.first_j : element.first_i, residual);
             }
         }, mesh_->grain());
@@ -268,9 +293,10 @@ private:
         zone.stiffness = before ? before->stiffness : parameters_.stiffness.initial_fraction * zone.reference;
         if (!accepted_zones_.empty()) zone.deepest = before ? before->deepest : 0.0;
         if (zone.forced) return;
-        const double angle = crossing_angle_deg(*mesh_, state, zone.span);
+        zone.followed = places_.wanted(*mesh_, state, zone, before);
+        const double angle = crossing_angle_deg(*mesh_, state, zone.span, !zone.followed);
         const double shift = !before ? 0.0 : parameters_.spacing.angle_hysteresis_deg * (before->crossing ? -1.0 : 1.0);
-        zone.crossing = angle > parameters_.spacing.crossing_angle_deg + shift;
+        zone.crossing = angle > places_.angle_share(zone) * (parameters_.spacing.crossing_angle_deg + shift);
     }
 
     void generate(const Vector& state, const Vector& accepted, const Memory& memory) {
@@ -286,6 +312,7 @@ private:
                 station_pairs(*mesh_, state, zone.span, zone.crossing, parameters_.spacing, pairs,
                               [&](const auto& see) { memory.visit_places(zone.span, see); });
                 zone.first = core::count(made[core::at(b)]);
+                if (!pairs.empty() && places_.follows(pairs.back(), zone)) places_.settle(*mesh_, state, zone, memory, pairs);
                 for (const StationPair& pair : pairs) {
                     Element element = make(zone, z, pair);
                     const auto* record = memory.nearest(zone.span.fibre_i, zone.span.fibre_j, pair.u_i, pair.u_j, 1.5);
@@ -315,6 +342,18 @@ private:
         core::join(made, elements_);
     }
 
+    /// The closest patches of a state, and what depends on them.
+    void follow(Index k, const Vector& state) {
+        Element& element = elements_[core::at(k)];
+        places_.follow(*mesh_, state, element);
+        find_meeting_point(*mesh_, state, element);
+        if constexpr (core::Active<Friction>) {
+            element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
+            element.friction.accepted_offset = contact::accepted_offset(*mesh_, parameters_.normal, element, state, places_.accepted());
+            recall_friction(element, state);
+        }
+    }
+
     Element make(const Zone& zone, Index z, const StationPair& pair) const {
         Element element;
         element.fibre_i = static_cast<std::int32_t>(zone.span.fibre_i);
@@ -322,14 +361,13 @@ private:
         element.zone = static_cast<std::int32_t>(z);
         element.u_i = pair.u_i, element.u_j = pair.u_j;
         element.crossing = pair.crossing, element.end_i = pair.end_i, element.end_j = pair.end_j;
-        element.first_i = static_cast<std::int32_t>(mesh_->first_unknown(zone.span.fibre_i, mesh_->locate(zone.span.fibre_i, pair.u_i).first));
-        element.first_j = static_cast<std::int32_t>(mesh_->first_unknown(zone.span.fibre_j, mesh_->locate(zone.span.fibre_j, pair.u_j).first));
+        places_.host(*mesh_, element);
         return element;
     }
 
     /// Normal, particles, gap shift and accepted offset of an element whose stations stand.
     void place_particles(Element& element, const Vector& state, const Vector& accepted, const Vec3& remembered) const {
-        element.normal = normal(element, state, remembered);
+        element.normal = element_normal(*mesh_, state, element, parameters_.normal, remembered);
         find_meeting_point(*mesh_, state, element);
         if constexpr (law::GapShifting<Normal>) element.shift.shift = normal_.gap_shift(element.gap(accepted));
         if constexpr (law::Augmenting<Normal>) element.shift.shift = -normal_.penetration(element.shift.multiplier, stiffness(element));
@@ -337,39 +375,8 @@ private:
             element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
             Vec3& reversible = element.friction.history.reversible;
             if (!remembered.isZero()) reversible = turned_with_plane(reversible, remembered, element.normal);
-            element.friction.accepted_offset = accepted_offset(element, state, accepted);
+            element.friction.accepted_offset = contact::accepted_offset(*mesh_, parameters_.normal, element, state, accepted);
         }
-    }
-
-    Vec3 normal(const Element& element, const Vector& state, const Vec3& remembered) const {
-        return element_normal(*mesh_, state, element, parameters_.normal, remembered);
-    }
-    /// Unit tangent of fibre i.
-    Vec3 tangent_of_i(const Element& element, const Vector& state) const {
-        return contact_tangent(*mesh_, state, element.fibre_i, element.u_i).normalized();
-    }
-
-    /// A direction between the tangents of both fibres. It turns by the mean of their turns, so that slips do not depend on which
-    /// fibre comes first; either sign will do as long as it is kept.
-    Vec3 heading(const Element& element, const Vector& state, double sign) const {
-        return tangent_of_i(element, state) + sign * contact_tangent(*mesh_, state, element.fibre_j, element.u_j).normalized();
-    }
-    double sign_of_j(const Element& element, const Vector& state) const {
-        const Vec3 other = contact_tangent(*mesh_, state, element.fibre_j, element.u_j);
-        return tangent_of_i(element, state).dot(other) < 0.0 ? -1.0 : 1.0;
-    }
-
-    /// Offset of the friction's particles in the last accepted state, turned as the normal and the tangent have
-    /// since: else a rigid rotation of a pair would slide it by the gap times the angle.
-    Vec3 accepted_offset(const Element& element, const Vector& state, const Vector& accepted) const
-        requires core::Active<Friction>
-    {
-        const Vec3 offset = element.friction_offset(accepted);
-        const Vec3 before = normal(element, accepted, element.normal);
-        if (element.end_i || element.end_j) return turned(offset, before, element.normal);
-        const double sign = sign_of_j(element, state);
-        const TangentPlane then(heading(element, accepted, sign), before), now(heading(element, state, sign), element.normal);
-        return offset.dot(then.along) * now.along + offset.dot(then.across) * now.across + offset.dot(before) * element.normal;
     }
 
     void recall_friction(Element& element, const Vector& state) const
@@ -378,7 +385,7 @@ private:
         const double range = 1.5 / parameters_.spacing.points_per_element;
         const RecordedFriction<Friction> recorded =
             accepted_.friction(element.fibre_i, element.fibre_j, element.u_i, element.u_j, range);
-        const TangentPlane plane(heading(element, state, recorded.sign), element.normal);
+        const TangentPlane plane(heading(*mesh_, element, state, recorded.sign), element.normal);
         element.friction.history.reversible = recorded.along * plane.along + recorded.across * plane.across;
     }
 
@@ -394,8 +401,8 @@ private:
                 if (k < core::count(responses_)) record.multiplier.force = responses_[core::at(k)].reaction;
             if constexpr (core::Active<Friction>) {
                 if (k < core::count(frictions_) && responses_[core::at(k)].reaction > 0.0) {
-                    const double sign = sign_of_j(element, state);
-                    const TangentPlane plane(heading(element, state, sign), element.normal);
+                    const double sign = sign_of_j(*mesh_, element, state);
+                    const TangentPlane plane(heading(*mesh_, element, state, sign), element.normal);
                     const Vec3& kept = frictions_[core::at(k)].history.reversible;
                     record.friction = {kept.dot(plane.along), kept.dot(plane.across), sign};
                 }
@@ -417,6 +424,7 @@ private:
     std::vector<law::FrictionResponse<typename Friction::History>> frictions_;
     SideIndex sides_;
     Memory accepted_;
+    FollowedPlaces<B> places_;
 };
 
 }  // namespace fibrant::contact

@@ -100,8 +100,9 @@ struct ContactSpacing {
 /// taken off sin^2 a: as it goes to zero a second closest place comes up beside the first, and one contact element would hop to and fro.
 /// Fibres that run side by side and splay where they end are closest there and at an angle, yet touch all along: their zone is long, and hardly
 /// parts. Straight lines part by s sin a or more, and arcs around a line as the second variation says.
+/// @param bent  less what bending takes
 template <class B>
-double crossing_angle_deg(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone) {
+double crossing_angle_deg(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone, bool bent = true) {
     const Vec3 d_i = mesh.derivative(state, zone.fibre_i, zone.closest_i), d_j = mesh.derivative(state, zone.fibre_j, zone.closest_j);
     const Vec3 t_i = d_i.normalized(), t_j = d_j.normalized();
     const Vec3 x_i = mesh.position(state, zone.fibre_i, zone.closest_i), x_j = mesh.position(state, zone.fibre_j, zone.closest_j);
@@ -111,7 +112,7 @@ double crossing_angle_deg(const beam::Mesh<B>& mesh, const Vector& state, const 
         return centres.dot(second - second.dot(tangent) * tangent) / derivative.squaredNorm();
     };
     const double bend_i = bend(zone.fibre_i, zone.closest_i, d_i, t_i), bend_j = bend(zone.fibre_j, zone.closest_j, d_j, t_j);
-    const double taken = std::max(0.0, bend_i - bend_j + bend_i * bend_j);
+    const double taken = bent ? std::max(0.0, bend_i - bend_j + bend_i * bend_j) : 0.0;
     double sine = std::sqrt(std::max(0.0, t_i.cross(t_j).squaredNorm() - taken));
     const double touching = mesh.fibre(zone.fibre_i).section.radius() + mesh.fibre(zone.fibre_j).section.radius();
     for (const bool first : {true, false}) {

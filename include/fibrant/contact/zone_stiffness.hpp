@@ -21,6 +21,7 @@ struct Zone {
     double stiffness = 0.0;    ///< k_N of its elements [force / length]
     double reference = 0.0;    ///< elastic stiffness of a section over an element's length, k_el [force / length]
     bool crossing = false;     ///< carries one contact element
+    bool followed = false;     ///< that one is followed to where its fibres are closest
     bool forced = false;       ///< its normal is prescribed by a forced order
     double friction_factor = 1.0;     ///< of its pair of groups, on the law's coefficient [1]
     double penetration_factor = 1.0;  ///< of its pair of groups, on the allowed penetration [1]

@@ -19,6 +19,7 @@ struct Position {
     double damping = 1.0;        ///< over that of the stage
     double damping_floor = 0.0;  ///< that it does not fall below: what has failed is not tried again at once
     bool stage_over = false;
+    bool following = false;      ///< places of crossings are followed: an attempt has failed without
     std::vector<double> from;    ///< amplitudes at the start of the stage
     std::vector<double> holding; ///< damping of each fibre over that of all, >= 1
     static constexpr double least_damping = 1e-3;  ///< over that of the stage: below, none
@@ -105,7 +106,7 @@ private:
     static void each_of(Self& self, const Body& body) {
         body(self.stage), body(self.in_stage), body(self.accepted), body(self.easy);
         body(self.progress), body(self.fraction), body(self.displacement);
-        body(self.damping), body(self.damping_floor), body(self.stage_over);
+        body(self.damping), body(self.damping_floor), body(self.stage_over), body(self.following);
         for (auto& amplitude : self.from) body(amplitude);
         for (auto& factor : self.holding) body(factor);
     }

@@ -80,6 +80,7 @@ public:
         position_ = {};
         position_.from = amplitudes_;
         position_.holding.assign(core::at(mesh_.fibre_count()), 1.0);
+        follow_places(false);
         motion_ = MeanMotion(mesh_, amplitudes_.size());
         if (loading.resume && !loading.checkpoint.empty() && std::filesystem::exists(loading.checkpoint))
             read_checkpoint(loading.checkpoint, stages, report);
@@ -187,13 +188,16 @@ private:
         if (stage.friction) contacts_.friction_law() = *stage.friction;
     }
 
+    void follow_places(bool whether) { contacts_.places().follow(position_.following = whether); }
+
     /// One accepted increment, after as many cuts as it takes; gave_up(attempt) is told of those.
     template <class GaveUp>
     bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report, const GaveUp& gave_up) {
         const auto start = std::chrono::steady_clock::now();
         IncrementReport increment;
-        double attempt_newton = 0.0;  // iterations a normal pass of the last attempt
+        double attempt_newton = 0.0;  // iterations a normal pass of it
         bool rehearsed = false;
+        const std::string present = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": ";
         const bool touching = mesh_.fibre_count() > 1 || parameters_.contact.detection.self_contact || HasTools<M>;
         while (true) {
             if (position_.in_stage >= stage.most_increments) {
@@ -203,8 +207,8 @@ private:
             double progress = stage.ramps.empty() && !stage.until ? 1.0 : std::min(1.0, position_.progress + position_.fraction / static_cast<double>(stage.increments));
             if (progress > 1.0 - 1e-9) progress = 1.0;
             if constexpr (requires { contacts_.normal_law().with_limit(1.0); }) {
-                if (stage.gap_limit) contacts_.normal_law() = contacts_.normal_law().with_limit(*stage.gap_limit * position_.fraction);
-                else contacts_.normal_law() = contacts_.normal_law().with_limit(std::numeric_limits<double>::infinity());
+                const double limit = stage.gap_limit ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
+                contacts_.normal_law() = contacts_.normal_law().with_limit(limit);
             }
             contacts_.allow_penetration(stage.allowed_penetration.value_or(parameters_.contact.stiffness.allowed_penetration));
             const std::vector<double> amplitudes = amplitudes_at(stage, progress, position_, channels_, amplitudes_), change = difference(amplitudes, amplitudes_);
@@ -212,7 +216,7 @@ private:
                 ++increment.cuts, position_.fraction *= 0.5, position_.easy = 0;
                 gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, 2.0 * position_.fraction, position_.damping, 0, reason, core::seconds_since(start)});
                 if (position_.fraction >= loading.smallest_fraction) continue;
-                report.reason = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": " + reason;
+                report.reason = present + reason;
                 return false;
             }
             Vector trial = state_;
@@ -256,10 +260,14 @@ private:
             gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, position_.fraction, position_.damping, attempt.counts.newton, attempt.reason,
                                   core::seconds_since(start)});
             contacts_.restore();
+            if (parameters_.contact.places == contact::Places::as_needed && !position_.following && !stage.forced_orders && touching) {
+                follow_places(true);
+                continue;
+            }
             position_.give_way(stage, equilibrium_.greatest_by_fibre(attempt.unsettled), attempt.allowed, increment.cuts);
             if (position_.fraction < loading.smallest_fraction || report.rejected_increments > loading.most_rejected) {
                 report.counts += increment.counts;
-                report.reason = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": " + attempt.reason;
+                report.reason = present + attempt.reason;
                 return false;
             }
         }
@@ -268,11 +276,9 @@ private:
         ++position_.accepted, ++position_.in_stage;
         if (increment.cuts == 0 && ++position_.easy >= 2 && position_.fraction < 1.0)
             position_.fraction = std::min(1.0, loading.growth * position_.fraction), position_.easy = 0;
-        increment.number = position_.accepted;
-        increment.stage = stage.name;
-        increment.stage_progress = position_.progress;
+        increment.number = position_.accepted, increment.stage = stage.name, increment.stage_progress = position_.progress;
         increment.progress = part_done(stages, position_.stage, position_.progress);
-        // A state is at rest when the force of what holds it is no more than what the balance of forces may miss anyway.
+        // At rest: what holds takes no more force than the balance may miss anyway.
         const bool reached = position_.progress >= 1.0 && (!stage.until || stage.until(increment));
         const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
         position_.stage_over = (reached && !held) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments);
@@ -358,6 +364,7 @@ private:
         read_state(file, true, loading_identity(stages));
         for (double& amplitude : amplitudes_) amplitude = file.get<double>();
         position_.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
+        follow_places(position_.following);
         move_tools(amplitudes_);
         if constexpr (HasTools<M>) {
             contacts_.tools().resume([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });

@@ -12,7 +12,7 @@
 
 namespace fibrant::simulation {
 
-inline constexpr const char* checkpoint_format = "fibrant checkpoint 12";
+inline constexpr const char* checkpoint_format = "fibrant checkpoint 13";
 
 /// Tells how fibres are cut and grouped: the same in programs whose compilers round differently.
 template <beam::BeamElement B>

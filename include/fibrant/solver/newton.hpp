@@ -204,6 +204,7 @@ private:
         for (int attempt = 0; attempt < 8; ++attempt) {
             clock_->time(core::Part::assembly, [&] {
                 equilibrium.linearise(state, attempt > 0, shift);
+                if (contacts_->places().rehosted()) linear_->analyse(equilibrium.system());
                 right_ = -residual_;
                 equilibrium.add_learned(right_);
                 if (!prescribed_.isZero(0.0)) {

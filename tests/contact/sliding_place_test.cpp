@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// Followed crossings: closest patches, and the derivatives of the energy of their gap.
+#include "two_fibres.hpp"
+
+#include <fibrant/beam/kirchhoff_cable.hpp>
+#include <fibrant/contact/sliding_place.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace fibrant;
+
+namespace sliding_place_test {
+
+const double r = 0.05;
+
+/// Two arcs that hang in each other, a little off their middles: bent from straight, as cables are.
+template <class B>
+beam::Mesh<B> hanging(Index elements) {
+    scene::Assembly assembly;
+    const double R = 8.0 * r, half = 0.4 * std::numbers::pi;
+    const auto add = [&](const scene::Curve& arc, double y) {
+        scene::FibreSpecification fibre = test::straight_fibre(Vec3(0.0, y, 0.0), Vec3(2.0 * half * R, y, 0.0), r, elements);
+        fibre.start = arc;
+        assembly.add(fibre);
+    };
+    add([=](double t) { const double a = half * (2.0 * t - 1.04); return Vec3(R * std::sin(a), 0.0, R - R * std::cos(a)); }, 0.0);
+    add([=](double t) { const double a = half * (2.0 * t - 0.97); return Vec3(0.28 * R * std::sin(a), 0.96 * R * std::sin(a), 2.0 * r - R + R * std::cos(a)); }, R);
+    return beam::Mesh<B>(assembly, B());
+}
+
+/// Gap of the closest patches of a state, from places that are near.
+template <class B>
+contact::SlidingPlace<B> closest_place(const beam::Mesh<B>& mesh, const Vector& state, double u, double v, Vec3& normal) {
+    contact::follow_closest(mesh, state, 0, 1, u, v);
+    const contact::PairGeometry pair = contact::pair_geometry(mesh, state, 0, 1, u, v);
+    normal = pair.t_i.cross(pair.t_j).normalized();
+    if (normal.dot(pair.centres) < 0.0) normal = -normal;
+    return contact::sliding_place(mesh, state, 0, 1, u, v, normal);
+}
+
+TEST_CASE("the closest patches are those of all pairs nearby") {
+    const beam::Mesh<beam::KirchhoffCable> mesh = hanging<beam::KirchhoffCable>(6);
+    const Vector& state = mesh.start_state();
+    const contact::Patches<beam::KirchhoffCable> patches(mesh, state);
+    const double half = contact::half_of_patch(mesh, 0, 1, 0);
+    double u = 2.6, v = 3.3;
+    contact::follow_closest(mesh, state, 0, 1, u, v);
+    const double least = (patches.place(1, v, half) - patches.place(0, u, half)).norm();
+    for (double a = -0.3; a <= 0.3; a += 0.05)
+        for (double b = -0.3; b <= 0.3; b += 0.05) CHECK((patches.place(1, v + b, half) - patches.place(0, u + a, half)).norm() >= least * (1.0 - 1e-12));
+}
+
+/// Force of a followed crossing under a reaction c (g_0 - g), whose energy is c (g_0 - g)^2 / 2.
+template <class B>
+Vector force_of(const beam::Mesh<B>& mesh, const Vector& state, double c, double g_0) {
+    Vec3 normal;
+    const contact::SlidingPlace<B> place = closest_place(mesh, state, 2.6, 3.3, normal);
+    Vector force = Vector::Zero(state.size());
+    const double reaction = c * (g_0 - place.gap);
+    contact::spread(place.j, Vec3(-reaction * normal), force);
+    contact::spread(place.i, Vec3(reaction * normal), force);
+    return force;
+}
+
+TEST_CASE("on cables the force is the derivative of the energy, and the stiffness that of the force, with the place sliding and the normal turning") {
+    using Cable = beam::KirchhoffCable;
+    const beam::Mesh<Cable> mesh = hanging<Cable>(6);
+    const Vector& state = mesh.start_state();
+    const double c = 300.0, g_0 = 0.2 * r;
+    Vec3 normal;
+    const contact::SlidingPlace<Cable> place = closest_place(mesh, state, 2.6, 3.3, normal);
+    const contact::SlidingStiffness stiffness = contact::sliding_stiffness(place, normal, c * (g_0 - place.gap), -c, false);
+    Matrix tangent = Matrix::Zero(state.size(), state.size());
+    const Matrix own = stiffness.rows.transpose() * stiffness.stiffness * stiffness.rows;
+    for (std::size_t a = 0; a < stiffness.vectors.size(); ++a)
+        for (std::size_t b = 0; b < stiffness.vectors.size(); ++b)
+            tangent.block<3, 3>(3 * stiffness.vectors[a], 3 * stiffness.vectors[b]) += own.block<3, 3>(3 * static_cast<Index>(a), 3 * static_cast<Index>(b));
+    const Vector force = force_of(mesh, state, c, g_0);
+    const auto energy = [&](const Vector& at) {
+        Vec3 ignored;
+        const double depth = g_0 - closest_place(mesh, at, 2.6, 3.3, ignored).gap;
+        return 0.5 * c * depth * depth;
+    };
+    const double step = 1e-5 * r;
+    double worst = 0.0, worst_force = 0.0;
+    for (Index k = 0; k < state.size(); ++k) {
+        Vector before = state, after = state;
+        before[k] -= step, after[k] += step;
+        const Vector slope = (force_of(mesh, after, c, g_0) - force_of(mesh, before, c, g_0)) / (2.0 * step);
+        worst = std::max(worst, (slope - tangent.col(k)).cwiseAbs().maxCoeff());
+        worst_force = std::max(worst_force, std::abs((energy(after) - energy(before)) / (2.0 * step) - force[k]));
+    }
+    CHECK(worst < 1e-6 * tangent.cwiseAbs().maxCoeff());  // steps of 1e-5 leave 1e-10 of third derivatives and 1e-11 of rounding, times some hundreds
+    CHECK(worst_force < 1e-6 * force.cwiseAbs().maxCoeff());
+}
+
+TEST_CASE("what a hook pushes against holds it sideways, with reaction times curvature; straight fibres hold nothing so") {
+    using Cable = beam::KirchhoffCable;
+    const beam::Mesh<Cable> mesh = hanging<Cable>(6);
+    Vec3 normal;
+    const contact::SlidingPlace<Cable> place = closest_place(mesh, mesh.start_state(), 2.6, 3.3, normal);
+    const Eigen::Matrix2d sideways = -place.curvature.topLeftCorner<2, 2>();  // for a reaction of 1
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> parts(sideways);
+    CHECK(parts.eigenvalues()[0] > 0.5 / (8.0 * r));  // 1 / R, more by bends that add up
+    scene::Assembly assembly;
+    assembly.add(test::straight_fibre(Vec3(-1, 0, 0), Vec3(1, 0, 0), r, 6));
+    assembly.add(test::straight_fibre(Vec3(0.2, -1, 2.0 * r), Vec3(-0.2, 1, 2.0 * r), r, 6));
+    const test::Mesh straight(assembly, test::Beam{});
+    const auto crossing = closest_place(straight, straight.rest_state(), 2.7, 2.8, normal);
+    CHECK(crossing.curvature.topLeftCorner<2, 2>().cwiseAbs().maxCoeff() < 1e-9 / r);
+    CHECK(std::abs(crossing.gap) < 1e-12);
+}
+
+}  // namespace sliding_place_test

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Loops that hang in each other and are drawn tight: the place of contact slides in the valley that each is to the other.
+#include "../support/hooked_rings.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstdio>
+
+using namespace fibrant;
+
+namespace contact_loops_test {
+
+using test::Hooked;
+using test::Hooks;
+
+void check_held(const Hooked& hooked, const char* name) {
+    std::printf("%s: %td increments, %td Newton iterations, force %.5f, hooked by %.4f radii, r kappa %.3f, asymmetry %.1e radii\n", name,
+                core::count(hooked.report.increments), hooked.report.counts.newton, hooked.force, hooked.crossing, hooked.bend, hooked.asymmetry);
+    CAPTURE(hooked.report.reason);
+    CHECK(hooked.report.converged);
+    CHECK(hooked.report.rejected_increments == 0);
+    CHECK(hooked.crossing > 1.5);  // still in each other, sections flattened
+    CHECK(hooked.closest > 1.5);
+}
+
+TEST_CASE("hooks without friction hold and stay symmetric, and what pulls them does not depend on the increments") {
+    const Hooked few = test::pull_hooks<test::SmoothHooks>({.elements = 20, .increments = 10});
+    const Hooked many = test::pull_hooks<test::SmoothHooks>({.elements = 20, .increments = 20});
+    check_held(few, "10 increments"), check_held(many, "20 increments");
+    CHECK(std::abs(many.force - few.force) < 0.01 * many.force);
+    // Nothing but rounding tells one side from the other.
+    CHECK(few.asymmetry < 1e-6);
+    CHECK(many.asymmetry < 1e-6);
+    CHECK(few.report.counts.newton < 60);
+}
+
+TEST_CASE("hooks with friction hold as well") {
+    check_held(test::pull_hooks<test::RoughHooks>({.elements = 20, .increments = 10, .friction = 0.1}), "friction 0.1");
+    check_held(test::pull_hooks<test::RoughHooks>({.elements = 20, .increments = 10, .friction = 0.5}), "friction 0.5");
+}
+
+TEST_CASE("with places that are renewed outside of Newton hooks do not hold") {
+    const Hooked hooked = test::pull_hooks<test::SmoothHooks>({.elements = 20, .increments = 50, .places = contact::Places::renewed});
+    CHECK_FALSE((hooked.report.converged && hooked.crossing > 1.5));
+}
+
+}  // namespace contact_loops_test
