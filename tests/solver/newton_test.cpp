@@ -57,7 +57,11 @@ struct Bounded {
     contact::LearnedContacts& learned() { return memory; }
     void add_learned(Vector&) const {}
 };
+struct NoPlaces {
+    bool rehosted() const { return false; }
+};
 struct Untouched {
+    NoPlaces places() const { return {}; }
     struct Element {
         Vec3 normal;
         Index fibre_i = 0, fibre_j = 1;
@@ -75,6 +79,7 @@ struct Untouched {
 struct Exact {
     const Bounded* problem;
     std::vector<double> tolerances{};
+    void analyse(const Bounded::System&) {}
     solver::SolveStatus prepare(const Bounded::System&) const { return solver::SolveStatus::converged; }
     solver::SolveReport solve(const Bounded::System&, const Vector& b, double tolerance, Vector& x) {
         tolerances.push_back(tolerance);
@@ -125,6 +130,7 @@ TEST_CASE("what the first step of a prescribed motion may leave over is a part o
 
 /// Nodes on soft springs along x, each pushed at its own wall, of which some are so near that a step goes far into them.
 struct Walls {
+    NoPlaces places() const { return {}; }
     static constexpr double spring = 1.0, wall = 1e4, push = 1.0;
     struct Element {
         Index node;

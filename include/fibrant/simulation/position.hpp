@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fibrant::simulation {
@@ -19,7 +20,8 @@ struct Position {
     double damping = 1.0;        ///< over that of the stage
     double damping_floor = 0.0;  ///< that it does not fall below: what has failed is not tried again at once
     bool stage_over = false;
-    bool following = false;      ///< places of crossings are followed: an attempt has failed without
+    bool following = false;      ///< places of crossings are followed
+    std::pair<Index, double> tried{-1, 0.0};  ///< accepted increments and fraction at which another following was tried last
     std::vector<double> from;    ///< amplitudes at the start of the stage
     std::vector<double> holding; ///< damping of each fibre over that of all, >= 1
     static constexpr double least_damping = 1e-3;  ///< over that of the stage: below, none
@@ -42,6 +44,17 @@ struct Position {
         if (progress < 1.0 || !damped) fraction *= 0.5;
         damping_floor = 2.0 * damping;
         damping = std::clamp(4.0 * damping, least_damping, 1.0 / least_damping);
+    }
+
+    /// An attempt has failed: the other way of finding places is tried before anything else is, once at a size of increment. Where that fails
+    /// too the first one is taken up again. @returns whether the same increment is to be tried
+    bool try_other_places(contact::Places places) {
+        if (places != contact::Places::as_needed) return false;
+        following = !following;
+        const std::pair<Index, double> now{accepted, fraction};
+        if (tried == now) return false;
+        tried = now;
+        return true;
     }
 
     /// Damping is the inverse of a time step: what was solved with ease goes on faster, and what was hard more slowly.
@@ -106,11 +119,14 @@ private:
     static void each_of(Self& self, const Body& body) {
         body(self.stage), body(self.in_stage), body(self.accepted), body(self.easy);
         body(self.progress), body(self.fraction), body(self.displacement);
-        body(self.damping), body(self.damping_floor), body(self.stage_over), body(self.following);
+        body(self.damping), body(self.damping_floor), body(self.stage_over), body(self.following), body(self.tried.first), body(self.tried.second);
         for (auto& amplitude : self.from) body(amplitude);
         for (auto& factor : self.holding) body(factor);
     }
 };
+
+/// Of a loading without stages, in increments that take the place of one: the least fraction of increments bounds cuts before that.
+inline constexpr Index cuts_to_expect = 20;
 
 /// The stages of a loading; with none, one that takes all channels to 1.
 template <Model M>
@@ -119,7 +135,7 @@ std::vector<Stage<M>> stages_of(const Loading<M>& loading, const connection::Cha
     if (!stages.empty()) return stages;
     stages.emplace_back();
     stages.back().increments = loading.increments;
-    stages.back().most_increments = std::max(loading.increments, stages.back().most_increments);
+    stages.back().most_increments = std::max(cuts_to_expect * loading.increments, stages.back().most_increments);
     for (const std::string& name : channels.names()) stages.back().ramps.push_back({name, 1.0, false});
     return stages;
 }

@@ -80,7 +80,7 @@ public:
         position_ = {};
         position_.from = amplitudes_;
         position_.holding.assign(core::at(mesh_.fibre_count()), 1.0);
-        follow_places(false);
+        contacts_.places().follow(position_.following);
         motion_ = MeanMotion(mesh_, amplitudes_.size());
         if (loading.resume && !loading.checkpoint.empty() && std::filesystem::exists(loading.checkpoint))
             read_checkpoint(loading.checkpoint, stages, report);
@@ -188,8 +188,6 @@ private:
         if (stage.friction) contacts_.friction_law() = *stage.friction;
     }
 
-    void follow_places(bool whether) { contacts_.places().follow(position_.following = whether); }
-
     /// One accepted increment, after as many cuts as it takes; gave_up(attempt) is told of those.
     template <class GaveUp>
     bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report, const GaveUp& gave_up) {
@@ -260,9 +258,10 @@ private:
             gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, position_.fraction, position_.damping, attempt.counts.newton, attempt.reason,
                                   core::seconds_since(start)});
             contacts_.restore();
-            if (parameters_.contact.places == contact::Places::as_needed && !position_.following && !stage.forced_orders && touching) {
-                follow_places(true);
-                continue;
+            if (touching && !stage.forced_orders) {
+                const bool again = position_.try_other_places(parameters_.contact.places);
+                contacts_.places().follow(position_.following);
+                if (again) continue;
             }
             position_.give_way(stage, equilibrium_.greatest_by_fibre(attempt.unsettled), attempt.allowed, increment.cuts);
             if (position_.fraction < loading.smallest_fraction || report.rejected_increments > loading.most_rejected) {
@@ -364,7 +363,7 @@ private:
         read_state(file, true, loading_identity(stages));
         for (double& amplitude : amplitudes_) amplitude = file.get<double>();
         position_.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
-        follow_places(position_.following);
+        contacts_.places().follow(position_.following);
         move_tools(amplitudes_);
         if constexpr (HasTools<M>) {
             contacts_.tools().resume([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
