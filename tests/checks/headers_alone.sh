@@ -30,8 +30,8 @@ trap 'rm -rf "$ready"' EXIT
 types="$include/fibrant/core/types.hpp"
 if [ -f "$types" ]; then grep '^#include <[^>]*>' "$types" | grep -v '<fibrant/'; fi > "$ready/external.hpp"
 "$@" -I"$include" -Wall -Wextra -Wpedantic -Wconversion -Werror -x c++-header "$ready/external.hpp" -o "$ready/external.hpp.gch"
-# Two at a time; xargs passes the failure of any on.
-(cd "$include" && find fibrant -name '*.hpp' | sort) | xargs -P 2 -I HEADER sh -c '
+# Two at a time; xargs passes the failure of any on. Those of whole folders only include what is compiled here anyway.
+(cd "$include" && find fibrant -mindepth 2 -name '*.hpp' | sort) | xargs -P 2 -I HEADER sh -c '
   header=$1
   shift
   for needed in $(sed -n "s/^#if !__has_include(\(<[^>]*>\))$/\1/p" "$include/$header"); do
