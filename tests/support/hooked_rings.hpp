@@ -2,13 +2,7 @@
 #pragma once
 /// @file Two half rings that hang in each other and are pulled apart by their ends.
 
-#include <fibrant/beam/director_beam.hpp>
-#include <fibrant/law/frictionless.hpp>
-#include <fibrant/law/regularised_coulomb.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/simulation/simulator.hpp>
-#include <fibrant/solver/sparse_cholesky.hpp>
+#include <contact/contact_model.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,17 +11,6 @@
 #include <vector>
 
 namespace fibrant::test {
-
-struct SmoothHooks {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::Frictionless;
-    using Solver = solver::SparseCholesky;
-};
-struct RoughHooks : SmoothHooks {
-    using Friction = law::RegularisedCoulomb;
-};
 
 struct Hooks {
     Index elements = 40, increments = 10;

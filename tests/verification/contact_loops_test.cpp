@@ -24,8 +24,8 @@ void check_held(const Hooked& hooked, const char* name) {
 }
 
 TEST_CASE("hooks without friction hold and stay symmetric, and what pulls them does not depend on the increments") {
-    const Hooked few = test::pull_hooks<test::SmoothHooks>({.elements = 20, .increments = 10});
-    const Hooked many = test::pull_hooks<test::SmoothHooks>({.elements = 20, .increments = 20});
+    const Hooked few = test::pull_hooks<test::Smooth>({.elements = 20, .increments = 10});
+    const Hooked many = test::pull_hooks<test::Smooth>({.elements = 20, .increments = 20});
     check_held(few, "10 increments"), check_held(many, "20 increments");
     CHECK(std::abs(many.force - few.force) < 0.01 * many.force);
     // Nothing but rounding tells one side from the other.
@@ -35,12 +35,12 @@ TEST_CASE("hooks without friction hold and stay symmetric, and what pulls them d
 }
 
 TEST_CASE("hooks with friction hold as well") {
-    check_held(test::pull_hooks<test::RoughHooks>({.elements = 20, .increments = 10, .friction = 0.1}), "friction 0.1");
-    check_held(test::pull_hooks<test::RoughHooks>({.elements = 20, .increments = 10, .friction = 0.5}), "friction 0.5");
+    check_held(test::pull_hooks<test::Rough>({.elements = 20, .increments = 10, .friction = 0.1}), "friction 0.1");
+    check_held(test::pull_hooks<test::Rough>({.elements = 20, .increments = 10, .friction = 0.5}), "friction 0.5");
 }
 
 TEST_CASE("with places that are renewed outside of Newton hooks do not hold") {
-    const Hooked hooked = test::pull_hooks<test::SmoothHooks>({.elements = 20, .increments = 50, .places = contact::Places::renewed});
+    const Hooked hooked = test::pull_hooks<test::Smooth>({.elements = 20, .increments = 50, .places = contact::Places::renewed});
     CHECK_FALSE((hooked.report.converged && hooked.crossing > 1.5));
 }
 
