@@ -39,7 +39,8 @@ Sample crossing(double penetration, Index elements) {
             axial.at = {f, end}, axial.directions = along * along.transpose(), axial.channel = "stretch";
             axial.displacement = (end - 0.5) * 0.002 * length * along;
             assembly.hold(axial);
-            axial.directions = Mat3::Identity() - axial.directions, axial.channel = "motion", axial.displacement = upper ? Vec3(0, 0, -approach) : Vec3(Vec3::Zero());
+            axial.directions = Mat3::Identity() - axial.directions, axial.channel = "motion";
+            axial.displacement = upper ? Vec3(0, 0, -approach) : Vec3(Vec3::Zero());
             assembly.hold(axial);
             assembly.hold_rotation({f, end});
         }

@@ -94,8 +94,8 @@ inline void write_pictures(const example::Output& output, const observe::Snapsho
 
 /// summary.json
 template <class Simulator>
-void write_summary(const example::Output& output, const Simulator& simulator, const fibrant::simulation::Report& report, const fibrant::simulation::Audit& audit,
-                   const CurvePoint& point, double radius) {
+void write_summary(const example::Output& output, const Simulator& simulator, const fibrant::simulation::Report& report,
+                   const fibrant::simulation::Audit& audit, const CurvePoint& point, double radius) {
     const auto& solid = simulator.equilibrium().solid();
     const auto start = std::find_if(report.increments.begin(), report.increments.end(), [](const auto& increment) { return increment.stage == "load"; });
     const fibrant::simulation::EnergyBalance none, &before = start == report.increments.begin() || report.increments.empty() ? none : (start - 1)->energy;

@@ -49,6 +49,7 @@ int main() {
     for (const auto& [progress, force] : curve.points()) std::printf("%.4f mm  %.3e N\n", progress * approach, force);
     if (!report.converged) std::printf("stopped: %s\n", report.reason.c_str());
     const simulation::Audit audit = simulation::audit(simulator);
-    if (!audit.clean()) std::printf("fibres %td and %td are %.2e mm deep in each other\n", audit.least_gap.fibre_i, audit.least_gap.fibre_j, -audit.least_gap.gap);
+    if (!audit.clean()) std::printf("fibres %td and %td are %.2e mm deep in each other\n",
+                    audit.least_gap.fibre_i, audit.least_gap.fibre_j, -audit.least_gap.gap);
     return report.converged && audit.clean() ? 0 : 1;
 }

@@ -258,7 +258,7 @@ TEST_CASE("a body that is free under a force and a moment moves as a beam's end 
         CAPTURE(report.reason);
         REQUIRE(report.converged);
         const Mat3 frame = simulator.equilibrium().ties().motion().frame(body);
-        // Mesh of 8 elements: 1e-5 (METHOD 1.4); radius over that of the arc: 1e-4.
+        // Mesh of 8 elements: 1e-5; radius over that of the arc: 1e-4.
         CHECK(std::atan2(frame(1, 2), frame(2, 2)) == doctest::Approx(turns).epsilon(3e-4));
         const Vec3 tip = simulator.value(scene::last_end(0));
         CHECK(tip.y() == doctest::Approx(length * (1.0 - std::cos(turns)) / turns).epsilon(5e-4));

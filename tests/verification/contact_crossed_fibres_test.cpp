@@ -88,7 +88,8 @@ private:
                 axial.channel = "stretch";
                 axial.displacement = (end - 0.5) * c.strain * c.length * along;
                 assembly.hold(axial);
-                axial.directions = Mat3::Identity() - axial.directions, axial.channel = "motion", axial.displacement = upper ? Vec3(0, 0, -c.approach) : Vec3(Vec3::Zero());
+                axial.directions = Mat3::Identity() - axial.directions, axial.channel = "motion";
+                axial.displacement = upper ? Vec3(0, 0, -c.approach) : Vec3(Vec3::Zero());
                 assembly.hold(axial);
                 assembly.hold_rotation({fibre, end});
             }

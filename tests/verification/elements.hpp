@@ -177,7 +177,8 @@ Pressed pressed_fibres(double length, double strain, double u, double angle_deg,
             axial.at = {f, end}, axial.directions = along * along.transpose(), axial.channel = "stretch";
             axial.displacement = (end - 0.5) * strain * length * along;
             assembly.hold(axial);
-            axial.directions = Mat3::Identity() - axial.directions, axial.channel = "motion", axial.displacement = upper ? Vec3(0, 0, -u) : Vec3(Vec3::Zero());
+            axial.directions = Mat3::Identity() - axial.directions, axial.channel = "motion";
+            axial.displacement = upper ? Vec3(0, 0, -u) : Vec3(Vec3::Zero());
             assembly.hold(axial);
             assembly.hold_rotation({f, end});
         }

@@ -92,7 +92,7 @@ public:
     void reset_stresses(const Vector& state) {
         for_elements([&](Index f, Index e) { stress(f, e) = beam_.stresses(mesh_->rest(f, e), mesh_->element(state, f, e)); });
     }
-    /// Point stresses predicted for state + step, as independent unknowns (METHOD 1.6): only the geometric stiffness sees them.
+    /// Point stresses predicted for state + step, as independent unknowns: only the geometric stiffness sees them.
     void predict_stresses(const Vector& state, const Vector& step) {
         for_elements([&](Index f, Index e) {
             stress(f, e) = beam_.predicted_stresses(mesh_->rest(f, e), mesh_->element(state, f, e), mesh_->element(step, f, e));

@@ -34,7 +34,7 @@ struct Bond {
 
 /// k_b = factor l_f 2 pi G_m / ln(h_m / (2 r)), the logarithm at least ln 2.
 ///
-/// The shear lag of a rigid fibre in a cylinder of the radius h_m / 2 that holds still, on the length l_f (METHOD 7). Per length
+/// The shear lag of a rigid fibre in a cylinder of the radius h_m / 2 that holds still, on the length l_f. Per length
 /// of fibre it does not depend on the fibre's mesh; it grows as cells shrink, and no further once they are of the size 4 r: a mesh
 /// finer than that resolves the fibre's surroundings itself, and indents at the nodes.
 /// @param cell_size  h_m, cube root of the cell's volume [length]

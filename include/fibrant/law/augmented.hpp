@@ -7,7 +7,7 @@
 namespace fibrant::law {
 
 /// Reaction max(0, lambda + k_N p) for a linear penalty k_N p, with a multiplier lambda of each contact element that becomes the
-/// reaction at every contact pass (METHOD 3.2). The passes of an increment go on until no contact that carries is deeper or
+/// reaction at every contact pass. The passes of an increment go on until no contact that carries is deeper or
 /// wider than `largest_penetration`, at a penalty that may be soft.
 ///
 /// For any law the multiplier is put in as the penetration that the law would have under it, taken off the gap: the law, its

@@ -77,7 +77,7 @@ struct DeadForce {
     }
 };
 
-/// A moment about a fixed axis, applied to a section through one director: force M x g / |g|^2 (METHOD 1.3). The moment
+/// A moment about a fixed axis, applied to a section through one director: force M x g / |g|^2. The moment
 /// must stay perpendicular to that director; the tangent is symmetrised, exact while the director turns in a plane.
 struct Moment {
     Station at{};

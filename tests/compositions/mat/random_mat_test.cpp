@@ -75,7 +75,7 @@ TEST_CASE("random fibres touch as often as the excluded volume says, and the sea
             proximity::BruteSearch brute;
             CHECK(pairs == brute.pairs(box.lines, 0.0));
         }
-        // Pairs of one box scatter by about 1.5 of the root of their number (METHOD 9.2, C2).
+        // Pairs of one box scatter by about 1.5 of the root of their number.
         const double sigma = 1.5 * std::sqrt(expected / boxes);
         std::printf("%s: %.1f pairs a box, %.1f by the excluded volume, %.2f sigma\n", planar ? "planar" : "isotropic", sum / boxes, expected, (sum / boxes - expected) / sigma);
         CHECK(std::abs(sum / boxes - expected) < 3.0 * sigma);

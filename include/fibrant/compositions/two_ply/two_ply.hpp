@@ -125,7 +125,7 @@ TwoPlyState measure(const simulation::Simulator<M>& simulator, const TwoPlyParam
     return state;
 }
 
-/// Torque and line load of two inextensible rods on helices, from Kirchhoff's equations (METHOD 9.2, C4).
+/// Torque and line load of two inextensible rods on helices, from Kirchhoff's equations.
 /// @param a      radius of the helices [length]
 /// @param twist  of the material; tan(angle) cos^2(angle) / a where the rods turn with their carriers [radian / length]
 struct HelixTheory {
