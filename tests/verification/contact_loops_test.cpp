@@ -39,6 +39,19 @@ TEST_CASE("hooks with friction hold as well") {
     check_held(test::pull_hooks<test::Rough>({.elements = 20, .increments = 10, .friction = 0.5}), "friction 0.5");
 }
 
+TEST_CASE("hooks at a slant touch along a valley, and hold as well") {
+    for (const double angle : {60.0, 45.0}) {
+        const Hooked smooth = test::pull_hooks<test::Smooth>({.elements = 20, .increments = 10, .angle_deg = angle});
+        const Hooked rough = test::pull_hooks<test::Rough>({.elements = 20, .increments = 10, .friction = 0.1, .angle_deg = angle});
+        CAPTURE(angle);
+        check_held(smooth, "slant"), check_held(rough, "slant, friction 0.1");
+        // The loops turn until they are square to each other, but for what bending and friction hold: nearly the force of those that are at the start.
+        const double upright = 5.34;
+        CHECK(smooth.force > upright);
+        CHECK(smooth.force < 1.1 * upright);
+    }
+}
+
 TEST_CASE("with places that are renewed outside of Newton hooks do not hold") {
     const Hooked hooked = test::pull_hooks<test::Smooth>({.elements = 20, .increments = 50, .places = contact::Places::renewed});
     CHECK_FALSE((hooked.report.converged && hooked.crossing > 1.5));

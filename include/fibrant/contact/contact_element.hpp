@@ -63,6 +63,7 @@ struct ContactElement {
     std::int32_t zone = -1;
     std::int32_t place = -1;               ///< of a crossing that is followed, or -1
     bool crossing = false, end_i = false, end_j = false;
+    std::int8_t slide = 0;                 ///< of a crossing that is followed: how its place slides (FollowedPlaces)
     [[no_unique_address]] GapShift<Normal> shift;
     [[no_unique_address]] MeetingPoint<B> meeting;
     [[no_unique_address]] FrictionState<B, Friction> friction;

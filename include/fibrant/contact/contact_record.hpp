@@ -137,6 +137,19 @@ public:
         return {};
     }
 
+    /// The same of a contact element. A station of a valley is one that was there, or new.
+    template <class Element>
+    RecordedFriction<Friction> friction(const Element& element, double range) const noexcept
+        requires core::Active<Friction>
+    {
+        const double same = 0.25;  // elements
+        if (element.place >= 0) {
+            if (const Record* here = nearest(element.fibre_i, element.fibre_j, element.u_i, element.u_j, same)) return here->friction;
+            if (element.slide != 0) return {};
+        }
+        return friction(element.fibre_i, element.fibre_j, element.u_i, element.u_j, range);
+    }
+
     /// Calls see(record) with the records between the two fibres of a zone, inside its interval of the first one.
     template <class See>
     void visit(const proximity::ProximityZone& zone, const See& see) const noexcept {

@@ -77,11 +77,10 @@ public:
         std::vector<double> turned(elements_.size(), 0.0);
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
-            if (slides(k)) return;  // it is where it should be
             const Vec3 before = element.normal;
-            place_particles(element, state, accepted, before);
-            if (k < core::count(responses_) && responses_[core::at(k)].reaction > 0.0)
-                turned[core::at(k)] = std::atan2(before.cross(element.normal).norm(), before.dot(element.normal));
+            if (!slides(k)) place_particles(element, state, accepted, before);
+            const double turn = slides(k) ? places_.renew(*mesh_, state, element) : std::atan2(before.cross(element.normal).norm(), before.dot(element.normal));
+            if (k < core::count(responses_) && responses_[core::at(k)].reaction > 0.0) turned[core::at(k)] = turn;
         });
         hold_reactions();
         return turned.empty() ? 0.0 : *std::max_element(turned.begin(), turned.end());
@@ -107,7 +106,7 @@ public:
             if constexpr (core::Active<Friction>)
                 if (!start) slip = element.friction_offset(state) - element.friction.accepted_offset;
             follow_particles(*mesh_, state, element);
-            if (slides(k)) places_.take(*mesh_, state, element);
+            if (slides(k)) places_.take(*mesh_, state, zones_[core::at(element.zone)], element);
             const double apart = element.gap(state);
             const Zone& zone = zones_[core::at(element.zone)];
             const bool none = start && apart < -2.0 * zone.deepest;
@@ -213,7 +212,7 @@ public:
                 const Element& element = elements_[core::at(k)];
                 const bool of_j = side % 2 == 1;
                 const Vec3 value = of_j ? point_force(k) : Vec3(-point_force(k));
-                if (slides(k)) spread(of_j ? places_.of(element).j : places_.of(element).i, (of_j ? -1.0 : 1.0) * responses_[core::at(k)].reaction * element.normal, residual);
+                if (slides(k)) spread(places_.of(element), element.normal, of_j ? 1.0 : -1.0, responses_[core::at(k)].reaction, residual);
                 beam::spread(of_j ? element.weights_j : element.weights_i, value, of_j ? element.first_j : element.first_i, residual);
             }
         }, mesh_->grain());
@@ -345,7 +344,7 @@ private:
     /// The closest patches of a state, and what depends on them.
     void follow(Index k, const Vector& state) {
         Element& element = elements_[core::at(k)];
-        places_.follow(*mesh_, state, element);
+        places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
         find_meeting_point(*mesh_, state, element);
         if constexpr (core::Active<Friction>) {
             element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
@@ -360,7 +359,7 @@ private:
         element.fibre_j = static_cast<std::int32_t>(zone.span.fibre_j);
         element.zone = static_cast<std::int32_t>(z);
         element.u_i = pair.u_i, element.u_j = pair.u_j;
-        element.crossing = pair.crossing, element.end_i = pair.end_i, element.end_j = pair.end_j;
+        element.crossing = pair.crossing, element.slide = pair.slide, element.end_i = pair.end_i, element.end_j = pair.end_j;
         places_.host(*mesh_, element);
         return element;
     }
@@ -383,8 +382,7 @@ private:
         requires core::Active<Friction>
     {
         const double range = 1.5 / parameters_.spacing.points_per_element;
-        const RecordedFriction<Friction> recorded =
-            accepted_.friction(element.fibre_i, element.fibre_j, element.u_i, element.u_j, range);
+        const RecordedFriction<Friction> recorded = accepted_.friction(element, range);
         const TangentPlane plane(heading(*mesh_, element, state, recorded.sign), element.normal);
         element.friction.history.reversible = recorded.along * plane.along + recorded.across * plane.across;
     }

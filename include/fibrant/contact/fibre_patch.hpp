@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace fibrant::contact {
@@ -117,6 +118,43 @@ inline Eigen::Matrix2d raised(const Eigen::Matrix2d& matrix, double least) noexc
     parts.computeDirect(matrix);
     if (parts.eigenvalues()[0] >= least) return matrix;
     return parts.eigenvectors() * parts.eigenvalues().cwiseMax(least).asDiagonal() * parts.eigenvectors().transpose();
+}
+
+/// How a pair of patches may slide on its two fibres while a place is followed.
+struct Slide {
+    enum Kind : std::int8_t { freely, along, nowhere };
+    Kind kind = freely;
+    Eigen::Vector2d direction = Eigen::Vector2d::Zero();  ///< of both abscissae [element], where it slides along one
+
+    /// Part of the inverse of `closeness` that sliding takes, which counts with at least `least`.
+    Eigen::Matrix2d slack(const PairGeometry& pair, double least) const noexcept {
+        if (kind == nowhere) return Eigen::Matrix2d::Zero();
+        if (kind == freely) return raised(pair.closeness, least).inverse();
+        const Eigen::Vector2d way = arc(pair);
+        return way * way.transpose() / std::max(way.dot(pair.closeness * way), least);
+    }
+    /// The direction in arc lengths, unit.
+    Eigen::Vector2d arc(const PairGeometry& pair) const noexcept { return Eigen::Vector2d(direction[0] * pair.speed_i, direction[1] * pair.speed_j).normalized(); }
+};
+
+/// Moves a pair of patches along one direction of both abscissae to where they are closest, both inside their fibres.
+template <class B>
+void follow_along(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, const Slide& slide, double& u_i, double& u_j) noexcept {
+    const auto [low_i, high_i] = mesh.bounds(i);
+    const auto [low_j, high_j] = mesh.bounds(j);
+    for (int iteration = 0; iteration < 30; ++iteration) {
+        const PairGeometry pair = pair_geometry(mesh, state, i, j, u_i, u_j);
+        const Eigen::Vector2d direction = slide.arc(pair);
+        const double downhill = pair.centres.dot(direction[0] * pair.t_i - direction[1] * pair.t_j);
+        const double step = downhill / std::max(direction.dot(pair.closeness * direction), 0.1);
+        const double step_i = step * direction[0] / pair.speed_i, step_j = step * direction[1] / pair.speed_j;
+        const double largest = std::max(std::abs(step_i), std::abs(step_j));
+        const double shorten = std::min(largest > 0.5 ? 0.5 / largest : 1.0, iteration > 8 ? 0.5 : 1.0);
+        u_i = std::clamp(u_i + shorten * step_i, low_i, high_i);
+        u_j = std::clamp(u_j + shorten * step_j, low_j, high_j);
+        if (largest < 1e-11) break;
+    }
+    u_i = mesh.wrapped(i, u_i), u_j = mesh.wrapped(j, u_j);
 }
 
 /// Moves a pair of patches to the closest ones near it, both inside their fibres.

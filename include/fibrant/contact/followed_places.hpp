@@ -50,64 +50,121 @@ public:
     template <class Elements>
     void number(Elements& elements, const std::vector<Zone>& zones, const Vector& accepted) {
         std::int32_t count = 0;
-        for (auto& element : elements) element.place = follows(element, zones[core::at(element.zone)]) ? count++ : -1;
-        held_.resize(core::at(count));
+        held_.clear();
+        for (auto& element : elements) {
+            element.place = follows(element, zones[core::at(element.zone)]) ? count++ : -1;
+            if (element.place >= 0) held_.emplace_back();
+        }
         if (count > 0) accepted_ = accepted;
     }
     /// What the slips of an increment count from.
     const Vector& accepted() const noexcept { return accepted_; }
 
-    /// New pairs of stations in the place of that of a crossing: where its two fibres are closest, near where they were. Straight lines are in one
-    /// place; fibres that hang in each other at a slant, or are bent around each other by more than a touching distance, in several.
+    /// New pairs of stations in the place of that of a crossing: where its two fibres are closest, near where they were. Where they are nearly as
+    /// close beside it, as fibres are that hang in each other at a slant or are bent around each other by a touching distance, they touch along a
+    /// line: then there are stations along this valley too. These slide across it only, and stay where they are from one detection to the next, so
+    /// that no contact hops; what touches in two places after it did in one does so on stations that were there before.
     /// @param pairs  the last one is the crossing's
     template <class Memory>
-    static void settle(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Memory& memory, std::vector<StationPair>& pairs) {
+    static void settle(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Memory& memory, std::vector<StationPair>& pairs) {
         const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
         StationPair middle = pairs.back();
         pairs.pop_back();
-        if (const auto* record = memory.nearest(i, j, middle.u_i, middle.u_j, 1.5)) middle.u_i = record->u_i, middle.u_j = record->u_j;
-        follow_closest(mesh, state, i, j, middle.u_i, middle.u_j);
-        const PairGeometry pair = pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j);
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> parts(pair.closeness);
+        std::vector<Eigen::Vector2d> known;
+        memory.visit_places(zone.span, [&](double u_i, double u_j) { known.emplace_back(u_i, u_j); });
+        if (!known.empty()) middle.u_i = median(known, 0), middle.u_j = median(known, 1);
+        PairGeometry pair = pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j);
+        if (known.size() < 3 || least(pair.closeness) > held) {
+            follow_closest(mesh, state, i, j, middle.u_i, middle.u_j);
+            pair = pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j);
+        }
         const std::size_t first = pairs.size();
-        if (parts.eigenvalues()[0] > 0.0) pairs.push_back(middle);
         const double touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
-        for (int direction = 0; direction < 2; ++direction) {
-            if (parts.eigenvalues()[direction] > sole) continue;  // no other place nearby
-            const Eigen::Vector2d way = touching * parts.eigenvectors().col(direction);
+        const auto gap_at = [&](const StationPair& at) {
+            const PairGeometry there = pair_geometry(mesh, state, i, j, at.u_i, at.u_j);
+            return there.centres.norm() - touching;
+        };
+        const auto line = [&](const Eigen::Vector2d& way, std::int8_t slide) {
             for (const double side : {-1.0, 1.0}) {
-                StationPair other = middle;
-                other.u_i = std::clamp(middle.u_i + side * way[0] / pair.speed_i, mesh.bounds(i).first, mesh.bounds(i).second);
-                other.u_j = std::clamp(middle.u_j + side * way[1] / pair.speed_j, mesh.bounds(j).first, mesh.bounds(j).second);
-                follow_closest(mesh, state, i, j, other.u_i, other.u_j);
-                const auto same = [&](const StationPair& one) {
-                    return std::max(mesh.apart(i, one.u_i, other.u_i) * pair.speed_i, mesh.apart(j, one.u_j, other.u_j) * pair.speed_j) < 0.1 * touching;
-                };
-                if (std::none_of(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end(), same)) pairs.push_back(other);
+                double last = gap_at(middle);
+                for (int k = 1; k <= most_beside; ++k) {
+                    StationPair other = middle;
+                    other.slide = slide;
+                    const Eigen::Vector2d ideal = side * k * spacing * touching * way;
+                    other.u_i += ideal[0] / pair.speed_i, other.u_j += ideal[1] / pair.speed_j;
+                    // One that was there stays.
+                    double nearest = 0.5 * spacing * touching;
+                    Eigen::Vector2d kept(other.u_i, other.u_j);
+                    for (const Eigen::Vector2d& one : known) {
+                        const double off = std::abs(way[0] * (one[0] - other.u_i) * pair.speed_i + way[1] * (one[1] - other.u_j) * pair.speed_j);
+                        const double beside = std::abs(way[1] * (one[0] - other.u_i) * pair.speed_i - way[0] * (one[1] - other.u_j) * pair.speed_j);
+                        if (off < nearest && beside < near_valley * touching) nearest = off, kept = one;
+                    }
+                    other.u_i = kept[0], other.u_j = kept[1];
+                    if (!inside(mesh, i, other.u_i) || !inside(mesh, j, other.u_j)) break;
+                    follow_along(mesh, state, i, j, slide_of(mesh, zone, slide), other.u_i, other.u_j);
+                    const double gap = gap_at(other);
+                    if (gap > clear * touching && gap > last) break;
+                    pairs.push_back(other);
+                    last = gap;
+                }
+            }
+        };
+        if (least(pair.closeness) < flat) {
+            const bool upright = std::abs(pair.closeness(0, 1)) < square;
+            const Eigen::Vector2d of_i(1.0, 0.0), of_j(0.0, 1.0);
+            if (upright) {
+                const bool weak_i = pair.closeness(0, 0) < flat, weak_j = pair.closeness(1, 1) < flat;
+                if (weak_i) line(of_i, on_j);
+                if (weak_j) line(of_j, on_i);
+                const bool held_i = pair.closeness(0, 0) < held, held_j = pair.closeness(1, 1) < held;
+                middle.slide = held_i && held_j ? fixed : held_i ? on_j : held_j ? on_i : free;
+            } else {
+                Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> parts;
+                parts.computeDirect(pair.closeness);
+                const Eigen::Vector2d way = parts.eigenvectors().col(0);
+                zone.valley = std::atan2(way[1], way[0]);
+                line(way, across_valley);
+                middle.slide = parts.eigenvalues()[0] < held ? across_valley : free;
             }
         }
-        if (pairs.size() == first) pairs.push_back(middle);
-        std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end(), [](const StationPair& a, const StationPair& b) { return a.u_i < b.u_i; });
+        pairs.push_back(middle);
+        std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end(),
+                  [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
     }
 
-    /// The closest patches of a state, and the normal across both.
+    /// The closest patches of a state, and the normal from the one to the other.
     template <class Element>
-    void follow(const beam::Mesh<B>& mesh, const Vector& state, Element& element) {
+    void follow(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
         const Vec3 before = element.normal;
         const std::int32_t first_i = element.first_i, first_j = element.first_j;
-        follow_closest(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
+        const Slide slide = slide_of(mesh, zone, element.slide);
+        if (slide.kind == Slide::freely) follow_closest(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
+        if (slide.kind == Slide::along) follow_along(mesh, state, element.fibre_i, element.fibre_j, slide, element.u_i, element.u_j);
         host(mesh, element);
         if (element.first_i != first_i || element.first_j != first_j) held_[core::at(element.place)].rehosted = true;
         const PairGeometry pair = pair_geometry(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
-        element.normal = unit_or(pair.t_i.cross(pair.t_j), before);
+        element.normal = unit_or(slide.kind == Slide::freely ? Vec3(pair.t_i.cross(pair.t_j)) : pair.centres, before);
         if (element.normal.dot(before) < 0.0) element.normal = -element.normal;
     }
     /// What an element pushes with; its cap becomes one that makes its gap that of its patches.
     template <class Element>
-    void take(const beam::Mesh<B>& mesh, const Vector& state, Element& element) {
-        SlidingPlace<B>& place = held_[core::at(element.place)].place;
-        place = sliding_place(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j, element.normal);
-        element.cap = element.normal.dot(element.offset(state)) - place.gap;
+    void take(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
+        Held& one = held_[core::at(element.place)];
+        if (!near(mesh, element.fibre_i, element.u_i, one.i) || !near(mesh, element.fibre_j, element.u_j, one.j)) renew(mesh, state, element);
+        one.place = sliding_place(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j, one.i, one.j, element.normal,
+                                  slide_of(mesh, zone, element.slide));
+        element.cap = element.normal.dot(element.offset(state)) - one.place.gap;
+    }
+    /// Sections anew where an element has slid to, facing each other across its normal. @returns by how much the direction across them has turned [radian]
+    template <class Element>
+    double renew(const beam::Mesh<B>& mesh, const Vector& state, const Element& element) noexcept {
+        Held& one = held_[core::at(element.place)];
+        const Index i = element.fibre_i, j = element.fibre_j;
+        const Vec3 before = one.i.across;
+        one.i = standing_section(mesh, state, i, element.u_i, half_of_patch(mesh, i, j, i), element.normal);
+        one.j = standing_section(mesh, state, j, element.u_j, half_of_patch(mesh, i, j, j), Vec3(-element.normal));
+        return std::atan2(before.cross(one.i.across).norm(), before.dot(one.i.across));
     }
     /// Elements of the mesh that hold both places.
     template <class Element>
@@ -126,12 +183,47 @@ public:
     const SlidingPlace<B>& of(const Element& element) const noexcept { return held_[core::at(element.place)].place; }
 
 private:
-    /// Second variation of the closest distance, over the distance, beyond which no other place is looked for [1].
-    static constexpr double sole = 0.4;
-    /// Distance over radius of curvature from which two fibres are a loop around each other: cloths have a tenth, fibres that are pressed
-    /// together by 8 r over 50 r a third. Less by the second once they are followed.
-    static constexpr double loop = 0.4, hysteresis = 0.05;
+    /// How a place slides: freely, across its zone's valley, on one fibre alone, not at all.
+    enum : std::int8_t { free, across_valley, on_i, on_j, fixed };
+    static Slide slide_of(const beam::Mesh<B>& mesh, const Zone& zone, std::int8_t slide) noexcept {
+        switch (slide) {
+            case across_valley: return {Slide::along, {-std::sin(zone.valley) / mesh.fibre(zone.span.fibre_i).element_length,
+                                                       std::cos(zone.valley) / mesh.fibre(zone.span.fibre_j).element_length}};
+            case on_i: return {Slide::along, {1.0, 0.0}};
+            case on_j: return {Slide::along, {0.0, 1.0}};
+            case fixed: return {Slide::nowhere, {}};
+            default: return {};
+        }
+    }
+    static double least(const Eigen::Matrix2d& closeness) noexcept {
+        return 0.5 * (closeness(0, 0) + closeness(1, 1)) - std::hypot(0.5 * (closeness(0, 0) - closeness(1, 1)), closeness(0, 1));
+    }
+    static double median(const std::vector<Eigen::Vector2d>& places, Index of) {
+        std::vector<double> values;
+        for (const Eigen::Vector2d& place : places) values.push_back(place[of]);
+        std::sort(values.begin(), values.end());
+        const std::size_t half = values.size() / 2;
+        return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+    }
+    static bool inside(const beam::Mesh<B>& mesh, Index fibre, double u) noexcept {
+        return u >= mesh.bounds(fibre).first && u <= mesh.bounds(fibre).second;
+    }
+    static constexpr double square = 0.1;  ///< cosine of the angle between fibres below which their valleys lie along each of them [1]
+    /// Second variation of the closest distance, over the distance, below which there are stations beside a place, and below which it does not slide
+    /// along its valley. Hooks that are pulled apart at 30 to 90 degrees hold most often with these, of 0.02 to 0.1 and spacings of 0.25 to 0.5 [1].
+    static constexpr double flat = 0.4, held = 0.05;
+    static constexpr double spacing = 0.35, clear = 0.1;  ///< of stations in a valley, and gap beyond which there are none [touching distance]
+    static constexpr double near_valley = 2.0;          ///< of a station that stays, across [touching distance]
+    static constexpr int most_beside = 8;               ///< stations to each side
+    /// Distance over radius of curvature from which two fibres are a loop around each other: cloths have a tenth. Less by the second once they are
+    /// followed.
+    static constexpr double loop = 0.25, hysteresis = 0.05;
+    /// A section is one of a place, and less than an element away from it.
+    static bool near(const beam::Mesh<B>& mesh, Index fibre, double u, const StandingSection& section) noexcept {
+        return !section.across.isZero(0.0) && std::abs(u - section.u) < 0.9 && mesh.apart(fibre, u, section.u) < 0.9;
+    }
     struct Held {
+        StandingSection i, j;
         SlidingPlace<B> place;
         bool rehosted = false;
     };

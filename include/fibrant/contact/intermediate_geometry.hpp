@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 namespace fibrant::contact {
@@ -17,6 +18,7 @@ struct StationPair {
     bool crossing = false;               ///< the only pair of its zone
     bool end_i = false, end_j = false;   ///< the station is a fibre's end and the contact is with its cap
     double length = 0.0;                 ///< of the zone that it stands for [length]; for a crossing the touching length, for a last section 0
+    std::int8_t slide = 0;               ///< of a followed crossing: how its place slides (FollowedPlaces)
 };
 
 /// The pair of closest points near a start, both inside their fibres.

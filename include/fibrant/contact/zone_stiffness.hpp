@@ -23,6 +23,7 @@ struct Zone {
     bool crossing = false;     ///< carries one contact element
     bool followed = false;     ///< that one is followed to where its fibres are closest
     bool forced = false;       ///< its normal is prescribed by a forced order
+    double valley = 0.0;       ///< direction in the plane of both arc lengths in which its fibres stay closest [radian]
     double friction_factor = 1.0;     ///< of its pair of groups, on the law's coefficient [1]
     double penetration_factor = 1.0;  ///< of its pair of groups, on the allowed penetration [1]
     /// In the last accepted state, 0 for a pair that had no zone there, infinite where nothing was accepted yet [length].
