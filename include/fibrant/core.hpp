@@ -8,5 +8,6 @@
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/rotation.hpp>
 #include <fibrant/core/stage_clock.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 #include <fibrant/core/types.hpp>
 #include <fibrant/core/vector_units.hpp>

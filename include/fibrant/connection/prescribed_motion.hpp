@@ -5,8 +5,8 @@
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/connection/channels.hpp>
 #include <fibrant/core/rotation.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -89,12 +89,12 @@ public:
                 wanted = (wanted * free * wanted).eval();
                 least = 1e-12;
             }
-            const Eigen::SelfAdjointEigenSolver<Mat3> directions(wanted);
+            const core::SymmetricEigen<3> directions(wanted);
             const bool overlap = least < 1e-6;
             for (int n = 0; n < 3; ++n) {
                 const int k = overlap ? 2 - n : n;
-                if (directions.eigenvalues()[k] < least) continue;
-                const Vec3 direction = directions.eigenvectors().col(k);
+                if (directions.values()[k] < least) continue;
+                const Vec3 direction = directions.vectors().col(k);
                 Vec3 fresh = free * direction;  // what earlier holds leave of it
                 if (fresh.norm() < 1e-8) continue;
                 fresh = (free * fresh.normalized()).normalized();  // again: cancellation may have left digits only
@@ -175,13 +175,13 @@ private:
         }
         if (items.size() == 1) return;
         // The place that meets all best: they agree if it meets each.
-        const Eigen::SelfAdjointEigenSolver<Mat3> solver(sum);
+        const core::SymmetricEigen<3> solver(sum);
         Vec3 best = Vec3::Zero();
         for (int k = 0; k < 3; ++k)
-            if (solver.eigenvalues()[k] > agreement)
-                best += solver.eigenvectors().col(k) * (solver.eigenvectors().col(k).dot(pull) / solver.eigenvalues()[k]);
+            if (solver.values()[k] > agreement)
+                best += solver.vectors().col(k) * (solver.vectors().col(k).dot(pull) / solver.values()[k]);
         // Directors that may be stretched agree on none at all, wherever they point to.
-        const bool collapsed = !turning && items[0].hold.vector != scene::NodeVector::position && solver.eigenvalues()[0] > agreement &&
+        const bool collapsed = !turning && items[0].hold.vector != scene::NodeVector::position && solver.values()[0] > agreement &&
                                best.norm() < 0.5 * items[0].rest.norm();
         for (std::size_t k = asked.size(); k-- > 0;) {
             const Vec3 missed = collapsed ? Vec3(asked[k].second - asked[0].second) : Vec3(asked[k].first * (asked[k].second - best));

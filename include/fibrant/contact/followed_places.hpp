@@ -6,6 +6,7 @@
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/contact/sliding_place.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -68,13 +69,13 @@ public:
         if (const auto* record = memory.nearest(i, j, middle.u_i, middle.u_j, 1.5)) middle.u_i = record->u_i, middle.u_j = record->u_j;
         follow_closest(mesh, state, i, j, middle.u_i, middle.u_j);
         const PairGeometry pair = pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j);
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> parts(pair.closeness);
+        const core::SymmetricEigen<2> parts(pair.closeness);
         const std::size_t first = pairs.size();
-        if (parts.eigenvalues()[0] > 0.0) pairs.push_back(middle);
+        if (parts.values()[0] > 0.0) pairs.push_back(middle);
         const double touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
         for (int direction = 0; direction < 2; ++direction) {
-            if (parts.eigenvalues()[direction] > sole) continue;  // no other place nearby
-            const Eigen::Vector2d way = touching * parts.eigenvectors().col(direction);
+            if (parts.values()[direction] > sole) continue;  // no other place nearby
+            const Eigen::Vector2d way = touching * parts.vectors().col(direction);
             for (const double side : {-1.0, 1.0}) {
                 StationPair other = middle;
                 other.u_i = std::clamp(middle.u_i + side * way[0] / pair.speed_i, mesh.bounds(i).first, mesh.bounds(i).second);

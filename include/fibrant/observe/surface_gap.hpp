@@ -2,10 +2,10 @@
 #pragma once
 /// @file True gap between two pieces of fibres whose sections are ellipses in any strain, searched over abscissae and directions.
 
+#include <fibrant/core/symmetric_eigen.hpp>
 #include <fibrant/observe/nodal_curve.hpp>
 #include <fibrant/observe/snapshot.hpp>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -264,9 +264,9 @@ private:
         for (int iteration = 0; iteration < 100; ++iteration) {
             const Eigen::Matrix<double, 2, 3> frame = across(n);
             const Level at = level(s, n, frame);
-            const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> turning(at.nn);  // uphill, whichever way F is curved
-            const Eigen::Vector2d curved = turning.eigenvalues().cwiseAbs().cwiseMax(1e-9 * at.nn.norm() + 1e-300);
-            Eigen::Vector2d step = turning.eigenvectors() * (turning.eigenvectors().transpose() * at.by_n).cwiseQuotient(curved);
+            const core::SymmetricEigen<2> turning(at.nn);  // uphill, whichever way F is curved
+            const Eigen::Vector2d curved = turning.values().cwiseAbs().cwiseMax(1e-9 * at.nn.norm() + 1e-300);
+            Eigen::Vector2d step = turning.vectors() * (turning.vectors().transpose() * at.by_n).cwiseQuotient(curved);
             step *= std::min(1.0, 0.3 / std::max(1e-300, step.norm()));
             double next = here;
             Vec3 turned = n;

@@ -3,9 +3,9 @@
 /// @file Single-precision boxes of segments in a frame that suits them.
 
 #include <fibrant/core/parallel.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 #include <fibrant/proximity/exact_filter.hpp>
 
-#include <Eigen/Eigenvalues>
 
 namespace fibrant::proximity::detail {
 
@@ -61,8 +61,8 @@ struct BoxFrame {
             longest = std::max(longest, sum.longest);
             all.half += sum.half;
         }
-        const Eigen::SelfAdjointEigenSolver<Mat3> principal(all.directions);
-        if (principal.eigenvalues()[2] > 0.7 * principal.eigenvalues().sum()) axes = principal.eigenvectors().transpose();
+        const core::SymmetricEigen<3> principal(all.directions);
+        if (principal.values()[2] > 0.7 * principal.values().sum()) axes = principal.vectors().transpose();
         mean_length = all.length / static_cast<double>(n);
         mean_thickness = 2.0 * all.half / static_cast<double>(n) + table.reach();
         selfish = table.selfish();

@@ -3,8 +3,8 @@
 /// @file The mean motion of each group of fibres in an increment, which damping that is carried along leaves alone.
 
 #include <fibrant/beam/mesh.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -54,12 +54,12 @@ public:
             if (!(count[g] > 0.0)) continue;
             fields_[g].shift /= count[g];
             // A straight fibre has no extent across itself, and says nothing of a gradient there.
-            const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread[g]);
+            const core::SymmetricEigen<3> axes(spread[g]);
             for (int k = 0; k < 3; ++k)
-                if (axes.eigenvalues()[k] > 1e-8 * axes.eigenvalues()[2])
-                    bend[g].inverse += axes.eigenvectors().col(k) * axes.eigenvectors().col(k).transpose() / axes.eigenvalues()[k];
+                if (axes.values()[k] > 1e-8 * axes.values()[2])
+                    bend[g].inverse += axes.vectors().col(k) * axes.vectors().col(k).transpose() / axes.values()[k];
             fields_[g].gradient = lean[g] * bend[g].inverse;
-            if (axes.eigenvalues()[2] > 4.0 * axes.eigenvalues()[1]) fields_[g].axis = axes.eigenvectors().col(2) / std::sqrt(axes.eigenvalues()[2] / count[g]);
+            if (axes.values()[2] > 4.0 * axes.values()[1]) fields_[g].axis = axes.vectors().col(2) / std::sqrt(axes.values()[2] / count[g]);
         }
         // What an affine field leaves of the square of the place along the axis, and what the motion has of that.
         each_centre(mesh, [&](std::size_t g, Index v) {
