@@ -212,6 +212,11 @@ inline void symmetric_eigen_two(const double* matrix, double* vectors, double* v
 
 }  // namespace detail
 
+/// Eigenvalues and eigenvectors of a symmetric matrix of plain numbers.
+/// @param matrix  column by column, at most eight rows; its lower half is read, and it gets the eigenvectors as columns
+/// @param values  gets the eigenvalues, least first
+inline void symmetric_eigen(int size, double* matrix, double* values) noexcept { detail::SymmetricReduction(size, matrix, values); }
+
 /// Eigenvalues, least first, and eigenvectors of unit length, as columns, of a symmetric matrix of which the lower half is read.
 template <int n>
     requires(n >= 2 && n <= detail::SymmetricReduction::most)
@@ -220,7 +225,7 @@ public:
     using Square = Eigen::Matrix<double, n, n>;
     using Column = Eigen::Matrix<double, n, 1>;
 
-    explicit SymmetricEigen(const Square& matrix) noexcept : vectors_{matrix} { detail::SymmetricReduction(n, vectors_.data(), values_.data()); }
+    explicit SymmetricEigen(const Square& matrix) noexcept : vectors_{matrix} { symmetric_eigen(n, vectors_.data(), values_.data()); }
     /// By the closed form, which is quicker and in matrices of almost equal eigenvalues less exact.
     static SymmetricEigen closed_form(const Square& matrix) noexcept
         requires(n == 2)

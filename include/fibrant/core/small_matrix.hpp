@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Matrices of two and four rows as plain numbers, for what is computed seldom: each of these sums is an expression of its own to a
+/// general library, which the compiler pays for.
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+namespace fibrant::core {
+
+using Two = std::array<double, 2>;
+using TwoByTwo = std::array<Two, 2>;  ///< rows
+using Four = std::array<double, 4>;
+using FourByFour = std::array<Four, 4>;  ///< rows
+
+inline double dot(const Two& a, const Two& b) noexcept { return a[0] * b[0] + a[1] * b[1]; }
+inline double norm(const Two& a) noexcept { return std::sqrt(dot(a, a)); }
+inline Two times(const TwoByTwo& m, const Two& a) noexcept { return {dot(m[0], a), dot(m[1], a)}; }
+inline TwoByTwo transposed(const TwoByTwo& m) noexcept { return {Two{m[0][0], m[1][0]}, Two{m[0][1], m[1][1]}}; }
+/// a b^T
+inline TwoByTwo times_transposed(const TwoByTwo& a, const TwoByTwo& b) noexcept { return {times(b, a[0]), times(b, a[1])}; }
+inline double norm(const TwoByTwo& m) noexcept {
+    return std::sqrt((m[0][0] * m[0][0] + m[0][1] * m[0][1]) + (m[1][0] * m[1][0] + m[1][1] * m[1][1]));
+}
+inline double determinant(const TwoByTwo& m) noexcept { return m[0][0] * m[1][1] - m[1][0] * m[0][1]; }
+inline TwoByTwo inverse(const TwoByTwo& m) noexcept {
+    const double over = 1.0 / determinant(m);
+    return {Two{m[1][1] * over, -m[0][1] * over}, Two{-m[1][0] * over, m[0][0] * over}};
+}
+
+/// Solution of m x = b by elimination with full pivoting; of a singular matrix one with zeros where nothing is said of x.
+inline Four solve(FourByFour m, Four b) noexcept {
+    constexpr std::size_t n = 4;
+    std::array<std::size_t, n> column{0, 1, 2, 3};
+    double largest = 0.0;
+    std::size_t pivots = n;
+    for (std::size_t k = 0; k < n; ++k) {
+        std::size_t row = k, most = k;
+        for (std::size_t c = k; c < n; ++c)
+            for (std::size_t r = k; r < n; ++r)
+                if (std::abs(m[r][c]) > std::abs(m[row][most])) row = r, most = c;
+        if (m[row][most] == 0.0) {
+            pivots = k;
+            break;
+        }
+        largest = std::fmax(largest, std::abs(m[row][most]));
+        std::swap(m[k], m[row]), std::swap(b[k], b[row]);
+        for (Four& r : m) std::swap(r[k], r[most]);
+        std::swap(column[k], column[most]);
+        for (std::size_t r = k + 1; r < n; ++r) {
+            m[r][k] /= m[k][k];
+            for (std::size_t c = k + 1; c < n; ++c) m[r][c] -= m[r][k] * m[k][c];
+        }
+    }
+    std::size_t rank = 0;
+    for (std::size_t k = 0; k < pivots; ++k) rank += std::abs(m[k][k]) > largest * (std::numeric_limits<double>::epsilon() * static_cast<double>(n)) ? 1 : 0;
+    for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t r = k + 1; r < n; ++r) b[r] -= b[k] * m[r][k];
+    Four x{};
+    for (std::size_t k = rank; k-- > 0;) {
+        b[k] /= m[k][k];
+        for (std::size_t r = 0; r < k; ++r) b[r] -= b[k] * m[r][k];
+        x[column[k]] = b[k];
+    }
+    return x;
+}
+
+}  // namespace fibrant::core
