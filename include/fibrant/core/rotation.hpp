@@ -80,18 +80,25 @@ inline SpinCoefficients spin_coefficients(double p) noexcept {
 /// T with spin = T change of psi, the spin in space: T = a 1 + b [psi] + c psi psi^T. Singular at |psi| = 2 pi.
 inline Mat3 spin_matrix(const Vec3& psi) noexcept {
     const SpinCoefficients k = spin_coefficients(psi.norm());
-    return k.a * Mat3::Identity() + k.b * cross_matrix(psi) + k.c * psi * psi.transpose();
+    Mat3 sum = cross_matrix(psi);
+    for (Index c = 0; c < 3; ++c)
+        for (Index r = 0; r < 3; ++r) sum(r, c) = (r == c ? k.a : 0.0) + k.b * sum(r, c) + k.c * psi[r] * psi[c];
+    return sum;
 }
 
 /// Symmetric part of the derivative of T^T m by psi.
 inline Mat3 spin_slope(const Vec3& psi, const Vec3& m) noexcept {
     const SpinCoefficients k = spin_coefficients(psi.norm());
     const double along = m.dot(psi);
-    Mat3 sum = k.a_1 * psi * m.transpose() + k.b_1 * psi * m.cross(psi).transpose() + 0.5 * k.c_1 * along * psi * psi.transpose() +
-               k.c * m * psi.transpose();
-    sum = 0.5 * (sum + sum.transpose().eval());
-    sum += 0.5 * k.c_1 * along * psi * psi.transpose();
-    sum.diagonal().array() += k.c * along;
+    const Vec3 across = m.cross(psi);
+    const double twice = 0.5 * k.c_1 * along;
+    Mat3 part, sum;
+    for (Index c = 0; c < 3; ++c)
+        for (Index r = 0; r < 3; ++r)
+            part(r, c) = k.a_1 * psi[r] * m[c] + k.b_1 * psi[r] * across[c] + twice * psi[r] * psi[c] + k.c * m[r] * psi[c];
+    for (Index c = 0; c < 3; ++c)
+        for (Index r = 0; r < 3; ++r) sum(r, c) = 0.5 * (part(r, c) + part(c, r)) + twice * psi[r] * psi[c];
+    for (Index c = 0; c < 3; ++c) sum(c, c) += k.c * along;
     return sum;
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Matrices of two and four rows as plain numbers, for what is computed seldom: each of these sums is an expression of its own to a
+/// @file Small matrices as plain numbers, and products of dense ones that are taken seldom: each of these sums is an expression of its own to a
 /// general library, which the compiler pays for.
+
+#include <fibrant/core/types.hpp>
 
 #include <array>
 #include <cmath>
@@ -66,6 +68,38 @@ inline Four solve(FourByFour m, Four b) noexcept {
         x[column[k]] = b[k];
     }
     return x;
+}
+
+/// sum += a b^T
+inline void add_outer(const Vec3& a, const Vec3& b, Mat3& sum) noexcept {
+    for (Index c = 0; c < 3; ++c)
+        for (Index r = 0; r < 3; ++r) sum(r, c) += a[r] * b[c];
+}
+
+/// m x
+inline Vector times(const Matrix& m, const Vector& x) {
+    Vector sum = Vector::Zero(m.rows());
+    for (Index c = 0; c < m.cols(); ++c)
+        for (Index r = 0; r < m.rows(); ++r) sum[r] += m(r, c) * x[c];
+    return sum;
+}
+/// m^T x
+inline Vector transposed_times(const Matrix& m, const Vector& x) {
+    Vector sum(m.cols());
+    const Index n = m.rows(), even = n - n % 2, fours = m.cols() == 1 ? n - n % 4 : 0;
+    for (Index c = 0; c < m.cols(); ++c) {  // every second term is summed up alone: two at a time are multiplied
+        const double* column = m.data() + c * n;
+        double first = 0.0, second = 0.0, third = 0.0, fourth = 0.0;
+        for (Index r = 0; r < fours; r += 4) {
+            first += column[r] * x[r], second += column[r + 1] * x[r + 1];
+            third += column[r + 2] * x[r + 2], fourth += column[r + 3] * x[r + 3];
+        }
+        first += third, second += fourth;
+        for (Index r = fours; r < even; r += 2) first += column[r] * x[r], second += column[r + 1] * x[r + 1];
+        sum[c] = first + second;
+        for (Index r = even; r < n; ++r) sum[c] += column[r] * x[r];
+    }
+    return sum;
 }
 
 }  // namespace fibrant::core
