@@ -66,9 +66,8 @@ public:
             const Mat3 axes = item.hold.axes == scene::Axes::section ? Mat3(turn * item.basis) : turn;
             const bool position = item.hold.vector == scene::NodeVector::position;
             Mat3 directions_held = item.hold.directions;
-            Vec3 goal =
-                (position ? Vec3(item.hold.pivot + turn * (item.rest - item.hold.pivot)) : Vec3(turn * item.rest)) +
-                (item.hold.path ? item.hold.path(amplitude) : Vec3(amplitude * item.hold.displacement));
+            Vec3 goal = turned_goal(item, turn);
+            goal += shift_of(item, amplitude);
             Mat3 axes_held = axes;
             if constexpr (turning) {
                 if (!position) {
@@ -119,7 +118,8 @@ public:
             for (int k = 0; k <= looks; ++k) {
                 const double amplitude = a + (b - a) * k / looks;
                 const Mat3 turn = item.hold.rotation ? item.hold.rotation(amplitude) : Mat3(Mat3::Identity());
-                const Vec3 vector = turn * item.rest + (item.hold.path ? item.hold.path(amplitude) : Vec3(amplitude * item.hold.displacement));
+                Vec3 vector = turn * item.rest;
+                vector += shift_of(item, amplitude);
                 if (k > 0) {
                     const double by_turn = core::rotation_vector(Mat3(turn_before.transpose() * turn)).norm();
                     const double by_vector = turning ? 0.0 : std::atan2(vector_before.cross(vector).norm(), vector_before.dot(vector));
@@ -153,6 +153,15 @@ private:
         bool whole = false;  ///< of a rotation: all three axes are held
     };
 
+    static Vec3 shift_of(const Item& item, double amplitude) {
+        return item.hold.path ? item.hold.path(amplitude) : Vec3(amplitude * item.hold.displacement);
+    }
+    /// A held vector turned, a place about its pivot.
+    static Vec3 turned_goal(const Item& item, const Mat3& turn) {
+        if (item.hold.vector != scene::NodeVector::position) return turn * item.rest;
+        const Vec3 arm = item.rest - item.hold.pivot, turned = turn * arm;
+        return item.hold.pivot + turned;
+    }
     static void check_vector(std::span<const Item> items, std::span<const double> amplitudes, bool finite) {
         Mat3 sum = Mat3::Zero();
         Vec3 pull = Vec3::Zero();
@@ -163,10 +172,10 @@ private:
             if (finite) scene::require_at("Hold", amplitude, item.hold.path, item.hold.rotation);
             if (items.size() == 1) continue;
             const Mat3 turn = item.hold.rotation ? item.hold.rotation(amplitude) : Mat3(Mat3::Identity());
-            const Vec3 shift = item.hold.path ? item.hold.path(amplitude) : Vec3(amplitude * item.hold.displacement);
             const bool position = item.hold.vector == scene::NodeVector::position;
             Mat3 axes = item.hold.axes == scene::Axes::section ? Mat3(turn * item.basis) : turn;
-            Vec3 goal = shift + (position ? Vec3(item.hold.pivot + turn * (item.rest - item.hold.pivot)) : Vec3(turn * item.rest));
+            Vec3 goal = turned_goal(item, turn);
+            goal += shift_of(item, amplitude);
             if (turning && !position) axes = item.basis, goal = core::rotation_vector(turn);
             if (!axes.allFinite() || !goal.allFinite()) return;
             asked.emplace_back(axes * item.hold.directions * axes.transpose(), goal);

@@ -3,6 +3,7 @@
 /// @file Single-precision boxes of segments in a frame that suits them.
 
 #include <fibrant/core/parallel.hpp>
+#include <fibrant/core/small_matrix.hpp>
 #include <fibrant/core/symmetric_eigen.hpp>
 #include <fibrant/proximity/exact_filter.hpp>
 
@@ -43,12 +44,14 @@ struct BoxFrame {
                 const Vec3 start{record.start.x, record.start.y, record.start.z};
                 const Vec3 chord{record.chord.x, record.chord.y, record.chord.z};
                 const double length = chord.norm();
-                if (length > 0.0) sum.directions += chord * (chord / length).transpose();
+                if (length > 0.0) core::add_outer(chord, chord / length, sum.directions);
                 sum.length += length;
                 sum.longest = std::max(sum.longest, length);
                 sum.half += record.half;
-                sum.low = sum.low.cwiseMin(start).cwiseMin(start + chord);
-                sum.high = sum.high.cwiseMax(start).cwiseMax(start + chord);
+                for (Index axis = 0; axis < 3; ++axis) {
+                    sum.low[axis] = std::min({sum.low[axis], start[axis], start[axis] + chord[axis]});
+                    sum.high[axis] = std::max({sum.high[axis], start[axis], start[axis] + chord[axis]});
+                }
             }
             part[core::at(b)] = sum;
         });
