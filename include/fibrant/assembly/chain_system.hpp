@@ -137,7 +137,8 @@ public:
     /// y = A x.
     void apply(const Vector& x, Vector& y) const {
         const auto is_free = [&](const scene::HeldVector& held) {
-            return Vec3(held.free * x.segment<3>(3 * held.vector)) == x.segment<3>(3 * held.vector);
+            const Vec3 own = x.segment<3>(3 * held.vector), free = held.free * own;
+            return free[0] == own[0] && free[1] == own[1] && free[2] == own[2];
         };
         if (layout_.ties.empty() && std::all_of(layout_.held.begin(), layout_.held.end(), is_free)) {  // as directions of a solver are
             apply_unheld(x, y);
@@ -149,9 +150,9 @@ public:
             scene::complete_ties(layout_, x, y);
         }
         for (const scene::HeldVector& held : layout_.held) {
-            const Vec3 whole = layout_.held_stiffness(held.vector) * x.segment<3>(3 * held.vector);
-            y.segment<3>(3 * held.vector) =
-                held.free * y.segment<3>(3 * held.vector) + whole - held.free * whole;
+            const Vec3 own = x.segment<3>(3 * held.vector), before = y.segment<3>(3 * held.vector);
+            const Vec3 whole = layout_.held_stiffness(held.vector) * own, taken = held.free * whole, left = held.free * before;
+            for (Index c = 0; c < 3; ++c) y[3 * held.vector + c] = left[c] + whole[c] - taken[c];
         }
     }
 

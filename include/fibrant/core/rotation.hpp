@@ -40,15 +40,40 @@ inline std::array<double, 3> even_series(double t, int start) noexcept {
 /// Rotation by |psi| about psi.
 inline Mat3 rotation(const Vec3& psi) noexcept {
     const double angle = psi.norm();
-    return angle > 0.0 ? Mat3(Eigen::AngleAxisd(angle, psi / angle)) : Mat3(Mat3::Identity());
+    Mat3 turn = Mat3::Identity();
+    if (!(angle > 0.0)) return turn;
+    const double sine = std::sin(angle), cosine = std::cos(angle);
+    for (Index i = 0; i < 3; ++i) {
+        const Index j = (i + 1) % 3, k = (i + 2) % 3;
+        const double a = psi[i] / angle, b = psi[j] / angle, c = psi[k] / angle;
+        turn(i, i) = (1.0 - cosine) * a * a + cosine;
+        const double both = (1.0 - cosine) * (i < j ? a : b) * (i < j ? b : a);
+        turn(i, j) = both - sine * c, turn(j, i) = both + sine * c;
+    }
+    return turn;
 }
 
 /// Rotation vector of a rotation, of the length pi at most.
 inline Vec3 rotation_vector(const Mat3& turn) noexcept {
-    Eigen::Quaterniond q(turn);
-    if (q.w() < 0.0) q.coeffs() *= -1.0;
-    const double sine = q.vec().norm();
-    return sine > 0.0 ? Vec3(2.0 * std::atan2(sine, q.w()) / sine * q.vec()) : Vec3(Vec3::Zero());
+    // Its quaternion, from the largest of its four components.
+    Vec3 q;
+    double w = turn(0, 0) + (turn(1, 1) + turn(2, 2));
+    if (w > 0.0) {
+        double part = std::sqrt(w + 1.0);
+        w = 0.5 * part, part = 0.5 / part;
+        q = {(turn(2, 1) - turn(1, 2)) * part, (turn(0, 2) - turn(2, 0)) * part, (turn(1, 0) - turn(0, 1)) * part};
+    } else {
+        Index i = turn(1, 1) > turn(0, 0) ? 1 : 0;
+        if (turn(2, 2) > turn(i, i)) i = 2;
+        const Index j = (i + 1) % 3, k = (j + 1) % 3;
+        double part = std::sqrt(turn(i, i) - turn(j, j) - turn(k, k) + 1.0);
+        q[i] = 0.5 * part, part = 0.5 / part;
+        w = (turn(k, j) - turn(j, k)) * part;
+        q[j] = (turn(j, i) + turn(i, j)) * part, q[k] = (turn(k, i) + turn(i, k)) * part;
+    }
+    if (w < 0.0) w = -w, q = Vec3(-q);
+    const double sine = q.norm();
+    return sine > 0.0 ? Vec3(2.0 * std::atan2(sine, w) / sine * q) : Vec3(Vec3::Zero());
 }
 
 /// The rotation vector psi + 2 pi k psi / |psi| of the same rotation that is nearest to another one.

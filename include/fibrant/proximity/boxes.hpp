@@ -77,7 +77,7 @@ struct BoxFrame {
     Box box(const SegmentRecord& record, double from, double to, double margin) const noexcept {
         const Vec3 start{record.start.x - middle[0], record.start.y - middle[1], record.start.z - middle[2]};
         const Vec3 chord{record.chord.x, record.chord.y, record.chord.z};
-        const Vec3 a = axes * (start + from * chord), b = axes * (start + to * chord);
+        const Vec3 first = start + from * chord, last = start + to * chord, a = axes * first, b = axes * last;
         const double wide = margin * (1.0 + 1.0e-6) + slack;
         Box made;
         made.group = selfish ? record.segment : record.group;
