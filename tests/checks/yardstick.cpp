@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the time of other programs is measured by where one is compiled: one of Eigen's decompositions, optimised and generated, and nothing
-// of the toolkit. It is not to be changed: figures of compile_time.sh are multiples of it.
+// What the time of other programs is measured by where one is compiled: one of Eigen's decompositions, optimised and
+// generated, and nothing of the toolkit. It is not to be changed: figures of compile_time.sh are multiples of it.
 #include <Eigen/LU>
 
 #include <algorithm>

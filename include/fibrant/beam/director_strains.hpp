@@ -78,7 +78,9 @@ struct TurnStrainOf {
         by.col(3) = -y.col(1) / m;
         return by;
     }
-    double rate(const Fields& y, const Fields& step) const noexcept { return slope(y).cwiseProduct(step.template rightCols<4>()).sum(); }
+    double rate(const Fields& y, const Fields& step) const noexcept {
+        return slope(y).cwiseProduct(step.template rightCols<4>()).sum();
+    }
     /// What it is more than in another state, to the digits of `change`.
     static double change(const Fields& rest, const Fields& change) noexcept {
         const TurnStrainOf before(rest);

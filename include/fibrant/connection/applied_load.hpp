@@ -66,7 +66,8 @@ public:
         if constexpr (beam::TurningSections<B>)
             for (const Item& item : turning_) {
                 const Vec3 psi = state.segment<3>(3 * item.vector), value = amplitudes[core::at(item.channel)] * item.value;
-                external.segment<3>(3 * item.vector) += core::spin_matrix(psi).transpose() * (item.director > 0 ? director(psi, item).cross(value) : value);
+                const Vec3 moment = item.director > 0 ? director(psi, item).cross(value) : value;
+                external.segment<3>(3 * item.vector) += core::spin_matrix(psi).transpose() * moment;
             }
         for (const Item& item : moments_) {
             const Vec3 director = state.segment<3>(3 * item.vector), turn = item.value.cross(director);
@@ -86,7 +87,8 @@ public:
             const Vec3 turn = moment.cross(director);
             Mat3 slope, sum;
             for (Index c = 0; c < 3; ++c)
-                for (Index r = 0; r < 3; ++r) slope(r, c) = cross(r, c) / square - 2.0 / (square * square) * turn[r] * director[c];
+                for (Index r = 0; r < 3; ++r)
+                    slope(r, c) = cross(r, c) / square - 2.0 / (square * square) * turn[r] * director[c];
             for (Index c = 0; c < 3; ++c)
                 for (Index r = 0; r < 3; ++r) sum(r, c) = -0.5 * (slope(r, c) + slope(c, r));
             add(item.vector, sum);
@@ -115,9 +117,9 @@ public:
             for (Index a = 0; a < vectors; ++a)
                 for (Index b = 0; b < vectors; ++b) {
                     const double turn = G[core::at(a)][core::at(b)] - G[core::at(b)][core::at(a)];
+                    const double factor = -0.5 * amplitudes[core::at(load.channel)] * load.value * turn;
                     for (Index c = 0; c < 3; ++c)
-                        for (Index r = 0; r < 3; ++r)
-                            stiffness(3 * a + r, 3 * b + c) = -0.5 * amplitudes[core::at(load.channel)] * load.value * turn * load.across(r, c);
+                        for (Index r = 0; r < 3; ++r) stiffness(3 * a + r, 3 * b + c) = factor * load.across(r, c);
                 }
             for (Index e = 0; e < load.elements; ++e) add(load.fibre, e, stiffness);
         }
@@ -138,7 +140,8 @@ private:
         for (const auto& [xi, weight] : {std::pair{-place, 5.0 / 9.0}, std::pair{0.0, 8.0 / 9.0}, std::pair{place, 5.0 / 9.0}}) {
             const beam::ElementWeights<B> value = B::centreline_weights(xi), slope = B::centreline_derivative_weights(xi);
             for (Index a = 0; a < vectors; ++a)
-                for (Index b = 0; b < vectors; ++b) sum[core::at(a)][core::at(b)] += weight * value[core::at(a)] * slope[core::at(b)];
+                for (Index b = 0; b < vectors; ++b)
+                    sum[core::at(a)][core::at(b)] += weight * value[core::at(a)] * slope[core::at(b)];
         }
         return sum;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Small matrices as plain numbers, and products of dense ones that are taken seldom: each of these sums is an expression of its own to a
-/// general library, which the compiler pays for.
+/// @file Small matrices as plain numbers, and products of dense ones that are taken seldom: each of these sums is an
+/// expression of its own to a general library, which the compiler pays for.
 
 #include <fibrant/core/types.hpp>
 
@@ -58,7 +58,8 @@ inline Four solve(FourByFour m, Four b) noexcept {
         }
     }
     std::size_t rank = 0;
-    for (std::size_t k = 0; k < pivots; ++k) rank += std::abs(m[k][k]) > largest * (std::numeric_limits<double>::epsilon() * static_cast<double>(n)) ? 1 : 0;
+    const double least = largest * (std::numeric_limits<double>::epsilon() * static_cast<double>(n));
+    for (std::size_t k = 0; k < pivots; ++k) rank += std::abs(m[k][k]) > least ? 1 : 0;
     for (std::size_t k = 0; k < n; ++k)
         for (std::size_t r = k + 1; r < n; ++r) b[r] -= b[k] * m[r][k];
     Four x{};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Eigenvalues and eigenvectors of small symmetric matrices, in one plain function for all sizes: what a general solver costs the
-/// compiler for each of them is more than half of a first program's time.
+/// @file Eigenvalues and eigenvectors of small symmetric matrices, in one plain function for all sizes: what a general solver
+/// costs the compiler for each of them was more than half of a first program's time.
 
 #include <fibrant/core/types.hpp>
 
@@ -59,8 +59,8 @@ private:
         a(1, 1) = m01, a(2, 1) = a(1, 2) = m02, a(2, 2) = m22;
     }
 
-    /// Householder reduction to three diagonals (Golub and Van Loan, Matrix Computations, section 8.3.1): reflections 1 - t v v^T with
-    /// v = (1, v_1, ...), of which v_1, ... are left below the second diagonal.
+    /// Householder reduction to three diagonals (Golub and Van Loan, Matrix Computations, section 8.3.1): reflections
+    /// 1 - t v v^T with v = (1, v_1, ...), of which v_1, ... are left below the second diagonal.
     void reduce() noexcept {
         std::array<double, most> turn{}, w{}, v{};
         for (int i = 0; i + 1 < n_; ++i) {
@@ -215,7 +215,9 @@ inline void symmetric_eigen_two(const double* matrix, double* vectors, double* v
 /// Eigenvalues and eigenvectors of a symmetric matrix of plain numbers.
 /// @param matrix  column by column, at most eight rows; its lower half is read, and it gets the eigenvectors as columns
 /// @param values  gets the eigenvalues, least first
-inline void symmetric_eigen(int size, double* matrix, double* values) noexcept { detail::SymmetricReduction(size, matrix, values); }
+inline void symmetric_eigen(int size, double* matrix, double* values) noexcept {
+    detail::SymmetricReduction(size, matrix, values);
+}
 
 /// Eigenvalues, least first, and eigenvectors of unit length, as columns, of a symmetric matrix of which the lower half is read.
 template <int n>
@@ -225,7 +227,9 @@ public:
     using Square = Eigen::Matrix<double, n, n>;
     using Column = Eigen::Matrix<double, n, 1>;
 
-    explicit SymmetricEigen(const Square& matrix) noexcept : vectors_{matrix} { symmetric_eigen(n, vectors_.data(), values_.data()); }
+    explicit SymmetricEigen(const Square& matrix) noexcept : vectors_{matrix} {
+        symmetric_eigen(n, vectors_.data(), values_.data());
+    }
     /// By the closed form, which is quicker and in matrices of almost equal eigenvalues less exact.
     static SymmetricEigen closed_form(const Square& matrix) noexcept
         requires(n == 2)

@@ -236,19 +236,22 @@ private:
         for (std::size_t k = 0; k < 2; ++k) {
             const double sign = k == 0 ? -1.0 : 1.0;
             const Vec3 x = fibre[k]->curve().tangent(s[k]), xx = fibre[k]->curve().second(s[k]);
-            const Frame w{fibre[k]->axis(0, s[k]), fibre[k]->axis(1, s[k])}, w_s{fibre[k]->axis(0, s[k], 1), fibre[k]->axis(1, s[k], 1)};
+            const Frame w{fibre[k]->axis(0, s[k]), fibre[k]->axis(1, s[k])};
+            const Frame w_s{fibre[k]->axis(0, s[k], 1), fibre[k]->axis(1, s[k], 1)};
             const Frame w_ss{fibre[k]->axis(0, s[k], 2), fibre[k]->axis(1, s[k], 2)};
             const core::Two p = rows(w, n), p_s = rows(w_s, n), p_ss = rows(w_ss, n);
             // A section that is seen along the fibre has an edge there.
             const double h = std::max(core::norm(p), 1e-9 * std::sqrt(from_behind(w[0], w[0]) + from_behind(w[1], w[1])));
             const core::Two unit{p[0] / h, p[1] / h};
-            const core::TwoByTwo across{core::Two{1.0 - unit[0] * unit[0], 0.0 - unit[0] * unit[1]}, core::Two{0.0 - unit[1] * unit[0], 1.0 - unit[1] * unit[1]}};
+            const core::TwoByTwo across{core::Two{1.0 - unit[0] * unit[0], 0.0 - unit[0] * unit[1]},
+                                        core::Two{0.0 - unit[1] * unit[0], 1.0 - unit[1] * unit[1]}};
             const core::Two turned = core::times(across, p_s);
             const Vec3 along = columns(w, unit), along_s = columns(w_s, unit), side = columns(w, turned);
             Vec3 mixed;
             for (Index r = 0; r < 3; ++r) {
                 by_n[r] -= along[r];
-                const core::Two row{w[0][r] * across[0][0] + w[1][r] * across[1][0], w[0][r] * across[0][1] + w[1][r] * across[1][1]};
+                const core::Two row{w[0][r] * across[0][0] + w[1][r] * across[1][0],
+                                    w[0][r] * across[0][1] + w[1][r] * across[1][1]};
                 for (Index c = 0; c < 3; ++c) by_nn[core::at(r)][core::at(c)] -= (row[0] * w[0][c] + row[1] * w[1][c]) / h;
                 mixed[r] = sign * x[r] - along_s[r] - side[r] / h;
             }
@@ -333,7 +336,8 @@ private:
             const Level at = level(s, n, across(n));
             core::TwoByTwo second = at.ss;
             if (!faces) {
-                const core::TwoByTwo half = core::times_transposed(at.sn, core::transposed(core::inverse(at.nn))), taken = core::times_transposed(half, at.sn);
+                const core::TwoByTwo half = core::times_transposed(at.sn, core::transposed(core::inverse(at.nn)));
+                const core::TwoByTwo taken = core::times_transposed(half, at.sn);
                 for (std::size_t r = 0; r < 2; ++r) second[r][0] -= taken[r][0], second[r][1] -= taken[r][1];
             }
             core::Two slope = at.by_s;

@@ -60,7 +60,8 @@ public:
             const core::SymmetricEigen<3> axes(spread[g]);
             for (int k = 0; k < 3; ++k)
                 for (Index c = 0; c < 3 && axes.values()[k] > 1e-8 * axes.values()[2]; ++c)
-                    for (Index r = 0; r < 3; ++r) bend[g].inverse(r, c) += axes.vectors()(r, k) * axes.vectors()(c, k) / axes.values()[k];
+                    for (Index r = 0; r < 3; ++r)
+                        bend[g].inverse(r, c) += axes.vectors()(r, k) * axes.vectors()(c, k) / axes.values()[k];
             fields_[g].gradient = lean[g] * bend[g].inverse;
             if (axes.values()[2] > 4.0 * axes.values()[1]) fields_[g].axis = axes.vectors().col(2) / std::sqrt(axes.values()[2] / count[g]);
         }

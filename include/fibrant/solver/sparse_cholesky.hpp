@@ -56,8 +56,10 @@ public:
         // Measured by what vectors have where they are held: the stiffness of directions has other units than that of positions.
         work.scale = ordered(work.scale);
         double least = work.pivots.size() > 0 ? std::numeric_limits<double>::infinity() : 1.0, most = 0.0;
-        for (Index k = 0; k < work.pivots.size(); ++k)
-            least = std::min(least, work.pivots[k] / work.scale[k]), most = std::max(most, std::abs(work.pivots[k] / work.scale[k]));
+        for (Index k = 0; k < work.pivots.size(); ++k) {
+            const double pivot = work.pivots[k] / work.scale[k];
+            least = std::min(least, pivot), most = std::max(most, std::abs(pivot));
+        }
         work.curvature = least > 0.0 ? 1.0 : least / most;
         if (least > 0.0) work.status = SolveStatus::converged;
         return work.status;
@@ -135,7 +137,8 @@ private:
             const Vector diagonal = work.a.diagonal();
             const double floor = 1e-12 * most_over(diagonal, work.scale);
             x = b;
-            for (Index k = 0; k < x.size(); ++k) x[k] /= floor > 0.0 ? std::max(std::abs(diagonal[k]), floor * work.scale[k]) : work.scale[k];
+            for (Index k = 0; k < x.size(); ++k)
+                x[k] /= floor > 0.0 ? std::max(std::abs(diagonal[k]), floor * work.scale[k]) : work.scale[k];
             return;
         }
         x = ordered(b);
