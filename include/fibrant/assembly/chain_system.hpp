@@ -274,11 +274,11 @@ private:
         });
     }
     /// Vectors of images become those of their sources.
-    void replace_images(Index fibre, std::span<Index> vectors) const noexcept {
+    void replace_images(Index fibre, std::span<Index> numbers) const noexcept {
         const scene::Chain& chain = layout_.chains[core::at(fibre)];
         if (!chain.closed) return;
         const Index own = (chain.nodes - 1) * chain.vectors_per_node;
-        for (Index& vector : vectors)
+        for (Index& vector : numbers)
             if (vector - chain.first_vector >= own) vector -= own;
     }
     /// x, with the values of images where there are any.

@@ -67,8 +67,8 @@ public:
         }
         // What an affine field leaves of the square of the place along the axis, and what the motion has of that.
         each_centre(mesh, [&](std::size_t g, Index v) {
-            const double square = std::pow(fields_[g].axis.dot(arm(g, v)), 2);
-            bend[g].mean += square / count[g], bend[g].lean += square * arm(g, v);
+            const double out = std::pow(fields_[g].axis.dot(arm(g, v)), 2);
+            bend[g].mean += out / count[g], bend[g].lean += out * arm(g, v);
         });
         for (std::size_t g = 0; g < fields_.size(); ++g) fields_[g].level = bend[g].mean, fields_[g].slope = bend[g].inverse * bend[g].lean;
         each_centre(mesh, [&](std::size_t g, Index v) {
