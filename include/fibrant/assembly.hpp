@@ -7,6 +7,7 @@
 #include <fibrant/assembly/equilibrium.hpp>
 #include <fibrant/assembly/linear_system.hpp>
 #include <fibrant/assembly/point_product.hpp>
+#include <fibrant/assembly/slide_products.hpp>
 #include <fibrant/assembly/solid_system.hpp>
 #include <fibrant/assembly/term_assembly.hpp>
 #include <fibrant/assembly/terms.hpp>

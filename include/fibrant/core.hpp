@@ -7,6 +7,8 @@
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/rotation.hpp>
+#include <fibrant/core/small_matrix.hpp>
 #include <fibrant/core/stage_clock.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 #include <fibrant/core/types.hpp>
 #include <fibrant/core/vector_units.hpp>

@@ -5,6 +5,7 @@
 #include <fibrant/beam/kirchhoff_cable.hpp>
 #include <fibrant/contact/sliding_place.hpp>
 
+#include <Eigen/Eigenvalues>
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -6,6 +6,7 @@
 #include <fibrant/assembly/band_product.hpp>
 #include <fibrant/assembly/linear_system.hpp>
 #include <fibrant/assembly/point_product.hpp>
+#include <fibrant/assembly/slide_products.hpp>
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/contact/sliding_place.hpp>
 #include <fibrant/core/parallel.hpp>
@@ -136,7 +137,8 @@ public:
     /// y = A x.
     void apply(const Vector& x, Vector& y) const {
         const auto is_free = [&](const scene::HeldVector& held) {
-            return Vec3(held.free * x.segment<3>(3 * held.vector)) == x.segment<3>(3 * held.vector);
+            const Vec3 own = x.segment<3>(3 * held.vector), free = held.free * own;
+            return free[0] == own[0] && free[1] == own[1] && free[2] == own[2];
         };
         if (layout_.ties.empty() && std::all_of(layout_.held.begin(), layout_.held.end(), is_free)) {  // as directions of a solver are
             apply_unheld(x, y);
@@ -148,9 +150,9 @@ public:
             scene::complete_ties(layout_, x, y);
         }
         for (const scene::HeldVector& held : layout_.held) {
-            const Vec3 whole = layout_.held_stiffness(held.vector) * x.segment<3>(3 * held.vector);
-            y.segment<3>(3 * held.vector) =
-                held.free * y.segment<3>(3 * held.vector) + whole - held.free * whole;
+            const Vec3 own = x.segment<3>(3 * held.vector), before = y.segment<3>(3 * held.vector);
+            const Vec3 whole = layout_.held_stiffness(held.vector) * own, taken = held.free * whole, left = held.free * before;
+            for (Index c = 0; c < 3; ++c) y[3 * held.vector + c] = left[c] + whole[c] - taken[c];
         }
     }
 
@@ -163,12 +165,7 @@ public:
             pairs_.find_motions(sides(p), x);
         }, grain);
         core::parallel_for(band_.packs(), [&](Index p) { pairs_.add_forces(sides(p), y); }, grain);
-        for (const contact::SlidingStiffness& slide : slides_) {
-            Vector motion(slide.rows.cols());
-            for (std::size_t k = 0; k < slide.vectors.size(); ++k) motion.segment<3>(3 * static_cast<Index>(k)) = x.segment<3>(3 * slide.vectors[k]);
-            const Vector force = slide.rows.transpose() * (slide.stiffness * (slide.rows * motion));
-            for (std::size_t k = 0; k < slide.vectors.size(); ++k) y.segment<3>(3 * slide.vectors[k]) += force.segment<3>(3 * static_cast<Index>(k));
-        }
+        for (const contact::SlidingStiffness& slide : slides_) add_slide(slide, x, y);
         scene::fold_images(layout_, y);
     }
 
@@ -240,7 +237,7 @@ public:
         }
         for (Index k = std::max(first, points); k < std::min(last, open); ++k) {
             const contact::SlidingStiffness& slide = slides_[core::at(k - points)];
-            const Matrix dense = slide.rows.transpose() * slide.stiffness * slide.rows;
+            const Matrix dense = whole_slide(slide);
             terms.dense(DenseTerm{slide.vectors, dense});
         }
         first = std::min(first, points), last = std::min(last, points);
@@ -277,11 +274,11 @@ private:
         });
     }
     /// Vectors of images become those of their sources.
-    void replace_images(Index fibre, std::span<Index> vectors) const noexcept {
+    void replace_images(Index fibre, std::span<Index> numbers) const noexcept {
         const scene::Chain& chain = layout_.chains[core::at(fibre)];
         if (!chain.closed) return;
         const Index own = (chain.nodes - 1) * chain.vectors_per_node;
-        for (Index& vector : vectors)
+        for (Index& vector : numbers)
             if (vector - chain.first_vector >= own) vector -= own;
     }
     /// x, with the values of images where there are any.
@@ -295,14 +292,24 @@ private:
     template <class Terms>
     void visit_row(Index f, Index a, Matrix& dense, Terms& terms) const {
         std::array<Index, core::at((reach + 1) * B::vectors_per_node)> numbers{};
+        const std::size_t count = whole_row(f, a, numbers, dense);
+        terms.dense(DenseTerm{std::span<const Index>(numbers.data(), count), dense});
+    }
+    /// @returns the number of its vectors
+    std::size_t whole_row(Index f, Index a, std::span<Index> numbers, Matrix& dense) const {
         const Index before = std::min<Index>(a, reach), size = (before + 1) * block;
         const Index first = layout_.chains[core::at(f)].first_vector + (a - before) * B::vectors_per_node;
         for (Index k = 0; k < size / 3; ++k) numbers[core::at(k)] = first + k;
         if (!closed_.empty()) replace_images(f, std::span(numbers).first(core::at(size / 3)));
         dense.setZero(size, size);
-        dense.bottomRows(block) = row(f, a).rightCols(size);
-        dense.rightCols(block).topRows(size - block) = dense.bottomRows(block).leftCols(size - block).transpose();
-        terms.dense(DenseTerm{std::span<const Index>(numbers.data(), core::at(size / 3)), dense});
+        const Row& own = row(f, a);
+        for (Index c = 0; c < size; ++c)
+            for (Index r = 0; r < block; ++r) {
+                const double value = own(r, (reach + 1) * block - size + c);
+                dense(size - block + r, c) = value;
+                if (c < size - block) dense(c, size - block + r) = value;
+            }
+        return core::at(size / 3);
     }
     /// see(node, vector, node, vector, block) of (w w^T) (x) stiffness, in the lower half.
     template <class See>

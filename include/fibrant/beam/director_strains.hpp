@@ -62,14 +62,15 @@ double strain_rate(const DirectorFields& current, const DirectorFields& step) no
 }  // namespace detail
 
 /// Torsion over the mean square of the directors, t = T/m with T = g_2.g_1' - g_1.g_2' and m = g_1.g_1 + g_2.g_2: c12 = s - t and
-/// c21 = s + t then, s = (c12 + c21)/2 as ever.
+/// c21 = s + t then, s = (c12 + c21)/2 as ever. A template, so that only beams of this strain have it compiled.
 namespace detail {
-struct TurnStrain {
+template <class Fields>
+struct TurnStrainOf {
     double m, t;
-    explicit TurnStrain(const DirectorFields& y) noexcept
+    explicit TurnStrainOf(const Fields& y) noexcept
         : m{y.col(1).squaredNorm() + y.col(2).squaredNorm()}, t{(y.col(2).dot(y.col(3)) - y.col(1).dot(y.col(4))) / m} {}
     /// Of the directions of the fields g_1, g_2, g_1', g_2', each of which gets a column.
-    Eigen::Matrix<double, 3, 4> slope(const DirectorFields& y) const noexcept {
+    Eigen::Matrix<double, 3, 4> slope(const Fields& y) const noexcept {
         Eigen::Matrix<double, 3, 4> by;
         by.col(0) = (-y.col(4) - 2.0 * t * y.col(1)) / m;
         by.col(1) = (y.col(3) - 2.0 * t * y.col(2)) / m;
@@ -77,16 +78,19 @@ struct TurnStrain {
         by.col(3) = -y.col(1) / m;
         return by;
     }
-    double rate(const DirectorFields& y, const DirectorFields& step) const noexcept { return slope(y).cwiseProduct(step.rightCols<4>()).sum(); }
+    double rate(const Fields& y, const Fields& step) const noexcept {
+        return slope(y).cwiseProduct(step.template rightCols<4>()).sum();
+    }
     /// What it is more than in another state, to the digits of `change`.
-    static double change(const DirectorFields& rest, const DirectorFields& change) noexcept {
-        const TurnStrain before(rest);
+    static double change(const Fields& rest, const Fields& change) noexcept {
+        const TurnStrainOf before(rest);
         const double T = product_change(rest.col(2), change.col(2), rest.col(3), change.col(3)) -
                          product_change(rest.col(1), change.col(1), rest.col(4), change.col(4));
         const double m = 2.0 * (half_square_change(rest.col(1), change.col(1)) + half_square_change(rest.col(2), change.col(2)));
         return (T - before.t * m) / (before.m + m);
     }
 };
+using TurnStrain = TurnStrainOf<DirectorFields>;
 }  // namespace detail
 
 /// Strains at a point and what follows from them; `Section` tells whether E_11, E_22, 2 E_12 are evaluated here.

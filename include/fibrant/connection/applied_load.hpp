@@ -5,6 +5,7 @@
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/core/rotation.hpp>
 
+#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -54,21 +55,24 @@ public:
                 const Index first = load.first_unknown + 3 * beam::Mesh<B>::vectors_per_element_step * e;
                 for (Index a = 0; a < vectors; ++a) {
                     Vec3 sum = Vec3::Zero();
-                    for (Index b = 0; b < vectors; ++b) sum += G(a, b) * state.segment<3>(first + 3 * b);
-                    external.segment<3>(first + 3 * a) += amplitudes[core::at(load.channel)] * load.value * (load.across * sum);
+                    for (Index b = 0; b < vectors; ++b)
+                        for (Index c = 0; c < 3; ++c) sum[c] += G[core::at(a)][core::at(b)] * state[first + 3 * b + c];
+                    const Vec3 pushed = load.across * sum;
+                    add(amplitudes[core::at(load.channel)] * load.value, pushed, first / 3 + a, external);
                 }
             }
         }
-        for (const Item& item : forces_)
-            external.segment<3>(3 * item.vector) += amplitudes[core::at(item.channel)] * item.value;
-        for (const Item& item : turning_) {
-            const Vec3 psi = state.segment<3>(3 * item.vector), value = amplitudes[core::at(item.channel)] * item.value;
-            external.segment<3>(3 * item.vector) += core::spin_matrix(psi).transpose() * (item.director > 0 ? director(psi, item).cross(value) : value);
-        }
+        for (const Item& item : forces_) add(amplitudes[core::at(item.channel)], item.value, item.vector, external);
+        if constexpr (beam::TurningSections<B>)
+            for (const Item& item : turning_) {
+                const Vec3 psi = state.segment<3>(3 * item.vector), value = amplitudes[core::at(item.channel)] * item.value;
+                const Vec3 moment = item.director > 0 ? director(psi, item).cross(value) : value;
+                external.segment<3>(3 * item.vector) += core::spin_matrix(psi).transpose() * moment;
+            }
         for (const Item& item : moments_) {
-            const Vec3 director = state.segment<3>(3 * item.vector);
-            external.segment<3>(3 * item.vector) +=
-                amplitudes[core::at(item.channel)] * item.value.cross(director) / director.squaredNorm();
+            const Vec3 director = state.segment<3>(3 * item.vector), turn = item.value.cross(director);
+            const double square = director.squaredNorm();
+            for (Index c = 0; c < 3; ++c) external[3 * item.vector + c] += amplitudes[core::at(item.channel)] * turn[c] / square;
         }
     }
 
@@ -79,23 +83,29 @@ public:
             const Vec3 director = state.segment<3>(3 * item.vector);
             const Vec3 moment = amplitudes[core::at(item.channel)] * item.value;
             const double square = director.squaredNorm();
-            Mat3 cross;
-            cross << 0, -moment.z(), moment.y(), moment.z(), 0, -moment.x(), -moment.y(), moment.x(), 0;
-            const Mat3 slope = cross / square - 2.0 / (square * square) * moment.cross(director) * director.transpose();
-            add(item.vector, Mat3(-0.5 * (slope + slope.transpose())));
+            const Mat3 cross = core::cross_matrix(moment);
+            const Vec3 turn = moment.cross(director);
+            Mat3 slope, sum;
+            for (Index c = 0; c < 3; ++c)
+                for (Index r = 0; r < 3; ++r)
+                    slope(r, c) = cross(r, c) / square - 2.0 / (square * square) * turn[r] * director[c];
+            for (Index c = 0; c < 3; ++c)
+                for (Index r = 0; r < 3; ++r) sum(r, c) = -0.5 * (slope(r, c) + slope(c, r));
+            add(item.vector, sum);
         }
-        for (const Item& item : turning_) {
-            const Vec3 psi = state.segment<3>(3 * item.vector), value = amplitudes[core::at(item.channel)] * item.value;
-            if (item.director == 0) {
-                add(item.vector, Mat3(-core::spin_slope(psi, value)));
-            } else {
-                const Vec3 g = director(psi, item);
-                Mat3 bend = 0.5 * (g * value.transpose() + value * g.transpose());
-                bend.diagonal().array() -= g.dot(value);
-                const Mat3 T = core::spin_matrix(psi);
-                add(item.vector, Mat3(-T.transpose() * bend * T - core::spin_slope(psi, g.cross(value))));
+        if constexpr (beam::TurningSections<B>)
+            for (const Item& item : turning_) {
+                const Vec3 psi = state.segment<3>(3 * item.vector), value = amplitudes[core::at(item.channel)] * item.value;
+                if (item.director == 0) {
+                    add(item.vector, Mat3(-core::spin_slope(psi, value)));
+                } else {
+                    const Vec3 g = director(psi, item);
+                    Mat3 bend = 0.5 * (g * value.transpose() + value * g.transpose());
+                    bend.diagonal().array() -= g.dot(value);
+                    const Mat3 T = core::spin_matrix(psi);
+                    add(item.vector, Mat3(-T.transpose() * bend * T - core::spin_slope(psi, g.cross(value))));
+                }
             }
-        }
     }
 
     /// Calls add(fibre, element, matrix) with minus the derivative of line pressures, symmetrised.
@@ -105,15 +115,19 @@ public:
             const Coupling G = coupling();
             beam::ElementMatrix<B> stiffness;
             for (Index a = 0; a < vectors; ++a)
-                for (Index b = 0; b < vectors; ++b)
-                    stiffness.template block<3, 3>(3 * a, 3 * b) = -0.5 * amplitudes[core::at(load.channel)] * load.value * (G(a, b) - G(b, a)) * load.across;
+                for (Index b = 0; b < vectors; ++b) {
+                    const double turn = G[core::at(a)][core::at(b)] - G[core::at(b)][core::at(a)];
+                    const double factor = -0.5 * amplitudes[core::at(load.channel)] * load.value * turn;
+                    for (Index c = 0; c < 3; ++c)
+                        for (Index r = 0; r < 3; ++r) stiffness(3 * a + r, 3 * b + c) = factor * load.across(r, c);
+                }
             for (Index e = 0; e < load.elements; ++e) add(load.fibre, e, stiffness);
         }
     }
 
 private:
     static constexpr Index vectors = B::nodes * B::vectors_per_node;  // of an element
-    using Coupling = Eigen::Matrix<double, vectors, vectors>;
+    using Coupling = std::array<std::array<double, core::at(vectors)>, core::at(vectors)>;  // rows
     struct Pressure {
         Index fibre, channel, elements, first_unknown;
         double value;
@@ -121,14 +135,18 @@ private:
     };
     /// Integral of the weights of the centreline times those of its derivative: what the vectors of an element are to its forces under a line pressure.
     static Coupling coupling() noexcept {
-        Coupling sum = Coupling::Zero();
+        Coupling sum{};
         const double place = std::sqrt(0.6);  // Gauss, exact to the fifth degree
         for (const auto& [xi, weight] : {std::pair{-place, 5.0 / 9.0}, std::pair{0.0, 8.0 / 9.0}, std::pair{place, 5.0 / 9.0}}) {
             const beam::ElementWeights<B> value = B::centreline_weights(xi), slope = B::centreline_derivative_weights(xi);
             for (Index a = 0; a < vectors; ++a)
-                for (Index b = 0; b < vectors; ++b) sum(a, b) += weight * value[core::at(a)] * slope[core::at(b)];
+                for (Index b = 0; b < vectors; ++b)
+                    sum[core::at(a)][core::at(b)] += weight * value[core::at(a)] * slope[core::at(b)];
         }
         return sum;
+    }
+    static void add(double factor, const Vec3& value, Index vector, Vector& external) noexcept {
+        for (Index c = 0; c < 3; ++c) external[3 * vector + c] += factor * value[c];
     }
     struct Item {
         Index vector, channel;

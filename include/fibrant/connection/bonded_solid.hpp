@@ -4,6 +4,7 @@
 
 #include <fibrant/connection/carriers.hpp>
 #include <fibrant/connection/channels.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 #include <fibrant/solid/hexahedron.hpp>
 
 #include <algorithm>
@@ -114,10 +115,10 @@ public:
                 const Mat3 before = held.back().free;
                 directions = before * directions * before;
                 // Of axes that are neither the same nor across, the earlier one decides.
-                const Eigen::SelfAdjointEigenSolver<Mat3> axes(directions);
+                const core::SymmetricEigen<3> axes(directions);
                 directions.setZero();
                 for (int k = 0; k < 3; ++k)
-                    if (axes.eigenvalues()[k] > 0.5) directions += axes.eigenvectors().col(k) * axes.eigenvectors().col(k).transpose();
+                    if (axes.values()[k] > 0.5) directions += axes.vectors().col(k) * axes.vectors().col(k).transpose();
                 held.back().free = before - directions;
                 targets.back() += directions * goal;
             } else {

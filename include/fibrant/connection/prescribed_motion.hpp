@@ -5,8 +5,8 @@
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/connection/channels.hpp>
 #include <fibrant/core/rotation.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -66,9 +66,8 @@ public:
             const Mat3 axes = item.hold.axes == scene::Axes::section ? Mat3(turn * item.basis) : turn;
             const bool position = item.hold.vector == scene::NodeVector::position;
             Mat3 directions_held = item.hold.directions;
-            Vec3 goal =
-                (position ? Vec3(item.hold.pivot + turn * (item.rest - item.hold.pivot)) : Vec3(turn * item.rest)) +
-                (item.hold.path ? item.hold.path(amplitude) : Vec3(amplitude * item.hold.displacement));
+            Vec3 goal = turned_goal(item, turn);
+            goal += shift_of(item, amplitude);
             Mat3 axes_held = axes;
             if constexpr (turning) {
                 if (!position) {
@@ -89,12 +88,12 @@ public:
                 wanted = (wanted * free * wanted).eval();
                 least = 1e-12;
             }
-            const Eigen::SelfAdjointEigenSolver<Mat3> directions(wanted);
+            const core::SymmetricEigen<3> directions(wanted);
             const bool overlap = least < 1e-6;
             for (int n = 0; n < 3; ++n) {
                 const int k = overlap ? 2 - n : n;
-                if (directions.eigenvalues()[k] < least) continue;
-                const Vec3 direction = directions.eigenvectors().col(k);
+                if (directions.values()[k] < least) continue;
+                const Vec3 direction = directions.vectors().col(k);
                 Vec3 fresh = free * direction;  // what earlier holds leave of it
                 if (fresh.norm() < 1e-8) continue;
                 fresh = (free * fresh.normalized()).normalized();  // again: cancellation may have left digits only
@@ -119,7 +118,8 @@ public:
             for (int k = 0; k <= looks; ++k) {
                 const double amplitude = a + (b - a) * k / looks;
                 const Mat3 turn = item.hold.rotation ? item.hold.rotation(amplitude) : Mat3(Mat3::Identity());
-                const Vec3 vector = turn * item.rest + (item.hold.path ? item.hold.path(amplitude) : Vec3(amplitude * item.hold.displacement));
+                Vec3 vector = turn * item.rest;
+                vector += shift_of(item, amplitude);
                 if (k > 0) {
                     const double by_turn = core::rotation_vector(Mat3(turn_before.transpose() * turn)).norm();
                     const double by_vector = turning ? 0.0 : std::atan2(vector_before.cross(vector).norm(), vector_before.dot(vector));
@@ -153,6 +153,15 @@ private:
         bool whole = false;  ///< of a rotation: all three axes are held
     };
 
+    static Vec3 shift_of(const Item& item, double amplitude) {
+        return item.hold.path ? item.hold.path(amplitude) : Vec3(amplitude * item.hold.displacement);
+    }
+    /// A held vector turned, a place about its pivot.
+    static Vec3 turned_goal(const Item& item, const Mat3& turn) {
+        if (item.hold.vector != scene::NodeVector::position) return turn * item.rest;
+        const Vec3 arm = item.rest - item.hold.pivot, turned = turn * arm;
+        return item.hold.pivot + turned;
+    }
     static void check_vector(std::span<const Item> items, std::span<const double> amplitudes, bool finite) {
         Mat3 sum = Mat3::Zero();
         Vec3 pull = Vec3::Zero();
@@ -163,10 +172,10 @@ private:
             if (finite) scene::require_at("Hold", amplitude, item.hold.path, item.hold.rotation);
             if (items.size() == 1) continue;
             const Mat3 turn = item.hold.rotation ? item.hold.rotation(amplitude) : Mat3(Mat3::Identity());
-            const Vec3 shift = item.hold.path ? item.hold.path(amplitude) : Vec3(amplitude * item.hold.displacement);
             const bool position = item.hold.vector == scene::NodeVector::position;
             Mat3 axes = item.hold.axes == scene::Axes::section ? Mat3(turn * item.basis) : turn;
-            Vec3 goal = shift + (position ? Vec3(item.hold.pivot + turn * (item.rest - item.hold.pivot)) : Vec3(turn * item.rest));
+            Vec3 goal = turned_goal(item, turn);
+            goal += shift_of(item, amplitude);
             if (turning && !position) axes = item.basis, goal = core::rotation_vector(turn);
             if (!axes.allFinite() || !goal.allFinite()) return;
             asked.emplace_back(axes * item.hold.directions * axes.transpose(), goal);
@@ -175,13 +184,13 @@ private:
         }
         if (items.size() == 1) return;
         // The place that meets all best: they agree if it meets each.
-        const Eigen::SelfAdjointEigenSolver<Mat3> solver(sum);
+        const core::SymmetricEigen<3> solver(sum);
         Vec3 best = Vec3::Zero();
         for (int k = 0; k < 3; ++k)
-            if (solver.eigenvalues()[k] > agreement)
-                best += solver.eigenvectors().col(k) * (solver.eigenvectors().col(k).dot(pull) / solver.eigenvalues()[k]);
+            if (solver.values()[k] > agreement)
+                best += solver.vectors().col(k) * (solver.vectors().col(k).dot(pull) / solver.values()[k]);
         // Directors that may be stretched agree on none at all, wherever they point to.
-        const bool collapsed = !turning && items[0].hold.vector != scene::NodeVector::position && solver.eigenvalues()[0] > agreement &&
+        const bool collapsed = !turning && items[0].hold.vector != scene::NodeVector::position && solver.values()[0] > agreement &&
                                best.norm() < 0.5 * items[0].rest.norm();
         for (std::size_t k = asked.size(); k-- > 0;) {
             const Vec3 missed = collapsed ? Vec3(asked[k].second - asked[0].second) : Vec3(asked[k].first * (asked[k].second - best));

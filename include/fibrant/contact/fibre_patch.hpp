@@ -3,8 +3,8 @@
 /// @file Patches over which two fibres touch: means of their centrelines, and the pair of patches that is closest.
 
 #include <fibrant/beam/mesh.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -114,10 +114,8 @@ PairGeometry pair_geometry(const beam::Mesh<B>& mesh, const Vector& state, Index
 
 /// A symmetric matrix with its eigenvalues raised to at least `least`.
 inline Eigen::Matrix2d raised(const Eigen::Matrix2d& matrix, double least) noexcept {
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> parts;
-    parts.computeDirect(matrix);
-    if (parts.eigenvalues()[0] >= least) return matrix;
-    return parts.eigenvectors() * parts.eigenvalues().cwiseMax(least).asDiagonal() * parts.eigenvectors().transpose();
+    const auto parts = core::SymmetricEigen<2>::closed_form(matrix);
+    return parts.values()[0] >= least ? matrix : parts.raised(least);
 }
 
 /// How a pair of patches may slide on its two fibres while a place is followed.

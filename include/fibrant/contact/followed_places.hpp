@@ -6,6 +6,7 @@
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/contact/sliding_place.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -120,12 +121,11 @@ public:
                 const bool held_i = pair.closeness(0, 0) < held, held_j = pair.closeness(1, 1) < held;
                 middle.slide = held_i && held_j ? fixed : held_i ? on_j : held_j ? on_i : free;
             } else {
-                Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> parts;
-                parts.computeDirect(pair.closeness);
-                const Eigen::Vector2d way = parts.eigenvectors().col(0);
+                const auto parts = core::SymmetricEigen<2>::closed_form(pair.closeness);
+                const Eigen::Vector2d way = parts.vectors().col(0);
                 zone.valley = std::atan2(way[1], way[0]);
                 line(way, across_valley);
-                middle.slide = parts.eigenvalues()[0] < held ? across_valley : free;
+                middle.slide = parts.values()[0] < held ? across_valley : free;
             }
         }
         pairs.push_back(middle);

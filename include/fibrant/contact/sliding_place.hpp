@@ -5,6 +5,7 @@
 #include <fibrant/contact/contact_element.hpp>
 #include <fibrant/contact/fibre_patch.hpp>
 #include <fibrant/contact/normal_direction.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 
 #include <array>
 #include <cmath>
@@ -179,10 +180,7 @@ SlidingStiffness sliding_stiffness(const SlidingPlace<B>& place, const Vec3& nor
     fill(place.i, -1.0, 3), fill(place.j, 1.0, 4);
     sum.stiffness(0, 0) = -slope;
     Eigen::Matrix4d form = -reaction * place.curvature;
-    if (positive) {
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> parts(form);
-        form = parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).asDiagonal() * parts.eigenvectors().transpose();
-    }
+    if (positive) form = core::SymmetricEigen<4>(form).raised(0.0);
     sum.stiffness.block<4, 4>(1, 1) = form;
     if constexpr (rows == 7) sum.stiffness(5, 5) = reaction * place.i.hardening, sum.stiffness(6, 6) = reaction * place.j.hardening;
     return sum;

@@ -40,15 +40,40 @@ inline std::array<double, 3> even_series(double t, int start) noexcept {
 /// Rotation by |psi| about psi.
 inline Mat3 rotation(const Vec3& psi) noexcept {
     const double angle = psi.norm();
-    return angle > 0.0 ? Mat3(Eigen::AngleAxisd(angle, psi / angle)) : Mat3(Mat3::Identity());
+    Mat3 turn = Mat3::Identity();
+    if (!(angle > 0.0)) return turn;
+    const double sine = std::sin(angle), cosine = std::cos(angle);
+    for (Index i = 0; i < 3; ++i) {
+        const Index j = (i + 1) % 3, k = (i + 2) % 3;
+        const double a = psi[i] / angle, b = psi[j] / angle, c = psi[k] / angle;
+        turn(i, i) = (1.0 - cosine) * a * a + cosine;
+        const double both = (1.0 - cosine) * (i < j ? a : b) * (i < j ? b : a);
+        turn(i, j) = both - sine * c, turn(j, i) = both + sine * c;
+    }
+    return turn;
 }
 
 /// Rotation vector of a rotation, of the length pi at most.
 inline Vec3 rotation_vector(const Mat3& turn) noexcept {
-    Eigen::Quaterniond q(turn);
-    if (q.w() < 0.0) q.coeffs() *= -1.0;
-    const double sine = q.vec().norm();
-    return sine > 0.0 ? Vec3(2.0 * std::atan2(sine, q.w()) / sine * q.vec()) : Vec3(Vec3::Zero());
+    // Its quaternion, from the largest of its four components.
+    Vec3 q;
+    double w = turn(0, 0) + (turn(1, 1) + turn(2, 2));
+    if (w > 0.0) {
+        double part = std::sqrt(w + 1.0);
+        w = 0.5 * part, part = 0.5 / part;
+        q = {(turn(2, 1) - turn(1, 2)) * part, (turn(0, 2) - turn(2, 0)) * part, (turn(1, 0) - turn(0, 1)) * part};
+    } else {
+        Index i = turn(1, 1) > turn(0, 0) ? 1 : 0;
+        if (turn(2, 2) > turn(i, i)) i = 2;
+        const Index j = (i + 1) % 3, k = (j + 1) % 3;
+        double part = std::sqrt(turn(i, i) - turn(j, j) - turn(k, k) + 1.0);
+        q[i] = 0.5 * part, part = 0.5 / part;
+        w = (turn(k, j) - turn(j, k)) * part;
+        q[j] = (turn(j, i) + turn(i, j)) * part, q[k] = (turn(k, i) + turn(i, k)) * part;
+    }
+    if (w < 0.0) w = -w, q = Vec3(-q);
+    const double sine = q.norm();
+    return sine > 0.0 ? Vec3(2.0 * std::atan2(sine, w) / sine * q) : Vec3(Vec3::Zero());
 }
 
 /// The rotation vector psi + 2 pi k psi / |psi| of the same rotation that is nearest to another one.
@@ -80,18 +105,25 @@ inline SpinCoefficients spin_coefficients(double p) noexcept {
 /// T with spin = T change of psi, the spin in space: T = a 1 + b [psi] + c psi psi^T. Singular at |psi| = 2 pi.
 inline Mat3 spin_matrix(const Vec3& psi) noexcept {
     const SpinCoefficients k = spin_coefficients(psi.norm());
-    return k.a * Mat3::Identity() + k.b * cross_matrix(psi) + k.c * psi * psi.transpose();
+    Mat3 sum = cross_matrix(psi);
+    for (Index c = 0; c < 3; ++c)
+        for (Index r = 0; r < 3; ++r) sum(r, c) = (r == c ? k.a : 0.0) + k.b * sum(r, c) + k.c * psi[r] * psi[c];
+    return sum;
 }
 
 /// Symmetric part of the derivative of T^T m by psi.
 inline Mat3 spin_slope(const Vec3& psi, const Vec3& m) noexcept {
     const SpinCoefficients k = spin_coefficients(psi.norm());
     const double along = m.dot(psi);
-    Mat3 sum = k.a_1 * psi * m.transpose() + k.b_1 * psi * m.cross(psi).transpose() + 0.5 * k.c_1 * along * psi * psi.transpose() +
-               k.c * m * psi.transpose();
-    sum = 0.5 * (sum + sum.transpose().eval());
-    sum += 0.5 * k.c_1 * along * psi * psi.transpose();
-    sum.diagonal().array() += k.c * along;
+    const Vec3 across = m.cross(psi);
+    const double twice = 0.5 * k.c_1 * along;
+    Mat3 part, sum;
+    for (Index c = 0; c < 3; ++c)
+        for (Index r = 0; r < 3; ++r)
+            part(r, c) = k.a_1 * psi[r] * m[c] + k.b_1 * psi[r] * across[c] + twice * psi[r] * psi[c] + k.c * m[r] * psi[c];
+    for (Index c = 0; c < 3; ++c)
+        for (Index r = 0; r < 3; ++r) sum(r, c) = 0.5 * (part(r, c) + part(c, r)) + twice * psi[r] * psi[c];
+    for (Index c = 0; c < 3; ++c) sum(c, c) += k.c * along;
     return sum;
 }
 

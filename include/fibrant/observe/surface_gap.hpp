@@ -2,11 +2,10 @@
 #pragma once
 /// @file True gap between two pieces of fibres whose sections are ellipses in any strain, searched over abscissae and directions.
 
+#include <fibrant/core/small_matrix.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 #include <fibrant/observe/nodal_curve.hpp>
 #include <fibrant/observe/snapshot.hpp>
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
@@ -135,22 +134,22 @@ private:
     SurfaceGap greatest_across(double t, double u, const Vec3& m) const {
         const Vec3 e = m.unitOrthogonal(), f = m.cross(e), d = between(t, u);
         struct Flat {
-            Eigen::Vector2d p, q;
+            core::Two p, q;
         };
         const auto flat = [&](const FibreSurface& fibre, double s) {
             const Vec3 p = fibre.axis(0, s), q = fibre.axis(1, s);
             return Flat{{p.dot(e), p.dot(f)}, {q.dot(e), q.dot(f)}};
         };
         const std::array<Flat, 2> sections{flat(i_, t), flat(j_, u)};
-        const Eigen::Vector2d apart{d.dot(e), d.dot(f)};
+        const core::Two apart{d.dot(e), d.dot(f)};
         const auto slope = [&](double angle, double& gap) {
-            const Eigen::Vector2d n{std::cos(angle), std::sin(angle)}, across{-n[1], n[0]};
-            gap = apart.dot(n);
-            double sum = apart.dot(across);
+            const core::Two n{std::cos(angle), std::sin(angle)}, across{-n[1], n[0]};
+            gap = core::dot(apart, n);
+            double sum = core::dot(apart, across);
             for (const Flat& s : sections) {
-                const double p = s.p.dot(n), q = s.q.dot(n), h = std::hypot(p, q);
+                const double p = core::dot(s.p, n), q = core::dot(s.q, n), h = std::hypot(p, q);
                 gap -= h;
-                if (h > 0.0) sum -= (p * s.p.dot(across) + q * s.q.dot(across)) / h;
+                if (h > 0.0) sum -= (p * core::dot(s.p, across) + q * core::dot(s.q, across)) / h;
             }
             return sum;
         };
@@ -159,7 +158,7 @@ private:
         std::array<double, around + 8> angles{};
         for (int k = 0; k < around; ++k) angles[core::at(k)] = 2.0 * std::numbers::pi * k / around;
         for (std::size_t s = 0; s < 2; ++s) {
-            const Eigen::Vector2d &p = sections[s].p, &q = sections[s].q;
+            const core::Two &p = sections[s].p, &q = sections[s].q;
             const double wide = 0.5 * std::atan2(2.0 * (p[0] * p[1] + q[0] * q[1]), p[0] * p[0] + q[0] * q[0] - p[1] * p[1] - q[1] * q[1]);
             for (std::size_t k = 0; k < 4; ++k) {
                 const double angle = wide + 0.5 * std::numbers::pi * static_cast<double>(k);
@@ -215,46 +214,73 @@ private:
     /// F with its slopes and second derivatives by both abscissae and by n in a frame across it.
     struct Level {
         double value = 0.0;
-        Eigen::Vector2d by_s, by_n;
-        Eigen::Matrix2d ss, nn, sn;  // sn: rows abscissae
+        core::Two by_s{}, by_n{};
+        core::TwoByTwo ss{}, nn{}, sn{};  // sn: rows abscissae
     };
-    Level level(const std::array<double, 2>& s, const Vec3& n, const Eigen::Matrix<double, 2, 3>& frame) const noexcept {
+    using Frame = std::array<Vec3, 2>;
+    static core::Two rows(const Frame& rows, const Vec3& v) noexcept {
+        const auto row = [&](const Vec3& r) { return r[0] * v[0] + r[1] * v[1] + r[2] * v[2]; };
+        return {row(rows[0]), row(rows[1])};
+    }
+    /// Product of two vectors, summed up from the last component.
+    static double from_behind(const Vec3& a, const Vec3& b) noexcept { return a[0] * b[0] + (a[1] * b[1] + a[2] * b[2]); }
+    static Vec3 columns(const Frame& rows, const core::Two& by) noexcept {
+        const auto entry = [&](Index k) { return rows[0][k] * by[0] + rows[1][k] * by[1]; };
+        return {entry(0), entry(1), entry(2)};
+    }
+    Level level(const std::array<double, 2>& s, const Vec3& n, const Frame& frame) const noexcept {
         const std::array<const FibreSurface*, 2> fibre{&i_, &j_};
         Level made;
-        made.ss.setZero();
         Vec3 by_n = between(s[0], s[1]);
-        Mat3 by_nn = Mat3::Zero();
+        std::array<std::array<double, 3>, 3> by_nn{};
         for (std::size_t k = 0; k < 2; ++k) {
             const double sign = k == 0 ? -1.0 : 1.0;
             const Vec3 x = fibre[k]->curve().tangent(s[k]), xx = fibre[k]->curve().second(s[k]);
-            Eigen::Matrix<double, 2, 3> w, w_s, w_ss;
-            for (int axis = 0; axis < 2; ++axis) {
-                w.row(axis) = fibre[k]->axis(axis, s[k]).transpose();
-                w_s.row(axis) = fibre[k]->axis(axis, s[k], 1).transpose();
-                w_ss.row(axis) = fibre[k]->axis(axis, s[k], 2).transpose();
+            const Frame w{fibre[k]->axis(0, s[k]), fibre[k]->axis(1, s[k])};
+            const Frame w_s{fibre[k]->axis(0, s[k], 1), fibre[k]->axis(1, s[k], 1)};
+            const Frame w_ss{fibre[k]->axis(0, s[k], 2), fibre[k]->axis(1, s[k], 2)};
+            const core::Two p = rows(w, n), p_s = rows(w_s, n), p_ss = rows(w_ss, n);
+            // A section that is seen along the fibre has an edge there.
+            const double h = std::max(core::norm(p), 1e-9 * std::sqrt(from_behind(w[0], w[0]) + from_behind(w[1], w[1])));
+            const core::Two unit{p[0] / h, p[1] / h};
+            const core::TwoByTwo across{core::Two{1.0 - unit[0] * unit[0], 0.0 - unit[0] * unit[1]},
+                                        core::Two{0.0 - unit[1] * unit[0], 1.0 - unit[1] * unit[1]}};
+            const core::Two turned = core::times(across, p_s);
+            const Vec3 along = columns(w, unit), along_s = columns(w_s, unit), side = columns(w, turned);
+            Vec3 mixed;
+            for (Index r = 0; r < 3; ++r) {
+                by_n[r] -= along[r];
+                const core::Two row{w[0][r] * across[0][0] + w[1][r] * across[1][0],
+                                    w[0][r] * across[0][1] + w[1][r] * across[1][1]};
+                for (Index c = 0; c < 3; ++c) by_nn[core::at(r)][core::at(c)] -= (row[0] * w[0][c] + row[1] * w[1][c]) / h;
+                mixed[r] = sign * x[r] - along_s[r] - side[r] / h;
             }
-            const Eigen::Vector2d p = w * n, p_s = w_s * n, p_ss = w_ss * n;
-            const double h = std::max(p.norm(), 1e-9 * w.norm());  // a section that is seen along the fibre has an edge there
-            const Eigen::Vector2d unit = p / h;
-            const Eigen::Matrix2d across = Eigen::Matrix2d::Identity() - unit * unit.transpose();
-            by_n -= w.transpose() * unit;
-            by_nn -= w.transpose() * across * w / h;
-            const auto c = static_cast<Index>(k);
-            made.by_s[c] = sign * x.dot(n) - unit.dot(p_s);
-            made.ss(c, c) = sign * xx.dot(n) - unit.dot(p_ss) - (across * p_s).squaredNorm() / h;
-            const Vec3 mixed = sign * x - w_s.transpose() * unit - w.transpose() * (across * p_s) / h;
-            made.sn.row(c) = (frame * mixed).transpose();
+            made.by_s[k] = sign * x.dot(n) - core::dot(unit, p_s);
+            made.ss[k][k] = sign * xx.dot(n) - core::dot(unit, p_ss) - core::dot(turned, turned) / h;
+            made.sn[k] = rows(frame, mixed);
         }
         made.value = n.dot(by_n);
-        made.by_n = frame * by_n;
-        made.nn = frame * by_nn * frame.transpose() - made.value * Eigen::Matrix2d::Identity();
+        made.by_n = rows(frame, by_n);
+        for (std::size_t r = 0; r < 2; ++r) {
+            Vec3 row;
+            for (Index c = 0; c < 3; ++c) {
+                const auto part = [&](std::size_t k) { return frame[r][static_cast<Index>(k)] * by_nn[k][core::at(c)]; };
+                row[c] = part(0) + part(1) + part(2);
+            }
+            made.nn[r] = {from_behind(row, frame[0]), from_behind(row, frame[1])};
+            made.nn[r][r] -= made.value;
+        }
         return made;
     }
-    static Eigen::Matrix<double, 2, 3> across(const Vec3& n) noexcept {
+    static Frame across(const Vec3& n) noexcept {
         const Vec3 e = n.unitOrthogonal();
-        Eigen::Matrix<double, 2, 3> frame;
-        frame << e.transpose(), n.cross(e).transpose();
-        return frame;
+        return {e, n.cross(e)};
+    }
+
+    /// A step no longer than asked.
+    static core::Two scaled(const core::Two& step, double most) noexcept {
+        const double part = std::min(1.0, most / std::max(1e-300, core::norm(step)));
+        return {step[0] * part, step[1] * part};
     }
 
     /// Greatest F of two sections uphill of n, among all directions of space; the flat end of a fibre may face the other one.
@@ -262,23 +288,27 @@ private:
     bool climb(const std::array<double, 2>& s, Vec3& n) const noexcept {
         double here = value(s[0], s[1], n);
         for (int iteration = 0; iteration < 100; ++iteration) {
-            const Eigen::Matrix<double, 2, 3> frame = across(n);
+            const Frame frame = across(n);
             const Level at = level(s, n, frame);
-            const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> turning(at.nn);  // uphill, whichever way F is curved
-            const Eigen::Vector2d curved = turning.eigenvalues().cwiseAbs().cwiseMax(1e-9 * at.nn.norm() + 1e-300);
-            Eigen::Vector2d step = turning.eigenvectors() * (turning.eigenvectors().transpose() * at.by_n).cwiseQuotient(curved);
-            step *= std::min(1.0, 0.3 / std::max(1e-300, step.norm()));
+            core::Four vectors{at.nn[0][0], at.nn[1][0], 0.0, at.nn[1][1]};
+            core::Two curved{};
+            core::symmetric_eigen(2, vectors.data(), curved.data());  // uphill, whichever way F is curved
+            const core::TwoByTwo turning{core::Two{vectors[0], vectors[1]}, core::Two{vectors[2], vectors[3]}};
+            const double least = 1e-9 * core::norm(at.nn) + 1e-300;
+            core::Two step = core::times(turning, at.by_n);
+            for (std::size_t k = 0; k < 2; ++k) step[k] /= std::max(std::abs(curved[k]), least);
+            step = scaled(core::times(core::transposed(turning), step), 0.3);
             double next = here;
             Vec3 turned = n;
             int halvings = 0;
-            for (; halvings < 30; ++halvings, step *= 0.5) {
-                turned = (n + frame.transpose() * step).normalized();
+            for (; halvings < 30; ++halvings, step[0] *= 0.5, step[1] *= 0.5) {
+                turned = Vec3(n + columns(frame, step)).normalized();
                 next = value(s[0], s[1], turned);
                 if (next >= here) break;
             }
             if (halvings == 30) break;
             n = turned, here = next;
-            if (step.norm() < 1e-11) break;
+            if (core::norm(step) < 1e-11) break;
         }
         bool faces = false;
         const std::array<const FibreSurface*, 2> fibre{&i_, &j_};
@@ -304,23 +334,29 @@ private:
         double here = value(s[0], s[1], n);
         for (int iteration = 0; iteration < 60; ++iteration) {
             const Level at = level(s, n, across(n));
-            Eigen::Matrix2d second = at.ss;
-            if (!faces) second -= at.sn * at.nn.inverse() * at.sn.transpose();
-            Eigen::Vector2d slope = at.by_s;
-            for (Index c = 0; c < 2; ++c)
-                if ((s[core::at(c)] <= from_[core::at(c)] && slope[c] > 0.0) || (s[core::at(c)] >= last[core::at(c)] && slope[c] < 0.0)) {
-                    second.row(c).setZero(), second.col(c).setZero();
-                    second(c, c) = 1.0, slope[c] = 0.0;
+            core::TwoByTwo second = at.ss;
+            if (!faces) {
+                const core::TwoByTwo half = core::times_transposed(at.sn, core::transposed(core::inverse(at.nn)));
+                const core::TwoByTwo taken = core::times_transposed(half, at.sn);
+                for (std::size_t r = 0; r < 2; ++r) second[r][0] -= taken[r][0], second[r][1] -= taken[r][1];
+            }
+            core::Two slope = at.by_s;
+            for (std::size_t c = 0; c < 2; ++c)
+                if ((s[c] <= from_[c] && slope[c] > 0.0) || (s[c] >= last[c] && slope[c] < 0.0)) {
+                    second[c][0] = second[c][1] = second[0][c] = second[1][c] = 0.0;
+                    second[c][c] = 1.0, slope[c] = 0.0;
                 }
-            const double size = second.norm();
+            const double size = core::norm(second);
             if (!(size > 0.0)) break;
-            second += 1e-9 * size * Eigen::Matrix2d::Identity();  // fibres side by side are as close all along
-            const bool valley = second.determinant() > 0.0 && second.trace() > 0.0;
-            Eigen::Vector2d step = valley ? Eigen::Vector2d(-second.inverse() * slope) : Eigen::Vector2d(-slope / size);
-            if (!step.allFinite()) break;
-            step *= std::min(1.0, 0.25 / std::max(1e-300, step.cwiseAbs().maxCoeff()));
+            second[0][0] += 1e-9 * size, second[1][1] += 1e-9 * size;  // fibres side by side are as close all along
+            const bool valley = core::determinant(second) > 0.0 && second[0][0] + second[1][1] > 0.0;
+            core::Two step{-slope[0] / size, -slope[1] / size};
+            if (valley) step = core::times(core::inverse(second), {-slope[0], -slope[1]});
+            if (!std::isfinite(step[0]) || !std::isfinite(step[1])) break;
+            const double part = std::min(1.0, 0.25 / std::max(1e-300, std::max(std::abs(step[0]), std::abs(step[1]))));
+            step[0] *= part, step[1] *= part;
             bool lower = false;
-            for (int halvings = 0; halvings < 20 && !lower; ++halvings, step *= 0.5) {
+            for (int halvings = 0; halvings < 20 && !lower; ++halvings, step[0] *= 0.5, step[1] *= 0.5) {
                 const std::array<double, 2> next{std::clamp(s[0] + step[0], from_[0], last[0]), std::clamp(s[1] + step[1], from_[1], last[1])};
                 Vec3 turned = n;
                 const bool facing_end = climb(next, turned);
@@ -328,7 +364,7 @@ private:
                 if (!(gap < here)) continue;
                 s = next, n = turned, here = gap, faces = facing_end, lower = true;
             }
-            if (!lower || step.norm() < 1e-8) break;  // the gap is level: its error is of second order
+            if (!lower || core::norm(step) < 1e-8) break;  // the gap is level: its error is of second order
         }
         if (here < 0.0) return false;
         place = {here, s[0], s[1], n};
@@ -342,20 +378,20 @@ private:
         Vec3 n = place.normal;
         const double nearby = 0.9;  // cosine
         for (int iteration = 0; iteration < 20; ++iteration) {
-            const Eigen::Matrix<double, 2, 3> frame = across(n);
+            const Frame frame = across(n);
             const Level at = level(s, n, frame);
-            Eigen::Matrix4d second;
-            second << at.ss, at.sn, at.sn.transpose(), at.nn;
-            Eigen::Vector4d slope;
-            slope << at.by_s, at.by_n;
-            const Eigen::Vector4d step = -second.fullPivLu().solve(slope);
-            if (!step.allFinite()) return false;
-            s[0] += step[0], s[1] += step[1];
-            n = (n + frame.transpose() * step.tail<2>()).normalized();
+            const core::FourByFour second{core::Four{at.ss[0][0], at.ss[0][1], at.sn[0][0], at.sn[0][1]},
+                                          core::Four{at.ss[1][0], at.ss[1][1], at.sn[1][0], at.sn[1][1]},
+                                          core::Four{at.sn[0][0], at.sn[1][0], at.nn[0][0], at.nn[0][1]},
+                                          core::Four{at.sn[0][1], at.sn[1][1], at.nn[1][0], at.nn[1][1]}};
+            const core::Four back = core::solve(second, {at.by_s[0], at.by_s[1], at.by_n[0], at.by_n[1]});
+            if (!std::all_of(back.begin(), back.end(), [](double value) { return std::isfinite(value); })) return false;
+            s[0] -= back[0], s[1] -= back[1];
+            n = Vec3(n + columns(frame, {-back[2], -back[3]})).normalized();
             for (std::size_t k = 0; k < 2; ++k)
                 if (!(s[k] >= from_[k] && s[k] <= from_[k] + interval)) return false;
             if (!(n.dot(place.normal) > nearby)) return false;
-            if (step.norm() > 1e-10) continue;
+            if (core::norm(core::TwoByTwo{core::Two{back[0], back[2]}, core::Two{back[1], back[3]}}) > 1e-10) continue;
             place = {value(s[0], s[1], n), s[0], s[1], n};
             return true;
         }

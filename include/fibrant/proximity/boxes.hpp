@@ -3,9 +3,10 @@
 /// @file Single-precision boxes of segments in a frame that suits them.
 
 #include <fibrant/core/parallel.hpp>
+#include <fibrant/core/small_matrix.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 #include <fibrant/proximity/exact_filter.hpp>
 
-#include <Eigen/Eigenvalues>
 
 namespace fibrant::proximity::detail {
 
@@ -43,12 +44,14 @@ struct BoxFrame {
                 const Vec3 start{record.start.x, record.start.y, record.start.z};
                 const Vec3 chord{record.chord.x, record.chord.y, record.chord.z};
                 const double length = chord.norm();
-                if (length > 0.0) sum.directions += chord * (chord / length).transpose();
+                if (length > 0.0) core::add_outer(chord, chord / length, sum.directions);
                 sum.length += length;
                 sum.longest = std::max(sum.longest, length);
                 sum.half += record.half;
-                sum.low = sum.low.cwiseMin(start).cwiseMin(start + chord);
-                sum.high = sum.high.cwiseMax(start).cwiseMax(start + chord);
+                for (Index axis = 0; axis < 3; ++axis) {
+                    sum.low[axis] = std::min({sum.low[axis], start[axis], start[axis] + chord[axis]});
+                    sum.high[axis] = std::max({sum.high[axis], start[axis], start[axis] + chord[axis]});
+                }
             }
             part[core::at(b)] = sum;
         });
@@ -61,8 +64,8 @@ struct BoxFrame {
             longest = std::max(longest, sum.longest);
             all.half += sum.half;
         }
-        const Eigen::SelfAdjointEigenSolver<Mat3> principal(all.directions);
-        if (principal.eigenvalues()[2] > 0.7 * principal.eigenvalues().sum()) axes = principal.eigenvectors().transpose();
+        const core::SymmetricEigen<3> principal(all.directions);
+        if (principal.values()[2] > 0.7 * principal.values().sum()) axes = principal.vectors().transpose();
         mean_length = all.length / static_cast<double>(n);
         mean_thickness = 2.0 * all.half / static_cast<double>(n) + table.reach();
         selfish = table.selfish();
@@ -74,7 +77,7 @@ struct BoxFrame {
     Box box(const SegmentRecord& record, double from, double to, double margin) const noexcept {
         const Vec3 start{record.start.x - middle[0], record.start.y - middle[1], record.start.z - middle[2]};
         const Vec3 chord{record.chord.x, record.chord.y, record.chord.z};
-        const Vec3 a = axes * (start + from * chord), b = axes * (start + to * chord);
+        const Vec3 first = start + from * chord, last = start + to * chord, a = axes * first, b = axes * last;
         const double wide = margin * (1.0 + 1.0e-6) + slack;
         Box made;
         made.group = selfish ? record.segment : record.group;

@@ -2,6 +2,7 @@
 #pragma once
 /// @file What held vectors and ties leave of a vector of unknowns: products with a few sparse rows, never a part of a matrix.
 
+#include <fibrant/core/small_matrix.hpp>
 #include <fibrant/scene/dof_layout.hpp>
 
 #include <Eigen/Core>
@@ -39,8 +40,7 @@ inline void remove_motions(const DofLayout& layout, Vector& scalars) {
         const Index n = core::count(motion.scalars);
         Vector own(n);
         for (Index k = 0; k < n; ++k) own[k] = scalars[motion.scalars[core::at(k)]];
-        const Vector along = motion.modes.transpose() * own;
-        own -= motion.modes * along;
+        own -= core::times(motion.modes, core::transposed_times(motion.modes, own));
         for (Index k = 0; k < n; ++k) scalars[motion.scalars[core::at(k)]] = own[k];
     }
 }
@@ -96,8 +96,7 @@ inline void add_motion_stiffness(const DofLayout& layout, const Vector& x, Vecto
         const Index n = core::count(motion.scalars);
         Vector own(n);
         for (Index k = 0; k < n; ++k) own[k] = scalars[motion.scalars[core::at(k)]];
-        const Vector along = motion.modes.transpose() * own;
-        own.noalias() = motion.modes * (motion.stiffness * along);
+        own = core::times(motion.modes, core::times(motion.stiffness, core::transposed_times(motion.modes, own)));
         for (Index k = 0; k < n; ++k) force[motion.scalars[core::at(k)]] += own[k];
     }
     add_tied(layout, force, y);

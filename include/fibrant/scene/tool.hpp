@@ -44,14 +44,22 @@ struct Tool {
 struct ToolPose {
     Mat3 turn = Mat3::Identity();
     Vec3 shift = Vec3::Zero();
-    Vec3 place(const Vec3& material) const { return turn * material + shift; }
-    Vec3 material(const Vec3& place) const { return turn.transpose() * (place - shift); }
+    Vec3 place(const Vec3& material) const {
+        const Vec3 turned = turn * material;
+        return turned + shift;
+    }
+    Vec3 material(const Vec3& place) const {
+        const Vec3 arm = place - shift;
+        return turn.transpose() * arm;
+    }
 };
 
 inline ToolPose tool_pose(const Tool& tool, double amplitude) {
     ToolPose pose;
     if (tool.rotation) pose.turn = tool.rotation(amplitude);
-    pose.shift = tool.origin - pose.turn * tool.origin + (tool.path ? tool.path(amplitude) : Vec3(amplitude * tool.displacement));
+    const Vec3 turned = pose.turn * tool.origin, moved = tool.path ? tool.path(amplitude) : Vec3(amplitude * tool.displacement);
+    pose.shift = tool.origin - turned;
+    pose.shift += moved;
     return pose;
 }
 

@@ -3,8 +3,8 @@
 /// @file The mean motion of each group of fibres in an increment, which damping that is carried along leaves alone.
 
 #include <fibrant/beam/mesh.hpp>
-
-#include <Eigen/Eigenvalues>
+#include <fibrant/core/small_matrix.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -42,29 +42,33 @@ public:
         fields_.assign(fields_.size(), Field{});
         const auto arm = [&](std::size_t g, Index v) { return Vec3(before.segment<3>(3 * v) - fields_[g].middle); };
         const auto moved = [&](std::size_t g, Index v) {
-            return Vec3(after.segment<3>(3 * v) - before.segment<3>(3 * v) + kept * known[g].at(before.segment<3>(3 * v)));
+            const Vec3 shift = known[g].at(before.segment<3>(3 * v));
+            Vec3 sum;
+            for (Index c = 0; c < 3; ++c) sum[c] = after[3 * v + c] - before[3 * v + c] + kept * shift[c];
+            return sum;
         };
         each_centre(mesh, [&](std::size_t g, Index v) { fields_[g].middle += before.segment<3>(3 * v), count[g] += 1.0; });
         for (std::size_t g = 0; g < fields_.size(); ++g) fields_[g].middle /= std::max(1.0, count[g]);
         each_centre(mesh, [&](std::size_t g, Index v) {
             fields_[g].shift += moved(g, v);
-            spread[g] += arm(g, v) * arm(g, v).transpose(), lean[g] += moved(g, v) * arm(g, v).transpose();
+            core::add_outer(arm(g, v), arm(g, v), spread[g]), core::add_outer(moved(g, v), arm(g, v), lean[g]);
         });
         for (std::size_t g = 0; g < fields_.size(); ++g) {
             if (!(count[g] > 0.0)) continue;
             fields_[g].shift /= count[g];
             // A straight fibre has no extent across itself, and says nothing of a gradient there.
-            const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread[g]);
+            const core::SymmetricEigen<3> axes(spread[g]);
             for (int k = 0; k < 3; ++k)
-                if (axes.eigenvalues()[k] > 1e-8 * axes.eigenvalues()[2])
-                    bend[g].inverse += axes.eigenvectors().col(k) * axes.eigenvectors().col(k).transpose() / axes.eigenvalues()[k];
+                for (Index c = 0; c < 3 && axes.values()[k] > 1e-8 * axes.values()[2]; ++c)
+                    for (Index r = 0; r < 3; ++r)
+                        bend[g].inverse(r, c) += axes.vectors()(r, k) * axes.vectors()(c, k) / axes.values()[k];
             fields_[g].gradient = lean[g] * bend[g].inverse;
-            if (axes.eigenvalues()[2] > 4.0 * axes.eigenvalues()[1]) fields_[g].axis = axes.eigenvectors().col(2) / std::sqrt(axes.eigenvalues()[2] / count[g]);
+            if (axes.values()[2] > 4.0 * axes.values()[1]) fields_[g].axis = axes.vectors().col(2) / std::sqrt(axes.values()[2] / count[g]);
         }
         // What an affine field leaves of the square of the place along the axis, and what the motion has of that.
         each_centre(mesh, [&](std::size_t g, Index v) {
-            const double square = std::pow(fields_[g].axis.dot(arm(g, v)), 2);
-            bend[g].mean += square / count[g], bend[g].lean += square * arm(g, v);
+            const double out = std::pow(fields_[g].axis.dot(arm(g, v)), 2);
+            bend[g].mean += out / count[g], bend[g].lean += out * arm(g, v);
         });
         for (std::size_t g = 0; g < fields_.size(); ++g) fields_[g].level = bend[g].mean, fields_[g].slope = bend[g].inverse * bend[g].lean;
         each_centre(mesh, [&](std::size_t g, Index v) {
@@ -109,7 +113,8 @@ private:
         double bow(const Vec3& arm) const noexcept { return std::pow(axis.dot(arm), 2) - level - slope.dot(arm); }
         Vec3 at(const Vec3& place) const noexcept {
             const Vec3 arm = place - middle;
-            return shift + gradient * arm + bow(arm) * bend;
+            const Vec3 turned = gradient * arm;
+            return shift + turned + bow(arm) * bend;
         }
     };
     struct Bend {

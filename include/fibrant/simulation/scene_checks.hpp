@@ -4,9 +4,9 @@
 
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/contact/overlaps.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 #include <fibrant/simulation/position.hpp>
 
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <optional>
@@ -62,11 +62,11 @@ std::optional<Vec3> loose_direction(const scene::Assembly& assembly, const beam:
         for (Index body = average.body; body >= 0; body = assembly.bodies()[core::at(body)].parent)
             for (const scene::Coordinate& coordinate : assembly.bodies()[core::at(body)].translation)
                 if (!coordinate.free) return {};  // which directions that leaves is a matter of the tree of bodies
-    const Eigen::SelfAdjointEigenSolver<Mat3> solver(held);
+    const core::SymmetricEigen<3> solver(held);
     constexpr double nothing = 1e-9;  // of a projector
-    if (solver.eigenvalues()[0] > nothing) return {};
-    if (solver.eigenvalues()[2] <= nothing) return Vec3(Vec3::Zero());
-    return Vec3(solver.eigenvectors().col(0));
+    if (solver.values()[0] > nothing) return {};
+    if (solver.values()[2] <= nothing) return Vec3(Vec3::Zero());
+    return Vec3(solver.vectors().col(0));
 }
 
 /// What is said of a stage without damping of a scene that can move as a whole; empty if there is none. A scene may be good but for what

@@ -2,11 +2,11 @@
 #pragma once
 /// @file The 8-node hexahedron: energy, forces, tangent, with or without enhanced strains.
 
+#include <fibrant/core/symmetric_eigen.hpp>
 #include <fibrant/solid/hexahedron_map.hpp>
 #include <fibrant/solid/solid_law.hpp>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include <array>
 #include <cmath>
@@ -201,8 +201,8 @@ private:
             if constexpr (modes > 0) coupling.noalias() += work.mode[core::at(p)].transpose() * cb;
             Mat3 geometric = s;
             if (tension_only) {
-                const Eigen::SelfAdjointEigenSolver<Mat3> principal(s);
-                geometric = principal.eigenvectors() * principal.eigenvalues().cwiseMax(0.0).asDiagonal() * principal.eigenvectors().transpose();
+                const core::SymmetricEigen<3> principal(s);
+                geometric = principal.vectors() * principal.values().cwiseMax(0.0).asDiagonal() * principal.vectors().transpose();
             }
             const Eigen::Matrix<double, 8, 8> scalar = volume * g * geometric * g.transpose();
             for (int a = 0; a < 8; ++a)

@@ -3,8 +3,8 @@
 /// @file Chains that move together, for coarse spaces: groups cut across their section, and neighbours without a group.
 
 #include <fibrant/assembly/visited_system.hpp>
+#include <fibrant/core/symmetric_eigen.hpp>
 
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -52,8 +52,8 @@ void bisect(const std::vector<ChainLine>& lines, const Vec3& direction, std::vec
         const Vec3 arm = across(*it) - mean;
         spread += arm * arm.transpose();
     }
-    Eigen::SelfAdjointEigenSolver<Mat3> eigen(spread);
-    Vec3 axis = eigen.eigenvectors().col(2);
+    const core::SymmetricEigen<3> eigen(spread);
+    Vec3 axis = eigen.vectors().col(2);
     if (axis.dot(across(*std::min_element(first, last)) - mean) < 0.0) axis = -axis;  // so that frames do not matter
     const Index half = parts / 2;
     const auto middle = first + (last - first) * half / parts;

@@ -8,6 +8,8 @@
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace fibrant::solver {
@@ -52,9 +54,13 @@ public:
             return work.status;
         }
         // Measured by what vectors have where they are held: the stiffness of directions has other units than that of positions.
-        work.scale = (work.factor.permutationP() * work.scale).eval();
-        const double least = work.pivots.size() > 0 ? work.pivots.cwiseQuotient(work.scale).minCoeff() : 1.0;
-        work.curvature = least > 0.0 ? 1.0 : least / work.pivots.cwiseQuotient(work.scale).cwiseAbs().maxCoeff();
+        work.scale = ordered(work.scale);
+        double least = work.pivots.size() > 0 ? std::numeric_limits<double>::infinity() : 1.0, most = 0.0;
+        for (Index k = 0; k < work.pivots.size(); ++k) {
+            const double pivot = work.pivots[k] / work.scale[k];
+            least = std::min(least, pivot), most = std::max(most, std::abs(pivot));
+        }
+        work.curvature = least > 0.0 ? 1.0 : least / most;
         if (least > 0.0) work.status = SolveStatus::converged;
         return work.status;
     }
@@ -128,17 +134,33 @@ private:
     void descend(const Vector& b, Vector& x) const {
         const Work& work = *work_;
         if (work.pivots.size() == 0) {
-            const Vector diagonal = work.a.diagonal().cwiseAbs();
-            const double floor = 1e-12 * diagonal.cwiseQuotient(work.scale).maxCoeff();
-            x = floor > 0.0 ? Vector(b.cwiseQuotient(diagonal.cwiseMax(floor * work.scale))) : Vector(b.cwiseQuotient(work.scale));
+            const Vector diagonal = work.a.diagonal();
+            const double floor = 1e-12 * most_over(diagonal, work.scale);
+            x = b;
+            for (Index k = 0; k < x.size(); ++k)
+                x[k] /= floor > 0.0 ? std::max(std::abs(diagonal[k]), floor * work.scale[k]) : work.scale[k];
             return;
         }
-        const Vector magnitude = work.pivots.cwiseAbs();
-        x = work.factor.permutationP() * b;
+        x = ordered(b);
         work.factor.matrixL().solveInPlace(x);
-        x = x.cwiseQuotient(magnitude.cwiseMax(1e-14 * magnitude.cwiseQuotient(work.scale).maxCoeff() * work.scale)).eval();
+        const double least = 1e-14 * most_over(work.pivots, work.scale);
+        for (Index k = 0; k < x.size(); ++k) x[k] /= std::max(std::abs(work.pivots[k]), least * work.scale[k]);
         work.factor.matrixU().solveInPlace(x);
-        x = (work.factor.permutationPinv() * x).eval();
+        const auto& order = work.factor.permutationP().indices();
+        const Vector found = x;
+        for (Index k = 0; k < x.size(); ++k) x[k] = found[order[k]];
+    }
+    /// A vector in the order of the factor.
+    Vector ordered(const Vector& plain) const {
+        const auto& order = work_->factor.permutationP().indices();
+        Vector values(plain.size());
+        for (Index k = 0; k < plain.size(); ++k) values[order[k]] = plain[k];
+        return values;
+    }
+    static double most_over(const Vector& values, const Vector& scale) noexcept {
+        double most = 0.0;
+        for (Index k = 0; k < values.size(); ++k) most = std::max(most, std::abs(values[k]) / scale[k]);
+        return most;
     }
 
     Parameters parameters_;
