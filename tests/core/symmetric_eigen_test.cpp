@@ -47,18 +47,4 @@ TEST_CASE("eigenvalues are those of a general solver, least first, and eigenvect
     check_kinds<8>();
 }
 
-TEST_CASE("the closed form for two rows is the iteration's") {
-    std::mt19937 random(8);
-    std::normal_distribution<double> normal;
-    for (int k = 0; k < 200; ++k) {
-        Eigen::Matrix2d m;
-        m << normal(random), 0.0, normal(random), normal(random);
-        m(0, 1) = m(1, 0);
-        const auto closed = core::SymmetricEigen<2>::closed_form(m);
-        CHECK((closed.values() - core::SymmetricEigen<2>(m).values()).norm() <= 1e-14 * m.norm());
-        CHECK((m * closed.vectors() - closed.vectors() * closed.values().asDiagonal()).norm() <= 1e-12 * m.norm());
-    }
-    CHECK(core::SymmetricEigen<2>::closed_form(Eigen::Matrix2d::Identity()).vectors() == Eigen::Matrix2d::Identity());
-}
-
 }  // namespace symmetric_eigen_test

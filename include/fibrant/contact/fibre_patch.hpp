@@ -114,7 +114,7 @@ PairGeometry pair_geometry(const beam::Mesh<B>& mesh, const Vector& state, Index
 
 /// A symmetric matrix with its eigenvalues raised to at least `least`.
 inline Eigen::Matrix2d raised(const Eigen::Matrix2d& matrix, double least) noexcept {
-    const auto parts = core::SymmetricEigen<2>::closed_form(matrix);
+    const core::SymmetricEigen<2> parts(matrix);
     return parts.values()[0] >= least ? matrix : parts.raised(least);
 }
 

@@ -121,7 +121,7 @@ public:
                 const bool held_i = pair.closeness(0, 0) < held, held_j = pair.closeness(1, 1) < held;
                 middle.slide = held_i && held_j ? fixed : held_i ? on_j : held_j ? on_i : free;
             } else {
-                const auto parts = core::SymmetricEigen<2>::closed_form(pair.closeness);
+                const core::SymmetricEigen<2> parts(pair.closeness);
                 const Eigen::Vector2d way = parts.vectors().col(0);
                 zone.valley = std::atan2(way[1], way[0]);
                 line(way, across_valley);

@@ -290,9 +290,9 @@ private:
         for (int iteration = 0; iteration < 100; ++iteration) {
             const Frame frame = across(n);
             const Level at = level(s, n, frame);
-            core::Four vectors{at.nn[0][0], at.nn[1][0], 0.0, at.nn[1][1]};
+            core::Four second{at.nn[0][0], at.nn[1][0], 0.0, at.nn[1][1]}, vectors{};
             core::Two curved{};
-            core::symmetric_eigen(2, vectors.data(), curved.data());  // uphill, whichever way F is curved
+            core::symmetric_eigen(2, second.data(), vectors.data(), curved.data());  // uphill, whichever way F is curved
             const core::TwoByTwo turning{core::Two{vectors[0], vectors[1]}, core::Two{vectors[2], vectors[3]}};
             const double least = 1e-9 * core::norm(at.nn) + 1e-300;
             core::Two step = core::times(turning, at.by_n);
