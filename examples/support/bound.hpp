@@ -12,6 +12,11 @@
 
 namespace example {
 
+/// A number as it stands in a message: 100000 and not 1e+05.
+inline std::string plain_text(double value) {
+    return std::isfinite(value) && std::abs(value) < 1e15 && value == std::floor(value) ? fibrant::observe::rounded(value, 0) : fibrant::observe::shortest(value);
+}
+
 /// An interval, open or closed at either end.
 struct Bound {
     double low = 0.0, high = 0.0;
@@ -26,9 +31,8 @@ struct Bound {
         return std::isfinite(value) && (above ? value > low : value >= low) && (below ? value < high : value <= high);
     }
     std::string text() const {
-        using fibrant::observe::shortest;
         if (!said.empty()) return said;
-        return (above ? "> " : ">= ") + shortest(low) + " and " + (below ? "< " : "<= ") + shortest(high) + (endless ? ", or inf" : "");
+        return (above ? "> " : ">= ") + plain_text(low) + " and " + (below ? "< " : "<= ") + plain_text(high) + (endless ? ", or inf" : "");
     }
 };
 

@@ -245,7 +245,8 @@ private:
 
     [[noreturn]] void refuse(const std::string& section, const std::string& key, const toml::node& value, const std::string& bound) const {
         std::ostringstream text;
-        text << toml::node_view<const toml::node>{value};
+        if (value.is_floating_point()) text << plain_text(value.as_floating_point()->get());
+        else text << toml::node_view<const toml::node>{value};
         fibrant::core::refuse(file_ + ": " + section + "." + key, clipped(text.str()), bound);
     }
     const toml::node* find(const std::string& section, const std::string& key) const {
