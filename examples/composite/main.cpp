@@ -41,6 +41,7 @@ void settle(simulation::Simulator<Dry>& dry, const composite::Scene& scene, cons
 bool solve(example::SceneReader& file, example::Output& output) {
     const composite::Scene scene = composite::read_scene(file);
     const cloth::FabricParameters& fabric = scene.weave.fabric;
+    output.keep(file, "load", "settled", scene.settled);
     output.open(file);
     const scene::Assembly flat = cloth::flat_fabric(fabric, scene.weave.settle.tension_strain);
     auto dry_parameters = cloth::model_parameters<Dry>(fabric, scene.weave.settle);

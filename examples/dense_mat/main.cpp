@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A dense mat of random fibres is pressed from level to level, of one seed or of several; prints pressure and contacts of each at rest.
+// A dense mat of random fibres is pressed from level to level, of one seed or of several; prints pressure and contacts of each at
+// rest.
 //   dense_mat SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--overwrite] [--quiet]
 #include "../support/example.hpp"
 #include "../support/usual_keys.hpp"
@@ -49,26 +50,43 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.require("mat", "width", parameters.width, example::between(3.0, 1e5), "radius", "of the box along x and y");
     file.require("mat", "fibres", parameters.fibres, example::between(1, 1000000), "lengths of a fibre in the box");
     file.require("mat", "volume_fraction", fraction, example::inside(0.0, 0.9), "1", "of fibres in the box, to begin with");
-    file.read("mat", "tilt_deg", parameters.tilt_deg, example::between(0.0, 90.0), "degree", "greatest angle to the plane; 90: all directions");
+    file.read("mat", "tilt_deg", parameters.tilt_deg, example::between(0.0, 90.0), "degree",
+              "greatest angle to the plane; 90: all directions");
     file.read("mat", "elements", parameters.elements, example::between(1, 10000), "a length of fibre");
     file.read("mat", "seed", seed, example::between(0, 1e15), "of the random numbers");
-    file.read("mat", "seeds", seeds, example::between(1, 1000), "so many mats, one after the other; each then has a folder of its own");
-    file.read("contact", "friction_coefficient", levels.friction_coefficient, example::friction(), "1", "of fibres on each other, once they are parted");
-    file.read("contact", "allowed_penetration_over_radius", levels.allowed_penetration, example::depth_over_radius(), "1", "to which the penalty is adapted");
-    file.read("contact", "softest_over_section", levels.softest, example::above(0.0, 1.0), "1", "least stiffness of a contact, of that of a section");
+    file.read("mat", "seeds", seeds, example::between(1, 1000),
+              "so many mats, one after the other; each then has a folder of its own");
+    file.read("contact", "friction_coefficient", levels.friction_coefficient, example::friction(), "1",
+              "of fibres on each other, once they are parted");
+    file.read("contact", "allowed_penetration_over_radius", levels.allowed_penetration, example::depth_over_radius(), "1",
+              "to which the penalty is adapted");
+    file.read("contact", "softest_over_section", levels.softest, example::above(0.0, 1.0), "1",
+              "least stiffness of a contact, of that of a section");
     file.require("levels", "last", levels.last, example::inside(0.0, 0.9), "1", "volume fraction that no level exceeds");
     file.read("levels", "ratio", levels.ratio, {.low = 1.001, .high = 10.0}, "1", "of the volume fractions of two levels");
     file.read("levels", "step", levels.step, example::between(1e-4, 1e3), "radius", "of the plate in an increment");
-    file.read("levels", "damping", levels.damping, example::above(0.0, 1e6), "1", "springs to where the mat's mean motion takes a fibre, over what bends a tenth of it");
-    file.read("levels", "rest_share", levels.rest_share, example::inside(0.0, 1.0), "1", "at rest, springs hold no more than this of the forces,");
-    file.read("levels", "rest_increments", levels.rest_increments, example::between(1, 100000), "or so many increments have gone by");
+    file.read("levels", "damping", levels.damping, example::above(0.0, 1e6), "1",
+              "springs to where the mat's mean motion takes a fibre, over what bends a tenth of it");
+    file.read("levels", "rest_share", levels.rest_share, example::inside(0.0, 1.0), "1",
+              "at rest, springs hold no more than this of the forces,");
+    file.read("levels", "rest_increments", levels.rest_increments, example::between(1, 100000),
+              "or so many increments have gone by");
     file.complete();
-    file.check(levels.last >= fraction * levels.ratio, "levels", "last", ">= levels.ratio mat.volume_fraction = " + core::text(fraction * levels.ratio) + ", or there is no level");
+    file.check(levels.last >= fraction * levels.ratio, "levels", "last",
+               ">= levels.ratio mat.volume_fraction = " + core::text(fraction * levels.ratio) + ", or there is no level");
     parameters.height = parameters.volume_fraction(1.0) / fraction;
-    file.check(parameters.height > 2.0, "mat", "fibres", ">= " + core::text(std::ceil(2.0 * static_cast<double>(parameters.fibres) / parameters.height)) + ", or the box is no higher than a fibre");
-    file.check(parameters.height <= 1e5, "mat", "fibres", "<= " + core::text(std::floor(1e5 * static_cast<double>(parameters.fibres) / parameters.height)) + ", or the box is higher than 100000 radii");
-    example::require_room(file, "mat", "fibres", 3.0 * static_cast<double>(parameters.fibres) * (2.0 * static_cast<double>(parameters.elements) + 1.0), 6000.0);
-    file.names({{"MatParameters.height", "mat.volume_fraction is too large: the height of the box"}, {"MatParameters.", "mat."}, {"LevelParameters.", "levels."}});
+    file.check(parameters.height > 2.0, "mat", "fibres",
+               ">= " + core::text(std::ceil(2.0 * static_cast<double>(parameters.fibres) / parameters.height)) +
+                   ", or the box is no higher than a fibre");
+    file.check(parameters.height <= 1e5, "mat", "fibres",
+               "<= " + core::text(std::floor(1e5 * static_cast<double>(parameters.fibres) / parameters.height)) +
+                   ", or the box is higher than 100000 radii");
+    example::require_room(file, "mat", "fibres",
+                          3.0 * static_cast<double>(parameters.fibres) * (2.0 * static_cast<double>(parameters.elements) + 1.0),
+                          6000.0);
+    file.names({{"MatParameters.height", "mat.volume_fraction is too large: the height of the box"},
+                {"MatParameters.", "mat."},
+                {"LevelParameters.", "levels."}});
     output.open(file);
 
     observe::CsvWriter table(output.folder / "levels.csv");

@@ -47,7 +47,8 @@ inline fibrant::simulation::Ramp read_ramp(const SceneReader& file, const std::s
     const std::string value = trimmed(text.substr(equals + 1));
     const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), ramp.to);
     if (ramp.channel.empty() || error != std::errc{} || end != value.data() + value.size() || !(std::abs(ramp.to) <= 1e6))
-        file.refuse(section, "ramps", "a list of texts \"channel = value\", the value a number from -1000000 to 1000000 and nothing behind it");
+        file.refuse(section, "ramps",
+                    "a list of texts \"channel = value\", the value a number from -1000000 to 1000000 and nothing behind it");
     return ramp;
 }
 
@@ -61,10 +62,12 @@ inline fibrant::simulation::ProgrammeStage read_stage(SceneReader& file, const s
     file.read(name, "cycles", stage.cycles, example::between(0, 10000), "times there and back again; 0: there, and no further");
     file.read(name, "back", stage.back, example::between(-1e6, 1e6), "1", "where each cycle ends");
     file.read(name, "rest", stage.rest, "goes on until forces balance, after its ramps");
-    file.read(name, "damping", stage.damping, example::between(0.0, 1e6), "1", "springs to last places, over the stiffness that the tension of settling gave a node");
+    file.read(name, "damping", stage.damping, example::between(0.0, 1e6), "1",
+              "springs to last places, over the stiffness that the tension of settling gave a node");
     file.read(name, "looseness", stage.looseness, example::looseness(), "1", "on the tolerances of passes");
     double coefficient = fibrant::core::unset;
-    if (file.read(name, "friction_coefficient", coefficient, example::friction(), "1", "from here on; left out: as before")) stage.friction = coefficient;
+    if (file.read(name, "friction_coefficient", coefficient, example::friction(), "1", "from here on; left out: as before"))
+        stage.friction = coefficient;
     for (const std::string& text : ramps) stage.ramps.push_back(read_ramp(file, name, text));
     return stage;
 }
@@ -84,14 +87,19 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     file.read("loading", "tow_ends", ends, cloth::tow_ends_names(), "what tow ends do along their edge");
     file.require("loading", "stages", stages, "a section for each, in this order");
     auto& programme = load.programme;
-    double friction = fibrant::core::unset, rest_motion = fibrant::core::unset, rest_share = fibrant::core::unset, largest = 1.0, calm = 0.15;
+    double friction = fibrant::core::unset, rest_motion = fibrant::core::unset, rest_share = fibrant::core::unset, largest = 1.0,
+           calm = 0.15;
     file.read("loading", "halvings", programme.halvings, example::between(0, 16), "of all increments of ramps");
-    file.read("loading", "friction_coefficient", friction, example::friction(), "1", "from the first stage on; as the settled scene has it if left out");
-    file.read("loading", "rest_motion_over_radius", rest_motion, example::above(0.0, 10.0), "1", "as the settled scene has it if left out");
+    file.read("loading", "friction_coefficient", friction, example::friction(), "1",
+              "from the first stage on; as the settled scene has it if left out");
+    file.read("loading", "rest_motion_over_radius", rest_motion, example::above(0.0, 10.0), "1",
+              "as the settled scene has it if left out");
     file.read("loading", "rest_share", rest_share, example::above(0.0, 0.01), "1", "as the settled scene has it if left out");
     file.read("loading", "largest_displacement_over_radius", largest, example::above(0.0, 1e6), "1", "of an increment");
-    file.read("loading", "calm_over_radius", calm, example::above(0.0, 1e6), "1", "greatest displacement of an increment after which damping falls");
-    file.read("contact", "points_per_element", load.points_per_element, example::between(0, 100), "contact points; 0: as in settling");
+    file.read("loading", "calm_over_radius", calm, example::above(0.0, 1e6), "1",
+              "greatest displacement of an increment after which damping falls");
+    file.read("contact", "points_per_element", load.points_per_element, example::between(0, 100),
+              "contact points; 0: as in settling");
     auto& iteration = load.scene.iteration;
     std::string solver = load.scene.linear_solver;
     fibrant::solver::IterationParameters told;
@@ -101,18 +109,24 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     file.read("solver", "overshoot", told.overshoot, {.low = 0.0, .high = 1e6, .above = true, .endless = true}, "1",
               "a step at whose end the energy rises by more than this part of the slope at which it fell is cut");
     if (file.describes()) read_stage(file, "STAGE");
-    const std::vector<std::string> known{"settled", "loading", "contact", "solver", "output", "fabric", "warp", "weft", "material", "settle"};
+    const std::vector<std::string> known{"settled", "loading", "contact", "solver",   "output",
+                                         "fabric",  "warp",    "weft",    "material", "settle"};
     for (const std::string& name : stages) {
-        if (std::find(known.begin(), known.end(), name) != known.end()) file.refuse("loading", "stages", "a list of names of stages, and \"" + name + "\" is a section of another kind");
+        if (std::find(known.begin(), known.end(), name) != known.end())
+            file.refuse("loading", "stages", "a list of names of stages, and \"" + name + "\" is a section of another kind");
         programme.stages.push_back(read_stage(file, name));
     }
-    for (const std::string& name : file.sections_with("increments")) read_stage(file, name);  // those that this run leaves out are checked as well
+    for (const std::string& name : file.sections_with("increments"))
+        read_stage(file, name);  // those that this run leaves out are checked as well
     file.complete();
     file.check(!stages.empty(), "loading", "stages", "a list of at least one name of a stage");
     for (const auto& stage : programme.stages)
-        file.check(static_cast<double>(stage.increments) * std::exp2(static_cast<double>(programme.halvings)) <= 1e6, stage.name, "increments",
-                   "<= 1000000 / 2^loading.halvings = " + fibrant::core::text(1e6 / std::exp2(static_cast<double>(programme.halvings))));
-    load.tow_ends = static_cast<cloth::TowEnds>(std::find(cloth::tow_ends_names().begin(), cloth::tow_ends_names().end(), ends) - cloth::tow_ends_names().begin());
+        file.check(
+            static_cast<double>(stage.increments) * std::exp2(static_cast<double>(programme.halvings)) <= 1e6, stage.name,
+            "increments",
+            "<= 1000000 / 2^loading.halvings = " + fibrant::core::text(1e6 / std::exp2(static_cast<double>(programme.halvings))));
+    load.tow_ends = static_cast<cloth::TowEnds>(std::find(cloth::tow_ends_names().begin(), cloth::tow_ends_names().end(), ends) -
+                                                cloth::tow_ends_names().begin());
     try {
         load.scene = weave::read_scene((folder / scene).string(), set);
     } catch (const std::invalid_argument& error) {
@@ -123,9 +137,12 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
         if (file.given("solver", key)) to = from;
     };
     take("linear_solver", load.scene.linear_solver, solver);
-    take("step_tolerance", iteration.step_tolerance, told.step_tolerance), take("residual_tolerance", iteration.residual_tolerance, told.residual_tolerance);
-    take("contact_tolerance", iteration.contact_tolerance, told.contact_tolerance), take("linear_tolerance", iteration.linear_tolerance, told.linear_tolerance);
-    take("normal_limit", iteration.normal_limit, told.normal_limit), take("contact_limit", iteration.contact_limit, told.contact_limit), take("mixed", iteration.mixed, told.mixed);
+    take("step_tolerance", iteration.step_tolerance, told.step_tolerance),
+        take("residual_tolerance", iteration.residual_tolerance, told.residual_tolerance);
+    take("contact_tolerance", iteration.contact_tolerance, told.contact_tolerance),
+        take("linear_tolerance", iteration.linear_tolerance, told.linear_tolerance);
+    take("normal_limit", iteration.normal_limit, told.normal_limit),
+        take("contact_limit", iteration.contact_limit, told.contact_limit), take("mixed", iteration.mixed, told.mixed);
     iteration.newton_limit = told.newton_limit, iteration.overshoot = told.overshoot;
     const double r = cloth::smallest_radius(load.scene.fabric), allowed = load.scene.settle.allowed_penetration_over_radius * r;
     if (std::isnan(friction)) friction = load.scene.settle.friction_coefficient;
@@ -137,7 +154,9 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     // Of a length of fibre, however many nodes it has.
     programme.damping = cloth::node_stiffness(load.scene.fabric, load.scene.settle.tension_strain) / static_cast<double>(load.parts);
     load.settled_fabric = load.scene.fabric, load.scene.fabric.elements *= load.parts;
-    example::require_room(file, "settled", "parts", 9.0 * static_cast<double>(load.scene.fabric.fibres()) * static_cast<double>(load.scene.fabric.nodes_per_fibre()));
+    example::require_room(
+        file, "settled", "parts",
+        9.0 * static_cast<double>(load.scene.fabric.fibres()) * static_cast<double>(load.scene.fabric.nodes_per_fibre()));
     if (!programme.stages.front().friction) programme.stages.front().friction = friction;
     file.names({{"LoadProgramme.", "loading."}, {"load_case.name", "loading.case"}});
     programme.validate();
@@ -150,7 +169,8 @@ inline void require_channels(const SceneReader& file, const LoadFile& load, cons
     for (const std::string& name : channels) all += (all.empty() ? "" : ", ") + name;
     for (const auto& stage : load.programme.stages)
         for (const auto& ramp : stage.ramps)
-            file.check(std::find(channels.begin(), channels.end(), ramp.channel) != channels.end(), stage.name, "ramps", "of the channels of loading.case = " + load.name + ": " + all);
+            file.check(std::find(channels.begin(), channels.end(), ramp.channel) != channels.end(), stage.name, "ramps",
+                       "of the channels of loading.case = " + load.name + ": " + all);
 }
 
 }  // namespace fabric_loading

@@ -41,7 +41,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
         return beam::Mesh<LoadedWeave::Beam>(fibres, LoadedWeave::Beam(parameters.beam));
     };
     const auto mesh = mesh_of(fabric);
-    if (!output.other_scene) example::require_scene_of(load.checkpoint, load.scene.told, file.file() + ": settled.checkpoint", weave::fabric_sections);
+    output.keep(file, "settled", "checkpoint", load.checkpoint);
+    if (!output.other_scene)
+        example::require_scene_of(load.checkpoint, load.scene.told, file.file() + ": settled.checkpoint", weave::fabric_sections);
     const auto checkpoint = [&](const auto& read) {
         try {
             return read();
@@ -53,7 +55,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     std::optional<simulation::StoredState<LoadedWeave>> refined;
     if (load.parts > 1) {
         const auto coarse = mesh_of(load.settled_fabric);
-        refined = simulation::refined(checkpoint([&] { return simulation::read_state<LoadedWeave>(load.checkpoint, coarse); }), coarse, mesh, load.parts);
+        refined = simulation::refined(checkpoint([&] { return simulation::read_state<LoadedWeave>(load.checkpoint, coarse); }),
+                                      coarse, mesh, load.parts);
     }
     const Vector state = refined ? refined->state : checkpoint([&] { return simulation::checkpoint_state(start, mesh); });
     const observe::Snapshot settled = simulation::snapshot_of(mesh, state);

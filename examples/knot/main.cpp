@@ -32,7 +32,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.require("knot", "radius", parameters.radius, example::positive(), "length", "of the rod");
     file.require("knot", "loop_radius", parameters.loop_radius, example::positive(), "length", "that the knot is tied with");
     file.require("knot", "tail", parameters.tail, example::positive(), "length", "on each side");
-    file.read("knot", "crossings", crossings, {.low = 3, .high = 15, .said = "an odd number from 3 to 15", .values = {3, 5, 7, 9, 11, 13, 15}},
+    file.read("knot", "crossings", crossings,
+              {.low = 3, .high = 15, .said = "an odd number from 3 to 15", .values = {3, 5, 7, 9, 11, 13, 15}},
               "of the braid: 3 overhand, 5 double overhand");
     file.read("knot", "elements", parameters.elements, example::between(16, 100000), "quadratic elements");
     example::read_material(file, "material", parameters.material);
@@ -40,13 +41,17 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("loading", "draw", drawn, example::not_negative(), "length", "by which one end is drawn out");
     file.read("loading", "increments", increments, example::increments(), "of the drawing");
     file.complete();
-    file.check(parameters.loop_radius > 20.0 * parameters.radius, "knot", "loop_radius", "> 20 knot.radius = " + core::text(20.0 * parameters.radius));
-    file.check(parameters.loop_radius <= 1e5 * parameters.radius, "knot", "loop_radius", "<= 100000 knot.radius = " + core::text(1e5 * parameters.radius));
-    file.check(parameters.tail <= 1000.0 * parameters.loop_radius, "knot", "tail", "<= 1000 knot.loop_radius = " + core::text(1000.0 * parameters.loop_radius));
+    file.check(parameters.loop_radius > 20.0 * parameters.radius, "knot", "loop_radius",
+               "> 20 knot.radius = " + core::text(20.0 * parameters.radius));
+    file.check(parameters.loop_radius <= 1e5 * parameters.radius, "knot", "loop_radius",
+               "<= 100000 knot.radius = " + core::text(1e5 * parameters.radius));
+    file.check(parameters.tail <= 1000.0 * parameters.loop_radius, "knot", "tail",
+               "<= 1000 knot.loop_radius = " + core::text(1000.0 * parameters.loop_radius));
     const double around = 2.0 * std::numbers::pi * parameters.loop_radius;
     file.check(drawn < around, "loading", "draw", "< the length of the loop, " + core::text(around));
     const double length = 2.0 * parameters.tail + around, element = length / static_cast<double>(parameters.elements);
-    file.check(element >= parameters.radius, "knot", "elements", "<= " + core::text(std::floor(length / parameters.radius)) + ", or elements are shorter than a radius");
+    file.check(element >= parameters.radius, "knot", "elements",
+               "<= " + core::text(std::floor(length / parameters.radius)) + ", or elements are shorter than a radius");
     example::require_room(file, "knot", "elements", example::unknowns_of(1, parameters.elements), 20000.0);
     file.names({{"KnotParameters.", "knot."}});
     parameters.crossings = static_cast<int>(crossings);

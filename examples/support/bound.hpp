@@ -14,7 +14,8 @@ namespace example {
 
 /// A number as it stands in a message: 100000 and not 1e+05.
 inline std::string plain_text(double value) {
-    return std::isfinite(value) && std::abs(value) < 1e15 && value == std::floor(value) ? fibrant::observe::rounded(value, 0) : fibrant::observe::shortest(value);
+    return std::isfinite(value) && std::abs(value) < 1e15 && value == std::floor(value) ? fibrant::observe::rounded(value, 0)
+                                                                                        : fibrant::observe::shortest(value);
 }
 
 /// An interval, open or closed at either end.
@@ -32,7 +33,8 @@ struct Bound {
     }
     std::string text() const {
         if (!said.empty()) return said;
-        return (above ? "> " : ">= ") + plain_text(low) + " and " + (below ? "< " : "<= ") + plain_text(high) + (endless ? ", or inf" : "");
+        return (above ? "> " : ">= ") + plain_text(low) + " and " + (below ? "< " : "<= ") + plain_text(high) +
+               (endless ? ", or inf" : "");
     }
 };
 

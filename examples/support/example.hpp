@@ -53,11 +53,11 @@ struct Output {
     /// How deep fibres may be in each other at the end, anywhere, over the radius of the thinnest; unset: as deep as contact is allowed to be, and
     /// what contact points may leave unseen.
     double deepest_over_radius = fibrant::core::unset;
-    std::string told;      ///< what the scene is, line by line: kept in checkpoints
+    std::string told;                             ///< what the scene is, line by line: kept in checkpoints
     std::shared_ptr<const ResultsFolder> locked;  ///< the folder, from `open` on
 
-    /// Takes the folder, once the scene is known to be sound, and writes parameters.toml. Results of an earlier run that are neither resumed nor
-    /// overwritten on purpose are left, as is a checkpoint of another scene.
+    /// Takes the folder, once the scene is known to be sound, and writes parameters.toml. Results of an earlier run that are
+    /// neither resumed nor overwritten on purpose are left, as is a checkpoint of another scene.
     /// @param more  of what the scene is, beside what the file says
     /// @throws std::invalid_argument
     void open(const SceneReader& file, const std::string& more = {}) {
@@ -66,14 +66,27 @@ struct Output {
         const std::string found = earlier_results(folder), name = "--output " + folder.string();
         const bool goes_on = std::filesystem::exists(checkpoint()) || std::filesystem::exists(folder / "settled.bin");
         if (!found.empty() && !resume && !overwrite)
-            throw std::invalid_argument(name + ": holds results of an earlier run (" + found + "): " + (goes_on ? "--resume goes on from its last increment, " : "") +
+            throw std::invalid_argument(name + ": holds results of an earlier run (" + found +
+                                        "): " + (goes_on ? "--resume goes on from its last increment, " : "") +
                                         "--overwrite begins anew, or name another folder");
         if (resume && !goes_on) {
-            if (!found.empty()) throw std::invalid_argument(name + ": holds results (" + found + ") but no checkpoint.bin to resume from: --overwrite begins anew");
+            if (!found.empty())
+                throw std::invalid_argument(name + ": holds results (" + found +
+                                            ") but no checkpoint.bin to resume from: --overwrite begins anew");
             if (!quiet) std::fprintf(stderr, "%s: there is nothing to resume from, so the run begins\n", name.c_str());
         }
         if (resume && std::filesystem::exists(checkpoint()) && !other_scene) require_scene_of(checkpoint(), told, "--resume");
+        if (overwrite)  // what is left of an earlier run would be taken for this one's where it is stopped
+            for (const char* left : {"checkpoint.bin", "settled.bin", "summary.json", "increments.csv", "levels.csv"})
+                std::filesystem::remove(folder / left);
         observe::write_file(folder / "parameters.toml", file.echo());
+    }
+    /// Refuses a run whose input is what it would write over.
+    void keep(const SceneReader& file, const std::string& section, const std::string& key, const std::string& input) const {
+        std::error_code ignored;
+        for (const std::filesystem::path& own : {folder / "checkpoint.bin", folder / "settled.bin"})
+            if (std::filesystem::equivalent(input, own, ignored))
+                file.refuse(section, key, "in another folder than --output, where it would be written over");
     }
     /// What every loading is told: where its checkpoint is, what it is of, and when to stop.
     template <class Loading>
@@ -94,15 +107,16 @@ inline int threads_of(const std::string& text, const std::string& name) {
     int value = -1;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size() || value < 0 || value > most)
-        fibrant::core::refuse(name, clipped(text), "a whole number from 0 (as many as the machine has) to " + std::to_string(most));
+        fibrant::core::refuse(name, clipped(text),
+                              "a whole number from 0 (as many as the machine has) to " + std::to_string(most));
     return value;
 }
 
 /// Runs solve(reader, output) with the command line NAME SCENE.toml --output DIR [--set section.key=value]... [--threads N]
 /// [--resume | --overwrite] [--other-scene] [--quiet], or tells the keys of a scene: NAME --help-scene.
 /// @param resumes  the program keeps checkpoints
-/// @returns 0 if it says so, 1 if not, 2 if the scene is refused or what is needed cannot be read, written or held in memory, 130 and 143 if it was
-/// stopped by SIGINT and SIGTERM
+/// @returns 0 if it says so, 1 if not, 2 if the scene is refused or what is needed cannot be read, written or held in memory, 130
+/// and 143 if it was stopped by SIGINT and SIGTERM
 template <class Solve>
 int run(int argc, char** argv, const char* name, const char* description, const Solve& solve, bool resumes = true) {
     std::string scene, folder, threads = "0";
@@ -142,7 +156,8 @@ int run(int argc, char** argv, const char* name, const char* description, const 
         reader.read("output", "pictures", output.pictures, "pictures of the end");
         reader.read("output", "unit", output.unit, any_text(), "of lengths, in pictures");
         reader.read("output", "deepest_over_radius", output.deepest_over_radius, above(0.0, 2.0), "1",
-                    "how deep fibres may be in each other at the end over the radius of the thinnest; left out: as deep as contact allows, and what its points may leave unseen");
+                    "how deep fibres may be in each other at the end over the radius of the thinnest; left out: as deep as "
+                    "contact allows, and what its points may leave unseen");
         Index wanted = 0;
         reader.read("solver", "threads", wanted, between(0, 100000), "0: as many as the machine has; --threads goes first");
         output.folder = folder, output.scene = scene;
@@ -156,16 +171,18 @@ int run(int argc, char** argv, const char* name, const char* description, const 
             if (stopped()) return 128 + stop_signal();
             return sound ? 0 : 1;
         } catch (const Described&) {
-            std::printf("Keys of a scene of %s. Values after = are taken where a key is not given.\n\n%s", name, reader.help().c_str());
+            std::printf("Keys of a scene of %s. Values after = are taken where a key is not given.\n\n%s", name,
+                        reader.help().c_str());
             return 0;
         } catch (const std::invalid_argument& error) {
             return fail(std::string_view(error.what()).substr(0, 2) == "--" ? error.what() : reader.told(error.what()));
         }
     } catch (const std::bad_alloc&) {
-        return fail(at + ": there is not enough memory for this scene (this machine has " + gigabytes(machine_memory()) + ", and this process had " +
-                    gigabytes(static_cast<double>(peak_memory_bytes())) + ")");
+        return fail(at + ": there is not enough memory for this scene (this machine has " + gigabytes(machine_memory()) +
+                    ", and this process had " + gigabytes(static_cast<double>(peak_memory_bytes())) + ")");
     } catch (const std::length_error&) {
-        return fail(at + ": a count of this scene is larger than memory can hold (this machine has " + gigabytes(machine_memory()) + ")");
+        return fail(at + ": a count of this scene is larger than memory can hold (this machine has " +
+                    gigabytes(machine_memory()) + ")");
     } catch (const std::exception& error) {
         return fail(error.what());
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file The folder that results go to: one run at a time is in it, and what an earlier run left is not written over without a word.
+/// @file The folder that results go to: one run at a time is in it, and what an earlier run left is not written over without a
+/// word.
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -36,7 +37,9 @@ public:
         std::error_code error;
         std::filesystem::create_directories(folder, error);
         if (!std::filesystem::is_directory(folder))
-            throw std::invalid_argument(name + ": " + (std::filesystem::exists(folder) ? "is a file, but it must be a folder" : "cannot be made: " + error.message()));
+            throw std::invalid_argument(
+                name + ": " +
+                (std::filesystem::exists(folder) ? "is a file, but it must be a folder" : "cannot be made: " + error.message()));
         while (true) {
             file_ = open(lock_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
             if (file_ < 0) throw std::invalid_argument(name + ": cannot be written to: " + std::strerror(errno));
@@ -45,10 +48,13 @@ public:
                 std::array<char, 32> owner{};
                 const auto size = read(file_, owner.data(), owner.size() - 1);
                 close(std::exchange(file_, -1));
-                throw std::invalid_argument(name + ": another run is in this folder (process " + (size > 0 ? std::string(owner.data()) : "unknown") + "): wait for its end, or name another folder");
+                throw std::invalid_argument(name + ": another run is in this folder (process " +
+                                            (size > 0 ? std::string(owner.data()) : "unknown") +
+                                            "): wait for its end, or name another folder");
             }
             // A run that has just ended may have taken the name away from what is locked here.
-            struct stat held {}, named {};
+            struct stat held {
+            }, named{};
             if (fstat(file_, &held) == 0 && stat(lock_.c_str(), &named) == 0 && held.st_ino == named.st_ino) break;
             close(std::exchange(file_, -1));
         }

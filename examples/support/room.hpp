@@ -19,17 +19,23 @@ inline double machine_memory() {
 inline std::string gigabytes(double bytes) { return fibrant::observe::rounded(bytes / 1e9, bytes < 1e10 ? 1 : 0) + " GB"; }
 
 /// Unknowns of so many fibres of quadratic elements, nine a node.
-inline double unknowns_of(Index fibres, Index elements) { return 9.0 * static_cast<double>(fibres) * (2.0 * static_cast<double>(elements) + 1.0); }
+inline double unknowns_of(Index fibres, Index elements) {
+    return 9.0 * static_cast<double>(fibres) * (2.0 * static_cast<double>(elements) + 1.0);
+}
 
 /// Refuses a count of which a scene has more unknowns than this machine has memory for, or than 100 million.
 /// @param section,key  of the count that is to blame
-/// @param bytes_each   that a run takes an unknown, contacts and solver included: 2600 were measured on woven fabrics of 89 and 356 thousand
-inline void require_room(const SceneReader& file, const std::string& section, const std::string& key, double unknowns, double bytes_each = 2600.0) {
+/// @param bytes_each   that a run takes an unknown, contacts and solver included: 2600 were measured on woven fabrics of 89 and
+/// 356 thousand
+inline void require_room(const SceneReader& file, const std::string& section, const std::string& key, double unknowns,
+                         double bytes_each = 2600.0) {
     constexpr double most = 1e8;
     const double taken = unknowns * bytes_each, there = machine_memory();
     if (unknowns <= most && taken <= there) return;
-    file.refuse(section, key, "less: the scene has " + fibrant::observe::rounded(unknowns, 0) + " unknowns, which take some " + gigabytes(taken) + " of memory, and may have 100000000 and " +
-                                  gigabytes(there) + ", which is what this machine has");
+    file.refuse(section, key,
+                "less: the scene has " + fibrant::observe::rounded(unknowns, 0) + " unknowns, which take some " +
+                    gigabytes(taken) + " of memory, and may have 100000000 and " + gigabytes(there) +
+                    ", which is what this machine has");
 }
 
 }  // namespace example

@@ -14,7 +14,8 @@ namespace example {
 /// @param name      of the file in the message: what the user gave
 /// @param sections  that count; empty: all
 /// @throws std::invalid_argument if the checkpoint says that it is of another scene, or cannot be read
-inline void require_scene_of(const std::string& checkpoint, const std::string& told, const std::string& name, const std::vector<std::string>& sections = {}) {
+inline void require_scene_of(const std::string& checkpoint, const std::string& told, const std::string& name,
+                             const std::vector<std::string>& sections = {}) {
     std::string there;
     try {
         there = fibrant::simulation::checkpoint_scene(checkpoint);
@@ -22,7 +23,9 @@ inline void require_scene_of(const std::string& checkpoint, const std::string& t
         throw std::invalid_argument(name + ": " + error.what());
     }
     const std::string difference = fibrant::simulation::scene_difference(there, told, sections);
-    if (!difference.empty()) throw std::invalid_argument(name + ": " + checkpoint + " is of another scene: " + difference + "; --other-scene takes it all the same");
+    if (!difference.empty())
+        throw std::invalid_argument(name + ": " + checkpoint + " is of another scene: " + difference +
+                                    "; --other-scene takes it all the same");
 }
 
 }  // namespace example

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Reads a scene file: each key is told once, with its bound, its unit and a sentence, and from that come reading, refusing, help and echo.
+/// @file Reads a scene file: each key is told once, with its bound, its unit and a sentence, and from that come reading,
+/// refusing, help and echo.
 
 #include "bound.hpp"
 #include "scene_text.hpp"
@@ -29,8 +30,9 @@ inline std::vector<std::string> any_text() { return {}; }
 /// Thrown by `SceneReader::complete` where there is no file: all keys have been told.
 struct Described {};
 
-/// A file of sections of keys, with values replaced from the command line. Whatever is wrong throws std::invalid_argument, "file: section.key =
-/// value, but it must be bound". What must be given and is not is told by `complete`, after keys that nobody knows: one of those is often it.
+/// A file of sections of keys, with values replaced from the command line. Whatever is wrong throws std::invalid_argument, "file:
+/// section.key = value, but it must be bound". What must be given and is not is told by `complete`, after keys that nobody knows:
+/// one of those is often it.
 class SceneReader {
 public:
     using Names = std::vector<std::pair<std::string, std::string>>;
@@ -69,8 +71,10 @@ public:
     }
 
     /// Leaves `value` alone where the key is not given. @return whether it is
-    bool read(const std::string& section, const std::string& key, double& value, const Bound& bound, const char* unit, const char* sentence) {
-        Entry& entry = tell(section, key, "number", bound.text(), unit, sentence, std::isnan(value) ? "" : fibrant::observe::shortest(value));
+    bool read(const std::string& section, const std::string& key, double& value, const Bound& bound, const char* unit,
+              const char* sentence) {
+        Entry& entry = tell(section, key, "number", bound.text(), unit, sentence,
+                            std::isnan(value) ? "" : fibrant::observe::shortest(value));
         const toml::node* found = find(section, key);
         if (found == nullptr) return false;
         if (!found->is_number()) refuse(section, key, *found, "a number " + bound.text());
@@ -99,14 +103,18 @@ public:
         return entry.given = true;
     }
     /// @param allowed  texts it may be; empty: any of up to 4096 characters
-    bool read(const std::string& section, const std::string& key, std::string& value, const std::vector<std::string>& allowed, const char* sentence) {
-        Entry& entry = tell(section, key, "text", allowed.empty() ? "" : "one of " + joined(allowed), "", sentence, quoted(value));
+    bool read(const std::string& section, const std::string& key, std::string& value, const std::vector<std::string>& allowed,
+              const char* sentence) {
+        Entry& entry =
+            tell(section, key, "text", allowed.empty() ? "" : "one of " + joined(allowed), "", sentence, quoted(value));
         const toml::node* found = find(section, key);
         if (found == nullptr) return false;
         if (!found->is_string()) refuse(section, key, *found, "a text");
         value = found->as_string()->get();
-        if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), value) == allowed.end()) refuse(section, key, *found, "one of " + joined(allowed));
-        if (value.size() > longest_text || value.find('\0') != std::string::npos) refuse(section, key, *found, "a text of at most 4096 characters, none of them 0");
+        if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), value) == allowed.end())
+            refuse(section, key, *found, "one of " + joined(allowed));
+        if (value.size() > longest_text || value.find('\0') != std::string::npos)
+            refuse(section, key, *found, "a text of at most 4096 characters, none of them 0");
         entry.value = quoted(value);
         return entry.given = true;
     }
@@ -116,7 +124,8 @@ public:
         const toml::node* found = find(section, key);
         if (found == nullptr) return false;
         const toml::array* list = found->as_array();
-        if (list == nullptr || (!list->empty() && !list->is_homogeneous(toml::node_type::string))) refuse(section, key, *found, "a list of texts");
+        if (list == nullptr || (!list->empty() && !list->is_homogeneous(toml::node_type::string)))
+            refuse(section, key, *found, "a list of texts");
         if (list->size() > longest_list) refuse(section, key, *found, "a list of at most 1000 texts");
         value.clear();
         for (const toml::node& row : *list) value.push_back(row.as_string()->get());
@@ -150,13 +159,15 @@ public:
     [[noreturn]] void refuse(const std::string& section, const std::string& key, const std::string& bound) const {
         if (const toml::node* found = find(section, key); found != nullptr) refuse(section, key, *found, bound);
         const Entry* told = entry(section, key);
-        fibrant::core::refuse(file_ + ": " + section + "." + key, told == nullptr || told->value.empty() ? "(not given)" : told->value + " (not given)", bound);
+        fibrant::core::refuse(file_ + ": " + section + "." + key,
+                              told == nullptr || told->value.empty() ? "(not given)" : told->value + " (not given)", bound);
     }
     void check(bool holds, const std::string& section, const std::string& key, const std::string& bound) const {
         if (!holds) refuse(section, key, bound);
     }
 
-    /// Fields of structures that are read from a key: what a check says of them is told by it. The first that fits the beginning of a message holds.
+    /// Fields of structures that are read from a key: what a check says of them is told by it. The first that fits the beginning
+    /// of a message holds.
     void names(const Names& more) { names_.insert(names_.end(), more.begin(), more.end()); }
     /// What a check refused, by file and key.
     std::string told(const std::string& message) const {
@@ -173,8 +184,12 @@ public:
             text += "[" + title + "]\n";
             for (const Entry& told : entries_)
                 if (told.section == title)
-                    text += "  " + told.key + (told.required ? ": must be given" : told.value.empty() ? "" : " = " + told.value) + "  (" + told.kind +
-                            (told.bound.empty() ? "" : " " + told.bound) + (told.unit.empty() ? "" : "; [" + told.unit + "]") + ")\n      " + told.sentence + "\n";
+                    text += "  " + told.key +
+                            (told.required        ? ": must be given"
+                             : told.value.empty() ? ""
+                                                  : " = " + told.value) +
+                            "  (" + told.kind + (told.bound.empty() ? "" : " " + told.bound) +
+                            (told.unit.empty() ? "" : "; [" + told.unit + "]") + ")\n      " + told.sentence + "\n";
         }
         return text;
     }
@@ -184,7 +199,8 @@ public:
         for (const std::string& title : sections()) {
             text += (text.empty() ? "[" : "\n[") + title + "]\n";
             for (const Entry& told : entries_)
-                if (told.section == title && !told.value.empty() && (told.given || !told.way)) text += told.key + " = " + told.value + "\n";
+                if (told.section == title && !told.value.empty() && (told.given || !told.way))
+                    text += told.key + " = " + told.value + "\n";
         }
         return text;
     }
@@ -195,7 +211,8 @@ public:
         for (const Entry& told : entries_) {
             if (told.section == "solver" || told.section == "output" || told.place) continue;
             if (!only.empty() && std::find(only.begin(), only.end(), told.section) == only.end()) continue;
-            text += told.section + "." + told.key + " = " + (told.value.empty() || (told.way && !told.given) ? "-" : told.value) + "\n";
+            text += told.section + "." + told.key + " = " + (told.value.empty() || (told.way && !told.given) ? "-" : told.value) +
+                    "\n";
         }
         return text;
     }
@@ -204,9 +221,11 @@ private:
     void refuse_unknown() const {
         for (const auto& [name, section] : table_) {
             const std::string title{name.str()};
-            const bool known = std::any_of(entries_.begin(), entries_.end(), [&, &wanted = title](const Entry& entry) { return entry.section == wanted; });
+            const bool known = std::any_of(entries_.begin(), entries_.end(),
+                                           [&, &wanted = title](const Entry& entry) { return entry.section == wanted; });
             if (!known || !section.is_table())
-                throw std::invalid_argument(file_ + ": " + clipped(title) + (section.is_table() ? " = [section]" : "") + ", but it must be one of the sections " + joined(sections()));
+                throw std::invalid_argument(file_ + ": " + clipped(title) + (section.is_table() ? " = [section]" : "") +
+                                            ", but it must be one of the sections " + joined(sections()));
             for (const auto& [name_in, value] : *section.as_table()) {
                 const std::string key{name_in.str()};
                 if (entry(title, key) == nullptr) refuse(title, clipped(key), value, "one of the keys " + joined(keys(title)));
@@ -217,8 +236,10 @@ private:
         if (missing_.empty()) return;
         const Entry& first = *entry(missing_.front().first, missing_.front().second);
         std::string others;
-        for (std::size_t k = 1; k < missing_.size() && k < 12; ++k) others += (k == 1 ? "; so must " : ", ") + missing_[k].first + "." + missing_[k].second;
-        throw std::invalid_argument(file_ + ": " + first.section + "." + first.key + " is missing, but it must be given: " + first.sentence + ", a " + first.kind +
+        for (std::size_t k = 1; k < missing_.size() && k < 12; ++k)
+            others += (k == 1 ? "; so must " : ", ") + missing_[k].first + "." + missing_[k].second;
+        throw std::invalid_argument(file_ + ": " + first.section + "." + first.key +
+                                    " is missing, but it must be given: " + first.sentence + ", a " + first.kind +
                                     (first.bound.empty() ? "" : " " + first.bound) + others);
     }
 
@@ -231,7 +252,8 @@ private:
     SceneReader() : file_{"scene"} {}
 
     /// The first who asks for a key tells of it.
-    Entry& tell(const std::string& section, const std::string& key, std::string kind, std::string bound, const char* unit, const char* sentence, std::string value) {
+    Entry& tell(const std::string& section, const std::string& key, std::string kind, std::string bound, const char* unit,
+                const char* sentence, std::string value) {
         for (Entry& known : entries_)
             if (known.section == section && known.key == key) return known;
         return entries_.emplace_back(Entry{section, key, std::move(kind), std::move(bound), unit, sentence, std::move(value)});
@@ -241,18 +263,25 @@ private:
             if (known.section == section && known.key == key) return &known;
         return nullptr;
     }
-    const Entry* entry(const std::string& section, const std::string& key) const { return const_cast<SceneReader*>(this)->entry(section, key); }
+    const Entry* entry(const std::string& section, const std::string& key) const {
+        return const_cast<SceneReader*>(this)->entry(section, key);
+    }
 
-    [[noreturn]] void refuse(const std::string& section, const std::string& key, const toml::node& value, const std::string& bound) const {
+    [[noreturn]] void refuse(const std::string& section, const std::string& key, const toml::node& value,
+                             const std::string& bound) const {
         std::ostringstream text;
-        if (value.is_floating_point()) text << plain_text(value.as_floating_point()->get());
-        else text << toml::node_view<const toml::node>{value};
+        if (value.is_floating_point())
+            text << plain_text(value.as_floating_point()->get());
+        else
+            text << toml::node_view<const toml::node>{value};
         fibrant::core::refuse(file_ + ": " + section + "." + key, clipped(text.str()), bound);
     }
     const toml::node* find(const std::string& section, const std::string& key) const {
         const toml::node* titled = table_.get(section);
         if (titled == nullptr) return nullptr;
-        if (!titled->is_table()) throw std::invalid_argument(file_ + ": " + section + " is a " + (titled->is_array() ? "list" : "value") + ", but it must be a section, [" + section + "]");
+        if (!titled->is_table())
+            throw std::invalid_argument(file_ + ": " + section + " is a " + (titled->is_array() ? "list" : "value") +
+                                        ", but it must be a section, [" + section + "]");
         return titled->as_table()->get(key);
     }
     void replace(const std::string& text) {
@@ -268,7 +297,8 @@ private:
         toml::table& table = *table_.get(section)->as_table();
         try {
             const toml::table parsed = toml::parse("value = " + value);
-            if (parsed.size() == 1) return parsed.get("value")->visit([&](const auto& known) { table.insert_or_assign(key, known); });
+            if (parsed.size() == 1)
+                return parsed.get("value")->visit([&](const auto& known) { table.insert_or_assign(key, known); });
         } catch (const toml::parse_error&) {  // a text without quotes
         }
         table.insert_or_assign(key, value);

@@ -22,12 +22,15 @@ inline std::string clipped(std::string_view text) {
     return text.size() > 80 ? answer + "..." : answer;
 }
 
-/// Refuses what is nested so deep that taking it apart would run out of stack: keys of more than 8 parts, brackets within brackets.
+/// Refuses what is nested so deep that taking it apart would run out of stack: keys of more than 8 parts, brackets within
+/// brackets.
 /// @param name  of the text, in the message
 inline void require_readable(std::string_view text, const std::string& name) {
     constexpr int most_dots = 8, most_brackets = 32;
     int dots = 0, brackets = 0, line = 1;
-    const auto fail = [&](const std::string& what) { throw std::invalid_argument(name + ":" + std::to_string(line) + ": " + what); };
+    const auto fail = [&](const std::string& what) {
+        throw std::invalid_argument(name + ":" + std::to_string(line) + ": " + what);
+    };
     for (std::size_t k = 0; k < text.size(); ++k) {
         const char c = text[k];
         if (c == '#') {
@@ -39,12 +42,15 @@ inline void require_readable(std::string_view text, const std::string& name) {
                 if (text[k] == '\n') ++line;
                 if (text[k] == '\\' && c == '"') ++k;
             }
-            if (three) k += 2;
-            else if (k < text.size() && text[k] == '\n') --k;
+            if (three)
+                k += 2;
+            else if (k < text.size() && text[k] == '\n')
+                --k;
         } else if (c == '.') {
             if (++dots > most_dots) fail("a key of more than 8 parts, but it must be section.key");
         } else if (c == '[' || c == '{') {
-            if (++brackets > most_brackets) fail("brackets are nested by more than 32, but values must be numbers, texts, true or false, or lists of texts");
+            if (++brackets > most_brackets)
+                fail("brackets are nested by more than 32, but values must be numbers, texts, true or false, or lists of texts");
             dots = 0;
         } else if (c == ']' || c == '}') {
             if (brackets > 0) --brackets;
@@ -61,7 +67,8 @@ inline void require_readable(std::string_view text, const std::string& name) {
 inline std::string scene_text(const std::string& path) {
     constexpr std::size_t most = 1'000'000;
     std::error_code error;
-    if (std::filesystem::is_directory(path, error)) throw std::invalid_argument(path + ": is a folder, but it must be a scene file (TOML)");
+    if (std::filesystem::is_directory(path, error))
+        throw std::invalid_argument(path + ": is a folder, but it must be a scene file (TOML)");
     const auto close = [](std::FILE* file) { std::fclose(file); };
     const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rb"), close);
     if (!file) throw std::invalid_argument(path + ": cannot be read as a scene file: " + std::strerror(errno));
@@ -71,8 +78,10 @@ inline std::string scene_text(const std::string& path) {
         size = std::fread(part.data(), 1, part.size(), file.get());
         text.append(part.data(), size);
     }
-    if (std::ferror(file.get()) != 0) throw std::invalid_argument(path + ": cannot be read as a scene file: " + std::strerror(errno));
-    if (text.size() > most) throw std::invalid_argument(path + ": has more than 1,000,000 characters, but it must be a scene file (TOML) of fewer");
+    if (std::ferror(file.get()) != 0)
+        throw std::invalid_argument(path + ": cannot be read as a scene file: " + std::strerror(errno));
+    if (text.size() > most)
+        throw std::invalid_argument(path + ": has more than 1,000,000 characters, but it must be a scene file (TOML) of fewer");
     require_readable(text, path);
     return text;
 }

@@ -11,8 +11,8 @@ inline volatile std::sig_atomic_t stop_signal = 0;
 extern "C" inline void note_stop(int signal) { stop_signal = signal; }
 }  // namespace detail
 
-/// From here on the first of these signals is taken down, and the second ends the program at once. A file that may not grow any more is a write
-/// that failed, and not the end of the program.
+/// From here on the first of these signals is taken down, and the second ends the program at once. A file that may not grow any
+/// more is a write that failed, and not the end of the program.
 inline void listen_for_stops() {
     struct sigaction act {};
     act.sa_handler = detail::note_stop;

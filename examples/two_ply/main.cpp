@@ -41,12 +41,15 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("loading", "increments_per_turn", per_turn, example::between(1, 1000), "of the turning");
     file.complete();
     file.check(turns != 0.0, "loading", "turns", "other than 0: nothing would be wound");
-    file.check(parameters.length >= 4.0 * parameters.radius, "rods", "length", ">= 4 rods.radius = " + core::text(4.0 * parameters.radius));
-    file.check(parameters.length <= 1e6 * parameters.radius, "rods", "length", "<= 1000000 rods.radius = " + core::text(1e6 * parameters.radius));
+    file.check(parameters.length >= 4.0 * parameters.radius, "rods", "length",
+               ">= 4 rods.radius = " + core::text(4.0 * parameters.radius));
+    file.check(parameters.length <= 1e6 * parameters.radius, "rods", "length",
+               "<= 1000000 rods.radius = " + core::text(1e6 * parameters.radius));
     const double stiffness = 2.0 * std::numbers::pi * parameters.radius * parameters.radius * parameters.material.young_modulus;
     file.check(parameters.force <= stiffness, "loading", "force", "<= E A of both rods = " + core::text(stiffness));
     file.check(std::abs(turns) <= 2.0 * static_cast<double>(parameters.elements), "loading", "turns",
-               "at most 2 rods.elements = " + core::text(2.0 * static_cast<double>(parameters.elements)) + ", for an element may not turn by more than half a turn");
+               "at most 2 rods.elements = " + core::text(2.0 * static_cast<double>(parameters.elements)) +
+                   ", for an element may not turn by more than half a turn");
     example::require_room(file, "rods", "elements", example::unknowns_of(2, parameters.elements), 20000.0);
     file.names({{"TwoPlyParameters.force", "loading.force"}, {"TwoPlyParameters.", "rods."}});
     parameters.validate();

@@ -49,7 +49,10 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     const auto audit = weave::cloth::audit(snapshot, scene.fabric, proximity::GridSearch());
     const auto crimp = weave::cloth::crimp_measures(snapshot, scene.fabric);
     weave::Summary summary;
-    weave::fill(summary, report, audit, crimp, radius, (std::isnan(output.deepest_over_radius) ? scene.settle.allowed_penetration_over_radius : output.deepest_over_radius) * radius);
+    weave::fill(
+        summary, report, audit, crimp, radius,
+        (std::isnan(output.deepest_over_radius) ? scene.settle.allowed_penetration_over_radius : output.deepest_over_radius) *
+            radius);
     summary.fibres = simulator.mesh().fibre_count();
     summary.dofs = simulator.mesh().layout().unknowns();
     summary.nodes = summary.dofs / M::Beam::dofs_per_node;
@@ -66,9 +69,11 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
 
 bool solve(example::SceneReader& file, example::Output& output) {
     const weave::Scene scene = weave::read_fabric(file, [] {});
-    return scene.settle.friction_coefficient > 0.0 ? settle<Weave<law::RegularisedCoulomb>>(scene, file, output) : settle<Weave<law::Frictionless>>(scene, file, output);
+    return scene.settle.friction_coefficient > 0.0 ? settle<Weave<law::RegularisedCoulomb>>(scene, file, output)
+                                                   : settle<Weave<law::Frictionless>>(scene, file, output);
 }
 
 int main(int argc, char** argv) {
-    return example::run(argc, argv, "weave", "Finds the initial state of a woven fabric from flat, interpenetrating tows.", solve);
+    return example::run(argc, argv, "weave", "Finds the initial state of a woven fabric from flat, interpenetrating tows.",
+                        solve);
 }

@@ -220,7 +220,8 @@ TEST_CASE("a checkpoint that cannot be written ends the run with a message, and 
     const Rod rod;
     Loading<Smooth> loading{.increments = 1, .checkpoint = "no/such/folder/checkpoint"};
     Simulator<Smooth> simulator(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
-    CHECK(failure([&] { simulator.run(loading); }) == "cannot write checkpoint no/such/folder/checkpoint: No such file or directory");
+    CHECK(failure([&] { simulator.run(loading); }) ==
+          "cannot write checkpoint no/such/folder/checkpoint: No such file or directory");
 }
 
 TEST_CASE("a disk that is full ends the run with a message, and the file before stays") {
@@ -238,8 +239,11 @@ TEST_CASE("a disk that is full ends the run with a message, and the file before 
 TEST_CASE("a checkpoint says what it is of, and goes on as another scene only where that is asked for") {
     const Rod rod;
     const TemporaryFile file("of");
-    Loading<Smooth> loading{.increments = 1, .checkpoint = file.name(), .scene = "law.friction = 0.1\nlaw.depth = 2\nonly.there = 1\n"};
-    const auto failed = [&] { return failure([&] { Simulator<Smooth>(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius)).run(loading); }); };
+    Loading<Smooth> loading{
+        .increments = 1, .checkpoint = file.name(), .scene = "law.friction = 0.1\nlaw.depth = 2\nonly.there = 1\n"};
+    const auto failed = [&] {
+        return failure([&] { Simulator<Smooth>(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius)).run(loading); });
+    };
     CHECK(failed().empty());
     CHECK(simulation::checkpoint_scene(file.name()) == loading.scene);
     loading.resume = true;
@@ -280,7 +284,8 @@ std::string signed_again(std::string bytes) {
     return bytes;
 }
 
-TEST_CASE("a checkpoint that was made up, with a right sum, is refused or run, and ends neither in a crash nor in a leap of memory") {
+TEST_CASE(
+    "a checkpoint that was made up, with a right sum, is refused or run, and ends neither in a crash nor in a leap of memory") {
     Crossing crossing;
     crossing.approach = 0.8 * crossing.radius;
     const TemporaryFile file("crafted");
@@ -305,7 +310,8 @@ TEST_CASE("a checkpoint that was made up, with a right sum, is refused or run, a
     const std::string damaged = "checkpoint " + file.name() + " is damaged";
     CHECK(resumed(whole + std::string(8, 'x')) == damaged);
     CHECK(resumed(whole.substr(0, whole.size() / 2)) == damaged);
-    // Sizes and numbers all over the file are made absurd, one at a time. What is refused says so; what is not may take any way but a wild one.
+    // Sizes and numbers all over the file are made absurd, one at a time. What is refused says so; what is not may take any way
+    // but a wild one.
     Index refused = 0;
     for (std::size_t place = 0; place + 16 <= whole.size(); place += 61)  // numbers lie at any place
         for (const std::uint64_t absurd : {~std::uint64_t{0}, std::uint64_t{1} << 61, std::uint64_t{0x7ff8000000000000}}) {

@@ -62,7 +62,9 @@ public:
         errno = 0;
         file_ << line << '\n';
         file_.flush();
-        if (!file_) throw std::runtime_error("cannot write the file " + path_.string() + (errno != 0 ? ": " + std::generic_category().message(errno) : std::string()));
+        if (!file_)
+            throw std::runtime_error("cannot write the file " + path_.string() +
+                                     (errno != 0 ? ": " + std::generic_category().message(errno) : std::string()));
     }
 
 private:

@@ -77,7 +77,8 @@ inline void write_file(const std::filesystem::path& path, std::string_view conte
     file.close();
     std::error_code error(file ? 0 : errno, std::generic_category());
     if (file) std::filesystem::rename(partial, path, error);
-    if (!file || error) throw std::runtime_error("cannot write the file " + path.string() + (error ? ": " + error.message() : std::string()));
+    if (!file || error)
+        throw std::runtime_error("cannot write the file " + path.string() + (error ? ": " + error.message() : std::string()));
 }
 
 /// Whole content of a file; empty if there is none.

@@ -44,8 +44,8 @@ public:
         part += ".part";
         const std::uint64_t sum = hash(data_.data(), data_.size());
         std::FILE* file = std::fopen(part.string().c_str(), "wb");
-        bool written = file != nullptr && std::fwrite(data_.data(), 1, data_.size(), file) == data_.size() && std::fwrite(&sum, sizeof sum, 1, file) == 1 &&
-                       std::fflush(file) == 0 && on_the_disk(file);
+        bool written = file != nullptr && std::fwrite(data_.data(), 1, data_.size(), file) == data_.size() &&
+                       std::fwrite(&sum, sizeof sum, 1, file) == 1 && std::fflush(file) == 0 && on_the_disk(file);
         int reason = errno;
         if (file != nullptr && std::fclose(file) != 0 && written) written = false, reason = errno;
         std::error_code error;
@@ -86,7 +86,8 @@ public:
         std::ifstream file(path, std::ios::binary | std::ios::ate);
         std::error_code error;
         if (!file) throw std::runtime_error("cannot read checkpoint " + name_ + ": " + std::generic_category().message(errno));
-        if (std::filesystem::is_directory(path, error)) throw std::runtime_error("cannot read checkpoint " + name_ + ": it is a folder");
+        if (std::filesystem::is_directory(path, error))
+            throw std::runtime_error("cannot read checkpoint " + name_ + ": it is a folder");
         const std::streamoff size = file.tellg();
         if (size < 0) fail();
         data_.resize(static_cast<std::size_t>(size));

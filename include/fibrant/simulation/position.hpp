@@ -99,8 +99,9 @@ struct Position {
     /// All that a run can come to: of another one, numbers lead out of the loading.
     bool sound(Index stages) const {
         const auto finite = [](double value) { return std::isfinite(value) && value >= 0.0; };
-        return stage >= 0 && stage <= stages && in_stage >= 0 && accepted >= 0 && finite(progress) && fraction > 0.0 && fraction <= 1.0 && finite(displacement) &&
-               finite(damping) && finite(damping_floor) && std::all_of(holding.begin(), holding.end(), finite);
+        return stage >= 0 && stage <= stages && in_stage >= 0 && accepted >= 0 && finite(progress) && fraction > 0.0 &&
+               fraction <= 1.0 && finite(displacement) && finite(damping) && finite(damping_floor) &&
+               std::all_of(holding.begin(), holding.end(), finite);
     }
 
     template <class Body>

@@ -26,7 +26,8 @@ inline const char* scene_value(std::string_view scene, std::string_view name, st
 
 /// Names that both have and whose values differ, up to three of them: "a (1 there and 2 here), ...". Empty if there are none.
 /// @param sections  only names that begin with one of these and a point are compared; empty: all
-inline std::string scene_difference(std::string_view there, std::string_view here, const std::vector<std::string>& sections = {}) {
+inline std::string scene_difference(std::string_view there, std::string_view here,
+                                    const std::vector<std::string>& sections = {}) {
     std::string text;
     int found = 0;
     for (std::size_t from = 0; from < here.size();) {
@@ -42,7 +43,8 @@ inline std::string scene_difference(std::string_view there, std::string_view her
         const char* value = scene_value(there, name, size);
         if (value == nullptr || std::string_view(value, size) == own) continue;
         if (++found > 3) return text + ", and more";
-        text += (text.empty() ? "" : ", ") + std::string(name) + " (" + std::string(value, size) + " there and " + std::string(own) + " here)";
+        text += (text.empty() ? "" : ", ") + std::string(name) + " (" + std::string(value, size) + " there and " +
+                std::string(own) + " here)";
     }
     return text;
 }

@@ -60,21 +60,23 @@ std::uint64_t loading_identity(const std::vector<Stage<M>>& stages) {
 
 /// What a checkpoint begins with: its format, what the run was of, and what tells one scene from another.
 template <Model M>
-void put_identity(CheckpointWriter& file, const beam::Mesh<typename M::Beam>& mesh, const connection::Channels& channels, const std::vector<Stage<M>>& stages,
-                  const std::string& scene) {
+void put_identity(CheckpointWriter& file, const beam::Mesh<typename M::Beam>& mesh, const connection::Channels& channels,
+                  const std::vector<Stage<M>>& stages, const std::string& scene) {
     file.put(std::string(checkpoint_format)), file.put(scene);
-    file.put(outline_identity(mesh)), file.put(fibre_identity(mesh)), file.put(channel_identity(channels)), file.put(loading_identity(stages));
+    file.put(outline_identity(mesh)), file.put(fibre_identity(mesh)), file.put(channel_identity(channels)),
+        file.put(loading_identity(stages));
 }
 /// Reads that, and compares all of it with the run that goes on.
 /// @throws std::runtime_error if it is another one
 template <Model M>
-void expect_identity(CheckpointReader& file, const beam::Mesh<typename M::Beam>& mesh, const connection::Channels& channels, const std::vector<Stage<M>>& stages,
-                     const Loading<M>& loading) {
+void expect_identity(CheckpointReader& file, const beam::Mesh<typename M::Beam>& mesh, const connection::Channels& channels,
+                     const std::vector<Stage<M>>& stages, const Loading<M>& loading) {
     file.expect(file.get_text() == checkpoint_format, "the format");
     const std::string difference = scene_difference(file.get_text(), loading.scene);
     file.expect(difference.empty() || loading.other_scene, difference);
     file.expect(file.get<std::uint64_t>() == outline_identity(mesh), "the set of fibres and channels");
-    const bool fibres = file.get<std::uint64_t>() == fibre_identity(mesh), same = file.get<std::uint64_t>() == channel_identity(channels);
+    const bool fibres = file.get<std::uint64_t>() == fibre_identity(mesh),
+               same = file.get<std::uint64_t>() == channel_identity(channels);
     file.expect(fibres && same, "the set of fibres and channels");
     file.expect(file.get<std::uint64_t>() == loading_identity(stages), "the loading");
 }
@@ -137,12 +139,14 @@ void get_memory(CheckpointReader& file, std::vector<Record>& records, std::vecto
     zones.resize(core::at(file.get_count(sizeof(contact::Zone))));
     for (contact::Zone& zone : zones) {
         auto bytes = file.get<std::array<char, sizeof(contact::Zone)>>();
-        for (const std::size_t flag : {offsetof(contact::Zone, crossing), offsetof(contact::Zone, followed), offsetof(contact::Zone, forced)})
+        for (const std::size_t flag :
+             {offsetof(contact::Zone, crossing), offsetof(contact::Zone, followed), offsetof(contact::Zone, forced)})
             bytes[flag] = static_cast<char>(bytes[flag] != 0);
         std::memcpy(static_cast<void*>(&zone), bytes.data(), bytes.size());
         const proximity::ProximityZone& span = zone.span;
         file.require(known(span.fibre_i) && known(span.fibre_j) && zone.stiffness >= 0.0 && !std::isnan(zone.deepest));
-        for (const double place : {span.a_i, span.b_i, span.a_j, span.b_j, span.closest_i, span.closest_j, zone.stiffness}) file.require(std::isfinite(place));
+        for (const double place : {span.a_i, span.b_i, span.a_j, span.b_j, span.closest_i, span.closest_j, zone.stiffness})
+            file.require(std::isfinite(place));
     }
 }
 
