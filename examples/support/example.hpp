@@ -168,7 +168,12 @@ int run(int argc, char** argv, const char* name, const char* description, const 
 #endif
         try {
             const bool sound = solve(reader, output);
-            if (stopped()) return 128 + stop_signal();
+            if (stopped()) {
+                if (!output.quiet)
+                    std::fprintf(stderr, "%s: stopped by signal %d%s\n", name, stop_signal(),
+                                 resumes ? ": --resume goes on from the last increment" : "");
+                return 128 + stop_signal();
+            }
             return sound ? 0 : 1;
         } catch (const Described&) {
             std::printf("Keys of a scene of %s. Values after = are taken where a key is not given.\n\n%s", name,

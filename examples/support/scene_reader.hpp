@@ -128,7 +128,10 @@ public:
             refuse(section, key, *found, "a list of texts");
         if (list->size() > longest_list) refuse(section, key, *found, "a list of at most 1000 texts");
         value.clear();
-        for (const toml::node& row : *list) value.push_back(row.as_string()->get());
+        for (const toml::node& row : *list) {
+            value.push_back(row.as_string()->get());
+            if (value.back().size() > longest_text) refuse(section, key, *found, "a list of texts of at most 4096 characters");
+        }
         entry.value = listed(value);
         return entry.given = true;
     }
