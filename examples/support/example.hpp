@@ -151,6 +151,7 @@ int run(int argc, char** argv, const char* name, const char* description, const 
     };
     std::string at = scene;
     try {
+        if (!keys) require_folder(folder);
         SceneReader reader = keys ? SceneReader::of_keys() : SceneReader(scene, set);
         reader.read("output", "paraview", output.paraview, "files for ParaView after each increment");
         reader.read("output", "pictures", output.pictures, "pictures of the end");

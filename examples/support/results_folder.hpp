@@ -26,6 +26,21 @@ enum class Earlier {
     overwritten,  ///< the run begins anew
 };
 
+/// Refuses a name that no folder can have, before anything is read: that of a file, or of something within a file.
+/// @throws std::invalid_argument
+inline void require_folder(const std::filesystem::path& folder) {
+    const std::string name = "--output " + folder.string();
+    if (folder.empty()) throw std::invalid_argument("--output is empty, but it must be a folder");
+    std::error_code error;
+    if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
+        throw std::invalid_argument(name + ": is a file, but it must be a folder");
+    for (std::filesystem::path above = folder.parent_path(); !above.empty(); above = above.parent_path()) {
+        if (std::filesystem::is_directory(above, error)) break;
+        if (std::filesystem::exists(above, error)) throw std::invalid_argument(name + ": cannot be made: " + above.string() + " is a file");
+        if (above == above.parent_path()) break;
+    }
+}
+
 /// Holds a folder while it lives: another run that wants it is refused. The lock goes with the process, however it ends.
 class ResultsFolder {
 public:
@@ -33,13 +48,10 @@ public:
     /// @throws std::invalid_argument if the folder cannot be made or written, or another run is in it
     explicit ResultsFolder(const std::filesystem::path& folder) : lock_{folder / ".lock"} {
         const std::string name = "--output " + folder.string();
-        if (folder.empty()) throw std::invalid_argument("--output is empty, but it must be a folder");
+        require_folder(folder);
         std::error_code error;
         std::filesystem::create_directories(folder, error);
-        if (!std::filesystem::is_directory(folder))
-            throw std::invalid_argument(
-                name + ": " +
-                (std::filesystem::exists(folder) ? "is a file, but it must be a folder" : "cannot be made: " + error.message()));
+        if (!std::filesystem::is_directory(folder)) throw std::invalid_argument(name + ": cannot be made: " + error.message());
         while (true) {
             file_ = open(lock_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
             if (file_ < 0) throw std::invalid_argument(name + ": cannot be written to: " + std::strerror(errno));

@@ -12,9 +12,20 @@ table=$(dirname "$0")/malformed/$name.txt
 number=0
 tried=0
 bad=0
+absolute() {
+  case $1 in
+    /*) echo "$1" ;;
+    *) echo "$PWD/$1" ;;
+  esac
+}
+program=$(absolute "$program")
+scene=$(absolute "$scene")
+table=$(absolute "$table")
+out=$(absolute "$out")
 rm -rf "$out"
 mkdir -p "$out/a folder" || exit 1
 : > "$out/file"
+cd "$out/a folder" || exit 1  # where nothing is
 report() {
   bad=$((bad + 1))
   echo "malformed: $name $3: $1: $(printf '%s' "$2" | cut -c 1-300)"
