@@ -81,6 +81,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.check(parameters.height <= 1e5, "mat", "fibres",
                "<= " + core::text(std::floor(1e5 * static_cast<double>(parameters.fibres) / parameters.height)) +
                    ", or the box is higher than 100000 radii");
+    example::require_element(file, "mat", parameters.elements, parameters.length, 1.0);
     example::require_room(file, "mat", "fibres",
                           3.0 * static_cast<double>(parameters.fibres) * (2.0 * static_cast<double>(parameters.elements) + 1.0),
                           6000.0);

@@ -76,6 +76,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
                    ", which fill nine tenths of the box");
     const double pressed = parameters.volume_fraction(press.height), least = parameters.height * filled / 0.9;
     file.check(pressed < 0.9, "loading", "height", "> " + core::text(least) + ", at which fibres fill nine tenths of the box");
+    example::require_element(file, "mat", parameters.elements, parameters.length, parameters.radius);
     example::require_room(file, "mat", "fibres", example::unknowns_of(parameters.fibres, parameters.elements), 6000.0);
     file.names({{"MatParameters.", "mat."},
                 {"PressParameters.allowed_penetration", "contact.allowed_penetration_over_radius"},

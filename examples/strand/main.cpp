@@ -123,6 +123,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
                    core::text(200.0 * std::numbers::pi / given.length));
     file.check(given.strain != 0.0 || given.rotation != 0.0, "loading", "strain",
                "other than 0 where loading.rotation is 0: nothing would be done");
+    example::require_element(file, "strand", given.elements, given.length, given.radius);
     example::require_room(file, "strand", "elements", example::unknowns_of(roped ? 49 : wires, given.elements), 6000.0);
     file.names({{"RopeParameters: least gap", "rope.overlap_over_radius is too small: the least gap"},
                 {"StrandParameters.layers[0]: gap between neighbours",

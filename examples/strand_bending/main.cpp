@@ -79,6 +79,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.check(static_cast<double>(parameters.elements) >= 4.0 * round, "strand", "elements",
                ">= " + core::text(std::ceil(4.0 * round)) + ", for wires go around " + core::text(round) +
                    " times: an element may not turn by more than 90 degrees");
+    example::require_element(file, "strand", parameters.elements, parameters.length, radius);
     example::require_room(file, "strand",
                           elements > 0   ? "elements"
                           : length > 0.0 ? "length"

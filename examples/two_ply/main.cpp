@@ -50,6 +50,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.check(std::abs(turns) <= 2.0 * static_cast<double>(parameters.elements), "loading", "turns",
                "at most 2 rods.elements = " + core::text(2.0 * static_cast<double>(parameters.elements)) +
                    ", for an element may not turn by more than half a turn");
+    example::require_element(file, "rods", parameters.elements, parameters.length, parameters.radius);
     example::require_room(file, "rods", "elements", example::unknowns_of(2, parameters.elements), 20000.0);
     file.names({{"TwoPlyParameters.force", "loading.force"}, {"TwoPlyParameters.", "rods."}});
     parameters.validate();
