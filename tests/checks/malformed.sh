@@ -93,7 +93,7 @@ text "[output]\n\0377\0376 = 1\n" "scene.toml:"
 try "scene is required" --output "$out/results"
 try "--output is required" "$scene"
 try "--no-such-option" "$scene" --output "$out/results" --no-such-option
-try "excludes" "$scene" --output "$out/results" --resume --overwrite
+try "--resume" "$scene" --output "$out/results" --resume --overwrite
 try "is a file, but it must be a folder" "$scene" --output "$out/file"
 try "cannot be made" "$scene" --output "$out/file/below"
 for threads in -1 1.5 2x 0x2 "1 2" 100000 99999999999999999999 nan 0,5; do
