@@ -96,19 +96,23 @@ struct Output {
     }
 };
 
+/// Threads that a program may be told to use: more do not help, and far more cannot be had.
+inline int most_threads() {
+#if defined(_OPENMP)
+    return std::max(64, 4 * omp_get_num_procs());
+#else
+    return 1;
+#endif
+}
+
 /// Threads as told, read whole.
 /// @throws std::invalid_argument
 inline int threads_of(const std::string& text, const std::string& name) {
-#if defined(_OPENMP)
-    const int most = std::max(64, 4 * omp_get_num_procs());
-#else
-    const int most = 1;
-#endif
     int value = -1;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || value < 0 || value > most)
+    if (error != std::errc{} || end != text.data() + text.size() || value < 0 || value > most_threads())
         fibrant::core::refuse(name, clipped(text),
-                              "a whole number from 0 (as many as the machine has) to " + std::to_string(most));
+                              "a whole number from 0 (as many as the machine has) to " + std::to_string(most_threads()));
     return value;
 }
 
@@ -166,6 +170,7 @@ int run(int argc, char** argv, const char* name, const char* description, const 
         if (app.count("--threads") == 0) count = threads_of(std::to_string(wanted), scene + ": solver.threads");
 #if defined(_OPENMP)
         if (count > 0) omp_set_num_threads(count);
+        else threads_of(std::to_string(omp_get_max_threads()), "--threads is not given, and OMP_NUM_THREADS");
 #endif
         try {
             const bool sound = solve(reader, output);

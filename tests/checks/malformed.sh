@@ -99,6 +99,10 @@ try "cannot be made" "$scene" --output "$out/file/below"
 for threads in -1 1.5 2x 0x2 "1 2" 100000 99999999999999999999 nan 0,5; do
   try "--threads = $threads, but it must be a whole number from 0" "$scene" --output "$out/results" --quiet --threads="$threads"
 done
+OMP_NUM_THREADS=100000
+export OMP_NUM_THREADS
+try "OMP_NUM_THREADS = 100000, but it must be a whole number from 0" "$scene" --output "$out/results" --quiet
+unset OMP_NUM_THREADS
 try "--set = nonsense, but it must be section.key=value" "$scene" --output "$out/results" --set nonsense
 try "--set = a=b, but it must be section.key=value" "$scene" --output "$out/results" --set a=b
 try "--set = .a=b, but it must be section.key=value" "$scene" --output "$out/results" --set .a=b
