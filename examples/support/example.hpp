@@ -153,7 +153,6 @@ int run(int argc, char** argv, const char* name, const char* description, const 
         std::fprintf(stderr, "%s: %s\n", name, message.c_str());
         return stopped() ? 128 + stop_signal() : 2;
     };
-    std::string at = scene;
     try {
         if (!keys) require_folder(folder);
         SceneReader reader = keys ? SceneReader::of_keys() : SceneReader(scene, set);
@@ -189,10 +188,10 @@ int run(int argc, char** argv, const char* name, const char* description, const 
             return fail(std::string_view(error.what()).substr(0, 2) == "--" ? error.what() : reader.told(error.what()));
         }
     } catch (const std::bad_alloc&) {
-        return fail(at + ": there is not enough memory for this scene (this machine has " + gigabytes(machine_memory()) +
+        return fail(scene + ": there is not enough memory for this scene (this machine has " + gigabytes(machine_memory()) +
                     ", and this process had " + gigabytes(static_cast<double>(peak_memory_bytes())) + ")");
     } catch (const std::length_error&) {
-        return fail(at + ": a count of this scene is larger than memory can hold (this machine has " +
+        return fail(scene + ": a count of this scene is larger than memory can hold (this machine has " +
                     gigabytes(machine_memory()) + ")");
     } catch (const std::exception& error) {
         return fail(error.what());

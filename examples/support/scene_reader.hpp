@@ -49,7 +49,7 @@ public:
             place << " " << error.description();
             throw std::invalid_argument(place.str());
         }
-        for (const std::string& override : overrides) replace(override);
+        for (const std::string& replacement : overrides) replace(replacement);
     }
     /// A reader without a file, that takes down what it is asked for.
     static SceneReader of_keys() {
