@@ -330,7 +330,9 @@ private:
     }
     static std::string quoted(const std::string& text) {
         std::ostringstream out;
-        out << toml::node_view<const toml::node>{toml::value<std::string>{text}};
+        const toml::value<std::string> value{text};
+        const toml::node& node = value;
+        out << toml::node_view<const toml::node>{node};
         return out.str();
     }
     static std::string listed(const std::vector<std::string>& texts) {
