@@ -22,7 +22,7 @@ echo "headers,processor seconds"
 for repeat in $(seq "$repeats"); do
   for kind in with without; do
     "$folder/$kind" "$source/examples/weave/plain.toml" --set warp.fibres=7 --set fabric.elements=16 --set output.paraview=false \
-      --set output.pictures=false --output "$folder/out" --threads 1 --quiet
+      --set output.pictures=false --output "$folder/out" --overwrite --threads 1 --quiet
     echo "$kind,$(seconds)" | tee -a "$folder/runs.csv"
   done
 done

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A woven fabric is settled, put between two layers of matrix, bonded to them, and bent, twisted, drawn or sheared.
-//   composite SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
+//   composite SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "output.hpp"
 #include "scene_file.hpp"
 
@@ -31,15 +31,18 @@ struct Composite : Dry {
 void settle(simulation::Simulator<Dry>& dry, const composite::Scene& scene, const example::Output& output) {
     auto loading = cloth::settling<Dry>(scene.weave.fabric, scene.weave.settle);
     loading.checkpoint = scene.settled.empty() ? (output.folder / "settled.bin").string() : scene.settled;
-    loading.checkpoint_seconds = 1e9, loading.resume = true;
+    loading.checkpoint_seconds = 1e9, loading.resume = output.resume || !scene.settled.empty();
+    loading.scene = scene.weave.told, loading.other_scene = output.other_scene, loading.stop = example::stopped;
     auto progress = example::progress_printer(cloth::smallest_radius(scene.weave.fabric), 0, output.quiet);
     const simulation::Report report = dry.run(loading, progress);
     if (!report.converged) throw std::runtime_error("the fabric did not settle: " + report.reason);
 }
 
-bool solve(example::TomlReader& file, const example::Output& output) {
-    const composite::Scene scene = composite::read_scene(file, output.scene.string());
+bool solve(example::SceneReader& file, example::Output& output) {
+    const composite::Scene scene = composite::read_scene(file);
     const cloth::FabricParameters& fabric = scene.weave.fabric;
+    output.keep(file, "load", "settled", scene.settled);
+    output.open(file);
     const scene::Assembly flat = cloth::flat_fabric(fabric, scene.weave.settle.tension_strain);
     auto dry_parameters = cloth::model_parameters<Dry>(fabric, scene.weave.settle);
     dry_parameters.iteration = scene.weave.iteration;
@@ -69,7 +72,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
         return watch.columns(point(edge), edge);
     });
     auto loading = parts::loading_of<Composite>(fabric, scene.weave.settle, scene.load);
-    loading.checkpoint = output.checkpoint(), loading.checkpoint_seconds = 20.0, loading.resume = output.resume;
+    output.tell(loading, 20.0);
     const simulation::Report report = simulator.run(loading, watch, recorder);
     const composite::CurvePoint end = point(parts::edge_wrench(simulator, composite));
     composite::write_curve(output, end);

@@ -6,6 +6,8 @@
 
 #include <fibrant/compositions/composite/composite_parameters.hpp>
 
+#include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <string>
 
@@ -23,55 +25,84 @@ struct Scene {
 };
 
 /// Throws std::invalid_argument, "file: section.key = value, but it must be bound".
-inline Scene read_scene(example::TomlReader& file, const std::string& path) {
+inline Scene read_scene(example::SceneReader& file) {
     Scene scene;
-    scene.weave = weave::read_fabric(file, path, false);
     parts::MatrixParameters& matrix = scene.matrix;
     parts::LoadParameters& load = scene.load;
-    file.require("matrix", "young_modulus", matrix.material.young_modulus);
-    file.require("matrix", "poisson_ratio", matrix.material.poisson_ratio);
-    file.require("matrix", "cover", matrix.cover);
-    file.require("matrix", "cells_along", matrix.cells_along);
-    matrix.cells_across = matrix.cells_along;
-    file.read("matrix", "cells_across", matrix.cells_across);
-    file.read("matrix", "through", matrix.through);
-    file.read("matrix", "grading", matrix.grading);
-    file.read("matrix", "smoothing", matrix.smoothing);
-    file.read("matrix", "penetration_depth_over_radius", matrix.penetration_depth_over_radius);
-    file.read("matrix", "clearance_over_radius", matrix.clearance_over_radius);
-    file.read("matrix", "least_thickness_over_cover", matrix.least_thickness_over_cover);
-    file.read("matrix", "bonding_factor", matrix.bonding_factor);
-    file.read("matrix", "section_factor", matrix.section_factor);
-    file.read("matrix", "lower_fibres", matrix.lower_fibres);
     std::string sides = "both", kind = "bending";
     bool clip = true;
-    file.read("matrix", "sides", sides, {"both", "upper", "lower"});
-    file.read("matrix", "clip", clip);
+    const auto keys = [&] {
+        file.require("matrix", "young_modulus", matrix.material.young_modulus, example::positive(), "force/length^2",
+                     "of the matrix");
+        file.require("matrix", "poisson_ratio", matrix.material.poisson_ratio, example::poisson_ratio(), "1", "of the matrix");
+        file.require("matrix", "cover", matrix.cover, example::positive(), "length", "of matrix beyond the outermost fibre");
+        file.require("matrix", "cells_along", matrix.cells_along, example::between(1, 2000), "along the warp");
+        matrix.cells_across = matrix.cells_along;
+        file.read("matrix", "cells_across", matrix.cells_across, example::between(1, 2000),
+                  "along the weft; as cells_along if left out");
+        file.read("matrix", "through", matrix.through, example::between(1, 100), "cells through each layer");
+        file.read("matrix", "grading", matrix.grading, example::between(0.01, 100.0), "1",
+                  "height of the outermost cell over that of the innermost");
+        file.read("matrix", "smoothing", matrix.smoothing, example::between(0, 1000), "passes over the inner faces");
+        file.read("matrix", "penetration_depth_over_radius", matrix.penetration_depth_over_radius, example::between(0.0, 1e3),
+                  "1", "of the inner faces below the fibres' surface");
+        file.read("matrix", "clearance_over_radius", matrix.clearance_over_radius, example::above(0.0, 1e3), "1",
+                  "between the inner faces");
+        file.read("matrix", "least_thickness_over_cover", matrix.least_thickness_over_cover, example::above(0.0, 1.0), "1",
+                  "of a layer");
+        file.read("matrix", "bonding_factor", matrix.bonding_factor, example::above(0.0, 1e9), "1",
+                  "on the stiffness of the bonds");
+        file.read("matrix", "section_factor", matrix.section_factor, example::between(0.0, 1e9), "1",
+                  "on that of bonds of sections; 0: none");
+        file.read("matrix", "lower_fibres", matrix.lower_fibres,
+                  "fibres' modulus is lowered by that of the matrix, which fills their place too");
+        file.read("matrix", "sides", sides, {"both", "upper", "lower"}, "of the fabric on which there is matrix");
+        file.read("matrix", "clip", clip, "inner faces that would cross are clipped; otherwise the scene is refused");
+        file.read("load", "case", kind, {"tension", "shear", "bending", "twisting"},
+                  "what the two edges across the warp do to each other");
+        file.read("load", "strain", load.strain, example::inside(-0.9, 10.0), "1", "of tension, or angle of shear");
+        file.read("load", "angle_deg", load.angle_deg, example::between(-180.0, 180.0), "degree",
+                  "between the edges in bending and twisting");
+        file.read("load", "increments", load.increments, example::increments(), "of the load");
+        file.read("load", "looseness", load.looseness, example::looseness(), "1", "on the tolerances of passes");
+        file.read("load", "rest_damping", load.rest_damping, example::between(0.0, 1e6), "1",
+                  "of springs to last places until the fabric is at rest between the layers");
+        file.read("load", "rest_share", load.rest_share, example::inside(0.0, 1.0), "1",
+                  "of the forces that they may hold there");
+        file.read("load", "damping", load.damping, example::between(0.0, 1e6), "1", "of the same springs under load");
+        file.read("load", "patches_across", load.patches_across, example::between(0, 10000),
+                  "of a layer's face, whose means the edges take along; 0: as many as warp tows");
+        file.read("load", "one_by_one", load.one_by_one, "edges take along every fibre end, and not the mean of each tow's");
+        file.read("load", "driven", load.driven, "edges follow rigid motions node by node");
+        file.read("load", "settled", scene.settled, example::any_text(),
+                  "checkpoint of the weave's settled state; empty: settled.bin in the folder of results");
+        file.is_a_place("load", "settled");
+        file.read("solver", "overshoot", scene.overshoot, {.low = 0.0, .high = 1e6, .above = true, .endless = true}, "1",
+                  "as settle.overshoot, under load");
+        file.read("solver", "carried", scene.carried, "the part of the preconditioner in which the matrix takes fibres along");
+    };
+    file.names({{"MatrixParameters.material.", "matrix."}, {"MatrixParameters.", "matrix."}, {"LoadParameters.", "load."}});
+    scene.weave = weave::read_fabric(file, keys);
     matrix.sides = sides == "both" ? fibrant::solid::Sides::both : sides == "upper" ? fibrant::solid::Sides::upper : fibrant::solid::Sides::lower;
     matrix.crossing = clip ? fibrant::solid::Crossing::clip : fibrant::solid::Crossing::refuse;
-    file.read("load", "case", kind, {"tension", "shear", "bending", "twisting"});
     using parts::LoadCase;
     load.load = kind == "tension" ? LoadCase::tension : kind == "shear" ? LoadCase::shear : kind == "bending" ? LoadCase::bending : LoadCase::twisting;
-    file.read("load", "strain", load.strain);
-    file.read("load", "angle_deg", load.angle_deg);
-    file.read("load", "increments", load.increments);
-    file.read("load", "looseness", load.looseness);
-    file.read("load", "rest_damping", load.rest_damping);
-    file.read("load", "rest_share", load.rest_share);
-    file.read("load", "damping", load.damping);
-    file.read("load", "patches_across", load.patches_across);
-    file.read("load", "one_by_one", load.one_by_one);
-    file.read("load", "driven", load.driven);
-    file.read("load", "settled", scene.settled);
-    file.read("solver", "overshoot", scene.overshoot);
-    file.read("solver", "carried", scene.carried);
-    file.refuse_unknown();
-    try {
-        matrix.validate();
-        load.validate();
-    } catch (const std::invalid_argument& error) {
-        file.rethrow(error, {{"MatrixParameters.material.", "matrix."}, {"MatrixParameters.", "matrix."}, {"LoadParameters.", "load."}});
-    }
+    const auto& fabric = scene.weave.fabric;
+    const double stiffest = std::min(fabric.warp.material.young_modulus, fabric.weft.material.young_modulus),
+                 thickest = std::max(fabric.warp.fibre_radius, fabric.weft.fibre_radius);
+    if (matrix.lower_fibres)
+        file.check(matrix.material.young_modulus < stiffest, "matrix", "young_modulus",
+                   "< that of the fibres, " + fibrant::core::text(stiffest) + ", which matrix.lower_fibres lowers by it");
+    file.check(matrix.cover <= 1e4 * thickest, "matrix", "cover",
+               "<= 10000 radii of a fibre = " + fibrant::core::text(1e4 * thickest));
+    if (!scene.settled.empty())
+        file.check(std::filesystem::is_regular_file(scene.settled), "load", "settled", "a checkpoint that is there");
+    const double solid = 6.0 * static_cast<double>(matrix.cells_along + 1) * static_cast<double>(matrix.cells_across + 1) *
+                         static_cast<double>(matrix.through + 1);
+    example::require_room(file, "matrix", matrix.cells_along >= matrix.cells_across ? "cells_along" : "cells_across", solid,
+                          6000.0);
+    matrix.validate();
+    load.validate();
     return scene;
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A dense mat of random fibres is pressed from level to level, of one seed or of several; prints pressure and contacts of each at rest.
-//   dense_mat SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--quiet]
+// A dense mat of random fibres is pressed from level to level, of one seed or of several; prints pressure and contacts of each at
+// rest.
+//   dense_mat SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
 #include <fibrant/compositions/mat/levels.hpp>
@@ -12,6 +14,8 @@
 #include <fibrant/observe/svg_plot.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/float_block_cholesky.hpp>
+
+#include <cmath>
 
 using namespace fibrant;
 namespace mat = compositions::mat;
@@ -37,29 +41,59 @@ observe::PlotLine write_levels(observe::CsvWriter& table, std::uint64_t seed, co
     return line;
 }
 
-bool solve(example::TomlReader& file, const example::Output& output) {
+bool solve(example::SceneReader& file, example::Output& output) {
     mat::MatParameters parameters{.radius = 1.0, .cut = true, .clearance = -2.0, .material = {1.0, 0.2}};  // fibres may lie in each other
     mat::LevelParameters levels;
     double fraction = core::unset;
     Index seed = 1, seeds = 1;
-    file.require("mat", "length", parameters.length), file.require("mat", "width", parameters.width), file.require("mat", "fibres", parameters.fibres);
-    file.require("mat", "volume_fraction", fraction);
-    file.read("mat", "tilt_deg", parameters.tilt_deg), file.read("mat", "elements", parameters.elements);
-    file.read("mat", "seed", seed), file.read("mat", "seeds", seeds);
-    file.read("contact", "friction_coefficient", levels.friction_coefficient);
-    file.read("contact", "allowed_penetration_over_radius", levels.allowed_penetration);
-    file.read("contact", "softest_over_section", levels.softest);
-    file.require("levels", "last", levels.last);
-    file.read("levels", "ratio", levels.ratio), file.read("levels", "step", levels.step), file.read("levels", "damping", levels.damping);
-    file.read("levels", "rest_share", levels.rest_share), file.read("levels", "rest_increments", levels.rest_increments);
-    file.refuse_unknown();
-    core::require_positive("mat.volume_fraction", fraction);
+    file.require("mat", "length", parameters.length, example::between(2.0, 1e5), "radius", "of a fibre");
+    file.require("mat", "width", parameters.width, example::between(3.0, 1e5), "radius", "of the box along x and y");
+    file.require("mat", "fibres", parameters.fibres, example::between(1, 1000000), "lengths of a fibre in the box");
+    file.require("mat", "volume_fraction", fraction, example::inside(0.0, 0.9), "1", "of fibres in the box, to begin with");
+    file.read("mat", "tilt_deg", parameters.tilt_deg, example::between(0.0, 90.0), "degree",
+              "greatest angle to the plane; 90: all directions");
+    file.read("mat", "elements", parameters.elements, example::between(1, 10000), "a length of fibre");
+    file.read("mat", "seed", seed, example::between(0, 1e15), "of the random numbers");
+    file.read("mat", "seeds", seeds, example::between(1, 1000),
+              "so many mats, one after the other; each then has a folder of its own");
+    file.read("contact", "friction_coefficient", levels.friction_coefficient, example::friction(), "1",
+              "of fibres on each other, once they are parted");
+    file.read("contact", "allowed_penetration_over_radius", levels.allowed_penetration, example::depth_over_radius(), "1",
+              "to which the penalty is adapted");
+    file.read("contact", "softest_over_section", levels.softest, example::above(0.0, 1.0), "1",
+              "least stiffness of a contact, of that of a section");
+    file.require("levels", "last", levels.last, example::inside(0.0, 0.9), "1", "volume fraction that no level exceeds");
+    file.read("levels", "ratio", levels.ratio, {.low = 1.001, .high = 10.0}, "1", "of the volume fractions of two levels");
+    file.read("levels", "step", levels.step, example::between(1e-4, 1e3), "radius", "of the plate in an increment");
+    file.read("levels", "damping", levels.damping, example::above(0.0, 1e6), "1",
+              "springs to where the mat's mean motion takes a fibre, over what bends a tenth of it");
+    file.read("levels", "rest_share", levels.rest_share, example::inside(0.0, 1.0), "1",
+              "at rest, springs hold no more than this of the forces,");
+    file.read("levels", "rest_increments", levels.rest_increments, example::between(1, 100000),
+              "or so many increments have gone by");
+    file.complete();
+    file.check(levels.last >= fraction * levels.ratio, "levels", "last",
+               ">= levels.ratio mat.volume_fraction = " + core::text(fraction * levels.ratio) + ", or there is no level");
     parameters.height = parameters.volume_fraction(1.0) / fraction;
+    file.check(parameters.height > 2.0, "mat", "fibres",
+               ">= " + core::text(std::ceil(2.0 * static_cast<double>(parameters.fibres) / parameters.height)) +
+                   ", or the box is no higher than a fibre");
+    file.check(parameters.height <= 1e5, "mat", "fibres",
+               "<= " + core::text(std::floor(1e5 * static_cast<double>(parameters.fibres) / parameters.height)) +
+                   ", or the box is higher than 100000 radii");
+    example::require_element(file, "mat", parameters.elements, parameters.length, 1.0);
+    example::require_room(file, "mat", "fibres",
+                          3.0 * static_cast<double>(parameters.fibres) * (2.0 * static_cast<double>(parameters.elements) + 1.0),
+                          6000.0);
+    file.names({{"MatParameters.height", "mat.volume_fraction is too large: the height of the box"},
+                {"MatParameters.", "mat."},
+                {"LevelParameters.", "levels."}});
+    output.open(file);
 
     observe::CsvWriter table(output.folder / "levels.csv");
     observe::LogLogPlot plot{"pressure on the plates", "volume fraction", "pressure over modulus", {}};
     bool converged = true;
-    for (Index k = 0; k < seeds; ++k) {
+    for (Index k = 0; k < seeds && !example::stopped(); ++k) {
         parameters.seed = static_cast<std::uint64_t>(seed + k);
         example::Output own = output;
         if (seeds > 1) own.folder /= "seed_" + std::to_string(seed + k), std::filesystem::create_directories(own.folder);
@@ -70,7 +104,9 @@ bool solve(example::TomlReader& file, const example::Output& output) {
                     {"contacts_per_fibre", state.contacts_per_fibre}, {"contacts_without_bulk", state.contacts_without_bulk}, {"elastic_energy", state.elastic_energy}};
         });
         mat::LevelRecord<Mat> record(simulator, parameters);
-        const simulation::Report report = simulator.run(mat::pressing_by_levels<Mat>(parameters, levels), recorder, record);
+        simulation::Loading<Mat> loading = mat::pressing_by_levels<Mat>(parameters, levels);
+        loading.stop = example::stopped;
+        const simulation::Report report = simulator.run(loading, recorder, record);
         const simulation::Audit audit = example::audit(own, simulator, 1.0);
         converged = converged && report.converged && audit.clean();
         plot.lines.push_back(write_levels(table, parameters.seed, record.levels()));
@@ -82,5 +118,5 @@ bool solve(example::TomlReader& file, const example::Output& output) {
 }
 
 int main(int argc, char** argv) {
-    return example::run(argc, argv, "dense_mat", "Presses a dense mat of random fibres from level to level.", solve);
+    return example::run(argc, argv, "dense_mat", "Presses a dense mat of random fibres from level to level.", solve, false);
 }

@@ -2,21 +2,25 @@
 #pragma once
 /// @file The scene of a load case as a TOML file: the settled fabric, the case, and a programme with a section a stage.
 
-#include "../support/toml_reader.hpp"
+#include "../support/scene_reader.hpp"
 #include "../weave/scene_file.hpp"
 
 #include <fibrant/compositions/weave/load_cases.hpp>
 #include <fibrant/compositions/weave/settle.hpp>
 #include <fibrant/simulation/programme.hpp>
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace fabric_loading {
 
 namespace cloth = fibrant::compositions::weave;
-using example::TomlReader;
+using example::SceneReader;
 using fibrant::Index;
 
 /// Everything that a run is told.
@@ -31,88 +35,142 @@ struct LoadFile {
 };
 
 /// A ramp as "channel = value".
-inline fibrant::simulation::Ramp read_ramp(TomlReader& file, const std::string& section, const std::string& text) {
+inline fibrant::simulation::Ramp read_ramp(const SceneReader& file, const std::string& section, const std::string& text) {
     const std::size_t equals = text.find('=');
     fibrant::simulation::Ramp ramp;
-    std::size_t used = 0;
-    try {
-        if (equals == std::string::npos) throw std::invalid_argument("no =");
-        ramp.channel = text.substr(0, text.find_last_not_of(' ', equals - 1) + 1);
-        ramp.to = std::stod(text.substr(equals + 1), &used);
-    } catch (const std::exception&) {
-        file.refuse(section, "ramps", "a list of texts \"channel = value\"");
-    }
+    const auto trimmed = [](const std::string& part) {
+        const std::size_t first = part.find_first_not_of(' ');
+        return first == std::string::npos ? std::string() : part.substr(first, part.find_last_not_of(' ') - first + 1);
+    };
+    if (equals == std::string::npos) file.refuse(section, "ramps", "a list of texts \"channel = value\"");
+    ramp.channel = trimmed(text.substr(0, equals));
+    const std::string value = trimmed(text.substr(equals + 1));
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), ramp.to);
+    if (ramp.channel.empty() || error != std::errc{} || end != value.data() + value.size() || !(std::abs(ramp.to) <= 1e6))
+        file.refuse(section, "ramps",
+                    "a list of texts \"channel = value\", the value a number from -1000000 to 1000000 and nothing behind it");
     return ramp;
 }
 
 /// A section of the file as a stage.
-inline fibrant::simulation::ProgrammeStage read_stage(TomlReader& file, const std::string& name) {
+inline fibrant::simulation::ProgrammeStage read_stage(SceneReader& file, const std::string& name) {
     fibrant::simulation::ProgrammeStage stage;
     stage.name = name;
     std::vector<std::string> ramps;
-    file.require(name, "increments", stage.increments);
-    file.read(name, "ramps", ramps);
-    file.read(name, "cycles", stage.cycles);
-    file.read(name, "back", stage.back);
-    file.read(name, "rest", stage.rest);
-    file.read(name, "damping", stage.damping);
-    file.read(name, "looseness", stage.looseness);
-    double coefficient = 0.0;
-    if (file.read(name, "friction_coefficient", coefficient)) stage.friction = coefficient;
+    file.require(name, "increments", stage.increments, example::between(1, 100000), "of each ramp");
+    file.read(name, "ramps", ramps, "texts \"channel = value\": where they go");
+    file.read(name, "cycles", stage.cycles, example::between(0, 10000), "times there and back again; 0: there, and no further");
+    file.read(name, "back", stage.back, example::between(-1e6, 1e6), "1", "where each cycle ends");
+    file.read(name, "rest", stage.rest, "goes on until forces balance, after its ramps");
+    file.read(name, "damping", stage.damping, example::between(0.0, 1e6), "1",
+              "springs to last places, over the stiffness that the tension of settling gave a node");
+    file.read(name, "looseness", stage.looseness, example::looseness(), "1", "on the tolerances of passes");
+    double coefficient = fibrant::core::unset;
+    if (file.read(name, "friction_coefficient", coefficient, example::friction(), "1", "from here on; left out: as before"))
+        stage.friction = coefficient;
     for (const std::string& text : ramps) stage.ramps.push_back(read_ramp(file, name, text));
     return stage;
 }
 
 /// @param file  of the load case; paths in it count from its folder
-inline LoadFile read_load_file(TomlReader& file, const std::filesystem::path& folder) {
+inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& folder) {
     LoadFile load;
     std::string scene;
     std::vector<std::string> set, stages;
-    file.require("settled", "scene", scene);
-    file.read("settled", "set", set);
-    file.require("settled", "checkpoint", load.checkpoint);
-    file.read("settled", "parts", load.parts);
-    if (load.parts < 1 || load.parts > 8) file.refuse("settled", "parts", ">= 1 and <= 8");
-    file.require("loading", "case", load.name);
+    file.require("settled", "scene", scene, example::any_text(), "the scene that was settled, from the folder of this file");
+    file.read("settled", "set", set, "values that were replaced then");
+    file.require("settled", "checkpoint", load.checkpoint, example::any_text(), "what it left, from the working folder");
+    for (const char* key : {"scene", "set", "checkpoint"}) file.is_a_place("settled", key);
+    file.read("settled", "parts", load.parts, example::between(1, 8), "that each element is cut into");
+    file.require("loading", "case", load.name, cloth::load_case_names(), "what is done to the fabric");
     std::string ends = cloth::tow_ends_names().front();
-    file.read("loading", "tow_ends", ends);
-    const auto found = std::find(cloth::tow_ends_names().begin(), cloth::tow_ends_names().end(), ends);
-    if (found == cloth::tow_ends_names().end()) file.refuse("loading", "tow_ends", "kept, spread, free or fibres");
-    load.tow_ends = static_cast<cloth::TowEnds>(found - cloth::tow_ends_names().begin());
-    file.require("loading", "stages", stages);
-    load.scene = weave::read_scene((folder / scene).string(), set);
-    const double r = cloth::smallest_radius(load.scene.fabric), allowed = load.scene.settle.allowed_penetration_over_radius * r;
-    double friction = load.scene.settle.friction_coefficient, rest_motion = load.scene.settle.rest_motion_over_radius, largest = 1.0, calm = 0.15;
+    file.read("loading", "tow_ends", ends, cloth::tow_ends_names(), "what tow ends do along their edge");
+    file.require("loading", "stages", stages, "a section for each, in this order");
     auto& programme = load.programme;
-    programme.rest_share = load.scene.settle.rest_share;
-    file.read("loading", "halvings", programme.halvings);
-    file.read("loading", "friction_coefficient", friction);
-    file.read("loading", "rest_motion_over_radius", rest_motion);
-    file.read("loading", "rest_share", programme.rest_share);
-    file.read("loading", "largest_displacement_over_radius", largest);
-    file.read("loading", "calm_over_radius", calm);
+    double friction = fibrant::core::unset, rest_motion = fibrant::core::unset, rest_share = fibrant::core::unset, largest = 1.0,
+           calm = 0.15;
+    file.read("loading", "halvings", programme.halvings, example::between(0, 16), "of all increments of ramps");
+    file.read("loading", "friction_coefficient", friction, example::friction(), "1",
+              "from the first stage on; as the settled scene has it if left out");
+    file.read("loading", "rest_motion_over_radius", rest_motion, example::above(0.0, 10.0), "1",
+              "as the settled scene has it if left out");
+    file.read("loading", "rest_share", rest_share, example::above(0.0, 0.01), "1", "as the settled scene has it if left out");
+    file.read("loading", "largest_displacement_over_radius", largest, example::above(0.0, 1e6), "1", "of an increment");
+    file.read("loading", "calm_over_radius", calm, example::above(0.0, 1e6), "1",
+              "greatest displacement of an increment after which damping falls");
+    file.read("contact", "points_per_element", load.points_per_element, example::between(0, 100),
+              "contact points; 0: as in settling");
+    auto& iteration = load.scene.iteration;
+    std::string solver = load.scene.linear_solver;
+    fibrant::solver::IterationParameters told;
+    told.newton_limit = 30;  // near locking solutions take up to 25 iterations, and an attempt that is given up more
+    told.overshoot = 0.5;
+    weave::read_iteration(file, solver, told);
+    file.read("solver", "overshoot", told.overshoot, {.low = 0.0, .high = 1e6, .above = true, .endless = true}, "1",
+              "a step at whose end the energy rises by more than this part of the slope at which it fell is cut");
+    if (file.describes()) read_stage(file, "STAGE");
+    const std::vector<std::string> known{"settled", "loading", "contact", "solver",   "output",
+                                         "fabric",  "warp",    "weft",    "material", "settle"};
+    for (const std::string& name : stages) {
+        if (std::find(known.begin(), known.end(), name) != known.end())
+            file.refuse("loading", "stages", "a list of names of stages, and \"" + name + "\" is a section of another kind");
+        programme.stages.push_back(read_stage(file, name));
+    }
+    for (const std::string& name : file.sections_with("increments"))
+        read_stage(file, name);  // those that this run leaves out are checked as well
+    file.complete();
+    file.check(!stages.empty(), "loading", "stages", "a list of at least one name of a stage");
+    for (const auto& stage : programme.stages)
+        file.check(
+            static_cast<double>(stage.increments) * std::exp2(static_cast<double>(programme.halvings)) <= 1e6, stage.name,
+            "increments",
+            "<= 1000000 / 2^loading.halvings = " + fibrant::core::text(1e6 / std::exp2(static_cast<double>(programme.halvings))));
+    load.tow_ends = static_cast<cloth::TowEnds>(std::find(cloth::tow_ends_names().begin(), cloth::tow_ends_names().end(), ends) -
+                                                cloth::tow_ends_names().begin());
+    try {
+        load.scene = weave::read_scene((folder / scene).string(), set);
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(file.file() + ": settled.scene" + (set.empty() ? "" : ", settled.set") + ": " + error.what());
+    }
+    // What this file says goes before what the settled scene says.
+    const auto take = [&](const char* key, auto& to, const auto& from) {
+        if (file.given("solver", key)) to = from;
+    };
+    take("linear_solver", load.scene.linear_solver, solver);
+    take("step_tolerance", iteration.step_tolerance, told.step_tolerance),
+        take("residual_tolerance", iteration.residual_tolerance, told.residual_tolerance);
+    take("contact_tolerance", iteration.contact_tolerance, told.contact_tolerance),
+        take("linear_tolerance", iteration.linear_tolerance, told.linear_tolerance);
+    take("normal_limit", iteration.normal_limit, told.normal_limit),
+        take("contact_limit", iteration.contact_limit, told.contact_limit), take("mixed", iteration.mixed, told.mixed);
+    iteration.newton_limit = told.newton_limit, iteration.overshoot = told.overshoot;
+    const double r = cloth::smallest_radius(load.scene.fabric), allowed = load.scene.settle.allowed_penetration_over_radius * r;
+    if (std::isnan(friction)) friction = load.scene.settle.friction_coefficient;
+    if (std::isnan(rest_motion)) rest_motion = load.scene.settle.rest_motion_over_radius;
+    programme.rest_share = std::isnan(rest_share) ? load.scene.settle.rest_share : rest_share;
     programme.rest_motion = rest_motion * r, programme.rest_penetration = 2.0 * allowed, programme.largest_displacement = largest * r;
     programme.calm = calm * r;
     programme.reversible_displacement = std::max(0.02 * r, friction * allowed);
     // Of a length of fibre, however many nodes it has.
     programme.damping = cloth::node_stiffness(load.scene.fabric, load.scene.settle.tension_strain) / static_cast<double>(load.parts);
     load.settled_fabric = load.scene.fabric, load.scene.fabric.elements *= load.parts;
-    file.read("contact", "points_per_element", load.points_per_element);
-    file.read("solver", "linear_solver", load.scene.linear_solver);
-    file.read("solver", "contact_tolerance", load.scene.iteration.contact_tolerance);
-    file.read("solver", "residual_tolerance", load.scene.iteration.residual_tolerance);
-    file.read("solver", "step_tolerance", load.scene.iteration.step_tolerance);
-    file.read("solver", "linear_tolerance", load.scene.iteration.linear_tolerance);
-    load.scene.iteration.newton_limit = 30;  // near locking solutions take up to 25 iterations, and an attempt that is given up more
-    file.read("solver", "newton_limit", load.scene.iteration.newton_limit);
-    load.scene.iteration.overshoot = 0.5;
-    file.read("solver", "overshoot", load.scene.iteration.overshoot);
-    for (const std::string& name : stages) programme.stages.push_back(read_stage(file, name));
-    if (!stages.empty() && !programme.stages.front().friction) programme.stages.front().friction = friction;
-    for (const std::string& name : file.sections_with("increments")) read_stage(file, name);  // those that this run leaves out are checked as well
-    file.refuse_unknown();
+    example::require_room(
+        file, "settled", "parts",
+        9.0 * static_cast<double>(load.scene.fabric.fibres()) * static_cast<double>(load.scene.fabric.nodes_per_fibre()));
+    if (!programme.stages.front().friction) programme.stages.front().friction = friction;
+    file.names({{"LoadProgramme.", "loading."}, {"load_case.name", "loading.case"}});
     programme.validate();
     return load;
+}
+
+/// Refuses ramps of channels that the load case does not have.
+inline void require_channels(const SceneReader& file, const LoadFile& load, const std::vector<std::string>& channels) {
+    std::string all;
+    for (const std::string& name : channels) all += (all.empty() ? "" : ", ") + name;
+    for (const auto& stage : load.programme.stages)
+        for (const auto& ramp : stage.ramps)
+            file.check(std::find(channels.begin(), channels.end(), ramp.channel) != channels.end(), stage.name, "ramps",
+                       "of the channels of loading.case = " + load.name + ": " + all);
 }
 
 }  // namespace fabric_loading

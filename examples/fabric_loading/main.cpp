@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Load cases of a dry woven fabric, from the settled state that `weave` has written.
-//   fabric_loading CASE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
+//   fabric_loading CASE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "load_file.hpp"
 #include "output.hpp"
 
@@ -10,6 +10,10 @@
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/simulation/refined_state.hpp>
 #include <fibrant/solver/any_solver.hpp>
+
+#include <optional>
+#include <stdexcept>
+#include <string>
 
 using namespace fibrant;
 namespace cloth = compositions::weave;
@@ -24,7 +28,7 @@ struct LoadedWeave {
     using Connections = connection::RigidBodies;
 };
 
-bool solve(example::TomlReader& file, const example::Output& output) {
+bool solve(example::SceneReader& file, example::Output& output) {
     const fabric_loading::LoadFile load = fabric_loading::read_load_file(file, output.scene.parent_path());
     const cloth::FabricParameters& fabric = load.scene.fabric;
     const double radius = cloth::smallest_radius(fabric);
@@ -37,18 +41,33 @@ bool solve(example::TomlReader& file, const example::Output& output) {
         return beam::Mesh<LoadedWeave::Beam>(fibres, LoadedWeave::Beam(parameters.beam));
     };
     const auto mesh = mesh_of(fabric);
+    output.keep(file, "settled", "checkpoint", load.checkpoint);
+    if (!output.other_scene)
+        example::require_scene_of(load.checkpoint, load.scene.told, file.file() + ": settled.checkpoint", weave::fabric_sections);
+    const auto checkpoint = [&](const auto& read) {
+        try {
+            return read();
+        } catch (const std::runtime_error& error) {
+            file.refuse("settled", "checkpoint", std::string("what this fabric left, and ") + error.what());
+        }
+    };
     std::string start = load.checkpoint;
+    std::optional<simulation::StoredState<LoadedWeave>> refined;
     if (load.parts > 1) {
         const auto coarse = mesh_of(load.settled_fabric);
-        start = (output.folder / "refined.bin").string();
-        simulation::write_state<LoadedWeave>(start, mesh, simulation::refined(simulation::read_state<LoadedWeave>(load.checkpoint, coarse), coarse, mesh, load.parts));
+        refined = simulation::refined(checkpoint([&] { return simulation::read_state<LoadedWeave>(load.checkpoint, coarse); }),
+                                      coarse, mesh, load.parts);
     }
-    const observe::Snapshot settled = simulation::snapshot_of(mesh, simulation::checkpoint_state(start, mesh));
+    const Vector state = refined ? refined->state : checkpoint([&] { return simulation::checkpoint_state(start, mesh); });
+    const observe::Snapshot settled = simulation::snapshot_of(mesh, state);
     const cloth::LoadCase scene = cloth::load_case(load.name, settled, fabric, load.tow_ends);
+    fabric_loading::require_channels(file, load, connection::Channels(scene.assembly).names());
     parameters.iteration = load.scene.iteration;
     parameters.solver.strategy = load.scene.linear_solver;
     if (load.points_per_element > 0) parameters.contact.spacing.points_per_element = static_cast<double>(load.points_per_element);
     simulation::Simulator<LoadedWeave> simulator(scene.assembly, parameters);
+    output.open(file, load.scene.told);
+    if (refined) simulation::write_state<LoadedWeave>(start = (output.folder / "refined.bin").string(), mesh, *refined);
     simulator.start_from(start);
     fabric_loading::write_state(output.folder / "before", settled, load.scene, output.pictures);
 
@@ -58,7 +77,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
         return fabric_loading::columns(cloth::load_figures(scene, simulator, now), now, fabric);
     });
     simulation::Loading<LoadedWeave> loading = simulation::loading_of<LoadedWeave>(load.programme);
-    loading.checkpoint = output.checkpoint(), loading.checkpoint_seconds = 20.0, loading.resume = output.resume;
+    output.tell(loading, 20.0);
     const simulation::Report report = simulator.run(loading, recorder);
 
     const observe::Snapshot snapshot = simulator.snapshot();

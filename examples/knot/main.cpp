@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A knot is tied in a straight rod, comes to rest and is drawn tight; prints the pull beside that of loose knots.
-//   knot SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
+//   knot SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/compositions/knot/overhand_knot.hpp>
@@ -9,6 +10,9 @@
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
+
+#include <cmath>
+#include <numbers>
 
 using namespace fibrant;
 namespace knot = compositions::knot;
@@ -21,21 +25,35 @@ struct Knot {
     using Solver = solver::SparseCholesky;
 };
 
-bool solve(example::TomlReader& file, const example::Output& output) {
+bool solve(example::SceneReader& file, example::Output& output) {
     knot::KnotParameters parameters;
     Index crossings = 3, increments = 20;
     double drawn = 0.0, mu = 0.0;
-    file.require("knot", "radius", parameters.radius);
-    file.require("knot", "loop_radius", parameters.loop_radius);
-    file.require("knot", "tail", parameters.tail);
-    file.read("knot", "crossings", crossings);
-    file.read("knot", "elements", parameters.elements);
-    file.require("material", "young_modulus", parameters.material.young_modulus);
-    file.require("material", "poisson_ratio", parameters.material.poisson_ratio);
-    file.read("contact", "friction_coefficient", mu);
-    file.read("loading", "draw", drawn);
-    file.read("loading", "increments", increments);
-    file.refuse_unknown();
+    file.require("knot", "radius", parameters.radius, example::positive(), "length", "of the rod");
+    file.require("knot", "loop_radius", parameters.loop_radius, example::positive(), "length", "that the knot is tied with");
+    file.require("knot", "tail", parameters.tail, example::positive(), "length", "on each side");
+    file.read("knot", "crossings", crossings,
+              {.low = 3, .high = 15, .said = "an odd number from 3 to 15", .values = {3, 5, 7, 9, 11, 13, 15}},
+              "of the braid: 3 overhand, 5 double overhand");
+    file.read("knot", "elements", parameters.elements, example::between(16, 100000), "quadratic elements");
+    example::read_material(file, "material", parameters.material);
+    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "of the rod on itself");
+    file.read("loading", "draw", drawn, example::not_negative(), "length", "by which one end is drawn out");
+    file.read("loading", "increments", increments, example::increments(), "of the drawing");
+    file.complete();
+    file.check(parameters.loop_radius > 20.0 * parameters.radius, "knot", "loop_radius",
+               "> 20 knot.radius = " + core::text(20.0 * parameters.radius));
+    file.check(parameters.loop_radius <= 1e5 * parameters.radius, "knot", "loop_radius",
+               "<= 100000 knot.radius = " + core::text(1e5 * parameters.radius));
+    file.check(parameters.tail <= 1000.0 * parameters.loop_radius, "knot", "tail",
+               "<= 1000 knot.loop_radius = " + core::text(1000.0 * parameters.loop_radius));
+    const double around = 2.0 * std::numbers::pi * parameters.loop_radius;
+    file.check(drawn < around, "loading", "draw", "< the length of the loop, " + core::text(around));
+    const double length = 2.0 * parameters.tail + around, element = length / static_cast<double>(parameters.elements);
+    file.check(element >= parameters.radius, "knot", "elements",
+               "<= " + core::text(std::floor(length / parameters.radius)) + ", or elements are shorter than a radius");
+    example::require_room(file, "knot", "elements", example::unknowns_of(1, parameters.elements), 20000.0);
+    file.names({{"KnotParameters.", "knot."}});
     parameters.crossings = static_cast<int>(crossings);
     parameters.validate();
 
@@ -51,6 +69,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     model.iteration.newton_limit = 30;
     simulation::Simulator<Knot> simulator(knot::tied_rod(parameters), model);
     const auto loose = [&](const knot::KnotState& state) { return 0.5 * bending * std::pow(2.0 * std::numbers::pi / state.shortening, 2); };
+    output.open(file);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const knot::KnotState state = knot::measure(simulator, parameters);
         return {{"shortening", state.shortening}, {"force", state.force}, {"force_of_loose_knots", loose(state)}, {"contact_force", state.contact_force}};
@@ -70,7 +89,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
         tighten.friction.emplace(model.friction);
         tighten.damping = 0.1 * settle.damping;  // what slides along itself without friction has nothing else to hold it
     }
-    loading.checkpoint = output.checkpoint(), loading.resume = output.resume;
+    output.tell(loading);
     const simulation::Report report = simulator.run(loading, recorder);
     const knot::KnotState state = knot::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -90.0, 60.0);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Random fibres in a box are compacted by a plate; prints pressure and contacts by volume fraction, beside those of theory.
-//   mat SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
+//   mat SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/compositions/mat/compaction.hpp>
@@ -10,6 +11,8 @@
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/float_block_cholesky.hpp>
+
+#include <cmath>
 
 using namespace fibrant;
 namespace mat = compositions::mat;
@@ -23,34 +26,69 @@ struct Mat {
     using Tools = contact::RigidTools;
 };
 
-bool solve(example::TomlReader& file, const example::Output& output) {
+bool solve(example::SceneReader& file, example::Output& output) {
     mat::MatParameters parameters;
     mat::PressParameters press;
     Index seed = 1;
-    file.require("mat", "radius", parameters.radius);
-    file.require("mat", "length", parameters.length);
-    file.require("mat", "width", parameters.width);
-    file.require("mat", "height", parameters.height);
-    file.require("mat", "fibres", parameters.fibres);
-    file.read("mat", "bend_deg", parameters.bend_deg);
-    file.read("mat", "tilt_deg", parameters.tilt_deg);
-    file.read("mat", "elements", parameters.elements);
-    file.read("mat", "seed", seed);
-    file.require("material", "young_modulus", parameters.material.young_modulus);
-    file.require("material", "poisson_ratio", parameters.material.poisson_ratio);
-    file.read("contact", "friction_coefficient", press.friction_coefficient);
-    file.read("contact", "allowed_penetration_over_radius", press.allowed_penetration);
-    file.require("loading", "height", press.height);
-    file.read("loading", "increments", press.increments);
-    file.read("loading", "damping", press.damping);
-    file.read("loading", "looseness", press.looseness);
-    file.read("solver", "overshoot", press.overshoot);
-    file.refuse_unknown();
+    file.require("mat", "radius", parameters.radius, example::positive(), "length", "of a fibre");
+    file.require("mat", "length", parameters.length, example::positive(), "length", "of a fibre");
+    file.require("mat", "width", parameters.width, example::positive(), "length", "of the box along x and y");
+    file.require("mat", "height", parameters.height, example::positive(), "length", "of the box");
+    file.require("mat", "fibres", parameters.fibres, example::between(1, 1000000), "in the box");
+    file.read("mat", "bend_deg", parameters.bend_deg, example::between(0.0, 180.0), "degree",
+              "by which fibres turn from end to end, at rest");
+    file.read("mat", "tilt_deg", parameters.tilt_deg, example::between(0.0, 90.0), "degree",
+              "greatest angle to the plane; 90: all directions");
+    file.read("mat", "elements", parameters.elements, example::between(1, 10000), "quadratic elements a fibre");
+    file.read("mat", "seed", seed, example::between(0, 1e15), "of the random numbers");
+    example::read_material(file, "material", parameters.material);
+    file.read("contact", "friction_coefficient", press.friction_coefficient, example::friction(), "1", "of fibres on each other");
+    file.read("contact", "allowed_penetration_over_radius", press.allowed_penetration, example::depth_over_radius(), "1",
+              "to which the penalty is adapted");
+    file.require("loading", "height", press.height, example::positive(), "length", "to which the mat is compacted");
+    file.read("loading", "increments", press.increments, example::increments(), "of the way");
+    file.read("loading", "damping", press.damping, example::above(0.0, 1e6), "1",
+              "springs to where fibres were, over what bends a tenth of a fibre");
+    file.read("loading", "looseness", press.looseness, example::looseness(), "1", "on the tolerances of passes");
+    file.read("solver", "overshoot", press.overshoot, {.low = 0.0, .high = 1e6, .above = true, .endless = true}, "1",
+              "of the energy's slope, at which a step of Newton's method is cut");
+    file.complete();
+    file.check(2.0 * parameters.radius < parameters.width, "mat", "width",
+               "> 2 mat.radius = " + core::text(2.0 * parameters.radius));
+    file.check(2.0 * parameters.radius < parameters.height, "mat", "height",
+               "> 2 mat.radius = " + core::text(2.0 * parameters.radius));
+    file.check(parameters.length >= 2.0 * parameters.radius, "mat", "length",
+               ">= 2 mat.radius = " + core::text(2.0 * parameters.radius));
+    file.check(parameters.length <= 1e5 * parameters.radius, "mat", "length",
+               "<= 100000 mat.radius = " + core::text(1e5 * parameters.radius));
+    file.check(parameters.width <= 1e5 * parameters.radius, "mat", "width",
+               "<= 100000 mat.radius = " + core::text(1e5 * parameters.radius));
+    file.check(parameters.height <= 1e5 * parameters.radius, "mat", "height",
+               "<= 100000 mat.radius = " + core::text(1e5 * parameters.radius));
+    file.check(press.height < parameters.height, "loading", "height", "below mat.height = " + core::text(parameters.height));
+    file.check(press.height > 2.0 * parameters.radius, "loading", "height",
+               "> 2 mat.radius = " + core::text(2.0 * parameters.radius));
+    file.check(static_cast<double>(parameters.elements) >= parameters.bend_deg / 90.0, "mat", "elements",
+               ">= 2: an element may not turn by more than 90 degrees");
+    const double filled = parameters.volume_fraction(parameters.height);
+    file.check(filled < 0.9, "mat", "fibres",
+               "< " + core::text(std::ceil(0.9 * static_cast<double>(parameters.fibres) / filled)) +
+                   ", which fill nine tenths of the box");
+    const double pressed = parameters.volume_fraction(press.height), least = parameters.height * filled / 0.9;
+    file.check(pressed < 0.9, "loading", "height", "> " + core::text(least) + ", at which fibres fill nine tenths of the box");
+    example::require_element(file, "mat", parameters.elements, parameters.length, parameters.radius);
+    example::require_room(file, "mat", "fibres", example::unknowns_of(parameters.fibres, parameters.elements), 6000.0);
+    file.names({{"MatParameters.", "mat."},
+                {"PressParameters.allowed_penetration", "contact.allowed_penetration_over_radius"},
+                {"PressParameters.friction_coefficient", "contact.friction_coefficient"},
+                {"PressParameters.overshoot", "solver.overshoot"},
+                {"PressParameters.", "loading."}});
     parameters.seed = static_cast<std::uint64_t>(seed);
 
     const double radius = parameters.radius;
     const auto model = mat::model_parameters<Mat>(parameters, press);
     simulation::Simulator<Mat> simulator(mat::boxed_mat(parameters, mat::random_fibres(parameters)), model);
+    output.open(file);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const mat::MatState state = mat::measure(simulator, parameters);
         return {{"height", state.height}, {"volume_fraction", state.volume_fraction}, {"pressure_over_modulus", state.pressure / parameters.material.young_modulus},
@@ -58,7 +96,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
                 {"contacts_without_bulk", state.contacts_without_bulk}, {"sine", state.sine}, {"elastic_energy", state.elastic_energy}};
     });
     simulation::Loading<Mat> loading = mat::pressing<Mat>(parameters, press);
-    loading.checkpoint = output.checkpoint(), loading.resume = output.resume;
+    output.tell(loading);
     const simulation::Report report = simulator.run(loading, recorder);
     const mat::MatState state = mat::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 25.0);

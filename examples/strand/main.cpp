@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A strand of helical wires around a core, or a rope of seven such strands, is stretched and turned between two plates; prints force and torque.
-//   strand SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
+// A strand of helical wires around a core, or a rope of seven such strands, is stretched and turned between two plates; prints
+// force and torque.
+//   strand SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/compositions/strand/rope.hpp>
@@ -12,6 +14,8 @@
 #include <fibrant/solver/float_block_cholesky.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 using namespace fibrant;
 namespace strand = compositions::strand;
@@ -32,7 +36,8 @@ struct Scene {
 };
 
 template <class Parameters>
-bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters& parameters, const example::Output& output, std::vector<std::pair<std::string, double>> figures) {
+bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters& parameters, const example::SceneReader& file,
+          example::Output& output, std::vector<std::pair<std::string, double>> figures) {
     const double radius = given.radius;
     simulation::ModelParameters<Strand> model;
     model.normal = {.law = {.regularisation_depth = given.depth * given.allowed * radius}, .largest_penetration = given.sinking * radius};
@@ -43,6 +48,7 @@ bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters&
     model.iteration.normal_step_tolerance = model.iteration.normal_tolerance = 0.1 * given.tolerance;
     model.iteration.contact_tolerance = given.tolerance, model.iteration.newton_limit = 30;
     simulation::Simulator<Strand> simulator(assembly, model);
+    output.open(file);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const strand::StrandState state = strand::measure(simulator, parameters);
         return {{"strain", simulator.amplitude(strand::stretch)}, {"rotation", simulator.amplitude(strand::twist)}, {"force", state.force}, {"torque", state.torque}};
@@ -51,7 +57,7 @@ bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters&
     loading.stages.resize(1);
     loading.stages[0].ramps = {{strand::stretch, given.strain}, {strand::twist, given.rotation}};
     loading.stages[0].increments = given.increments;
-    loading.checkpoint = output.checkpoint(), loading.resume = output.resume;
+    output.tell(loading);
     const simulation::Report report = simulator.run(loading, recorder);
     const strand::StrandState state = strand::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 20.0, std::pair{Index{2}, 0.5 * given.length});
@@ -63,49 +69,88 @@ bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters&
     return report.converged && audit.clean();
 }
 
-bool solve(example::TomlReader& file, const example::Output& output) {
+bool solve(example::SceneReader& file, example::Output& output) {
     Scene given;
     Index wires = 7;
     double core_radius = 0.0, rope_lay = 0.0, apart = 0.0, overlap = 0.0;
     bool alternate = true;
-    file.require("strand", "wires", wires);
-    file.require("strand", "radius", given.radius);
-    file.require("strand", "lay_angle_deg", given.lay);
-    file.require("strand", "length", given.length);
-    file.read("strand", "alternate", alternate);
-    file.read("strand", "core_radius", core_radius);
-    file.read("strand", "elements", given.elements);
-    file.read("rope", "lay_angle_deg", rope_lay);
-    file.read("rope", "apart_over_radius", apart);
-    file.read("rope", "overlap_over_radius", overlap);
-    file.require("material", "young_modulus", given.material.young_modulus);
-    file.require("material", "poisson_ratio", given.material.poisson_ratio);
-    file.read("contact", "friction_coefficient", given.mu);
-    file.read("contact", "reversible_displacement_over_radius", given.reversible);
-    file.read("contact", "largest_penetration_over_radius", given.sinking);
-    file.read("contact", "allowed_penetration_over_radius", given.allowed);
-    file.read("contact", "regularisation_over_allowed", given.depth);
-    file.read("contact", "tolerance_over_radius", given.tolerance);
-    file.read("loading", "strain", given.strain);
-    file.read("loading", "rotation", given.rotation);
-    file.read("loading", "increments", given.increments);
-    file.refuse_unknown();
+    file.require("strand", "wires", wires, example::wires(), "of a strand: a core and layers of 6, 12, 18, 24, 30");
+    file.require("strand", "radius", given.radius, example::positive(), "length", "of the wires");
+    file.require("strand", "lay_angle_deg", given.lay, example::inside(-80.0, 80.0), "degree",
+                 "of the wires to the axis, positive is right-handed");
+    file.require("strand", "length", given.length, example::positive(), "length", "along the axis");
+    file.read("strand", "alternate", alternate, "every other layer has the other hand");
+    file.read("strand", "core_radius", core_radius, example::not_negative(), "length",
+              "of the wire in the middle; 0: as thin as leaves the others room");
+    file.read("strand", "elements", given.elements, example::between(2, 10000), "quadratic elements a wire");
+    file.read("rope", "lay_angle_deg", rope_lay, example::between(-45.0, 45.0), "degree",
+              "of the strands to the axis; 0: one strand");
+    file.read("rope", "apart_over_radius", apart, example::between(0.0, 1.0), "1", "between neighbouring strands");
+    file.read("rope", "overlap_over_radius", overlap, example::between(0.0, 0.5), "1",
+              "by which wires may be in each other at the start");
+    example::read_material(file, "material", given.material);
+    file.read("contact", "friction_coefficient", given.mu, example::friction(), "1", "of wires on each other");
+    file.read("contact", "reversible_displacement_over_radius", given.reversible, example::above(0.0, 1.0), "1",
+              "of friction, before it slides");
+    file.read("contact", "largest_penetration_over_radius", given.sinking, example::depth_over_radius(), "1",
+              "that multipliers leave");
+    file.read("contact", "allowed_penetration_over_radius", given.allowed, example::depth_over_radius(), "1",
+              "to which the penalty is adapted");
+    file.read("contact", "regularisation_over_allowed", given.depth, example::above(0.0, 1.0), "1",
+              "over which the penalty sets in");
+    file.read("contact", "tolerance_over_radius", given.tolerance, example::above(0.0, 0.1), "1",
+              "of contact passes; a tenth of it of normals, a hundredth of Newton's steps");
+    file.read("loading", "strain", given.strain, example::inside(-0.5, 1.0), "1", "by which the strand is drawn");
+    file.read("loading", "rotation", given.rotation, example::any_number(), "radian/length",
+              "positive tightens a right-handed lay");
+    file.read("loading", "increments", given.increments, example::increments(), "of the loading");
+    file.complete();
+    const bool roped = rope_lay != 0.0;
+    if (roped && wires != 7) file.refuse("strand", "wires", "7 in a rope");
+    if (roped && core_radius > 0.0) file.refuse("strand", "core_radius", "left out in a rope, whose cores are found");
+    file.check(core_radius <= 4.0 * given.radius, "strand", "core_radius",
+               "<= 4 strand.radius = " + core::text(4.0 * given.radius));
+    file.check(given.length >= 4.0 * given.radius, "strand", "length", ">= 4 strand.radius = " + core::text(4.0 * given.radius));
+    file.check(given.length <= 1e5 * given.radius, "strand", "length",
+               "<= 100000 strand.radius = " + core::text(1e5 * given.radius));
+    const double turns = given.length * (std::abs(std::tan(given.lay * std::numbers::pi / 180.0)) / (2.0 * given.radius)) /
+                         (2.0 * std::numbers::pi);
+    file.check(static_cast<double>(given.elements) >= 4.0 * turns, "strand", "elements",
+               ">= " + core::text(std::ceil(4.0 * turns)) + ", for wires go around " + core::text(turns) +
+                   " times: an element may not turn by more than 90 degrees");
+    file.check(std::abs(given.rotation) * given.length <= 200.0 * std::numbers::pi, "loading", "rotation",
+               "such that the ends turn by at most 100 turns against each other, <= " +
+                   core::text(200.0 * std::numbers::pi / given.length));
+    file.check(given.strain != 0.0 || given.rotation != 0.0, "loading", "strain",
+               "other than 0 where loading.rotation is 0: nothing would be done");
+    example::require_element(file, "strand", given.elements, given.length, given.radius);
+    example::require_room(file, "strand", "elements", example::unknowns_of(roped ? 49 : wires, given.elements), 6000.0);
+    file.names({{"RopeParameters: least gap", "rope.overlap_over_radius is too small: the least gap"},
+                {"StrandParameters.layers[0]: gap between neighbours",
+                 core_radius > 0.0 ? "strand.core_radius is too small: gap between neighbours"
+                                   : "strand.lay_angle_deg is too large: gap between neighbours"},
+                {"StrandParameters.", "strand."},
+                {"RopeParameters.", "strand."},
+                {"regular_strand.", "strand."},
+                {"Layer.", "strand."}});
     if (rope_lay == 0.0) {
         strand::StrandParameters parameters = strand::regular_strand(wires, given.radius, given.lay, alternate);
         if (core_radius > 0.0) parameters.core_radius = core_radius;
         parameters.length = given.length, parameters.elements = given.elements, parameters.material = given.material;
-        return draw(given, strand::straight_strand(parameters), parameters, output, {});
+        return draw(given, strand::straight_strand(parameters), parameters, file, output, {});
     }
-    if (wires != 7) core::refuse("strand.wires", std::to_string(wires), "7 in a rope");
     strand::RopeParameters rope = strand::rope_of_seven(given.radius, given.lay, rope_lay, given.length, apart * given.radius, overlap * given.radius);
     rope.elements = given.elements, rope.material = given.material;
     const strand::RopeStiffness sliding = strand::stiffness_bound(rope), stuck = strand::stiffness_bound(rope, true);
-    return draw(given, strand::straight_rope(rope), rope, output,
-                {{"least_gap_at_the_start_over_radius", strand::least_gap(rope) / given.radius}, {"helix_radius_over_radius", rope.layers[0].helix_radius / given.radius},
-                 {"core_strand_wires_over_radius", rope.core.layers[0].radius / given.radius}, {"greatest_force", given.strain * sliding.force_by_strain + given.rotation * sliding.torque_by_strain},
-                 {"torque_of_sliding_wires", given.strain * sliding.torque_by_strain + given.rotation * sliding.torque_by_rotation},
-                 {"greatest_force_if_stuck", given.strain * stuck.force_by_strain + given.rotation * stuck.torque_by_strain},
-                 {"torque_of_stuck_wires", given.strain * stuck.torque_by_strain + given.rotation * stuck.torque_by_rotation}});
+    return draw(
+        given, strand::straight_rope(rope), rope, file, output,
+        {{"least_gap_at_the_start_over_radius", strand::least_gap(rope) / given.radius},
+         {"helix_radius_over_radius", rope.layers[0].helix_radius / given.radius},
+         {"core_strand_wires_over_radius", rope.core.layers[0].radius / given.radius},
+         {"greatest_force", given.strain * sliding.force_by_strain + given.rotation * sliding.torque_by_strain},
+         {"torque_of_sliding_wires", given.strain * sliding.torque_by_strain + given.rotation * sliding.torque_by_rotation},
+         {"greatest_force_if_stuck", given.strain * stuck.force_by_strain + given.rotation * stuck.torque_by_strain},
+         {"torque_of_stuck_wires", given.strain * stuck.torque_by_strain + given.rotation * stuck.torque_by_rotation}});
 }
 
 int main(int argc, char** argv) {

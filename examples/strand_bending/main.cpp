@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A strand of 7 to 91 wires with friction is bent to an arc; prints the moment between its bounds, and the time.
-//   strand_bending SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
+//   strand_bending SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/compositions/strand/bending.hpp>
@@ -24,49 +25,66 @@ struct Strand {
     using Solver = solver::FloatBlockCholesky;
 };
 
-strand::Anchor anchor_of(const std::string& name) {
-    if (name == "near_plate") return strand::Anchor::near_plate;
-    if (name != "both_plates") core::refuse("loading.anchor", name, "near_plate or both_plates");
-    return strand::Anchor::both_plates;
-}
-
-strand::Lay lay_of(const std::string& name) {
-    if (name == "equal_angle") return strand::Lay::equal_angle;
-    if (name != "equal_pitch") core::refuse("strand.lay", name, "equal_angle or equal_pitch");
-    return strand::Lay::equal_pitch;
-}
-
-bool solve(example::TomlReader& file, const example::Output& output) {
+bool solve(example::SceneReader& file, example::Output& output) {
     Index wires = 7, elements = 0, increments = 30;
     double radius = core::unset, lay_angle = core::unset, turns = 1.0, length = 0.0, angle = 90.0, mu = 0.1, depth = 0.02, reversible = 0.1;
-    double young_modulus = core::unset, poisson_ratio = core::unset;
+    scene::ElasticMaterial material;
     bool alternate = true;
     std::string anchor = "both_plates", lay = "equal_pitch";
     strand::Bending bending;
-    file.require("strand", "wires", wires);
-    file.require("strand", "radius", radius);
-    file.require("strand", "lay_angle_deg", lay_angle);
-    file.read("strand", "lay", lay);
-    file.read("strand", "alternate", alternate);
-    file.read("strand", "turns", turns);
-    file.read("strand", "length", length);
-    file.read("strand", "elements", elements);
-    file.require("material", "young_modulus", young_modulus);
-    file.require("material", "poisson_ratio", poisson_ratio);
-    file.read("contact", "friction_coefficient", mu);
-    file.read("contact", "reversible_displacement_over_radius", reversible);
-    file.read("contact", "allowed_penetration_over_radius", depth);
-    file.read("loading", "anchor", anchor);
-    file.read("loading", "strain", bending.strain);
-    file.read("loading", "angle_deg", angle);
-    file.read("loading", "increments", increments);
-    file.refuse_unknown();
-    bending.anchor = anchor_of(anchor);
-    strand::StrandParameters parameters = strand::regular_strand(wires, radius, lay_angle, alternate, lay_of(lay));
-    parameters.material = {young_modulus, poisson_ratio};
+    file.require("strand", "wires", wires, example::wires(), "a core and layers of 6, 12, 18, 24, 30");
+    file.require("strand", "radius", radius, example::positive(), "length", "of the wires");
+    file.require("strand", "lay_angle_deg", lay_angle, example::inside(-80.0, 80.0), "degree",
+                 "of the outer wires to the axis, positive is right-handed");
+    file.read("strand", "lay", lay, {"equal_pitch", "equal_angle"},
+              "all layers go round once on the same length, or at the same angle");
+    file.read("strand", "alternate", alternate, "every other layer has the other hand");
+    file.read("strand", "turns", turns, example::between(0.05, 100.0), "1",
+              "of the outer layer: the length of the strand, unless `length` says it");
+    file.read("strand", "length", length, example::not_negative(), "length", "of the strand; 0: as `turns` says");
+    file.read("strand", "elements", elements, example::between(0, 10000),
+              "quadratic elements a wire; 0: sixteen a turn, and none longer than seven radii");
+    example::read_material(file, "material", material);
+    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "of wires on each other");
+    file.read("contact", "reversible_displacement_over_radius", reversible, example::above(0.0, 1.0), "1",
+              "of friction, before it slides");
+    file.read("contact", "allowed_penetration_over_radius", depth, example::depth_over_radius(), "1",
+              "to which the penalty is adapted");
+    file.read("loading", "anchor", anchor, {"both_plates", "near_plate"},
+              "which plates hold every wire; elsewhere wires slide through");
+    file.read("loading", "strain", bending.strain, example::inside(-0.5, 1.0), "1", "by which the strand is drawn before");
+    file.read("loading", "angle_deg", angle, example::inside(-3600.0, 3600.0), "degree", "between the plates at the end");
+    file.read("loading", "increments", increments, example::increments(), "of the bending");
+    file.complete();
+    file.check(lay_angle != 0.0, "strand", "lay_angle_deg", "other than 0: straight wires have no turns");
+    file.check(elements != 1, "strand", "elements", "0 or >= 2");
+    file.check(angle != 0.0, "loading", "angle_deg", "other than 0: nothing would be bent");
+    file.check(length == 0.0 || length >= 4.0 * radius, "strand", "length",
+               "0 or >= 4 strand.radius = " + core::text(4.0 * radius));
+    file.check(length <= 1e5 * radius, "strand", "length", "<= 100000 strand.radius = " + core::text(1e5 * radius));
+    file.names(
+        {{"StrandParameters.layers[0]: gap between neighbours", "strand.lay_angle_deg is too large: gap between neighbours"},
+         {"StrandParameters.", "strand."},
+         {"regular_strand.", "strand."},
+         {"Layer.", "strand."},
+         {"Bending.", "loading."}});
+    bending.anchor = anchor == "near_plate" ? strand::Anchor::near_plate : strand::Anchor::both_plates;
+    strand::StrandParameters parameters = strand::regular_strand(
+        wires, radius, lay_angle, alternate, lay == "equal_angle" ? strand::Lay::equal_angle : strand::Lay::equal_pitch);
+    parameters.material = material;
     parameters.length = length > 0.0 ? length : turns * parameters.pitch(parameters.layers.size() - 1);
     // Sixteen a turn follow a helix; wires of opposite hands cross each other every two diameters, and hardly bend in between.
     parameters.elements = elements > 0 ? elements : static_cast<Index>(std::ceil(std::max(16.0 * turns, parameters.length / (7.0 * radius))));
+    const double round = parameters.length / parameters.pitch(parameters.layers.size() - 1);
+    file.check(static_cast<double>(parameters.elements) >= 4.0 * round, "strand", "elements",
+               ">= " + core::text(std::ceil(4.0 * round)) + ", for wires go around " + core::text(round) +
+                   " times: an element may not turn by more than 90 degrees");
+    example::require_element(file, "strand", parameters.elements, parameters.length, radius);
+    example::require_room(file, "strand",
+                          elements > 0   ? "elements"
+                          : length > 0.0 ? "length"
+                                         : "turns",
+                          example::unknowns_of(wires, parameters.elements), 6000.0);
 
     simulation::ModelParameters<Strand> model;
     model.normal.regularisation_depth = 0.5 * depth * radius;
@@ -75,6 +93,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     model.iteration.newton_limit = 30;
     model.iteration.margin = 1.0;  // an increment moves the ends of a long strand by more than a radius
     simulation::Simulator<Strand> simulator(strand::bent_strand(parameters, bending), model);
+    output.open(file);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const strand::BendingState state = strand::measure_bending(simulator, parameters, bending);
         return {{"angle_deg", state.angle * 180.0 / std::numbers::pi}, {"moment", state.moment}, {"moment_at_plate", state.at_plate}, {"tension", state.tension},
@@ -89,7 +108,7 @@ bool solve(example::TomlReader& file, const example::Output& output) {
     loading.stages.emplace_back();
     loading.stages.back().ramps = {{strand::bend, full}};
     loading.stages.back().increments = increments, loading.stages.back().most_increments = 20 * increments;
-    loading.checkpoint = output.checkpoint(), loading.resume = output.resume;
+    output.tell(loading);
     const simulation::Report report = simulator.run(loading, recorder);
     const strand::BendingState state = strand::measure_bending(simulator, parameters, bending);
     example::write_pictures(output, simulator.snapshot(), -90.0, 10.0);

@@ -4,7 +4,11 @@
 
 #include "process.hpp"
 #include "progress.hpp"
-#include "toml_reader.hpp"
+#include "results_folder.hpp"
+#include "room.hpp"
+#include "same_scene.hpp"
+#include "scene_reader.hpp"
+#include "stopping.hpp"
 
 #include <fibrant/observe/csv_writer.hpp>
 #include <fibrant/observe/json.hpp>
@@ -19,10 +23,16 @@
 #include <omp.h>
 #endif
 
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
+#include <new>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -35,47 +45,156 @@ struct Output {
     std::filesystem::path folder, scene;  ///< of the results; the scene file
     bool quiet = false, paraview = true, pictures = true;
     bool resume = false;      ///< go on from the last accepted increment in the folder
+    bool overwrite = false;   ///< begin anew, whatever is in the folder
+    bool other_scene = false;  ///< go on from increments of another scene as well
     observe::Start start() const noexcept { return resume ? observe::Start::resumed : observe::Start::anew; }
     std::string checkpoint() const { return (folder / "checkpoint.bin").string(); }
     std::string unit = "mm";  ///< of lengths, for the pictures
     /// How deep fibres may be in each other at the end, anywhere, over the radius of the thinnest; unset: as deep as contact is allowed to be, and
     /// what contact points may leave unseen.
     double deepest_over_radius = fibrant::core::unset;
+    std::string told;                             ///< what the scene is, line by line: kept in checkpoints
+    std::shared_ptr<const ResultsFolder> locked;  ///< the folder, from `open` on
+
+    /// Takes the folder, once the scene is known to be sound, and writes parameters.toml. Results of an earlier run that are
+    /// neither resumed nor overwritten on purpose are left, as is a checkpoint of another scene.
+    /// @param more  of what the scene is, beside what the file says
+    /// @throws std::invalid_argument
+    void open(const SceneReader& file, const std::string& more = {}) {
+        told = file.scene() + more;
+        locked = std::make_shared<const ResultsFolder>(folder);
+        const std::string found = earlier_results(folder), name = "--output " + folder.string();
+        const bool goes_on = std::filesystem::exists(checkpoint()) || std::filesystem::exists(folder / "settled.bin");
+        if (!found.empty() && !resume && !overwrite)
+            throw std::invalid_argument(name + ": holds results of an earlier run (" + found +
+                                        "): " + (goes_on ? "--resume goes on from its last increment, " : "") +
+                                        "--overwrite begins anew, or name another folder");
+        if (resume && !goes_on) {
+            if (!found.empty())
+                throw std::invalid_argument(name + ": holds results (" + found +
+                                            ") but no checkpoint.bin to resume from: --overwrite begins anew");
+            if (!quiet) std::fprintf(stderr, "%s: there is nothing to resume from, so the run begins\n", name.c_str());
+        }
+        if (resume && std::filesystem::exists(checkpoint()) && !other_scene) require_scene_of(checkpoint(), told, "--resume");
+        if (overwrite)  // what is left of an earlier run would be taken for this one's where it is stopped
+            for (const char* left : {"checkpoint.bin", "settled.bin", "summary.json", "increments.csv", "levels.csv"})
+                std::filesystem::remove(folder / left);
+        observe::write_file(folder / "parameters.toml", file.echo());
+    }
+    /// Refuses a run whose input is what it would write over.
+    void keep(const SceneReader& file, const std::string& section, const std::string& key, const std::string& input) const {
+        std::error_code ignored;
+        for (const std::filesystem::path& own : {folder / "checkpoint.bin", folder / "settled.bin"})
+            if (std::filesystem::equivalent(input, own, ignored))
+                file.refuse(section, key, "in another folder than --output, where it would be written over");
+    }
+    /// What every loading is told: where its checkpoint is, what it is of, and when to stop.
+    template <class Loading>
+    void tell(Loading& loading, double seconds = 0.0) const {
+        loading.checkpoint = checkpoint(), loading.checkpoint_seconds = seconds, loading.resume = resume;
+        loading.scene = told, loading.other_scene = other_scene, loading.stop = stopped;
+    }
 };
 
+/// Threads that a program may be told to use: more do not help, and far more cannot be had.
+inline int most_threads() {
+#if defined(_OPENMP)
+    return std::max(64, 4 * omp_get_num_procs());
+#else
+    return 1;
+#endif
+}
+
+/// Threads as told, read whole.
+/// @throws std::invalid_argument
+inline int threads_of(const std::string& text, const std::string& name) {
+    int value = -1;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || value < 0 || value > most_threads())
+        fibrant::core::refuse(name, clipped(text),
+                              "a whole number from 0 (as many as the machine has) to " + std::to_string(most_threads()));
+    return value;
+}
+
 /// Runs solve(reader, output) with the command line NAME SCENE.toml --output DIR [--set section.key=value]... [--threads N]
-/// [--resume] [--quiet]. @returns 0 if it says so, 1 if not, 2 if the scene is refused
+/// [--resume | --overwrite] [--other-scene] [--quiet], or tells the keys of a scene: NAME --help-scene.
+/// @param resumes  the program keeps checkpoints
+/// @returns 0 if it says so, 1 if not, 2 if the scene is refused or what is needed cannot be read, written or held in memory, 130
+/// and 143 if it was stopped by SIGINT and SIGTERM
 template <class Solve>
-int run(int argc, char** argv, const char* name, const char* description, const Solve& solve) {
-    std::string scene, folder;
+int run(int argc, char** argv, const char* name, const char* description, const Solve& solve, bool resumes = true) {
+    std::string scene, folder, threads = "0";
     std::vector<std::string> set;
-    int threads = 0;
+    bool keys = false;
     Output output;
     CLI::App app{description};
     app.set_version_flag("--version", FIBRANT_VERSION);
-    app.add_option("scene", scene, "scene file (TOML)")->required();
-    app.add_option("--output", folder, "folder for the results, made if need be")->required();
+    app.add_option("scene", scene, "scene file (TOML)");
+    app.add_option("--output", folder, "folder for the results, made if need be");
     app.add_option("--set", set, "section.key=value, in the place of what the file says")->allow_extra_args(false);
-    app.add_option("--threads", threads, "0: as many as the machine has")->check(CLI::NonNegativeNumber);
-    app.add_flag("--resume", output.resume, "go on from the last accepted increment in the folder");
+    app.add_option("--threads", threads, "0: as many as the machine has");
+    auto* overwrite = app.add_flag("--overwrite", output.overwrite, "begin anew in a folder that holds results");
+    if (resumes) {
+        app.add_flag("--resume", output.resume, "go on from the last accepted increment in the folder")->excludes(overwrite);
+        app.add_flag("--other-scene", output.other_scene, "take a checkpoint although it is of another scene");
+    }
     app.add_flag("--quiet", output.quiet, "print nothing but errors");
-    CLI11_PARSE(app, argc, argv);
-    keep_freed_memory();
+    app.add_flag("--help-scene", keys, "print the keys of a scene file, with their units, bounds and defaults");
     try {
-        TomlReader reader(scene, set);
-        reader.read("output", "paraview", output.paraview);
-        reader.read("output", "pictures", output.pictures);
-        reader.read("output", "unit", output.unit);
-        reader.read("output", "deepest_over_radius", output.deepest_over_radius);
+        app.parse(argc, argv);
+        if (!keys && scene.empty()) throw CLI::RequiredError("scene");
+        if (!keys && app.count("--output") == 0) throw CLI::RequiredError("--output");
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    keep_freed_memory();
+    listen_for_stops();
+    const auto fail = [&](const std::string& message) {
+        std::fprintf(stderr, "%s: %s\n", name, message.c_str());
+        return stopped() ? 128 + stop_signal() : 2;
+    };
+    try {
+        if (!keys) require_folder(folder);
+        SceneReader reader = keys ? SceneReader::of_keys() : SceneReader(scene, set);
+        reader.read("output", "paraview", output.paraview, "files for ParaView after each increment");
+        reader.read("output", "pictures", output.pictures, "pictures of the end");
+        reader.read("output", "unit", output.unit, any_text(), "of lengths, in pictures");
+        reader.read("output", "deepest_over_radius", output.deepest_over_radius, above(0.0, 2.0), "1",
+                    "how deep fibres may be in each other at the end over the radius of the thinnest; left out: as deep as "
+                    "contact allows, and what its points may leave unseen");
+        Index wanted = 0;
+        reader.read("solver", "threads", wanted, between(0, 100000), "0: as many as the machine has; --threads goes first");
         output.folder = folder, output.scene = scene;
-        std::filesystem::create_directories(output.folder);
+        int count = threads_of(threads, "--threads");
+        if (app.count("--threads") == 0) count = threads_of(std::to_string(wanted), scene + ": solver.threads");
 #if defined(_OPENMP)
-        if (threads > 0) omp_set_num_threads(threads);
+        if (count > 0) omp_set_num_threads(count);
+        else threads_of(std::to_string(omp_get_max_threads()), "--threads is not given, and OMP_NUM_THREADS");
 #endif
-        return solve(reader, output) ? 0 : 1;
+        try {
+            const bool sound = solve(reader, output);
+            if (stopped()) {
+                if (!output.quiet)
+                    std::fprintf(stderr, "%s: stopped by signal %d%s\n", name, stop_signal(),
+                                 resumes ? ": --resume goes on from the last increment" : "");
+                return 128 + stop_signal();
+            }
+            return sound ? 0 : 1;
+        } catch (const Described&) {
+            std::printf("Keys of a scene of %s. Values after = are taken where a key is not given.\n\n%s", name,
+                        reader.help().c_str());
+            return 0;
+        } catch (const std::invalid_argument& error) {
+            return fail(std::string_view(error.what()).substr(0, 2) == "--" ? error.what() : reader.told(error.what()));
+        }
+    } catch (const std::bad_alloc&) {
+        return fail(scene + ": there is not enough memory for this scene (this machine has " + gigabytes(machine_memory()) +
+                    ", and this process had " + gigabytes(static_cast<double>(peak_memory_bytes())) + ")");
+    } catch (const std::length_error&) {
+        return fail(scene + ": a count of this scene is larger than memory can hold (this machine has " +
+                    gigabytes(machine_memory()) + ")");
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s: %s\n", name, error.what());
-        return 2;
+        return fail(error.what());
     }
 }
 

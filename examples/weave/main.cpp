@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The initial state of a woven fabric at the scale of its fibres, found from flat, interpenetrating tows.
-//   weave SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume] [--quiet]
-#include "../support/process.hpp"
-#include "../support/progress.hpp"
+//   weave SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
+#include "../support/example.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
 
@@ -13,12 +12,8 @@
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/any_solver.hpp>
 
-#include <CLI/CLI.hpp>
-#if defined(_OPENMP)
-#include <omp.h>
-#endif
-
-#include <thread>
+#include <cmath>
+#include <filesystem>
 
 using namespace fibrant;
 
@@ -31,15 +26,8 @@ struct Weave {
     using Solver = solver::AnySolver;
 };
 
-struct Options {
-    std::string scene, output;
-    std::vector<std::string> set;
-    Index threads = 0;
-    bool resume = false, quiet = false;
-};
-
 template <simulation::Model M>
-bool settle(const weave::Scene& scene, const Options& options, Index threads) {
+bool settle(const weave::Scene& scene, const example::SceneReader& file, example::Output& output) {
     const double radius = weave::cloth::smallest_radius(scene.fabric);
     auto parameters = weave::cloth::model_parameters<M>(scene.fabric, scene.settle);
     parameters.iteration = scene.iteration;
@@ -47,62 +35,45 @@ bool settle(const weave::Scene& scene, const Options& options, Index threads) {
     const scene::Assembly assembly = weave::cloth::flat_fabric(scene.fabric, scene.settle.tension_strain);
     simulation::Simulator<M> simulator(assembly, parameters);
 
-    const std::filesystem::path folder = options.output;
-    const observe::Start start = options.resume ? observe::Start::resumed : observe::Start::anew;
-    auto progress = example::progress_printer(radius, 0, options.quiet);
+    output.open(file);
+    const std::filesystem::path& folder = output.folder;
+    const observe::Start start = output.start();
+    auto progress = example::progress_printer(radius, 0, output.quiet);
     weave::IncrementTable table(folder, radius, start);
     weave::Series series(folder / "paraview", start, scene.paraview ? scene.paraview_every : 0);
     auto loading = weave::cloth::settling<M>(scene.fabric, scene.settle);
-    loading.checkpoint = (folder / "checkpoint.bin").string();
-    loading.checkpoint_seconds = 15.0;
-    loading.resume = options.resume;
+    output.tell(loading, 15.0);
     const simulation::Report report = simulator.run(loading, progress, table, series);
 
     const observe::Snapshot snapshot = simulator.snapshot();
     const auto audit = weave::cloth::audit(snapshot, scene.fabric, proximity::GridSearch());
     const auto crimp = weave::cloth::crimp_measures(snapshot, scene.fabric);
     weave::Summary summary;
-    weave::fill(summary, report, audit, crimp, radius, scene.settle.allowed_penetration_over_radius * radius);
+    weave::fill(
+        summary, report, audit, crimp, radius,
+        (std::isnan(output.deepest_over_radius) ? scene.settle.allowed_penetration_over_radius : output.deepest_over_radius) *
+            radius);
     summary.fibres = simulator.mesh().fibre_count();
     summary.dofs = simulator.mesh().layout().unknowns();
     summary.nodes = summary.dofs / M::Beam::dofs_per_node;
     summary.thickness = weave::cloth::thickness(snapshot, scene.fabric);
-    summary.threads = threads;
+    summary.threads = core::threads();
     weave::write_measures(folder, snapshot, scene.fabric, crimp);
     if (scene.pictures) weave::write_pictures(folder, snapshot, scene.fabric, scene.unit);
     summary.cpu_seconds = example::cpu_seconds();
     summary.peak_memory_bytes = example::peak_memory_bytes();
     weave::write_summary(folder, summary);
-    if (!options.quiet) weave::print(summary, options.output);
+    if (!output.quiet) weave::print(summary, folder.string());
     return summary.converged && summary.clean;
 }
 
+bool solve(example::SceneReader& file, example::Output& output) {
+    const weave::Scene scene = weave::read_fabric(file, [] {});
+    return scene.settle.friction_coefficient > 0.0 ? settle<Weave<law::RegularisedCoulomb>>(scene, file, output)
+                                                   : settle<Weave<law::Frictionless>>(scene, file, output);
+}
+
 int main(int argc, char** argv) {
-    Options options;
-    CLI::App app{"Finds the initial state of a woven fabric from flat, interpenetrating tows."};
-    app.set_version_flag("--version", FIBRANT_VERSION);
-    app.add_option("scene", options.scene, "scene file (TOML)")->required();
-    app.add_option("--output", options.output, "folder for the results, made if need be")->required();
-    app.add_option("--set", options.set, "section.key=value, in the place of what the file says")->allow_extra_args(false);
-    app.add_option("--threads", options.threads, "0: as many as the machine has")->check(CLI::NonNegativeNumber);
-    app.add_flag("--resume", options.resume, "go on from the last accepted increment in the folder");
-    app.add_flag("--quiet", options.quiet, "print nothing but errors");
-    CLI11_PARSE(app, argc, argv);
-    example::keep_freed_memory();
-    try {
-        const weave::Scene scene = weave::read_scene(options.scene, options.set);
-        [[maybe_unused]] const Index wanted = options.threads > 0 ? options.threads : scene.threads;
-#if defined(_OPENMP)
-        if (wanted > 0) omp_set_num_threads(static_cast<int>(wanted));
-#endif
-        const Index threads = core::threads();
-        std::filesystem::create_directories(options.output);
-        const bool sliding = scene.settle.friction_coefficient > 0.0;
-        const bool sound = sliding ? settle<Weave<law::RegularisedCoulomb>>(scene, options, threads)
-                                   : settle<Weave<law::Frictionless>>(scene, options, threads);
-        return sound ? 0 : 1;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "weave: %s\n", error.what());
-        return 2;
-    }
+    return example::run(argc, argv, "weave", "Finds the initial state of a woven fabric from flat, interpenetrating tows.",
+                        solve);
 }

@@ -2,20 +2,23 @@
 #pragma once
 /// @file The scene of a weave as a TOML file: what it may say, what it must say, and what is taken otherwise.
 
-#include "../support/toml_reader.hpp"
+#include "../support/room.hpp"
+#include "../support/scene_reader.hpp"
 
 #include <fibrant/compositions/weave/fabric_parameters.hpp>
 #include <fibrant/scene/cross_section.hpp>
 #include <fibrant/solver/newton.hpp>
 
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace weave {
 
-using example::TomlReader;
+using example::SceneReader;
+namespace scene = fibrant::scene;
 using fibrant::Index;
 
 namespace cloth = fibrant::compositions::weave;
@@ -31,141 +34,192 @@ struct Scene {
     Index paraview_every = 1;                     ///< increments
     bool pictures = true;                         ///< write the view and the slices
     std::string unit = "mm";                      ///< of lengths, for the pictures
+    std::string told;                             ///< what the fabric is and how it is settled, line by line
 };
+
+/// Sections that say what the fabric is, and those that say how it is settled as well.
+inline const std::vector<std::string> fabric_sections{"fabric", "warp", "weft", "material"};
+inline const std::vector<std::string> settled_sections{"fabric", "warp", "weft", "material", "settle", "contact"};
 
 namespace detail {
 
 /// A tow's keys. Macro-fibres are given by their radius and inertia factor, or by the real fibres that they stand for.
-inline void read_tow(TomlReader& file, const std::string& section, bool required, cloth::TowParameters& tow) {
-    file.read("material", "young_modulus", tow.material.young_modulus);
-    file.read("material", "poisson_ratio", tow.material.poisson_ratio);
-    if (required) {
-        file.require(section, "fibres", tow.fibres);
-    } else {
-        file.read(section, "fibres", tow.fibres);
-    }
-    const bool radius = file.read(section, "radius", tow.fibre_radius);
-    const bool factor = file.read(section, "inertia_factor", tow.inertia_factor);
+inline void read_tow(SceneReader& file, const std::string& section, bool required, cloth::TowParameters& tow) {
+    if (required)
+        file.require(section, "fibres", tow.fibres, example::between(1, 10000), "a tow, macro-fibres or real ones");
+    else
+        file.read(section, "fibres", tow.fibres, example::between(1, 10000),
+                  "a tow, macro-fibres or real ones; left out: as the warp");
+    const bool radius = file.read(section, "radius", tow.fibre_radius, example::positive(), "length",
+                                  "of a fibre, or real_fibres and real_diameter");
+    const bool factor = file.read(section, "inertia_factor", tow.inertia_factor, example::between(1e-9, 1e3), "1",
+                                  "on second moments, for a fibre that stands for several");
     double real_fibres = fibrant::core::unset, real_diameter = fibrant::core::unset;
-    const bool count = file.read(section, "real_fibres", real_fibres);
-    const bool diameter = file.read(section, "real_diameter", real_diameter);
-    file.read(section, "aspect", tow.aspect);
-    file.read(section, "packing_gap", tow.packing_gap);
-    file.read(section, "young_modulus", tow.material.young_modulus);
-    file.read(section, "poisson_ratio", tow.material.poisson_ratio);
+    const bool count = file.read(section, "real_fibres", real_fibres, example::between(1.0, 1e9), "1",
+                                 "real fibres of a tow, in the place of which the fibres stand");
+    const bool diameter = file.read(section, "real_diameter", real_diameter, example::positive(), "length", "of a real fibre");
+    for (const char* key : {"radius", "inertia_factor", "real_fibres", "real_diameter"})
+        file.is_one_of_several_ways(section, key);
+    file.read(section, "aspect", tow.aspect, example::between(1.0, 20.0), "1", "width over thickness of the flat tow");
+    file.read(section, "packing_gap", tow.packing_gap, example::between(0.0, 1.0), "1",
+              "free distance between neighbouring fibres over their diameter");
+    file.read(section, "young_modulus", tow.material.young_modulus, example::positive(), "force/length^2",
+              "as [material] if left out");
+    file.read(section, "poisson_ratio", tow.material.poisson_ratio, example::poisson_ratio(), "1", "as [material] if left out");
+    if (file.describes()) return;
     if (!count && !diameter) {
-        if (required && !radius) file.require(section, "radius", tow.fibre_radius);
+        if (required && !radius)
+            file.require(section, "radius", tow.fibre_radius, example::positive(), "length",
+                         "of a fibre, or real_fibres and real_diameter");
         return;
     }
     if (radius || factor)
-        file.refuse(section, radius ? "radius" : "inertia_factor",
-                    "left out where real_fibres and real_diameter are given");
-    if (!count) file.require(section, "real_fibres", real_fibres);
-    if (!diameter) file.require(section, "real_diameter", real_diameter);
-    try {
-        const fibrant::scene::CrossSection macro =
-            fibrant::scene::macro_fibre(real_fibres, real_diameter, static_cast<double>(tow.fibres));
-        tow.fibre_radius = macro.semi_axis_1;
-        tow.inertia_factor = macro.inertia_factor;
-    } catch (const std::invalid_argument& error) {
-        file.rethrow(error, {{"macro_fibre.diameter", section + ".real_diameter"},
-                             {"macro_fibre.fibres", section + ".real_fibres"},
-                             {"macro_fibre.macro_fibres", section + ".fibres"}});
-    }
+        file.refuse(section, radius ? "radius" : "inertia_factor", "left out where real_fibres and real_diameter are given");
+    if (!count) file.require(section, "real_fibres", real_fibres, example::between(1.0, 1e9), "1", "");
+    if (!diameter) file.require(section, "real_diameter", real_diameter, example::positive(), "length", "");
+    if (!count || !diameter || tow.fibres < 1) return;
+    file.check(real_fibres >= static_cast<double>(tow.fibres), section, "real_fibres",
+               ">= " + section + ".fibres = " + std::to_string(tow.fibres));
+    const fibrant::scene::CrossSection macro =
+        fibrant::scene::macro_fibre(real_fibres, real_diameter, static_cast<double>(tow.fibres));
+    tow.fibre_radius = macro.semi_axis_1;
+    tow.inertia_factor = macro.inertia_factor;
 }
 
 }  // namespace detail
 
-/// Reads and checks what a file says of a fabric, before any work; the rest of the file is left.
+/// Tolerances and limits of the iteration; what a program takes otherwise stands in `iteration`.
+inline void read_iteration(SceneReader& file, std::string& linear_solver, fibrant::solver::IterationParameters& iteration) {
+    file.read(
+        "solver", "linear_solver", linear_solver,
+        {"automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"},
+        "strategy of linear systems");
+    file.read("solver", "step_tolerance", iteration.step_tolerance, example::above(0.0, 1.0), "1", "of Newton's steps");
+    file.read("solver", "residual_tolerance", iteration.residual_tolerance, example::above(0.0, 1.0), "1",
+              "of the balance of forces");
+    file.read("solver", "contact_tolerance", iteration.contact_tolerance, example::above(0.0, 1.0), "1", "of contact passes");
+    file.read("solver", "linear_tolerance", iteration.linear_tolerance, example::above(0.0, 0.01), "1", "of linear systems");
+    file.read("solver", "newton_limit", iteration.newton_limit, example::between(1, 10000),
+              "iterations of Newton's method, at most");
+    file.read("solver", "normal_limit", iteration.normal_limit, example::between(1, 10000), "passes with new normals, at most");
+    file.read("solver", "contact_limit", iteration.contact_limit, example::between(1, 10000),
+              "passes with new contacts, at most");
+    file.read("solver", "mixed", iteration.mixed, "single precision where it is enough");
+}
+
+/// Reads and checks what a file says of a fabric, before any work.
+/// @param more  reads what else the file may say
 /// Throws std::invalid_argument, "file: section.key = value, but it must be bound".
-inline Scene read_fabric(TomlReader& file, const std::string& path, bool all) {
-    const std::vector<std::pair<std::string, std::string>> names{
-        {"FabricParameters.warp.fibre_radius", "warp.radius"},
-        {"FabricParameters.weft.fibre_radius", "weft.radius"},
-        {"FabricParameters.warp.material", "material"},
-        {"FabricParameters.weft.material", "material"},
-        {"FabricParameters.warp.", "warp."},
-        {"FabricParameters.weft.", "weft."},
-        {"FabricParameters.", "fabric."},
-        {"Pattern.", "fabric.pattern."},
-        {"Pattern", "fabric.pattern"},
-        {"SettleParameters.friction_coefficient", "contact.friction_coefficient"},
-        {"SettleParameters.allowed_penetration_over_radius", "contact.allowed_penetration_over_radius"},
-        {"SettleParameters.", "settle."},
-        {"IterationParameters.overshoot", "settle.overshoot"},
-        {"IterationParameters.", "solver."},
-        {"Scene.paraview_every", "output.paraview_every"},
-        {"Scene.threads", "solver.threads"}};
+template <class More>
+Scene read_fabric(SceneReader& file, const More& more) {
+    file.names({{"FabricParameters.warp.fibre_radius", "warp.radius"},
+                {"FabricParameters.weft.fibre_radius", "weft.radius"},
+                {"FabricParameters.warp.material", "material"},
+                {"FabricParameters.weft.material", "material"},
+                {"FabricParameters.warp.", "warp."},
+                {"FabricParameters.weft.", "weft."},
+                {"FabricParameters.", "fabric."},
+                {"Pattern.", "fabric.pattern."},
+                {"Pattern", "fabric.pattern"},
+                {"SettleParameters.friction_coefficient", "contact.friction_coefficient"},
+                {"SettleParameters.allowed_penetration_over_radius", "contact.allowed_penetration_over_radius"},
+                {"SettleParameters.", "settle."},
+                {"IterationParameters.overshoot", "settle.overshoot"},
+                {"IterationParameters.", "solver."}});
     Scene scene;
-    try {
-        cloth::FabricParameters& fabric = scene.fabric;
-        std::string name = "plain";
-        std::vector<std::string> rows;
-        if (file.is_list("fabric", "pattern")) {
-            file.read("fabric", "pattern", rows);
-            fabric.pattern = cloth::Pattern::from_rows(rows);
-        } else {
-            file.require("fabric", "pattern", name);
-            fabric.pattern = cloth::Pattern::named(name);
-        }
-        file.require("fabric", "warp_tows", fabric.warp_tows);
-        file.require("fabric", "weft_tows", fabric.weft_tows);
-        file.require("fabric", "warp_spacing", fabric.warp_spacing);
-        fabric.weft_spacing = fabric.warp_spacing;
-        file.read("fabric", "weft_spacing", fabric.weft_spacing);
-        file.require("fabric", "overhang", fabric.overhang);
-        file.require("fabric", "elements", fabric.elements);
-        detail::read_tow(file, "warp", true, fabric.warp);
-        fabric.weft = fabric.warp;
-        detail::read_tow(file, "weft", false, fabric.weft);
+    cloth::FabricParameters& fabric = scene.fabric;
+    std::string name = "plain";
+    std::vector<std::string> rows;
+    if (file.is_list("fabric", "pattern"))
+        file.read("fabric", "pattern", rows, "which tow is above, a text a warp tow");
+    else
+        file.require("fabric", "pattern", name, example::any_text(),
+                     "plain, twill22, twill31, satin5, satin8, or a list with a text a warp tow");
+    file.require("fabric", "warp_tows", fabric.warp_tows, example::between(1, 1000), "tows along x");
+    file.require("fabric", "weft_tows", fabric.weft_tows, example::between(1, 1000), "tows along y");
+    file.require("fabric", "warp_spacing", fabric.warp_spacing, example::positive(), "length",
+                 "between the middles of neighbouring warp tows");
+    fabric.weft_spacing = fabric.warp_spacing;
+    file.read("fabric", "weft_spacing", fabric.weft_spacing, example::positive(), "length",
+              "the same of weft tows; as warp_spacing if left out");
+    file.require("fabric", "overhang", fabric.overhang, example::positive(), "length",
+                 "free length of a fibre beyond its outermost crossings");
+    file.require("fabric", "elements", fabric.elements, example::between(1, 100000), "quadratic elements a fibre");
+    scene::ElasticMaterial material;
+    file.read("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2", "of the fibres");
+    file.read("material", "poisson_ratio", material.poisson_ratio, example::poisson_ratio(), "1", "of the fibres");
+    fabric.warp.material = material;
+    detail::read_tow(file, "warp", true, fabric.warp);
+    fabric.weft = fabric.warp;
+    if (!std::isnan(material.young_modulus)) fabric.weft.material.young_modulus = material.young_modulus;
+    if (!std::isnan(material.poisson_ratio)) fabric.weft.material.poisson_ratio = material.poisson_ratio;
+    detail::read_tow(file, "weft", false, fabric.weft);
 
-        cloth::SettleParameters& settle = scene.settle;
-        file.read("settle", "tension_strain", settle.tension_strain);
-        file.read("settle", "final_tension_factor", settle.final_tension_factor);
-        file.read("settle", "tension_increments", settle.tension_increments);
-        file.read("settle", "gap_limit_over_radius", settle.gap_limit_over_radius);
-        file.read("settle", "separation_increments", settle.separation_increments);
-        file.read("settle", "release_increments", settle.release_increments);
-        file.read("settle", "rest_increments", settle.rest_increments);
-        file.read("settle", "softness", settle.softness);
-        file.read("settle", "looseness", settle.looseness);
-        file.read("settle", "rest_motion_over_radius", settle.rest_motion_over_radius);
-        file.read("settle", "rest_share", settle.rest_share);
-        // Contacts that close and let go in turns send Newton's method to and fro: most of the attempts that a large weave gave up.
-        scene.iteration.overshoot = 0.5;
-        file.read("settle", "overshoot", scene.iteration.overshoot);
-        file.read("contact", "friction_coefficient", settle.friction_coefficient);
-        file.read("contact", "allowed_penetration_over_radius", settle.allowed_penetration_over_radius);
+    cloth::SettleParameters& settle = scene.settle;
+    file.read("settle", "tension_strain", settle.tension_strain, example::above(0.0, 0.2), "1",
+              "tension of a tow over its E A while tows part");
+    file.read("settle", "final_tension_factor", settle.final_tension_factor, example::above(0.0, 1.0), "1",
+              "tension at the end over that");
+    file.read("settle", "tension_increments", settle.tension_increments, example::increments(), "in which the tension is raised");
+    file.read("settle", "gap_limit_over_radius", settle.gap_limit_over_radius, example::above(0.0, 10.0), "1",
+              "deepest penetration that is shown to the contact law");
+    file.read("settle", "separation_increments", settle.separation_increments, example::increments(),
+              "at most, until no tows overlap");
+    file.read("settle", "release_increments", settle.release_increments, example::increments(),
+              "in which the tension is lowered");
+    file.read("settle", "rest_increments", settle.rest_increments, example::increments(),
+              "at most, before and after, until nothing moves any more by");
+    file.read("settle", "softness", settle.softness, example::between(1.0, 20.0), "1",
+              "penetration allowed until the fabric comes to rest, over that at rest");
+    file.read("settle", "looseness", settle.looseness, example::looseness(), "1", "on the tolerances of passes before rest");
+    file.read("settle", "rest_motion_over_radius", settle.rest_motion_over_radius, example::above(0.0, 10.0), "1",
+              "greatest motion of an increment at rest, or");
+    file.read("settle", "rest_share", settle.rest_share, example::above(0.0, 0.01), "1",
+              "of the forces is all that damping holds");
+    // Contacts that close and let go in turns send Newton's method to and fro: most of the attempts that a large weave gave up.
+    scene.iteration.overshoot = 0.5;
+    file.read("settle", "overshoot", scene.iteration.overshoot, {.low = 0.0, .high = 1e6, .above = true, .endless = true}, "1",
+              "a step at whose end the energy rises by more than this part of the slope at which it fell is cut");
+    file.read("contact", "friction_coefficient", settle.friction_coefficient, example::friction(), "1",
+              "once tows have parted; 0 leaves friction out");
+    file.read("contact", "allowed_penetration_over_radius", settle.allowed_penetration_over_radius, example::depth_over_radius(),
+              "1", "to which the penalty is adapted");
+    read_iteration(file, scene.linear_solver, scene.iteration);
+    file.read("solver", "threads", scene.threads, example::between(0, 100000), "0: as many as the machine has");
+    file.read("output", "paraview", scene.paraview, "files for ParaView");
+    file.read("output", "paraview_every", scene.paraview_every, example::increments(), "increments between two files");
+    file.read("output", "pictures", scene.pictures, "a view and slices along each tow");
+    file.read("output", "unit", scene.unit, example::any_text(), "of lengths, in pictures");
+    more();
+    file.complete();
 
-        auto& iteration = scene.iteration;
-        file.read("solver", "linear_solver", scene.linear_solver,
-                  {"automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"});
-        file.read("solver", "threads", scene.threads);
-        file.read("solver", "step_tolerance", iteration.step_tolerance);
-        file.read("solver", "residual_tolerance", iteration.residual_tolerance);
-        file.read("solver", "contact_tolerance", iteration.contact_tolerance);
-        file.read("solver", "linear_tolerance", iteration.linear_tolerance);
-        file.read("solver", "newton_limit", iteration.newton_limit);
-        file.read("solver", "normal_limit", iteration.normal_limit);
-        file.read("solver", "contact_limit", iteration.contact_limit);
-        file.read("solver", "mixed", iteration.mixed);
-
-        file.read("output", "paraview", scene.paraview);
-        file.read("output", "paraview_every", scene.paraview_every);
-        file.read("output", "pictures", scene.pictures);
-        file.read("output", "unit", scene.unit);
-
-        if (all) file.refuse_unknown();
-        fabric.validate();
-        settle.validate();
-        iteration.validate();
-        fibrant::core::require_at_least("Scene.paraview_every", scene.paraview_every, 1);
-        fibrant::core::require_at_least("Scene.threads", scene.threads, 0);
-    } catch (const std::invalid_argument& error) {
-        const std::string message = error.what();
-        if (message.compare(0, path.size(), path) == 0) throw;
-        file.rethrow(error, names);
+    fabric.pattern = file.is_list("fabric", "pattern") ? cloth::Pattern::from_rows(rows) : cloth::Pattern::named(name);
+    if (std::isnan(fabric.warp.material.young_modulus))
+        file.refuse("material", "young_modulus", "given, here or as warp.young_modulus");
+    if (std::isnan(fabric.warp.material.poisson_ratio))
+        file.refuse("material", "poisson_ratio", "given, here or as warp.poisson_ratio");
+    const double unknowns = 9.0 * static_cast<double>(fabric.fibres()) * static_cast<double>(fabric.nodes_per_fibre());
+    const bool fine = fabric.elements > 100, many = fabric.warp_tows > 100 || fabric.weft_tows > 100;
+    const char* blamed = many ? fabric.warp_tows > fabric.weft_tows ? "warp_tows" : "weft_tows" : "elements";
+    if (!fine && !many)
+        example::require_room(file, fabric.warp.fibres >= fabric.weft.fibres ? "warp" : "weft", "fibres", unknowns);
+    else
+        example::require_room(file, "fabric", blamed, unknowns);
+    for (const auto& [tow, section] : {std::pair{&fabric.warp, "warp"}, std::pair{&fabric.weft, "weft"}}) {
+        const double r = tow->fibre_radius;
+        file.check(fabric.overhang <= 1e4 * r && fabric.warp_spacing <= 1e4 * r && fabric.weft_spacing <= 1e4 * r, "fabric",
+                   fabric.overhang > 1e4 * r       ? "overhang"
+                   : fabric.warp_spacing > 1e4 * r ? "warp_spacing"
+                                                   : "weft_spacing",
+                   "<= 10000 radii of a " + std::string(section) + " fibre = " + fibrant::core::text(1e4 * r));
     }
+    file.check(settle.allowed_penetration_over_radius <= settle.gap_limit_over_radius, "contact",
+               "allowed_penetration_over_radius",
+               "<= settle.gap_limit_over_radius = " + fibrant::core::text(settle.gap_limit_over_radius));
+    fabric.validate();
+    settle.validate();
+    scene.iteration.validate();
+    scene.told = file.scene(settled_sections);
     return scene;
 }
 
@@ -173,8 +227,12 @@ inline Scene read_fabric(TomlReader& file, const std::string& path, bool all) {
 /// @param overrides  "section.key=value"
 /// Throws std::invalid_argument, "file: section.key = value, but it must be bound".
 inline Scene read_scene(const std::string& path, const std::vector<std::string>& overrides = {}) {
-    TomlReader file(path, overrides);
-    return read_fabric(file, path, true);
+    SceneReader file(path, overrides);
+    try {
+        return read_fabric(file, [] {});
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(file.told(error.what()));
+    }
 }
 
 }  // namespace weave

@@ -16,6 +16,7 @@
 #include <fibrant/simulation/refined_state.hpp>
 #include <fibrant/simulation/report.hpp>
 #include <fibrant/simulation/scene_checks.hpp>
+#include <fibrant/simulation/scene_difference.hpp>
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 #include <fibrant/simulation/state_file.hpp>

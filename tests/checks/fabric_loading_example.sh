@@ -35,6 +35,13 @@ case $text in
   *tickle*) ;;
   *) fail "the refusal does not name the case: $text" ;;
 esac
+# What settled as one weave is no other, though it has the same fibres.
+text=$("$loading" "$scenes/fabric_loading/release.toml" --output "$out/refused" --set "settled.set=[$list, 'fabric.pattern=[\"01\", \"10\"]']" \
+  --set settled.checkpoint="$out/settled/checkpoint.bin" 2>&1) && fail "a weave was taken for another"
+case $text in
+  *"is of another scene: fabric.pattern ('plain' there and ['01', '10'] here)"*) ;;
+  *) fail "the refusal of another pattern says: $text" ;;
+esac
 # As the scene file is, with no values replaced: all that is wrong is that nothing has been settled there.
 text=$("$loading" "$scenes/fabric_loading/release.toml" --output "$out/refused" --set settled.checkpoint="$out/nowhere.bin" 2>&1)
 case $text in

@@ -113,4 +113,16 @@ refuses 'expects nothing' "$checks/ill_formed.sh" unexplained.cpp "$@"
 refuses 'lines, but at most 20' "$checks/ill_formed.sh" long.cpp "$@"
 printf '// expect: the reason\nstatic_assert(false, "the reason");\n' > named.cpp
 passes "$checks/ill_formed.sh" named.cpp "$@"
+
+# Programs that take all, that say nothing of use, and that leave a folder behind.
+echo '[knot]' > knot.toml
+program() {
+  { echo '#!/bin/sh'; cat; } > knot && chmod +x knot
+}
+echo 'exit 0' | program
+refuses 'ended with status 0, not 2' sh "$checks/malformed.sh" ./knot knot.toml malformed 20
+echo 'echo "knot: wrong"; exit 2' | program
+refuses 'does not say' sh "$checks/malformed.sh" ./knot knot.toml malformed 20
+echo 'while [ "$1" != --output ]; do shift; done; mkdir -p "$2"; exit 2' | program
+refuses 'left a folder of results' sh "$checks/malformed.sh" ./knot knot.toml malformed 20
 exit $failed

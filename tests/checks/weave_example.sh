@@ -30,10 +30,38 @@ done
 "$weave" "$scene" --output "$out/parts" $small --set settle.separation_increments=6
 [ $? -eq 1 ] || fail "a run that was stopped early did not say so"
 grep -q '"converged": false' "$out/parts/summary.json" || fail "summary.json of a run that was stopped says nothing of it"
-"$weave" "$scene" --output "$out/parts" $small --resume || fail "the resumed run did not settle"
+says() {
+  grep -q "$1" "$out/message" || fail "$2 says: $(cat "$out/message")"
+}
+"$weave" "$scene" --output "$out/parts" $small --resume 2> "$out/message" && fail "a checkpoint of another scene was resumed"
+says "settle.separation_increments (6 there and 250 here)" "a checkpoint of another scene"
+"$weave" "$scene" --output "$out/parts" $small --resume --other-scene || fail "the resumed run did not settle"
 figures "$out/whole" > "$out/whole.txt"
 figures "$out/parts" > "$out/parts.txt"
 cmp "$out/whole.txt" "$out/parts.txt" || fail "the resumed run found another state"
+
+# A folder that holds results, one that another run is in, and a run that is stopped.
+"$weave" "$scene" --output "$out/whole" $small 2> "$out/message" && fail "results were written over"
+says "holds results of an earlier run" "a folder with results"
+"$weave" "$scene" --output "$out/stopped" $small &
+run=$!
+waited=0
+while [ ! -s "$out/stopped/increments.csv" ] && [ $waited -lt 300 ]; do
+  sleep 0.1
+  waited=$((waited + 1))
+done
+"$weave" "$scene" --output "$out/stopped" $small --overwrite 2> "$out/message" && fail "two runs were in one folder"
+says "another run is in this folder (process $run)" "a folder that is in use"
+kill -TERM $run
+wait $run
+[ $? -eq 143 ] || fail "a run that was told to stop did not say so"
+[ -s "$out/stopped/checkpoint.bin" ] || fail "a run that was told to stop left no checkpoint"
+"$weave" "$scene" --output "$out/stopped" $small --resume || fail "the run that was told to stop did not settle in the end"
+figures "$out/stopped" > "$out/stopped.txt"
+cmp "$out/whole.txt" "$out/stopped.txt" || fail "the run that was told to stop found another state"
+"$weave" "$out/whole/parameters.toml" --output "$out/echoed" --quiet || fail "parameters.toml is no scene that settles"
+figures "$out/echoed" > "$out/echoed.txt"
+cmp "$out/whole.txt" "$out/echoed.txt" || fail "parameters.toml is another scene"
 
 refused() {
   text=$1

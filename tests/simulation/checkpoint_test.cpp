@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -218,7 +220,108 @@ TEST_CASE("a checkpoint that cannot be written ends the run with a message, and 
     const Rod rod;
     Loading<Smooth> loading{.increments = 1, .checkpoint = "no/such/folder/checkpoint"};
     Simulator<Smooth> simulator(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
-    CHECK(failure([&] { simulator.run(loading); }) == "cannot write checkpoint no/such/folder/checkpoint");
+    CHECK(failure([&] { simulator.run(loading); }) ==
+          "cannot write checkpoint no/such/folder/checkpoint: No such file or directory");
+}
+
+TEST_CASE("a disk that is full ends the run with a message, and the file before stays") {
+    if (!std::filesystem::exists("/dev/full")) return;
+    const TemporaryFile file("full"), part("full.part");
+    simulation::CheckpointWriter one;
+    one.put(1.0);
+    one.write(file.path);
+    const std::string before = file.bytes();
+    std::filesystem::create_symlink("/dev/full", part.path);
+    CHECK(failure([&] { one.write(file.path); }) == "cannot write checkpoint " + file.name() + ": No space left on device");
+    CHECK(file.bytes() == before);
+}
+
+TEST_CASE("a checkpoint says what it is of, and goes on as another scene only where that is asked for") {
+    const Rod rod;
+    const TemporaryFile file("of");
+    Loading<Smooth> loading{
+        .increments = 1, .checkpoint = file.name(), .scene = "law.friction = 0.1\nlaw.depth = 2\nonly.there = 1\n"};
+    const auto failed = [&] {
+        return failure([&] { Simulator<Smooth>(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius)).run(loading); });
+    };
+    CHECK(failed().empty());
+    CHECK(simulation::checkpoint_scene(file.name()) == loading.scene);
+    loading.resume = true;
+    CHECK(failed().empty());
+    loading.scene = "law.friction = 0.2\nlaw.depth = 2\nonly.here = 1\n";
+    CHECK(failed() == "checkpoint " + file.name() + " belongs to another scene: law.friction (0.1 there and 0.2 here) differs");
+    loading.other_scene = true;
+    CHECK(failed().empty());
+    loading.other_scene = false, loading.scene.clear();  // says nothing
+    CHECK(failed().empty());
+    CHECK(simulation::scene_difference("a.b = 1\nc.d = 2\n", "a.b = 3\nc.d = 4\n", {"c"}) == "c.d (2 there and 4 here)");
+}
+
+TEST_CASE("a run that is stopped leaves a checkpoint, and the rest of it ends at the same bits") {
+    const Rod rod;
+    const TemporaryFile file("stopped");
+    Loading<Smooth> loading{.increments = 4, .checkpoint = file.name(), .checkpoint_seconds = 1e9};
+    Simulator<Smooth> whole(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
+    REQUIRE(whole.run(loading).converged);
+    std::filesystem::remove(file.path);
+    Index asked = 0;
+    loading.stop = [&] { return ++asked == 2; };
+    Simulator<Smooth> first(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
+    const Report report = first.run(loading);
+    CHECK(!report.converged);
+    CHECK(report.reason == "stopped as asked, after increment 2");
+    CHECK(report.increments.size() == 2);
+    loading.resume = true, loading.stop = {};
+    Simulator<Smooth> second(rod.pushed(1.0), test::model_parameters<Smooth>(rod.radius));
+    CHECK(second.run(loading).converged);
+    CHECK(same_bits(second.state(), whole.state()));
+}
+
+/// The same bytes with a sum that is right.
+std::string signed_again(std::string bytes) {
+    const std::uint64_t sum = simulation::CheckpointWriter::hash(bytes.data(), bytes.size() - sizeof sum);
+    std::memcpy(bytes.data() + bytes.size() - sizeof sum, &sum, sizeof sum);
+    return bytes;
+}
+
+TEST_CASE(
+    "a checkpoint that was made up, with a right sum, is refused or run, and ends neither in a crash nor in a leap of memory") {
+    Crossing crossing;
+    crossing.approach = 0.8 * crossing.radius;
+    const TemporaryFile file("crafted");
+    Loading<Rough> loading;
+    loading.stages = {{.name = "press", .increments = 3, .ramps = {{"approach", 1.0}}}};
+    loading.checkpoint = file.name();
+    Index asked = 0;
+    loading.stop = [&] { return ++asked == 2; };  // so that what is read is computed with
+    Simulator<Rough>(crossing.assembly(), test::model_parameters<Rough>(crossing.radius)).run(loading);
+    loading.resume = true, loading.stop = {};
+    const std::string whole = file.bytes();
+    const auto resumed = [&](const std::string& bytes) {
+        file.write(signed_again(bytes));
+        return failure([&] {
+            try {
+                Simulator<Rough>(crossing.assembly(), test::model_parameters<Rough>(crossing.radius)).run(loading);
+            } catch (const std::invalid_argument&) {
+            }
+        });
+    };
+    CHECK(resumed(whole).empty());
+    const std::string damaged = "checkpoint " + file.name() + " is damaged";
+    CHECK(resumed(whole + std::string(8, 'x')) == damaged);
+    CHECK(resumed(whole.substr(0, whole.size() / 2)) == damaged);
+    // Sizes and numbers all over the file are made absurd, one at a time. What is refused says so; what is not may take any way
+    // but a wild one.
+    Index refused = 0;
+    for (std::size_t place = 0; place + 16 <= whole.size(); place += 149)  // numbers lie at any place
+        for (const std::uint64_t absurd : {~std::uint64_t{0}, std::uint64_t{1} << 61, std::uint64_t{0x7ff8000000000000}}) {
+            std::string bytes = whole;
+            std::memcpy(bytes.data() + place, &absurd, sizeof absurd);
+            const std::string message = resumed(bytes);
+            CHECK((message.empty() || message.starts_with("checkpoint " + file.name())));
+            refused += message.empty() ? 0 : 1;
+        }
+    CHECK(refused > 10);
 }
 
 TEST_CASE("a new file takes the place of the old one only when it is whole") {

@@ -6,6 +6,7 @@
 #include <fibrant/observe/observer.hpp>
 #include <fibrant/observe/text_file.hpp>
 
+#include <cerrno>
 #include <charconv>
 #include <concepts>
 #include <cstddef>
@@ -13,6 +14,7 @@
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace fibrant::observe {
@@ -53,12 +55,16 @@ public:
             write_file(path_, content + line + "\n");
             header_ = header;
             file_.open(path_, std::ios::binary | std::ios::app);
+            if (!file_) throw std::runtime_error("cannot write the file " + path_.string());
             return;
         }
         if (header != header_) core::refuse("CsvWriter.columns", header, "those of the first row, " + header_);
+        errno = 0;
         file_ << line << '\n';
         file_.flush();
-        if (!file_) throw std::runtime_error("cannot write the file " + path_.string());
+        if (!file_)
+            throw std::runtime_error("cannot write the file " + path_.string() +
+                                     (errno != 0 ? ": " + std::generic_category().message(errno) : std::string()));
     }
 
 private:

@@ -3,6 +3,7 @@
 /// @file Files that are never seen half written, and numbers as text that do not depend on the locale.
 
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -70,12 +71,14 @@ inline std::string xml_escaped(std::string_view text) {
 inline void write_file(const std::filesystem::path& path, std::string_view content) {
     std::filesystem::path partial = path;
     partial += ".partial";
+    errno = 0;
     std::ofstream file(partial, std::ios::binary | std::ios::trunc);
     file.write(content.data(), static_cast<std::streamsize>(content.size()));
     file.close();
-    std::error_code error;
+    std::error_code error(file ? 0 : errno, std::generic_category());
     if (file) std::filesystem::rename(partial, path, error);
-    if (!file || error) throw std::runtime_error("cannot write the file " + path.string());
+    if (!file || error)
+        throw std::runtime_error("cannot write the file " + path.string() + (error ? ": " + error.message() : std::string()));
 }
 
 /// Whole content of a file; empty if there is none.

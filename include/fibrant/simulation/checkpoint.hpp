@@ -4,14 +4,20 @@
 
 #include <fibrant/core/types.hpp>
 
+#include <cerrno>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <type_traits>
 #include <vector>
+#if __has_include(<unistd.h>)
+#include <unistd.h>
+#endif
 
 namespace fibrant::simulation {
 
@@ -36,14 +42,20 @@ public:
     void write(const std::filesystem::path& path) const {
         std::filesystem::path part = path;
         part += ".part";
-        {
-            std::ofstream file(part, std::ios::binary);
-            const std::uint64_t sum = hash(data_.data(), data_.size());
-            file.write(data_.data(), static_cast<std::streamsize>(data_.size()));
-            file.write(reinterpret_cast<const char*>(&sum), sizeof sum);
-            if (!file.flush()) throw std::runtime_error("cannot write checkpoint " + path.string());
+        const std::uint64_t sum = hash(data_.data(), data_.size());
+        std::FILE* file = std::fopen(part.string().c_str(), "wb");
+        bool written = file != nullptr && std::fwrite(data_.data(), 1, data_.size(), file) == data_.size() &&
+                       std::fwrite(&sum, sizeof sum, 1, file) == 1 && std::fflush(file) == 0 && on_the_disk(file);
+        int reason = errno;
+        if (file != nullptr && std::fclose(file) != 0 && written) written = false, reason = errno;
+        std::error_code error;
+        if (written) {
+            std::filesystem::rename(part, path, error);
+            if (!error) return;
+            reason = error.value();
         }
-        std::filesystem::rename(part, path);
+        if (file != nullptr) std::filesystem::remove(part, error);
+        throw std::runtime_error("cannot write checkpoint " + path.string() + ": " + std::generic_category().message(reason));
     }
     /// Of what was put: two scenes with the same identity are taken for the same.
     std::uint64_t identity() const noexcept { return hash(data_.data(), data_.size()); }
@@ -55,6 +67,14 @@ public:
     }
 
 private:
+    /// The name is given to a file only once its bytes are on the disk: where power fails in between, the old one is still there.
+    static bool on_the_disk([[maybe_unused]] std::FILE* file) noexcept {
+#if __has_include(<unistd.h>)
+        return fsync(fileno(file)) == 0 || errno == EINVAL || errno == ENOTSUP;  // what is no disk has nothing to wait for
+#else
+        return true;
+#endif
+    }
     std::vector<char> data_;
 };
 
@@ -64,8 +84,13 @@ public:
     /// @throws std::runtime_error if the file cannot be read or is damaged
     explicit CheckpointReader(const std::filesystem::path& path) : name_{path.string()} {
         std::ifstream file(path, std::ios::binary | std::ios::ate);
-        if (!file) throw std::runtime_error("cannot read checkpoint " + name_);
-        data_.resize(static_cast<std::size_t>(file.tellg()));
+        std::error_code error;
+        if (!file) throw std::runtime_error("cannot read checkpoint " + name_ + ": " + std::generic_category().message(errno));
+        if (std::filesystem::is_directory(path, error))
+            throw std::runtime_error("cannot read checkpoint " + name_ + ": it is a folder");
+        const std::streamoff size = file.tellg();
+        if (size < 0) fail();
+        data_.resize(static_cast<std::size_t>(size));
         file.seekg(0);
         file.read(data_.data(), static_cast<std::streamsize>(data_.size()));
         std::uint64_t sum = 0;
@@ -77,31 +102,46 @@ public:
     template <class T>
         requires std::is_trivially_copyable_v<T>
     T get() {
-        T value;
-        if (position_ + sizeof(T) > data_.size()) fail();
-        std::memcpy(static_cast<void*>(&value), data_.data() + position_, sizeof(T));
+        if (sizeof(T) > left()) fail();
+        const char* from = data_.data() + position_;
         position_ += sizeof(T);
-        return value;
+        if constexpr (std::is_same_v<T, bool>) {
+            return *from != 0;
+        } else {
+            T value;
+            std::memcpy(static_cast<void*>(&value), from, sizeof(T));
+            return value;
+        }
+    }
+    /// How many items follow, of at least so many bytes each: never more than the file still has.
+    Index get_count(std::size_t bytes_each) {
+        const auto size = get<std::uint64_t>();
+        if (size > left() / bytes_each) fail();
+        return static_cast<Index>(size);
     }
     std::string get_text() {
-        const std::size_t size = get<std::uint64_t>();
-        if (position_ + size > data_.size()) fail();
+        const auto size = static_cast<std::size_t>(get_count(1));
         position_ += size;
         return std::string(data_.data() + position_ - size, size);
     }
     Vector get_vector() {
-        const std::uint64_t size = get<std::uint64_t>();
-        if (position_ + size * sizeof(double) > data_.size()) fail();
-        Vector vector(static_cast<Index>(size));
+        Vector vector(get_count(sizeof(double)));
         for (Index k = 0; k < vector.size(); ++k) vector[k] = get<double>();
         return vector;
     }
+    /// @throws std::runtime_error "... is damaged" unless `holds`: what no run can have written
+    void require(bool holds) const {
+        if (!holds) fail();
+    }
+    /// Everything has been read.
+    void require_end() const { require(left() == 0); }
     /// @throws std::runtime_error unless `holds`
     void expect(bool holds, const std::string& what) const {
         if (!holds) throw std::runtime_error("checkpoint " + name_ + " belongs to another scene: " + what + " differs");
     }
 
 private:
+    std::size_t left() const noexcept { return data_.size() - position_; }
     [[noreturn]] void fail() const { throw std::runtime_error("checkpoint " + name_ + " is damaged"); }
     std::string name_;
     std::vector<char> data_;

@@ -68,6 +68,11 @@ struct Loading {
     std::string checkpoint{};                ///< file written after accepted increments; empty: none
     double checkpoint_seconds = 0.0;         ///< at least between two of them, but for the end of a stage or of the run, >= 0
     bool resume = false;                     ///< start from that file, if it exists
+    /// What the run is of, "name = value" line by line: kept in the file. A run does not resume from a file in which one of these
+    /// names has another value.
+    std::string scene{};
+    bool other_scene = false;      ///< it does, all the same
+    std::function<bool()> stop{};  ///< asked after each accepted increment: true ends the run there, with a checkpoint
 
     void validate() const {
         core::require_at_least("Loading.increments", increments, 1);

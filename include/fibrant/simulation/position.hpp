@@ -96,6 +96,14 @@ struct Position {
     /// Damping of the fibre that is held hardest, over that of the stage.
     double hardest() const { return damping * (holding.empty() ? 1.0 : *std::max_element(holding.begin(), holding.end())); }
 
+    /// All that a run can come to: of another one, numbers lead out of the loading.
+    bool sound(Index stages) const {
+        const auto finite = [](double value) { return std::isfinite(value) && value >= 0.0; };
+        return stage >= 0 && stage <= stages && in_stage >= 0 && accepted >= 0 && finite(progress) && fraction > 0.0 &&
+               fraction <= 1.0 && finite(displacement) && finite(damping) && finite(damping_floor) &&
+               std::all_of(holding.begin(), holding.end(), finite);
+    }
+
     template <class Body>
     void each(const Body& body) { each_of(*this, body); }
     template <class Body>

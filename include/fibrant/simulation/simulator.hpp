@@ -83,7 +83,7 @@ public:
         contacts_.places().follow(position_.following);
         motion_ = MeanMotion(mesh_, amplitudes_.size());
         if (loading.resume && !loading.checkpoint.empty() && std::filesystem::exists(loading.checkpoint))
-            read_checkpoint(loading.checkpoint, stages, report);
+            read_checkpoint(loading, stages, report);
         const StartOverlap begun(*this, stages.front(), position_.accepted == 0);
         if (begun.too_deep) {
             report.reason = begun.said;
@@ -99,7 +99,7 @@ public:
                 const auto gave_up = [&](const FailedAttempt& attempt) { (tell(observers, attempt), ...); };
                 if (!advance(loading, stages, stage, report, gave_up)) {
                     if (position_.accepted == 0) report.reason += begun.remark();
-                    if (unsaved) write_checkpoint(loading.checkpoint, stages, report);
+                    if (unsaved) write_checkpoint(loading, stages, report);
                     finish(report, start);
                     return report;
                 }
@@ -109,9 +109,15 @@ public:
                     const auto now = std::chrono::steady_clock::now();
                     unsaved = !loading.checkpoint.empty();
                     if (!unsaved || (!position_.stage_over && std::chrono::duration<double>(now - saved).count() < loading.checkpoint_seconds)) return;
-                    write_checkpoint(loading.checkpoint, stages, report);
+                    write_checkpoint(loading, stages, report);
                     saved = now, unsaved = false;
                 });
+                if (loading.stop && loading.stop()) {
+                    if (unsaved) write_checkpoint(loading, stages, report);
+                    report.reason = "stopped as asked, after increment " + std::to_string(position_.accepted);
+                    finish(report, start);
+                    return report;
+                }
             }
         }
         report.converged = true;
@@ -123,8 +129,8 @@ public:
     /// tied and applied is that of this scene: averages and periodic pairs count from there.
     /// @throws std::runtime_error if the file cannot be read or has other fibres
     void start_from(const std::string& checkpoint) {
-        CheckpointReader file(checkpoint);
-        read_state(file, false, 0);
+        CheckpointReader file = read_from_state(checkpoint, mesh_);
+        read_state(file);
         if constexpr (HasConnections<M>) equilibrium_.ties().anchor(state_);
         energy_.start_from_other(equilibrium_, state_);
     }
@@ -320,10 +326,9 @@ private:
         report.wall_seconds += core::seconds_since(start);
     }
 
-    void write_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, const Report& report) {
+    void write_checkpoint(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Report& report) {
         CheckpointWriter file;
-        file.put(std::string(checkpoint_format));
-        file.put(outline_identity(mesh_)), file.put(fibre_identity(mesh_)), file.put(channel_identity(channels_)), file.put(loading_identity(stages));
+        put_identity<M>(file, mesh_, channels_, stages, loading.scene);
         file.put(state_);
         energy_.each([&](const auto& value) { file.put(value); });
         put_memory(file, contacts_.accepted_memory().records(), contacts_.accepted_zones());
@@ -336,38 +341,33 @@ private:
         file.put(core::count(report.increments));
         for (const IncrementReport& increment : report.increments) put_increment(file, increment);
         motion_.each([&](const double value) { file.put(value); });
-        file.write(path);
+        file.write(loading.checkpoint);
     }
 
     /// The part of a checkpoint that has to do with fibres and contacts alone.
-    /// @param whole  the scene and the loading have to agree too
-    void read_state(CheckpointReader& file, bool whole, std::uint64_t loading) {
-        file.expect(file.get_text() == checkpoint_format, "the format");
-        file.expect(file.get<std::uint64_t>() == outline_identity(mesh_), whole ? "the set of fibres and channels" : "the set of fibres");
-        const bool fibres = file.get<std::uint64_t>() == fibre_identity(mesh_), channels = file.get<std::uint64_t>() == channel_identity(channels_);
-        const bool stages = file.get<std::uint64_t>() == loading;
-        file.expect((fibres && channels) || !whole, "the set of fibres and channels"), file.expect(stages || !whole, "the loading");
-        state_ = file.get_vector();
+    void read_state(CheckpointReader& file) {
+        const Index size = state_.size();
+        state_ = get_state(file, size);
         energy_.each([&](auto& value) {
-            if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vector>) value = file.get_vector();
+            if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vector>) value = get_state(file, size, true);
             else value = file.get<EnergyBalance>();
         });
         std::vector<typename Contacts::Memory::Record> records;
         std::vector<contact::Zone> zones;
-        get_memory(file, records, zones);
+        get_memory(file, records, zones, mesh_.fibre_count());
         contacts_.resume(std::move(records), std::move(zones));
     }
 
-    void read_checkpoint(const std::string& path, const std::vector<Stage<M>>& stages, Report& report) {
-        CheckpointReader file(path);
-        read_state(file, true, loading_identity(stages));
+    void read_checkpoint(const Loading<M>& loading, const std::vector<Stage<M>>& stages, Report& report) {
+        CheckpointReader file(loading.checkpoint);
+        expect_identity<M>(file, mesh_, channels_, stages, loading);
+        read_state(file);
         for (double& amplitude : amplitudes_) amplitude = file.get<double>();
         position_.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
+        file.require(position_.sound(core::count(stages)));
         contacts_.places().follow(position_.following);
         move_tools(amplitudes_);
-        if constexpr (HasTools<M>) {
-            contacts_.tools().resume([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
-        }
+        if constexpr (HasTools<M>) get_tools(file, contacts_.tools());
         if constexpr (HasConnections<M>) {
             equilibrium_.ties().motion().each_accepted([&](auto& value) { get_value(file, value); });
             equilibrium_.ties().motion().restore();
@@ -375,12 +375,13 @@ private:
         if constexpr (HasSolid<M>) get_solid(file, equilibrium_.solid());
         report.rejected_increments = file.get<Index>(), report.counts = file.get<solver::IterationCounts>();
         clock_.seconds() = file.get<std::array<double, core::part_count>>();
-        report.increments.resize(core::at(file.get<Index>()));
+        report.increments.resize(core::at(file.get_count(sizeof(double))));
         for (IncrementReport& increment : report.increments) {
             get_increment(file, increment);
             report.wall_seconds += increment.seconds;
         }
         motion_.each([&](double& value) { value = file.get<double>(); });
+        file.require_end();
     }
 
     ModelParameters<M> parameters_;

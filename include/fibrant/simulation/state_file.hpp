@@ -4,7 +4,12 @@
 
 #include <fibrant/simulation/checkpoint.hpp>
 #include <fibrant/simulation/loading.hpp>
+#include <fibrant/simulation/scene_difference.hpp>
 
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -12,7 +17,7 @@
 
 namespace fibrant::simulation {
 
-inline constexpr const char* checkpoint_format = "fibrant checkpoint 13";
+inline constexpr const char* checkpoint_format = "fibrant checkpoint 14";
 
 /// Tells how fibres are cut and grouped: the same in programs whose compilers round differently.
 template <beam::BeamElement B>
@@ -53,20 +58,62 @@ std::uint64_t loading_identity(const std::vector<Stage<M>>& stages) {
     return loading.identity();
 }
 
+/// What a checkpoint begins with: its format, what the run was of, and what tells one scene from another.
+template <Model M>
+void put_identity(CheckpointWriter& file, const beam::Mesh<typename M::Beam>& mesh, const connection::Channels& channels,
+                  const std::vector<Stage<M>>& stages, const std::string& scene) {
+    file.put(std::string(checkpoint_format)), file.put(scene);
+    file.put(outline_identity(mesh)), file.put(fibre_identity(mesh)), file.put(channel_identity(channels)),
+        file.put(loading_identity(stages));
+}
+/// Reads that, and compares all of it with the run that goes on.
+/// @throws std::runtime_error if it is another one
+template <Model M>
+void expect_identity(CheckpointReader& file, const beam::Mesh<typename M::Beam>& mesh, const connection::Channels& channels,
+                     const std::vector<Stage<M>>& stages, const Loading<M>& loading) {
+    file.expect(file.get_text() == checkpoint_format, "the format");
+    const std::string difference = scene_difference(file.get_text(), loading.scene);
+    file.expect(difference.empty() || loading.other_scene, difference);
+    file.expect(file.get<std::uint64_t>() == outline_identity(mesh), "the set of fibres and channels");
+    const bool fibres = file.get<std::uint64_t>() == fibre_identity(mesh),
+               same = file.get<std::uint64_t>() == channel_identity(channels);
+    file.expect(fibres && same, "the set of fibres and channels");
+    file.expect(file.get<std::uint64_t>() == loading_identity(stages), "the loading");
+}
+/// What the run was of that left a checkpoint; empty where nobody said so.
+/// @throws std::runtime_error if the file cannot be read
+inline std::string checkpoint_scene(const std::string& path) {
+    CheckpointReader file(path);
+    file.expect(file.get_text() == checkpoint_format, "the format");
+    return file.get_text();
+}
+
 /// A checkpoint from its state on, of fibres that are cut and grouped alike.
 /// @throws std::runtime_error if the file cannot be read or has other fibres
 template <beam::BeamElement B>
 CheckpointReader read_from_state(const std::string& path, const beam::Mesh<B>& mesh) {
     CheckpointReader file(path);
     file.expect(file.get_text() == checkpoint_format, "the format");
+    file.get_text();  // what the run was of
     file.expect(file.get<std::uint64_t>() == outline_identity(mesh), "the set of fibres");
     for (int k = 0; k < 3; ++k) file.get<std::uint64_t>();  // of the scene and the loading
     return file;
 }
+/// The next vector of numbers, all finite.
+/// @param size   that it must have
+/// @param empty  or none
+inline Vector get_state(CheckpointReader& file, Index size, bool empty = false) {
+    Vector state = file.get_vector();
+    file.require((state.size() == size || (empty && state.size() == 0)) && state.allFinite());
+    return state;
+}
 /// The state alone; throws as `read_from_state`.
 template <beam::BeamElement B>
 Vector checkpoint_state(const std::string& path, const beam::Mesh<B>& mesh) {
-    return read_from_state(path, mesh).get_vector();
+    CheckpointReader file = read_from_state(path, mesh);
+    Vector state = file.get_vector();
+    file.require(state.size() >= mesh.rest_state().size() && state.allFinite());
+    return state;
 }
 
 /// What contacts remember.
@@ -77,12 +124,46 @@ void put_memory(CheckpointWriter& file, const std::vector<Record>& records, cons
     file.put(core::count(zones));
     for (const contact::Zone& zone : zones) file.put(zone);
 }
+/// @param fibres  of the scene: what is remembered of others is damage
 template <class Record>
-void get_memory(CheckpointReader& file, std::vector<Record>& records, std::vector<contact::Zone>& zones) {
-    records.resize(core::at(file.get<Index>()));
-    for (Record& record : records) record.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
-    zones.resize(core::at(file.get<Index>()));
-    for (contact::Zone& zone : zones) zone = file.get<contact::Zone>();
+void get_memory(CheckpointReader& file, std::vector<Record>& records, std::vector<contact::Zone>& zones, Index fibres) {
+    const auto known = [fibres](Index fibre) { return fibre >= 0 && fibre < fibres; };
+    records.resize(core::at(file.get_count(sizeof(double))));
+    for (Record& record : records) {
+        record.each([&](auto& value) {
+            value = file.template get<std::decay_t<decltype(value)>>();
+            file.require(std::isfinite(static_cast<double>(value)));
+        });
+        file.require(known(record.fibre_i) && known(record.fibre_j));
+    }
+    zones.resize(core::at(file.get_count(sizeof(contact::Zone))));
+    for (contact::Zone& zone : zones) {
+        auto bytes = file.get<std::array<char, sizeof(contact::Zone)>>();
+        for (const std::size_t flag :
+             {offsetof(contact::Zone, crossing), offsetof(contact::Zone, followed), offsetof(contact::Zone, forced)})
+            bytes[flag] = static_cast<char>(bytes[flag] != 0);
+        std::memcpy(static_cast<void*>(&zone), bytes.data(), bytes.size());
+        const proximity::ProximityZone& span = zone.span;
+        file.require(known(span.fibre_i) && known(span.fibre_j) && zone.stiffness >= 0.0 && !std::isnan(zone.deepest));
+        for (const double place : {span.a_i, span.b_i, span.a_j, span.b_j, span.closest_i, span.closest_j, zone.stiffness})
+            file.require(std::isfinite(place));
+    }
+}
+
+/// What tools remember.
+template <class Tools>
+void get_tools(CheckpointReader& file, Tools& tools) {
+    bool counted = false;
+    tools.resume([&](auto& value) {
+        using Value = std::decay_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, Index>) {
+            if (!std::exchange(counted, true)) {
+                value = file.get_count(sizeof(double));
+                return;
+            }
+        }
+        value = file.get<Value>();
+    });
 }
 
 /// Which solids they are, and which of their bonds are broken.

@@ -25,10 +25,10 @@ struct StoredState {
 template <Model M>
 StoredState<M> read_state(const std::string& path, const beam::Mesh<typename M::Beam>& mesh) {
     CheckpointReader file = read_from_state(path, mesh);
-    StoredState<M> stored{.state = file.get_vector()};
+    StoredState<M> stored{.state = get_state(file, mesh.rest_state().size())};
     for (int k = 0; k < 3; ++k) file.get_vector();  // forces of the last increment
     file.get<EnergyBalance>();
-    get_memory(file, stored.records, stored.zones);
+    get_memory(file, stored.records, stored.zones, mesh.fibre_count());
     return stored;
 }
 
@@ -36,7 +36,7 @@ StoredState<M> read_state(const std::string& path, const beam::Mesh<typename M::
 template <Model M>
 void write_state(const std::string& path, const beam::Mesh<typename M::Beam>& mesh, const StoredState<M>& stored) {
     CheckpointWriter file;
-    file.put(std::string(checkpoint_format));
+    file.put(std::string(checkpoint_format)), file.put(std::string());
     file.put(outline_identity(mesh)), file.put(fibre_identity(mesh));
     for (int k = 0; k < 2; ++k) file.put(std::uint64_t{0});
     file.put(stored.state);
