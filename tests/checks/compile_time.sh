@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # What the compiler takes for the first program and for the umbrella header, as multiples of what it takes for a yardstick
 # beside them, since machines and their load differ; and its memory, where a command tells it. Budgets are the last figures
-# of g++ 12 and a fifth: one that is met by far is to be lowered.
+# of g++ 12 on an idle machine and two fifths, since multiples change by a fifth with the load: one that is met by far is to be lowered.
 # usage: compile_time.sh PROJECT_FOLDER SCRATCH_FOLDER COMPILER FLAG...
 set -eu
 project=$1
@@ -44,6 +44,6 @@ check() {
   before=$after
   [ "$tenths" -le "$most" ] && [ "$memory" -le "$most_memory" ] || failed=1
 }
-check umbrella "$scratch/umbrella.cpp" 22 700 "$@"
-check crossing "$project/examples/crossing/main.cpp" 138 1560 "$@"
+check umbrella "$scratch/umbrella.cpp" 30 700 "$@"
+check crossing "$project/examples/crossing/main.cpp" 175 1600 "$@"
 exit $failed
