@@ -36,7 +36,8 @@ inline void require_folder(const std::filesystem::path& folder) {
         throw std::invalid_argument(name + ": is a file, but it must be a folder");
     for (std::filesystem::path above = folder.parent_path(); !above.empty(); above = above.parent_path()) {
         if (std::filesystem::is_directory(above, error)) break;
-        if (std::filesystem::exists(above, error)) throw std::invalid_argument(name + ": cannot be made: " + above.string() + " is a file");
+        if (std::filesystem::exists(above, error))
+            throw std::invalid_argument(name + ": cannot be made: " + above.string() + " is a file");
         if (above == above.parent_path()) break;
     }
 }

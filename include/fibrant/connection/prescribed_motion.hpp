@@ -190,8 +190,8 @@ private:
             if (solver.values()[k] > agreement)
                 best += solver.vectors().col(k) * (solver.vectors().col(k).dot(pull) / solver.values()[k]);
         // Directors that may be stretched agree on none at all, wherever they point to.
-        const bool collapsed = !turning && items[0].hold.vector != scene::NodeVector::position && solver.values()[0] > agreement &&
-                               best.norm() < 0.5 * items[0].rest.norm();
+        const bool collapsed = !turning && items[0].hold.vector != scene::NodeVector::position &&
+                               solver.values()[0] > agreement && best.norm() < 0.5 * items[0].rest.norm();
         for (std::size_t k = asked.size(); k-- > 0;) {
             const Vec3 missed = collapsed ? Vec3(asked[k].second - asked[0].second) : Vec3(asked[k].first * (asked[k].second - best));
             if (missed.norm() <= agreement * size) continue;

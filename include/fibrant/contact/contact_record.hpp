@@ -144,7 +144,8 @@ public:
     {
         const double same = 0.25;  // elements
         if (element.place >= 0) {
-            if (const Record* here = nearest(element.fibre_i, element.fibre_j, element.u_i, element.u_j, same)) return here->friction;
+            const Record* here = nearest(element.fibre_i, element.fibre_j, element.u_i, element.u_j, same);
+            if (here) return here->friction;
             if (element.slide != 0) return {};
         }
         return friction(element.fibre_i, element.fibre_j, element.u_i, element.u_j, range);

@@ -135,24 +135,36 @@ struct Slide {
     Eigen::Vector2d arc(const PairGeometry& pair) const noexcept { return Eigen::Vector2d(direction[0] * pair.speed_i, direction[1] * pair.speed_j).normalized(); }
 };
 
-/// Moves a pair of patches along one direction of both abscissae to where they are closest, both inside their fibres.
-template <class B>
-void follow_along(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, const Slide& slide, double& u_i, double& u_j) noexcept {
+/// Second variation of a distance that steps to where patches are closest count with at least, over the distance [1].
+inline constexpr double least_of_steps = 0.1;
+
+/// Moves a pair of patches step by step until it comes to rest, both inside their fibres.
+/// @param steps  called with the pair's geometry: steps of both abscissae [element]
+template <class B, class Steps>
+void follow_steps(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, double& u_i, double& u_j, const Steps& steps) noexcept {
     const auto [low_i, high_i] = mesh.bounds(i);
     const auto [low_j, high_j] = mesh.bounds(j);
     for (int iteration = 0; iteration < 30; ++iteration) {
-        const PairGeometry pair = pair_geometry(mesh, state, i, j, u_i, u_j);
-        const Eigen::Vector2d direction = slide.arc(pair);
-        const double downhill = pair.centres.dot(direction[0] * pair.t_i - direction[1] * pair.t_j);
-        const double step = downhill / std::max(direction.dot(pair.closeness * direction), 0.1);
-        const double step_i = step * direction[0] / pair.speed_i, step_j = step * direction[1] / pair.speed_j;
-        const double largest = std::max(std::abs(step_i), std::abs(step_j));
+        const std::pair<double, double> step = steps(pair_geometry(mesh, state, i, j, u_i, u_j));
+        const double largest = std::max(std::abs(step.first), std::abs(step.second));
+        // Bends jump where a patch comes to another element, between which a full step may go to and fro.
         const double shorten = std::min(largest > 0.5 ? 0.5 / largest : 1.0, iteration > 8 ? 0.5 : 1.0);
-        u_i = std::clamp(u_i + shorten * step_i, low_i, high_i);
-        u_j = std::clamp(u_j + shorten * step_j, low_j, high_j);
+        u_i = std::clamp(u_i + shorten * step.first, low_i, high_i);
+        u_j = std::clamp(u_j + shorten * step.second, low_j, high_j);
         if (largest < 1e-11) break;
     }
     u_i = mesh.wrapped(i, u_i), u_j = mesh.wrapped(j, u_j);
+}
+
+/// Moves a pair of patches along one direction of both abscissae to where they are closest, both inside their fibres.
+template <class B>
+void follow_along(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, const Slide& slide, double& u_i, double& u_j) noexcept {
+    follow_steps(mesh, state, i, j, u_i, u_j, [&](const PairGeometry& pair) {
+        const Eigen::Vector2d direction = slide.arc(pair);
+        const double downhill = pair.centres.dot(direction[0] * pair.t_i - direction[1] * pair.t_j);
+        const double step = downhill / std::max(direction.dot(pair.closeness * direction), least_of_steps);
+        return std::pair{step * direction[0] / pair.speed_i, step * direction[1] / pair.speed_j};
+    });
 }
 
 /// Moves a pair of patches to the closest ones near it, both inside their fibres.
@@ -161,31 +173,24 @@ void follow_along(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index
 /// to rest, the pair stays nearby all the same.
 template <class B>
 void follow_closest(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, double& u_i, double& u_j) noexcept {
-    const auto [low_i, high_i] = mesh.bounds(i);
-    const auto [low_j, high_j] = mesh.bounds(j);
-    for (int iteration = 0; iteration < 30; ++iteration) {
-        const PairGeometry pair = pair_geometry(mesh, state, i, j, u_i, u_j);
-        const Eigen::Matrix2d matrix = raised(pair.closeness, 0.1);
+    const auto bounds_i = mesh.bounds(i), bounds_j = mesh.bounds(j);
+    const auto outside = [](double u, const auto& bounds) { return u < bounds.first || u > bounds.second; };
+    follow_steps(mesh, state, i, j, u_i, u_j, [&](const PairGeometry& pair) {
+        const Eigen::Matrix2d matrix = raised(pair.closeness, least_of_steps);
         const double p = pair.centres.dot(pair.t_i), q = -pair.centres.dot(pair.t_j);  // minus the gradient
         const double determinant = matrix.determinant();
         double step_i = (matrix(1, 1) * p - matrix(0, 1) * q) / determinant / pair.speed_i;
         double step_j = (matrix(0, 0) * q - matrix(0, 1) * p) / determinant / pair.speed_j;
-        if (u_i + step_i < low_i || u_i + step_i > high_i) {  // at an end the other one goes alone
-            step_i = std::clamp(u_i + step_i, low_i, high_i) - u_i;
+        if (outside(u_i + step_i, bounds_i)) {  // at an end the other one goes alone
+            step_i = std::clamp(u_i + step_i, bounds_i.first, bounds_i.second) - u_i;
             step_j = (q - matrix(0, 1) * step_i * pair.speed_i) / matrix(1, 1) / pair.speed_j;
         }
-        if (u_j + step_j < low_j || u_j + step_j > high_j) {
-            step_j = std::clamp(u_j + step_j, low_j, high_j) - u_j;
+        if (outside(u_j + step_j, bounds_j)) {
+            step_j = std::clamp(u_j + step_j, bounds_j.first, bounds_j.second) - u_j;
             step_i = (p - matrix(0, 1) * step_j * pair.speed_j) / matrix(0, 0) / pair.speed_i;
         }
-        const double largest = std::max(std::abs(step_i), std::abs(step_j));
-        // Bends jump where a patch comes to another element, between which a full step may go to and fro.
-        const double shorten = std::min(largest > 0.5 ? 0.5 / largest : 1.0, iteration > 8 ? 0.5 : 1.0);
-        u_i = std::clamp(u_i + shorten * step_i, low_i, high_i);
-        u_j = std::clamp(u_j + shorten * step_j, low_j, high_j);
-        if (largest < 1e-11) break;
-    }
-    u_i = mesh.wrapped(i, u_i), u_j = mesh.wrapped(j, u_j);
+        return std::pair{step_i, step_j};
+    });
 }
 
 }  // namespace fibrant::contact

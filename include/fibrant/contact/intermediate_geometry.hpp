@@ -15,7 +15,7 @@ namespace fibrant::contact {
 /// A pair of stations whose sections may touch; abscissae are counted in elements.
 struct StationPair {
     double u_i = 0.0, u_j = 0.0;
-    bool crossing = false;               ///< the only pair of its zone
+    bool crossing = false;               ///< the only pair of its zone, or one of a followed valley
     bool end_i = false, end_j = false;   ///< the station is a fibre's end and the contact is with its cap
     double length = 0.0;                 ///< of the zone that it stands for [length]; for a crossing the touching length, for a last section 0
     std::int8_t slide = 0;               ///< of a followed crossing: how its place slides (FollowedPlaces)
