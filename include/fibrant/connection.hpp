@@ -2,7 +2,6 @@
 #pragma once
 /// @file What is imposed, tied and bonded.
 
-#include <fibrant/connection/applied_load.hpp>
 #include <fibrant/connection/body_motion.hpp>
 #include <fibrant/connection/bonded_solid.hpp>
 #include <fibrant/connection/bonding.hpp>

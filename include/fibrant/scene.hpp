@@ -3,6 +3,7 @@
 /// @file A scene as data: fibres, what is imposed on them, tools, solids.
 
 #include <fibrant/scene/assembly.hpp>
+#include <fibrant/scene/channels.hpp>
 #include <fibrant/scene/conditions.hpp>
 #include <fibrant/scene/cross_section.hpp>
 #include <fibrant/scene/dof_layout.hpp>

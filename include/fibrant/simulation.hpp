@@ -15,6 +15,7 @@
 #include <fibrant/simulation/programme.hpp>
 #include <fibrant/simulation/refined_state.hpp>
 #include <fibrant/simulation/report.hpp>
+#include <fibrant/simulation/run_file.hpp>
 #include <fibrant/simulation/scene_checks.hpp>
 #include <fibrant/simulation/scene_difference.hpp>
 #include <fibrant/simulation/simulator.hpp>

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Equilibrium of a mesh with its contacts, loads and prescribed motion: residual, tangent, energies.
+/// @file Equilibrium of a mesh with its contacts, terms and prescribed motion: residual, tangent, energies.
 
 #include <fibrant/assembly/solid_system.hpp>
-#include <fibrant/connection/applied_load.hpp>
 #include <fibrant/connection/connections.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/contact/contact_set.hpp>
 #include <fibrant/contact/learned_contacts.hpp>
+#include <fibrant/damping/place_springs.hpp>
+#include <fibrant/load/applied_load.hpp>
+#include <fibrant/term/list.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -31,9 +33,15 @@ struct ResidualFigures {
 /// The mechanical problem of one increment.
 /// @tparam Connections  of ends of fibres to rigid bodies
 /// @tparam Solid        that the fibres are bonded to; its unknowns come after theirs
-template <beam::BeamElement B, class Contacts, class Connections = connection::NoConnections, class Solid = solid::NoSolid>
-class Equilibrium {
+/// @tparam Acts         what else pushes: term::List<...>
+template <beam::BeamElement B, class Contacts, class Connections = connection::NoConnections, class Solid = solid::NoSolid, class Acts = term::List<>>
+class Equilibrium;
+
+template <beam::BeamElement B, class Contacts, class Connections, class Solid, class... T>
+class Equilibrium<B, Contacts, Connections, Solid, term::List<T...>> {
 public:
+    using Terms = term::Terms<B, load::Applied, damping::PlaceSprings, T...>;
+    using Parameters = typename term::List<T...>::Parameters;
     using System = typename SystemOf<B, Solid>::Type;
     using Ties = typename Connections::template Of<B>;
     static constexpr bool has_solid = core::Active<Solid>;
@@ -41,10 +49,10 @@ public:
     static constexpr Index element_unknowns = beam::Mesh<B>::element_unknowns;
 
     Equilibrium(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const B& beam, Contacts& contacts,
-                const connection::Channels& channels, const Solid& solid = Solid())
+                const connection::Channels& channels, const Solid& solid = Solid(), const Parameters& terms = {})
         : mesh_{&mesh}, beam_{beam}, contacts_{&contacts}, motion_{assembly, mesh, channels},
-          load_{assembly, mesh, channels}, ties_{assembly, mesh, channels}, solid_{taken(solid, assembly, mesh, channels)},
-          system_{system(mesh, solid_)}, stresses_(core::at(mesh.element_count())) {
+          ties_{assembly, mesh, channels}, solid_{taken(solid, assembly, mesh, channels)}, system_{system(mesh, solid_)},
+          terms_{term::SiteOf<B>(assembly, mesh, channels, std::as_const(system_).layout()), terms}, stresses_(core::at(mesh.element_count())) {
         // Strains keep the digits of coordinates over an element's length, and E A of them is a force at each node.
         const double extent = scene::extent_of(mesh.layout(), mesh.rest_state());
         double sum = 0.0;
@@ -58,6 +66,9 @@ public:
         rounding_ = 8.0 * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
     }
 
+    Equilibrium(const Equilibrium&) = delete;  // its terms look at its layout
+    Equilibrium& operator=(const Equilibrium&) = delete;
+
     const System& system() const noexcept { return system_; }
     const std::vector<Vec3>& targets() const noexcept { return targets_; }
     const beam::Mesh<B>& mesh() const noexcept { return *mesh_; }
@@ -66,16 +77,16 @@ public:
     Ties& ties() noexcept { return ties_; }
     const Solid& solid() const noexcept { return solid_; }
     Solid& solid() noexcept { return solid_; }
+    Terms& terms() noexcept { return terms_; }
+    const Terms& terms() const noexcept { return terms_; }
 
     /// Sets what is imposed, and the state from which the increment starts.
     /// @param damping  of a spring from every centre to its place in `state`, >= 0 [force / length]; directors count at the
     ///                 surface. It holds what nothing else holds, and leaves no force once nothing moves.
     /// @param holding  factor on it of each fibre, >= 1; none: 1
     void begin(std::span<const double> amplitudes, const Vector& state, double damping = 0.0, std::span<const double> holding = {}) {
-        amplitudes_.assign(amplitudes.begin(), amplitudes.end());
-        damping_ = damping;
-        holding_.assign(holding.begin(), holding.end());
-        if (damping_ > 0.0) anchor_ = state;
+        terms_.template get<damping::PlaceSprings>().set(damping, holding);
+        terms_.each([&](auto& term) { term.begin(amplitudes, state); });
         motion_.at(amplitudes, state, system_.layout().held, targets_);
         ties_.begin(amplitudes);
         if constexpr (has_solid) solid_.hold(amplitudes, system_.layout().held, targets_);
@@ -86,7 +97,31 @@ public:
     }
 
     /// Springs of the damping have their places in this state instead.
-    void carry(const Vector& place) { anchor_ = place; }
+    void carry(const Vector& place) { terms_.template get<damping::PlaceSprings>().move_to(place); }
+
+    // The loops of an increment, of all terms; contacts have theirs beside.
+    void detect(const Vector& state, const Vector& accepted, double reach) {
+        terms_.each([&](auto& term) { term.detect(state, accepted, reach); });
+    }
+    /// @returns the largest turn of a normal [radian], at least `turn`
+    double refresh(const Vector& state, const Vector& accepted, double turn) {
+        terms_.each([&](auto& term) { turn = std::max(turn, term.refresh(state, accepted)); });
+        return turn;
+    }
+    void evaluate(const Vector& state) {
+        terms_.each([&](auto& term) { term.evaluate(state); });
+    }
+    /// Of a step, so that nothing approaches by more than `length`; at most `part`.
+    double largest_part(const Vector& step, double length, double part) const {
+        terms_.each([&](const auto& term) { part = std::min(part, term.largest_part(step, length)); });
+        return part;
+    }
+    void accept(const Vector& state) {
+        terms_.each([&](auto& term) { term.accept(state); });
+    }
+    void restore() {
+        terms_.each([&](auto& term) { term.restore(); });
+    }
 
     /// Point stresses that belong to a state: the start of an increment, or the fallback of the mixed iteration.
     void reset_stresses(const Vector& state) {
@@ -152,20 +187,23 @@ public:
                     beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e));
         }, mesh_->grain());
         if constexpr (has_solid) solid_.add_forces(state, forces);
+        terms_.template of<term::Role::structure>([&](const auto& term) { term.add_forces(state, forces); });
     }
 
     /// Residual of a state whose contacts have been evaluated.
     ResidualFigures residual(const Vector& state, Vector& residual) {
         ties_.place(state, system_.layout());
         residual.setZero(state.size());
+        const auto add = [&](const auto& term) { term.add_forces(state, residual); };
         contacts_->add_forces(residual);
+        terms_.template of<term::Role::interaction>(add);
         scene::fold_images(system_.layout(), residual);
         const double contact = norm(residual);
         add_internal_forces(state, residual);
-        if (damping_ > 0.0) residual += damping_force(state);
+        terms_.template of<term::Role::aid>(add);
         scene::fold_images(system_.layout(), residual);
         external_.setZero(state.size());
-        load_.add_forces(amplitudes_, state, external_);
+        terms_.template of<term::Role::external>([&](const auto& term) { term.add_forces(state, external_); });
         scene::fold_images(system_.layout(), external_);
         if constexpr (core::Active<Ties>) {
             ties_.hold_forces(system_.layout(), residual - external_);
@@ -199,18 +237,18 @@ public:
             contacts_->section_stiffness_terms(f, state, [&](Index first, const auto& weights, const Mat3& stiffness) {
                 system_.add_rank_one(f, first, weights, stiffness);
             });
-            if (const double spring = shift + damping_ * holding(f); spring > 0.0) {
-                for_vectors(f, [&](Index v, double length) { system_.add_diagonal(v, spring * length * length * Mat3::Identity()); });
-            }
+            if (const double springs = spring(f, shift); springs > 0.0)
+                scene::for_own_vectors(system_.layout(), f, [&](Index v, double length) { system_.add_diagonal(v, springs * length * length * Mat3::Identity()); });
         }, mesh_->grain());
-        load_.add_stiffness(amplitudes_, state, [&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
-        load_.add_element_stiffness(amplitudes_, [&](Index f, Index e, const beam::ElementMatrix<B>& stiffness) { system_.add(f, e, stiffness); });
+        Sink sink{this, state};
+        term::Bands bands(sink);
+        terms_.each([&](const auto& term) { term.add_bands(state, bands); });
         ties_.stiffen(system_.layout(), !tension_only);
         if constexpr (has_solid) {
             solid_.add_to_fibres([&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
-            solid_.linearise(state, tension_only, shift + damping_);
+            solid_.linearise(state, tension_only, spring(-1, shift));
         }
-        gather_points();
+        gather_points(state);
         gather_slides(tension_only);
         system_.index_points();
     }
@@ -219,7 +257,7 @@ public:
     /// values of an earlier state, and products wait for `linearise`.
     void outline(const Vector& state) {
         system_.place(state);
-        gather_points();
+        gather_points(state);
         gather_slides(false);
     }
 
@@ -232,21 +270,17 @@ public:
         double sum = 0.0;
         for (const double value : part) sum += value;
         if constexpr (has_solid) sum += solid_.energy(state);
+        terms_.each([&](const auto& term) { sum += term.stored(state); });
+        return sum;
+    }
+    /// What terms dissipate from the last accepted state to this one [force * length].
+    double dissipated(const Vector& state) const {
+        double sum = 0.0;
+        terms_.each([&](const auto& term) { sum += term.dissipated(state); });
         return sum;
     }
     /// Force of the damping on the fibres' supports in a state: what it takes is work of this force [force].
-    Vector damping_force(const Vector& state) const {
-        Vector force = Vector::Zero(state.size());
-        if (!(damping_ > 0.0)) return force;
-        for (Index v = 0; v < core::count(system_.layout().length); ++v) {
-            const double length = system_.layout().length[core::at(v)];
-            force.segment<3>(3 * v) = damping_ * length * length * (state.segment<3>(3 * v) - anchor_.segment<3>(3 * v));
-        }
-        for (const scene::ImageVector& one : system_.layout().images) force.segment<3>(3 * one.image).setZero();
-        for (Index f = 0; f < core::count(holding_); ++f)
-            if (holding(f) != 1.0) for_vectors(f, [&](Index v, double) { force.segment<3>(3 * v) *= holding(f); });
-        return force;
-    }
+    Vector damping_force(const Vector& state) const { return terms_.template get<damping::PlaceSprings>().force(state); }
     /// External forces, and forces on held components, of the last residual.
     const Vector& external() const noexcept { return external_; }
     const Vector& reaction() const noexcept { return reaction_; }
@@ -283,7 +317,7 @@ public:
     std::vector<double> greatest_by_fibre(const Vector& step) const {
         std::vector<double> greatest(step.size() > 0 && step.allFinite() ? core::at(mesh_->fibre_count()) : 0, 0.0);
         for (Index f = 0; f < core::count(greatest); ++f)
-            for_vectors(f, [&](Index v, double length) { greatest[core::at(f)] = std::max(greatest[core::at(f)], length * step.segment<3>(3 * v).norm()); });
+            scene::for_own_vectors(system_.layout(), f, [&](Index v, double length) { greatest[core::at(f)] = std::max(greatest[core::at(f)], length * step.segment<3>(3 * v).norm()); });
         return greatest;
     }
 
@@ -297,7 +331,7 @@ private:
         if constexpr (has_solid) return System(mesh, solid);
         else return System(mesh);
     }
-    void gather_points() {
+    void gather_points([[maybe_unused]] const Vector& state) {
         auto& points = system_.points();
         points.clear();
         system_.skews().clear();
@@ -318,6 +352,9 @@ private:
             const Vec3 column = contacts_->friction_by_gap(k);
             if (!column.isZero(0.0)) system_.skews().push_back({static_cast<std::int32_t>(points.size() - 1), column, element.normal});
         }
+        Sink sink{this, state};
+        term::Couplings couplings(sink);
+        terms_.each([&](const auto& term) { term.add_couplings(state, couplings); });
     }
     /// @param positive  without negative parts
     void gather_slides(bool positive) {
@@ -337,12 +374,32 @@ private:
         layout.held.clear(), targets_.clear();
         for (const auto& [one, target] : all) layout.held.push_back(one), targets_.push_back(target);
     }
-    double holding(Index f) const noexcept { return holding_.empty() ? 1.0 : holding_[core::at(f)]; }
-    /// body(vector, its length) of each nodal vector of a fibre but images.
-    template <class Body>
-    void for_vectors(Index f, const Body& body) const {
-        const scene::Chain& chain = system_.layout().chains[core::at(f)];
-        for (Index v = chain.first_vector; v < chain.first_vector + mesh_->own_nodes(f) * chain.vectors_per_node; ++v) body(v, system_.layout().length[core::at(v)]);
+    /// What a term's stiffness goes into.
+    struct Sink {
+        Equilibrium* to;
+        const Vector& state;
+        void add_diagonal(Index vector, const Mat3& stiffness) { to->system_.add_diagonal(vector, stiffness); }
+        void add_element(Index f, Index e, const double* entries) {
+            to->system_.add(f, e, Eigen::Map<const beam::ElementMatrix<B>>(entries));
+        }
+        void add_coupling(const term::CentrePoint& i, const term::CentrePoint& j, const Mat3& stiffness) {
+            to->system_.points().push_back({static_cast<std::int32_t>(3 * i.first_vector), static_cast<std::int32_t>(3 * j.first_vector),
+                                            static_cast<std::int32_t>(i.fibre), static_cast<std::int32_t>(j.fibre), particle(i), particle(j), stiffness});
+        }
+        beam::Particle<B> particle(const term::CentrePoint& at) const {
+            if constexpr (beam::TouchedOnCentreline<B>) {
+                return B::centre_weights(at.xi);
+            } else {
+                beam::Particle<B> one = B::particle_weights(at.xi, 0.0, 0.0);
+                if constexpr (beam::TurningSections<B>) one.follow(to->mesh_->element(state, at.fibre, at.element));
+                return one;
+            }
+        }
+    };
+    /// Springs on all vectors of a fibre, -1: on those of what is none, beside a shift [force / length].
+    double spring(Index f, double shift) const {
+        terms_.each([&](const auto& term) { shift += term.spring(f); });
+        return shift;
     }
     typename B::Stresses& stress(Index f, Index e) noexcept { return stresses_[core::at(mesh_->element_index(f, e))]; }
     template <class Body>
@@ -356,16 +413,14 @@ private:
     B beam_;
     Contacts* contacts_;
     connection::PrescribedMotion<B> motion_;
-    connection::AppliedLoad<B> load_;
     [[no_unique_address]] Ties ties_;
     [[no_unique_address]] Solid solid_;
     System system_;
+    Terms terms_;
     std::vector<typename B::Stresses> stresses_;
     contact::LearnedContacts learned_;
-    std::vector<double> amplitudes_, holding_;
     std::vector<Vec3> targets_;
-    Vector external_, reaction_, anchor_;
-    double damping_ = 0.0;
+    Vector external_, reaction_;
     double rounding_ = 0.0;
 };
 

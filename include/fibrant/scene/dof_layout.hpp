@@ -77,6 +77,14 @@ struct DofLayout {
     }
 };
 
+/// body(vector, its length) of each nodal vector of a chain but images.
+template <class Body>
+void for_own_vectors(const DofLayout& layout, Index chain, const Body& body) {
+    const Chain& one = layout.chains[core::at(chain)];
+    const Index end = one.first_vector + (one.nodes - (one.closed ? 1 : 0)) * one.vectors_per_node;
+    for (Index v = one.first_vector; v < end; ++v) body(v, layout.length[core::at(v)]);
+}
+
 /// The power of two next to a number, by its logarithm. @param value > 0
 inline double power_of_two(double value) noexcept { return std::exp2(std::round(std::log2(value))); }
 

@@ -76,7 +76,7 @@ public:
         contacts.evaluate(to);
         contact_.setZero();
         contacts.add_forces(contact_);
-        balance_.dissipated += end.dissipated;
+        balance_.dissipated += end.dissipated + equilibrium.dissipated(to);
         balance_.contact = end.work;
         balance_.elastic = equilibrium.elastic_energy(to);
         if (leap) balance_.released += balance_.error() - error_before;

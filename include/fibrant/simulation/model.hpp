@@ -11,6 +11,7 @@
 #include <fibrant/proximity/proximity_search.hpp>
 #include <fibrant/solver/linear_solver.hpp>
 #include <fibrant/solver/newton.hpp>
+#include <fibrant/term/list.hpp>
 
 namespace fibrant::contact {
 // Comes with RigidTools, which a model that has tools names; others are spared its compilation.
@@ -60,11 +61,25 @@ concept HasConnections = requires { typename M::Connections; } && core::Policy<t
 template <class M>
 concept HasPassage = requires { typename M::Passage; } && core::Policy<typename M::Passage>;
 
+/// A model whose fibres are pushed by more than contacts and what a scene applies says so: `using Acts = term::List<load::Gravity, ...>;`.
+/// May be left out.
+template <class M>
+concept HasActs = requires { typename M::Acts; } && term::detail::list_for<typename M::Acts, typename M::Beam>;
+
 /// A model names its Beam, Proximity, Normal, Friction and Solver, each of which satisfies its own contract.
 template <class M>
 concept Model = HasBeam<M> && HasProximity<M> && HasNormal<M> && HasFriction<M> && HasSolver<M>;
 
 namespace detail {
+template <Model M>
+struct ActsOf {
+    using Type = term::List<>;
+};
+template <Model M>
+    requires HasActs<M>
+struct ActsOf<M> {
+    using Type = typename M::Acts;
+};
 template <Model M>
 struct ContactsOf {
     using Type = contact::ContactSet<typename M::Beam, typename M::Proximity, typename M::Normal, typename M::Friction>;
@@ -103,6 +118,7 @@ struct ModelParameters {
     typename M::Friction::Parameters friction{};
     typename M::Solver::Parameters solver{};
     [[no_unique_address]] typename detail::SolidOf<M>::Type::Parameters solid{};
+    [[no_unique_address]] typename detail::ActsOf<M>::Type::Parameters acts{};
     contact::ContactParameters contact{};
     solver::IterationParameters iteration{};
 };

@@ -5,12 +5,8 @@
 #include <fibrant/core/stage_clock.hpp>
 #include <fibrant/observe/observer.hpp>
 #include <fibrant/simulation/acceptance.hpp>
-#include <fibrant/simulation/energy_account.hpp>
-#include <fibrant/simulation/increment_file.hpp>
-#include <fibrant/simulation/mean_motion.hpp>
-#include <fibrant/simulation/position.hpp>
+#include <fibrant/simulation/run_file.hpp>
 #include <fibrant/simulation/scene_checks.hpp>
-#include <fibrant/simulation/state_file.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 
 #include <algorithm>
@@ -33,15 +29,17 @@ public:
     using Mesh = beam::Mesh<Beam>;
     using Contacts = typename detail::ContactsOf<M>::Type;
     using Solid = typename detail::SolidOf<M>::Type;
-    using Equilibrium = assembly::Equilibrium<Beam, Contacts, typename detail::ConnectionsOf<M>::Type, Solid>;
+    using Acts = typename detail::ActsOf<M>::Type;
+    using Equilibrium = assembly::Equilibrium<Beam, Contacts, typename detail::ConnectionsOf<M>::Type, Solid, Acts>;
     using Passage = typename detail::PassageOf<M>::Type;
 
     /// @throws std::invalid_argument naming the field that is wrong
     Simulator(const scene::Assembly& assembly, const ModelParameters<M>& parameters)
-        : parameters_{checked(parameters)}, beam_{parameters.beam}, mesh_{assembly, beam_}, channels_{assembly},
+        : parameters_{checked(parameters)}, beam_{parameters.beam}, mesh_{assembly, beam_},
+          channels_{assembly, term::channels_of<Beam>(Acts(), parameters.acts)},
           contacts_{assembly, mesh_, parameters.contact, typename M::Proximity(parameters.proximity),
                     typename M::Normal(parameters.normal), typename M::Friction(parameters.friction)},
-          equilibrium_{assembly, mesh_, beam_, contacts_, channels_, Solid(parameters.solid)}, passage_{mesh_, parameters.contact.detection},
+          equilibrium_{assembly, mesh_, beam_, contacts_, channels_, Solid(parameters.solid), parameters.acts}, passage_{mesh_, parameters.contact.detection},
           linear_{parameters.solver},
           state_{mesh_.start_state()}, amplitudes_(channels_.names().size(), 0.0) {
         if (mesh_.fibre_count() == 0) core::refuse("assembly.fibres", "none", "at least one fibre");
@@ -130,7 +128,7 @@ public:
     /// @throws std::runtime_error if the file cannot be read or has other fibres
     void start_from(const std::string& checkpoint) {
         CheckpointReader file = read_from_state(checkpoint, mesh_);
-        read_state(file);
+        get_fibres(file, parts());
         if constexpr (HasConnections<M>) equilibrium_.ties().anchor(state_);
         energy_.start_from_other(equilibrium_, state_);
     }
@@ -157,6 +155,7 @@ public:
     observe::Snapshot snapshot() const {
         observe::Snapshot shot = snapshot_of(mesh_, contacts_, state_);
         if constexpr (HasSolid<M>) add_solid(shot, equilibrium_.solid(), state_);
+        equilibrium_.terms().each([&](const auto& term) { term.show(state_, shot); });
         return shot;
     }
 
@@ -241,7 +240,7 @@ private:
             // What nothing foretells would be held back: a first solution tells where it goes.
             if (attempt.converged && stage.damping_carried && stage.damping > 0.0 && !rehearsed && !motion_.foretells(change)) {
                 motion_.learn(mesh_, state_, trial, change);
-                contacts_.restore(), rehearsed = true;
+                contacts_.restore(), equilibrium_.restore(), rehearsed = true;
                 continue;
             }
             if (attempt.converged) {
@@ -263,7 +262,7 @@ private:
             ++report.rejected_increments, ++increment.cuts;
             gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, position_.fraction, position_.damping, attempt.counts.newton, attempt.reason,
                                   core::seconds_since(start)});
-            contacts_.restore();
+            contacts_.restore(), equilibrium_.restore();
             if (touching && !stage.forced_orders) {
                 const bool again = position_.try_other_places(parameters_.contact.places);
                 contacts_.places().follow(position_.following);
@@ -288,7 +287,7 @@ private:
         const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
         position_.stage_over = (reached && !held) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments);
         position_.adapt_damping(stage, increment, attempt_newton / static_cast<double>(parameters_.iteration.newton_limit));
-        contacts_.accept(state_);
+        contacts_.accept(state_), equilibrium_.accept(state_);
         if constexpr (HasSolid<M>)
             if (equilibrium_.solid().accept(state_) > 0) energy_.release(equilibrium_.elastic_energy(state_));  // bonds that had too much
         increment.seconds = core::seconds_since(start);
@@ -326,62 +325,22 @@ private:
         report.wall_seconds += core::seconds_since(start);
     }
 
+    /// All of a run that goes into its checkpoint.
+    auto parts() noexcept { return RunParts{state_, amplitudes_, energy_, contacts_, equilibrium_, position_, motion_, clock_}; }
     void write_checkpoint(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Report& report) {
         CheckpointWriter file;
         put_identity<M>(file, mesh_, channels_, stages, loading.scene);
-        file.put(state_);
-        energy_.each([&](const auto& value) { file.put(value); });
-        put_memory(file, contacts_.accepted_memory().records(), contacts_.accepted_zones());
-        for (const double amplitude : amplitudes_) file.put(amplitude);
-        position_.each([&](const auto& value) { file.put(value); });
-        if constexpr (HasTools<M>) contacts_.tools().each_accepted([&](const auto& value) { file.put(value); });
-        if constexpr (HasConnections<M>) equilibrium_.ties().motion().each_accepted([&](const auto& value) { put_value(file, value); });
-        if constexpr (HasSolid<M>) put_solid(file, equilibrium_.solid());
-        file.put(report.rejected_increments), file.put(report.counts), file.put(clock_.seconds());
-        file.put(core::count(report.increments));
-        for (const IncrementReport& increment : report.increments) put_increment(file, increment);
-        motion_.each([&](const double value) { file.put(value); });
+        put_run<M>(file, parts(), report);
         file.write(loading.checkpoint);
     }
-
-    /// The part of a checkpoint that has to do with fibres and contacts alone.
-    void read_state(CheckpointReader& file) {
-        const Index size = state_.size();
-        state_ = get_state(file, size);
-        energy_.each([&](auto& value) {
-            if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vector>) value = get_state(file, size, true);
-            else value = file.get<EnergyBalance>();
-        });
-        std::vector<typename Contacts::Memory::Record> records;
-        std::vector<contact::Zone> zones;
-        get_memory(file, records, zones, mesh_.fibre_count());
-        contacts_.resume(std::move(records), std::move(zones));
-    }
-
     void read_checkpoint(const Loading<M>& loading, const std::vector<Stage<M>>& stages, Report& report) {
         CheckpointReader file(loading.checkpoint);
         expect_identity<M>(file, mesh_, channels_, stages, loading);
-        read_state(file);
-        for (double& amplitude : amplitudes_) amplitude = file.get<double>();
-        position_.each([&](auto& value) { value = file.template get<std::decay_t<decltype(value)>>(); });
-        file.require(position_.sound(core::count(stages)));
-        contacts_.places().follow(position_.following);
-        move_tools(amplitudes_);
-        if constexpr (HasTools<M>) get_tools(file, contacts_.tools());
-        if constexpr (HasConnections<M>) {
-            equilibrium_.ties().motion().each_accepted([&](auto& value) { get_value(file, value); });
-            equilibrium_.ties().motion().restore();
-        }
-        if constexpr (HasSolid<M>) get_solid(file, equilibrium_.solid());
-        report.rejected_increments = file.get<Index>(), report.counts = file.get<solver::IterationCounts>();
-        clock_.seconds() = file.get<std::array<double, core::part_count>>();
-        report.increments.resize(core::at(file.get_count(sizeof(double))));
-        for (IncrementReport& increment : report.increments) {
-            get_increment(file, increment);
-            report.wall_seconds += increment.seconds;
-        }
-        motion_.each([&](double& value) { value = file.get<double>(); });
-        file.require_end();
+        get_fibres(file, parts());
+        get_rest<M>(file, parts(), core::count(stages), report, [&] {
+            contacts_.places().follow(position_.following);
+            move_tools(amplitudes_);
+        });
     }
 
     ModelParameters<M> parameters_;

@@ -74,12 +74,14 @@ public:
             const bool search = searches < 2 || !contact_possible_ || equilibrium_->greatest(state - searched) > 0.25 * bound;
             if (search) searched = state, ++searches;
             clock_->time(search ? core::Part::search : core::Part::contact, [&] {
-                if (search) contacts_->detect(state, accepted, std::isfinite(bound) ? bound : parameters_.margin * radius_, forced);
+                const double far = std::isfinite(bound) ? bound : parameters_.margin * radius_;
+                if (search) contacts_->detect(state, accepted, far, forced), equilibrium_->detect(state, accepted, far);
                 else contacts_->regenerate(state, accepted);
             });
             clock_->time(core::Part::preparation, [&] {
                 contacts_->evaluate(state);
                 contacts_->hold_reactions();
+                equilibrium_->evaluate(state);
                 equilibrium_->outline(state);
                 linear_->analyse(equilibrium_->system());
             });
@@ -185,7 +187,7 @@ private:
         Vector travel, last_travel;  // displacement of this pass and of the one before
         for (Index pass = 0; pass < parameters_.normal_limit; ++pass) {
             if (pass > 0) {
-                const double turn = turn_ = clock_->time(core::Part::contact, [&] { return contacts_->refresh(state, accepted); });
+                const double turn = turn_ = clock_->time(core::Part::contact, [&] { return equilibrium_->refresh(state, accepted, contacts_->refresh(state, accepted)); });
                 // The contact elements will move on all the same: no need to be finer than a part of what this pass moved.
                 const bool settled = turn < looseness * parameters_.normal_tolerance && change < enough;
                 if (settled || change < std::max(0.1 * parameters_.inexact * first, 0.1 * enough)) break;
@@ -195,6 +197,7 @@ private:
                     state += factor * travel;
                     last_travel.resize(0), travel.resize(0);
                     contacts_->refresh(state, accepted);
+                    equilibrium_->refresh(state, accepted, 0.0);
                 }
             }
             ++report.counts.normal_passes;

@@ -170,7 +170,7 @@ private:
     }
 
     assembly::ResidualFigures evaluate(const Vector& state) {
-        return clock_->time(core::Part::contact, [&] { contacts_->evaluate(state); }),
+        return clock_->time(core::Part::contact, [&] { contacts_->evaluate(state), equilibrium_->evaluate(state); }),
                clock_->time(core::Part::assembly, [&] { return equilibrium_->residual(state, residual_); });
     }
 
@@ -258,7 +258,7 @@ private:
             return std::abs(element.normal.dot(element.motion(step))) * (radius_ / radius);
         });
         const double bound = parameters_.largest_approach * radius_;
-        return most > bound ? bound / most : 1.0;
+        return equilibrium_->largest_part(step, bound, most > bound ? bound / most : 1.0);
     }
 
     Equilibrium* equilibrium_;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Dead forces and moments on nodal vectors, and line pressures.
+/// @file What a scene applies: dead forces and moments on nodal vectors, and line pressures.
 
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/core/rotation.hpp>
+#include <fibrant/term/list.hpp>
 
 #include <array>
 #include <cmath>
@@ -11,16 +12,23 @@
 #include <utility>
 #include <vector>
 
-namespace fibrant::connection {
+namespace fibrant::load {
 
-/// Loads of a scene on a mesh.
+/// Loads of a scene on a mesh: the term that every model has.
 template <beam::BeamElement B>
-class AppliedLoad {
+class AppliedLoad : public term::NoSearch, public term::NoSpring, public term::NoCouplings, public term::NoEnergy, public term::NoMemory,
+                    public term::NoPicture {
 public:
-    AppliedLoad(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const Channels& channels) {
+    static constexpr auto role = term::Role::external;
+    using Parameters = core::NoParameters;
+    struct Slot {
+        Parameters applied{};
+    };
+    explicit AppliedLoad(const term::SiteOf<B>& site, const Parameters& = {}) : AppliedLoad(site.assembly(), site.mesh(), site.channels()) {}
+    AppliedLoad(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const scene::Channels& channels) {
         const auto item = [&](const auto& load, int vector, bool there, const Vec3& value) {
             if (!there) core::refuse("load.vector", std::to_string(vector), "a vector of the beam's nodes");
-            return Item{mesh.node_vector(load.at.fibre, station_node(mesh, load.at), vector), channels.find(load.channel), value};
+            return Item{mesh.node_vector(load.at.fibre, connection::station_node(mesh, load.at), vector), channels.find(load.channel), value};
         };
         for (const scene::LinePressure& load : assembly.pressures())
             pressures_.push_back({load.fibre, channels.find(load.channel), mesh.fibre(load.fibre).elements, mesh.first_unknown(load.fibre, 0), load.pressure, core::cross_matrix(load.axis)});
@@ -47,8 +55,12 @@ public:
         }
     }
 
-    /// Adds the external forces at the given amplitudes.
-    void add_forces(std::span<const double> amplitudes, const Vector& state, Vector& external) const {
+    static std::vector<std::string> channels(const Parameters&) { return {}; }  // the scene's own
+    void begin(std::span<const double> amplitudes, const Vector&) { amplitudes_.assign(amplitudes.begin(), amplitudes.end()); }
+
+    /// Adds the external forces at the amplitudes of the increment.
+    void add_forces(const Vector& state, Vector& external) const {
+        const std::vector<double>& amplitudes = amplitudes_;
         for (const Pressure& load : pressures_) {
             const Coupling G = coupling();
             for (Index e = 0; e < load.elements; ++e) {
@@ -76,9 +88,16 @@ public:
         }
     }
 
-    /// Calls add(vector, stiffness) with minus the derivative of each moment's force by its own director, symmetrised.
+    /// Minus the derivative of each moment's force by its own director and of line pressures, symmetrised.
+    void add_bands(const Vector& state, term::Bands& bands) const {
+        add_stiffness(state, [&](Index vector, const Mat3& stiffness) { bands.diagonal(vector, stiffness); });
+        add_element_stiffness([&](Index f, Index e, const beam::ElementMatrix<B>& stiffness) { bands.element(f, e, stiffness); });
+    }
+
+private:
     template <class Add>
-    void add_stiffness(std::span<const double> amplitudes, const Vector& state, const Add& add) const {
+    void add_stiffness(const Vector& state, const Add& add) const {
+        const std::vector<double>& amplitudes = amplitudes_;
         for (const Item& item : moments_) {
             const Vec3 director = state.segment<3>(3 * item.vector);
             const Vec3 moment = amplitudes[core::at(item.channel)] * item.value;
@@ -108,9 +127,9 @@ public:
             }
     }
 
-    /// Calls add(fibre, element, matrix) with minus the derivative of line pressures, symmetrised.
     template <class Add>
-    void add_element_stiffness(std::span<const double> amplitudes, const Add& add) const {
+    void add_element_stiffness(const Add& add) const {
+        const std::vector<double>& amplitudes = amplitudes_;
         for (const Pressure& load : pressures_) {
             const Coupling G = coupling();
             beam::ElementMatrix<B> stiffness;
@@ -125,7 +144,6 @@ public:
         }
     }
 
-private:
     static constexpr Index vectors = B::nodes * B::vectors_per_node;  // of an element
     using Coupling = std::array<std::array<double, core::at(vectors)>, core::at(vectors)>;  // rows
     struct Pressure {
@@ -156,6 +174,14 @@ private:
     static Vec3 director(const Vec3& psi, const Item& item) noexcept { return core::rotation(psi).col(item.director - 1); }
     std::vector<Item> forces_, moments_, turning_;
     std::vector<Pressure> pressures_;
+    std::vector<double> amplitudes_;
 };
 
-}  // namespace fibrant::connection
+/// The same for any beam.
+struct Applied {
+    using Parameters = core::NoParameters;
+    template <beam::BeamElement B>
+    using Of = AppliedLoad<B>;
+};
+
+}  // namespace fibrant::load

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fibrant/beam/director_beam.hpp>
-#include <fibrant/connection/applied_load.hpp>
+#include <fibrant/load/applied_load.hpp>
 
 #include <doctest/doctest.h>
 
@@ -26,15 +26,18 @@ struct Loaded {
     }
     template <class Use>
     void with(const Use& use) const {
-        const connection::Channels channels(assembly);
+        const scene::Channels channels(assembly);
         const Beam beam;
         const beam::Mesh<Beam> mesh(assembly, beam);
-        use(connection::AppliedLoad<Beam>(assembly, mesh, channels), mesh, channels);
+        load::AppliedLoad<Beam> load(assembly, mesh, channels);
+        load.begin(std::vector<double>(channels.names().size(), 1.0), mesh.rest_state());
+        use(load, mesh, channels);
     }
     Vector forces(double amplitude, const Vector& state) const {
         Vector sum = Vector::Zero(state.size());
-        with([&](const auto& load, const auto&, const auto& channels) {
-            load.add_forces(std::vector<double>(channels.names().size(), amplitude), state, sum);
+        with([&](auto& load, const auto&, const auto& channels) {
+            load.begin(std::vector<double>(channels.names().size(), amplitude), state);
+            load.add_forces(state, sum);
         });
         return sum;
     }
@@ -56,11 +59,12 @@ TEST_CASE("a dead force keeps its direction and size, and grows with its channel
     CHECK(scene.forces(0.5, rest) == scene.forces(0.5, random));
     CHECK(scene.forces(0.5, rest).segment<3>(last) == Vec3(0.5, 1.0, 2.0));
     CHECK(scene.forces(1.0, rest).norm() == Vec3(1, 2, 4).norm());
-    scene.with([&](const auto& load, const auto&, const auto& channels) {
+    scene.with([&](auto& load, const auto&, const auto& channels) {
         Vector sum = Vector::Zero(rest.size());
         std::vector<double> amplitudes{0.0, 0.0};
         amplitudes[core::at(channels.find("pull"))] = 2.0;
-        load.add_forces(amplitudes, rest, sum);
+        load.begin(amplitudes, rest);
+        load.add_forces(rest, sum);
         CHECK(sum.segment<3>(last) == Vec3(0, 0, 2));
     });
 }
@@ -109,12 +113,19 @@ TEST_CASE("the stiffness of a moment is minus the derivative of its force, made 
         differences.col(k) = (scene.forces(1.0, behind) - scene.forces(1.0, ahead)).segment<3>(last + 3) / (2.0 * h);
     }
     int calls = 0;
-    scene.with([&](const auto& load, const auto& mesh, const auto& channels) {
-        load.add_stiffness(std::vector<double>(channels.names().size(), 1.0), state, [&](Index vector, const Mat3& stiffness) {
+    scene.with([&](const auto& load, const auto& mesh, const auto&) {
+        struct {
+            std::vector<std::pair<Index, Mat3>> seen;
+            void add_diagonal(Index vector, const Mat3& stiffness) { seen.emplace_back(vector, stiffness); }
+            void add_element(Index, Index, const double*) {}
+        } sink;
+        term::Bands bands(sink);
+        load.add_bands(state, bands);
+        for (const auto& [vector, stiffness] : sink.seen) {
             ++calls;
             CHECK(vector == mesh.node_vector(scene.fibre, 2, 1));
             CHECK((stiffness - 0.5 * (differences + differences.transpose())).norm() < 1e-9);
-        });
+        }
     });
     CHECK(calls == 1);
     // In the plane in which the director turns the derivative is symmetric by itself: nothing is lost there.

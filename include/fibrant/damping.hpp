@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Damping: springs to last places.
+
+#include <fibrant/damping/place_springs.hpp>

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file All of a run that goes into its checkpoint, and comes back from it.
+
+#include <fibrant/core/stage_clock.hpp>
+#include <fibrant/simulation/energy_account.hpp>
+#include <fibrant/simulation/increment_file.hpp>
+#include <fibrant/simulation/mean_motion.hpp>
+#include <fibrant/simulation/position.hpp>
+#include <fibrant/simulation/state_file.hpp>
+
+#include <array>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace fibrant::simulation {
+
+/// What a run consists of, by reference: all that was accepted last.
+template <class Contacts, class Equilibrium>
+struct RunParts {
+    Vector& state;
+    std::vector<double>& amplitudes;
+    EnergyAccount& energy;
+    Contacts& contacts;
+    Equilibrium& equilibrium;
+    Position& position;
+    MeanMotion& motion;
+    core::StageClock& clock;
+};
+template <class Contacts, class Equilibrium>
+RunParts(Vector&, std::vector<double>&, EnergyAccount&, Contacts&, Equilibrium&, Position&, MeanMotion&, core::StageClock&)
+    -> RunParts<Contacts, Equilibrium>;
+
+template <Model M, class Contacts, class Equilibrium>
+void put_run(CheckpointWriter& file, const RunParts<Contacts, Equilibrium>& run, const Report& report) {
+    const auto put = [&](const auto& value) { file.put(value); };
+    put(run.state);
+    run.energy.each(put);
+    put_memory(file, run.contacts.accepted_memory().records(), run.contacts.accepted_zones());
+    for (const double amplitude : run.amplitudes) put(amplitude);
+    std::as_const(run.position).each(put);
+    if constexpr (HasTools<M>) run.contacts.tools().each_accepted(put);
+    if constexpr (HasConnections<M>) run.equilibrium.ties().motion().each_accepted([&](const auto& value) { put_value(file, value); });
+    if constexpr (HasSolid<M>) put_solid(file, run.equilibrium.solid());
+    put(report.rejected_increments), put(report.counts), put(run.clock.seconds());
+    put(core::count(report.increments));
+    for (const IncrementReport& increment : report.increments) put_increment(file, increment);
+    run.motion.each(put);
+    run.equilibrium.terms().each([&](auto& term) { term.each(put); });
+}
+
+/// The part of a checkpoint that has to do with fibres and contacts alone.
+template <class Contacts, class Equilibrium>
+void get_fibres(CheckpointReader& file, const RunParts<Contacts, Equilibrium>& run) {
+    const Index size = run.state.size();
+    run.state = get_state(file, size);
+    run.energy.each([&]<class Value>(Value& value) {
+        if constexpr (std::is_same_v<Value, Vector>) value = get_state(file, size, true);
+        else value = file.get<Value>();
+    });
+    std::vector<typename Contacts::Memory::Record> records;
+    std::vector<contact::Zone> zones;
+    get_memory(file, records, zones, run.equilibrium.mesh().fibre_count());
+    run.contacts.resume(std::move(records), std::move(zones));
+}
+
+/// What follows.
+/// @param stages  of the loading
+/// @param placed  is called once amplitudes and position stand
+template <Model M, class Contacts, class Equilibrium, class Placed>
+void get_rest(CheckpointReader& file, const RunParts<Contacts, Equilibrium>& run, Index stages, Report& report, const Placed& placed) {
+    const auto get = [&]<class Value>(Value& value) { value = file.get<Value>(); };
+    for (double& amplitude : run.amplitudes) get(amplitude);
+    run.position.each(get);
+    file.require(run.position.sound(stages));
+    placed();
+    if constexpr (HasTools<M>) get_tools(file, run.contacts.tools());
+    if constexpr (HasConnections<M>) {
+        run.equilibrium.ties().motion().each_accepted([&](auto& value) { get_value(file, value); });
+        run.equilibrium.ties().motion().restore();
+    }
+    if constexpr (HasSolid<M>) get_solid(file, run.equilibrium.solid());
+    get(report.rejected_increments), get(report.counts), get(run.clock.seconds());
+    report.increments.resize(core::at(file.get_count(sizeof(double))));
+    for (IncrementReport& increment : report.increments) {
+        get_increment(file, increment);
+        report.wall_seconds += increment.seconds;
+    }
+    run.motion.each(get);
+    run.equilibrium.terms().each([&](auto& term) {
+        term.each([&]<class Value>(Value& value) {
+            if constexpr (std::is_same_v<Value, Vector>) value = get_state(file, value.size());
+            else get(value);
+        });
+        term.restore();
+    });
+    file.require_end();
+}
+
+}  // namespace fibrant::simulation

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file The terms of a model as a list, and all of them as one: folds over a tuple. An empty list is nothing.
+
+#include <fibrant/term/term.hpp>
+
+#include <concepts>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+namespace fibrant::term {
+
+/// What pushes on the fibres of a model, beside contacts and what a scene applies: the row `Acts` of a model.
+template <class... T>
+struct List {
+    /// parameters.NAME of each term, by the name in its slot.
+    struct Parameters : T::Slot... {};
+};
+
+namespace detail {
+template <class L>
+inline constexpr bool is_list = false;
+template <class... T>
+inline constexpr bool is_list<List<T...>> = true;
+template <class L, class B>
+inline constexpr bool list_for = false;
+template <class... T, class B>
+inline constexpr bool list_for<List<T...>, B> = (TermFor<T, B> && ...);
+}  // namespace detail
+
+/// The terms of a list on a site.
+template <class B, class... T>
+class Terms {
+public:
+    static constexpr bool empty = sizeof...(T) == 0;
+
+    /// @param parameters  derives from the slots of those terms that have any
+    template <class Parameters>
+    Terms(const SiteOf<B>& site, const Parameters& parameters) : all_{For<T, B>(site, of<T>(parameters))...} {}
+
+    template <class Body>
+    void each(const Body& body) {
+        std::apply([&](auto&... one) { (body(one), ...); }, all_);
+    }
+    template <class Body>
+    void each(const Body& body) const {
+        std::apply([&](const auto&... one) { (body(one), ...); }, all_);
+    }
+    /// Those of one role.
+    template <Role role, class Body>
+    void of(const Body& body) const {
+        each([&]<class One>(const One& one) {
+            if constexpr (One::role == role) body(one);
+        });
+    }
+    template <class One>
+    For<One, B>& get() noexcept { return std::get<For<One, B>>(all_); }
+    template <class One>
+    const For<One, B>& get() const noexcept { return std::get<For<One, B>>(all_); }
+
+private:
+    template <class One, class Parameters>
+    static typename For<One, B>::Parameters of(const Parameters& parameters) {
+        using Slot = typename For<One, B>::Slot;
+        if constexpr (std::derived_from<Parameters, Slot>) {
+            const auto& [own] = static_cast<const Slot&>(parameters);
+            return own;
+        } else {
+            return {};
+        }
+    }
+    std::tuple<For<T, B>...> all_;
+};
+
+/// Channels that the terms of a list name, in any order.
+template <class B, class... T>
+std::vector<std::string> channels_of(const List<T...>&, const typename List<T...>::Parameters& parameters) {
+    std::vector<std::string> names;
+    const auto add = [&]<class One>(std::type_identity<One>) {
+        const auto& [own] = static_cast<const typename One::Slot&>(parameters);
+        for (std::string& name : One::channels(own)) names.push_back(std::move(name));
+    };
+    (add(std::type_identity<For<T, B>>{}), ...);
+    return names;
+}
+
+}  // namespace fibrant::term

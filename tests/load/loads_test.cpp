@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+// Loads as terms: their contract, and one closed form each.
+#include <term/term_contract.hpp>
+
+#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/kirchhoff_cable.hpp>
+#include <fibrant/law/frictionless.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/load.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/simulation/simulator.hpp>
+#include <fibrant/solver/sparse_cholesky.hpp>
+
+#include <refusal.hpp>
+
+using namespace fibrant;
+
+namespace loads_test {
+
+using Cable = beam::KirchhoffCable;
+
+scene::FibreSpecification fibre(const Vec3& from, const Vec3& to, Index elements) {
+    scene::FibreSpecification one;
+    one.from = from, one.to = to, one.section = scene::circular(0.01), one.material = {1000.0, 0.3}, one.elements = elements;
+    return one;
+}
+
+template <class B>
+void check_loads() {
+    scene::Assembly assembly;
+    assembly.add(fibre({0, 0, 0}, {2, 0, 0}, 2));
+    assembly.add(fibre({0, 1, 0}, {1, 2, 0.5}, 3));
+    const beam::Mesh<B> mesh(assembly, B());
+    const Vector state = mesh.rest_state() + 0.05 * Vector::LinSpaced(mesh.rest_state().size(), -1.0, 1.0).array().sin().matrix();
+    load::Gravity::Parameters gravity;
+    gravity.weight = Vec3(0.0, 30.0, -900.0);
+    test::check_term<B, load::Gravity>(assembly, gravity, state);
+    load::LineLoads::Parameters lines;
+    lines.loads.push_back({.fibre = 1, .force = {0.3, 0.1, -0.2}, .from = 0.2, .to = 0.7});
+    test::check_term<B, load::LineLoads>(assembly, lines, state);
+    load::FollowerForces::Parameters followers;
+    followers.forces.push_back({.at = scene::last_end(0), .along = 0.7});
+    followers.forces.push_back({.at = {1, 0.4}, .along = -0.2});
+    test::check_term<B, load::FollowerForces>(assembly, followers, state);
+}
+
+TEST_CASE("loads keep the contract of a term, on cables and on beams with directors") {
+    check_loads<Cable>();
+    check_loads<beam::DirectorBeam<3>>();
+}
+
+TEST_CASE("a line load has the resultant and the moment of its force over its length") {
+    scene::Assembly assembly;
+    assembly.add(fibre({0, 0, 0}, {2, 0, 0}, 3));
+    const Vec3 q(0.3, 0.1, -0.2);
+    load::LineLoads::Parameters lines;
+    lines.loads.push_back({.fibre = 0, .force = q, .from = 0.25, .to = 0.8});
+    test::TermScene<beam::DirectorBeam<3>, load::LineLoads> scene(assembly, lines);
+    const Vector force = scene.forces(scene.mesh.rest_state());
+    Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+    for (Index a = 0; a < scene.mesh.node_count(0); ++a) {
+        const Vec3 one = force.segment<3>(9 * a), at = scene.mesh.rest_state().segment<3>(9 * a);
+        sum += one, moment += at.cross(one);
+    }
+    CHECK((sum - 1.1 * q).norm() < 1e-14);  // 2 (0.8 - 0.25)
+    CHECK((moment - Vec3(1.05, 0, 0).cross(1.1 * q)).norm() < 1e-14);
+}
+
+struct Weighted {
+    using Beam = Cable;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::RegularisedPenalty;
+    using Friction = law::Frictionless;
+    using Solver = solver::SparseCholesky;
+    using Acts = term::List<load::Gravity, load::LineLoads>;
+};
+static_assert(simulation::Model<Weighted>);
+
+simulation::ModelParameters<Weighted> parameters() {
+    simulation::ModelParameters<Weighted> all;
+    all.normal.regularisation_depth = 1e-5;
+    all.contact.stiffness.allowed_penetration = 1e-4;
+    all.acts.gravity.weight = Vec3::Zero();
+    return all;
+}
+
+TEST_CASE("a fibre that hangs in a stream lies along weight and drag, and stretches by half of what both do at its end") {
+    // Both are uniform by rest length: the tension at s is |q| (L - s), along q, and the stretch |q| L^2 / (2 E A).
+    scene::Assembly assembly;
+    const double length = 1.0, area = scene::circular(0.01).area(), stiffness = 1000.0 * area;
+    assembly.add(fibre({0, 0, 0}, {0, 0, -length}, 8));
+    assembly.hold_position(scene::first_end(0));
+    simulation::ModelParameters<Weighted> all = parameters();
+    const Vec3 weight(0, 0, -4e-3 * stiffness / length), drag(3e-3 * stiffness / length, 0, 0);
+    all.acts.gravity.weight = weight / area;
+    all.acts.lines.loads.push_back({.fibre = 0, .force = drag, .channel = "stream"});
+    simulation::Simulator<Weighted> simulator(assembly, all);
+    simulation::Loading<Weighted> loading;
+    loading.stages.resize(2);
+    loading.stages[0].name = "weight", loading.stages[0].increments = 2, loading.stages[0].ramps = {{"gravity", 1.0}};
+    loading.stages[1].name = "stream", loading.stages[1].increments = 8, loading.stages[1].ramps = {{"stream", 1.0}};
+    const simulation::Report report = simulator.run(loading);
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    const Vec3 q = weight + drag, end = simulator.value(scene::last_end(0)) - simulator.value(scene::first_end(0));
+    // Green-Lagrange strains and bending at the support differ from the formula by the square of the strain, 2.5e-3.
+    CHECK(end.normalized().cross(q.normalized()).norm() < 1e-3);
+    CHECK(end.norm() - length == doctest::Approx(q.norm() * length * length / (2.0 * stiffness)).epsilon(1e-2));
+    CHECK((simulator.reaction(scene::first_end(0)) + length * q).norm() < 1e-3 * q.norm() * length);
+    // What the weight does while it grows is stored: w^2 L^3 / (6 E A). Strains of 4e-3 are not small to their first order.
+    const simulation::EnergyBalance& energy = report.increments[1].energy;
+    const double stored = weight.squaredNorm() * length * length * length / (6.0 * stiffness);
+    CHECK(energy.elastic == doctest::Approx(stored).epsilon(1e-2));
+    CHECK(energy.external == doctest::Approx(stored).epsilon(1e-2));
+}
+
+TEST_CASE("loads that nothing carries are refused by name") {
+    scene::Assembly assembly;
+    assembly.add(fibre({0, 0, 0}, {1, 0, 0}, 2));
+    const auto build = [&](auto change) {
+        simulation::ModelParameters<Weighted> all = parameters();
+        change(all);
+        simulation::Simulator<Weighted> simulator(assembly, all);
+    };
+    CHECK(test::refusal([&] { build([](auto& all) { all.acts.gravity.weight[1] = core::unset; }); }).find("Gravity.weight") != std::string::npos);
+    CHECK(test::refusal([&] { build([](auto& all) { all.acts.lines.loads.push_back({.fibre = 1, .force = Vec3::UnitX()}); }); }).find("LineLoads.Load.fibre = 1") != std::string::npos);
+    CHECK(test::refusal([&] { build([](auto& all) { all.acts.lines.loads.push_back({.fibre = 0, .force = Vec3::UnitX(), .from = 0.5, .to = 0.5}); }); }).find("LineLoads.Load.to = 0.5") != std::string::npos);
+}
+
+}  // namespace loads_test
