@@ -10,6 +10,7 @@
 #include <fibrant/simulation/loading.hpp>
 #include <fibrant/simulation/mean_motion.hpp>
 #include <fibrant/simulation/model.hpp>
+#include <fibrant/simulation/near_names.hpp>
 #include <fibrant/simulation/part_overlaps.hpp>
 #include <fibrant/simulation/position.hpp>
 #include <fibrant/simulation/programme.hpp>
@@ -23,3 +24,4 @@
 #include <fibrant/simulation/state_file.hpp>
 #include <fibrant/simulation/stored_state.hpp>
 #include <fibrant/simulation/support_wrench.hpp>
+#include <fibrant/simulation/watching.hpp>

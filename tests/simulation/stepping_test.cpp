@@ -584,8 +584,6 @@ TEST_CASE("a loading that cannot be walked is refused before any work") {
     CHECK(refused(loading).starts_with("Stage.damping_share = -1,"));
     loading.stages = {{.largest_displacement = 0.0}};
     CHECK(refused(loading) == "Stage.largest_displacement = 0, but it must be > 0");
-    loading.stages = {{.gap_limit = -1.0}};
-    CHECK(refused(loading).starts_with("Stage.gap_limit = -1,"));
     loading.stages = {{.ramps = {{"load", 0.5, true}}}};  // from 0: no factor leads there
     CHECK(refused(loading).starts_with("Ramp.to = 0.5, but it must be > 0, from an amplitude > 0"));
     loading.stages = {{.increments = 1, .ramps = {{"load", 0.5}}}, {.ramps = {{"load", -0.1, true}}}};

@@ -6,6 +6,7 @@
 #include <fibrant/core/types.hpp>
 
 #include <concepts>
+#include <type_traits>
 
 namespace fibrant::law {
 
@@ -30,5 +31,12 @@ concept FrictionLaw = core::Policy<L> && std::default_initializable<typename L::
     requires(const L law, const Vec3& slip, double reaction, const typename L::History& history) {
         { law.response(slip, reaction, history) } -> std::same_as<FrictionResponse<typename L::History>>;
     };
+
+/// What contacts keep of a history from one increment to the next: `reversible`, turned with the fibres, and nothing else. A law that needs
+/// more would find it empty.
+template <class L>
+concept HistoryIsKept = std::is_empty_v<typename L::History> || requires(typename L::History history) {
+    requires std::same_as<decltype(history.reversible), Vec3> && sizeof(history) == sizeof(Vec3);
+};
 
 }  // namespace fibrant::law

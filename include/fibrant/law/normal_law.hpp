@@ -29,6 +29,12 @@ concept GapShifting = NormalLaw<L> && requires(const L law, double gap) {
     { law.gap_shift(gap) } -> std::same_as<double>;
 };
 
+/// One whose shift is what exceeds a limit, which a loading may change.
+template <class L>
+concept GapLimiting = GapShifting<L> && requires(const L law, double limit) {
+    { law.with_limit(limit) } -> std::same_as<L>;
+};
+
 /// A normal law whose response turns from quadratic to linear at a depth that a stiffness adaptation should respect.
 template <class L>
 concept Regularised = NormalLaw<L> && requires(const L law) {

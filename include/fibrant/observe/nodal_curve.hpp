@@ -4,6 +4,7 @@
 
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/types.hpp>
+#include <fibrant/observe/snapshot.hpp>
 
 #include <Eigen/Geometry>
 
@@ -26,6 +27,9 @@ public:
         if (nodes.size() < 3 || nodes.size() % 2 == 0)
             core::refuse("NodalCurve.nodes", std::to_string(nodes.size()), "odd and >= 3");
     }
+
+    /// @throws std::invalid_argument if the fibre's nodes are not joined so
+    explicit NodalCurve(const FibreSnapshot& fibre) : NodalCurve{checked(fibre)} {}
 
     double end() const noexcept { return static_cast<double>(nodes_.size() - 1); }  ///< last parameter; the first is 0
     Index elements() const noexcept { return core::count(nodes_) / 2; }
@@ -104,6 +108,11 @@ public:
     }
 
 private:
+    static std::span<const Vec3> checked(const FibreSnapshot& fibre) {
+        if (fibre.interpolation != Interpolation::quadratic)
+            core::refuse("FibreSnapshot.interpolation", fibre.interpolation == Interpolation::linear ? "linear" : "cubic", "quadratic");
+        return fibre.position;
+    }
     struct Local {
         std::size_t first;
         double s;

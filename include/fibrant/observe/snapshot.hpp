@@ -11,8 +11,16 @@
 
 namespace fibrant::observe {
 
+/// The curve between the nodes of a fibre.
+enum class Interpolation {
+    linear,     ///< straight from node to node
+    quadratic,  ///< elements of three nodes (0, 1, 2), (2, 3, 4), ...
+    cubic,      ///< by slopes at the nodes, which are not told
+};
+
 /// One fibre: values at its nodes, in order.
 struct FibreSnapshot {
+    Interpolation interpolation = Interpolation::quadratic;
     std::vector<Vec3> position;      ///< centreline x_0 [length]
     std::vector<Vec3> displacement;  ///< since the rest shape [length]
     std::vector<Vec3> director_1;    ///< g_1 [1]

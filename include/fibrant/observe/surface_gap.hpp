@@ -19,7 +19,7 @@ namespace fibrant::observe {
 /// A fibre as it stands: its curve, and half axes of its sections along it.
 class FibreSurface {
 public:
-    explicit FibreSurface(const FibreSnapshot& fibre) : fibre_{&fibre}, curve_{fibre.position} {}
+    explicit FibreSurface(const FibreSnapshot& fibre) : fibre_{&fibre}, curve_{fibre} {}
 
     const NodalCurve& curve() const noexcept { return curve_; }
     /// The parameter is where the fibre ends, flat.

@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace fibrant::simulation {
@@ -20,13 +21,29 @@ struct Ramp {
     bool geometric = false;  ///< by equal factors instead of equal steps; both ends must be > 0
 };
 
+/// In the place of a limit, where a law has none: it stays empty, and what sets it is refused.
+template <class Normal>
+struct NoGapLimit {
+    template <class Limit>
+    constexpr NoGapLimit& operator=(Limit) {
+        static_assert(law::GapLimiting<Normal>, "Stage::gap_limit is of a normal law that limits gaps, such as law::LimitedGap");
+        return *this;
+    }
+    constexpr explicit operator bool() const noexcept { return false; }
+    constexpr double operator*() const noexcept { return std::numeric_limits<double>::infinity(); }
+    constexpr double value_or(double otherwise) const noexcept { return otherwise; }
+    constexpr void reset() const noexcept {}
+};
+template <class Normal>
+using GapLimitOf = std::conditional_t<law::GapLimiting<Normal>, std::optional<double>, NoGapLimit<Normal>>;
+
 /// Part of a loading. Laws that are set replace the model's from this stage on.
 template <Model M>
 struct Stage {
     std::string name = "loading";
     Index increments = 10;                      ///< that its ramps take when none is cut, >= 1
     std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
-    std::optional<double> gap_limit{};          ///< of a law that limits the gap [length]; scaled down when cut
+    GapLimitOf<typename M::Normal> gap_limit{};  ///< of a law that limits the gap [length], as std::optional; scaled down when cut
     std::optional<double> allowed_penetration{};  ///< that the penalty adapts to in this stage, for the model's [length]
     bool forced_orders = false;                 ///< keep the scene's forced orders
     /// Spring from every centre to its last accepted place [force / length]: keeps what is slack from leaping.

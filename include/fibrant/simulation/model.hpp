@@ -9,6 +9,7 @@
 #include <fibrant/law/friction_law.hpp>
 #include <fibrant/law/normal_law.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
+#include <fibrant/simulation/near_names.hpp>
 #include <fibrant/solver/linear_solver.hpp>
 #include <fibrant/solver/newton.hpp>
 #include <fibrant/term/list.hpp>
@@ -29,7 +30,7 @@ concept HasProximity = requires { typename M::Proximity; } && proximity::Proximi
 template <class M>
 concept HasNormal = requires { typename M::Normal; } && law::NormalLaw<typename M::Normal>;
 template <class M>
-concept HasFriction = requires { typename M::Friction; } && law::FrictionLaw<typename M::Friction>;
+concept HasFriction = requires { typename M::Friction; } && law::FrictionLaw<typename M::Friction> && law::HistoryIsKept<typename M::Friction>;
 /// A model whose fibres are bonded to solids says so: `using Solid = connection::BondedSolid<...>;`. May be left out too.
 template <class M>
 concept HasSolid = requires { typename M::Solid; } && core::Policy<typename M::Solid> && core::Active<typename M::Solid>;
@@ -64,11 +65,27 @@ concept HasPassage = requires { typename M::Passage; } && core::Policy<typename 
 /// A model whose fibres are pushed by more than contacts and what a scene applies says so: `using Acts = term::List<load::Gravity, ...>;`.
 /// May be left out.
 template <class M>
-concept HasActs = requires { typename M::Acts; } && term::detail::list_for<typename M::Acts, typename M::Beam>;
+concept HasActs = requires { typename M::Acts; };
+/// Where it has a list, that is one of terms.
+template <class M>
+concept ActsAreTerms = !HasActs<M> || term::ListFor<typename M::Acts, typename M::Beam>;
+
+// A part that may be left out is refused under a name that is nearly its own.
+template <class M>
+concept SpellsTools = !detail::NearTools<M>;
+template <class M>
+concept SpellsConnections = !detail::NearConnections<M>;
+template <class M>
+concept SpellsSolid = !detail::NearSolid<M>;
+template <class M>
+concept SpellsPassage = !detail::NearPassage<M>;
+template <class M>
+concept SpellsActs = !detail::NearActs<M>;
 
 /// A model names its Beam, Proximity, Normal, Friction and Solver, each of which satisfies its own contract.
 template <class M>
-concept Model = HasBeam<M> && HasProximity<M> && HasNormal<M> && HasFriction<M> && HasSolver<M>;
+concept Model = HasBeam<M> && HasProximity<M> && HasNormal<M> && HasFriction<M> && HasSolver<M> && ActsAreTerms<M> && SpellsTools<M> &&
+                SpellsConnections<M> && SpellsSolid<M> && SpellsPassage<M> && SpellsActs<M>;
 
 namespace detail {
 template <Model M>

@@ -105,7 +105,7 @@ struct StartOverlap {
     /// @param begins  the run, and does not go on
     template <class Simulator, Model M>
     StartOverlap(Simulator& simulator, const Stage<M>& first, bool begins) {
-        constexpr bool limits = requires(typename M::Normal law) { law.with_limit(1.0); };
+        constexpr bool limits = law::GapLimiting<typename M::Normal>;
         if (!begins || (limits && first.gap_limit)) return;
         const contact::Overlap deepest = look_at_contacts(simulator, false, [&](const auto& contacts) {
             return contact::deepest_overlap(contacts, simulator.mesh(), simulator.state(), true);

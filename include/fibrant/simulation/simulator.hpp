@@ -3,11 +3,11 @@
 /// @file Runs a loading on a scene with a model: steps that are cut, restored and grown again.
 
 #include <fibrant/core/stage_clock.hpp>
-#include <fibrant/observe/observer.hpp>
 #include <fibrant/simulation/acceptance.hpp>
 #include <fibrant/simulation/run_file.hpp>
 #include <fibrant/simulation/scene_checks.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
+#include <fibrant/simulation/watching.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -65,7 +65,7 @@ public:
     /// Takes the scene through a loading. Each observer is shown a snapshot of every accepted increment; one that has a
     /// member `reported(const IncrementReport&)` is also given its figures, and one with `gave_up(const FailedAttempt&)` those of
     /// attempts that came to nothing.
-    template <class... Observers>
+    template <Watching... Observers>
     Report run(const Loading<M>& loading, Observers&... observers) {
         loading.validate();
         const auto start = std::chrono::steady_clock::now();
@@ -209,7 +209,7 @@ private:
             }
             double progress = stage.ramps.empty() && !stage.until ? 1.0 : std::min(1.0, position_.progress + position_.fraction / static_cast<double>(stage.increments));
             if (progress > 1.0 - 1e-9) progress = 1.0;
-            if constexpr (requires { contacts_.normal_law().with_limit(1.0); }) {
+            if constexpr (law::GapLimiting<typename M::Normal>) {
                 const double limit = stage.gap_limit ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
                 contacts_.normal_law() = contacts_.normal_law().with_limit(limit);
             }
@@ -298,12 +298,12 @@ private:
 
     template <class Observer>
     static void tell([[maybe_unused]] Observer& observer, [[maybe_unused]] const FailedAttempt& attempt) {
-        if constexpr (requires { observer.gave_up(attempt); }) observer.gave_up(attempt);
+        if constexpr (ToldOfFailures<Observer>) observer.gave_up(attempt);
     }
     template <class Observer>
     void show(Observer& observer, const IncrementReport& increment) {
-        if constexpr (requires { observer.reported(increment); }) observer.reported(increment);
-        if constexpr (requires { observer.due(increment.number); })
+        if constexpr (ToldOfIncrements<Observer>) observer.reported(increment);
+        if constexpr (ChoosesIncrements<Observer>)
             if (!observer.due(increment.number)) return;
         if constexpr (observe::Observer<Observer>) {
             observe::Snapshot shot = snapshot();

@@ -11,6 +11,12 @@
 
 namespace fibrant::simulation {
 
+/// Curve of a beam's centreline between its nodes.
+template <beam::BeamElement Beam>
+inline constexpr observe::Interpolation interpolation = Beam::nodes == 3 ? observe::Interpolation::quadratic
+                                                        : requires { Beam::centreline_bend_weights(0.0); } ? observe::Interpolation::cubic
+                                                                                                           : observe::Interpolation::linear;
+
 /// Fibres at their nodes.
 template <beam::BeamElement Beam>
 observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const Vector& state) {
@@ -18,6 +24,7 @@ observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const Vector& state)
     shot.fibres.resize(core::at(mesh.fibre_count()));
     core::parallel_for(mesh.fibre_count(), [&](Index f) {
         observe::FibreSnapshot& fibre = shot.fibres[core::at(f)];
+        fibre.interpolation = interpolation<Beam>;
         fibre.section = mesh.fibre(f).section;
         fibre.group = mesh.fibre(f).group, fibre.closed = mesh.fibre(f).closed;
         for (Index a = 0; a < mesh.node_count(f); ++a) {

@@ -20,15 +20,14 @@ struct List {
 };
 
 namespace detail {
-template <class L>
-inline constexpr bool is_list = false;
-template <class... T>
-inline constexpr bool is_list<List<T...>> = true;
-template <class L, class B>
-inline constexpr bool list_for = false;
-template <class... T, class B>
-inline constexpr bool list_for<List<T...>, B> = (TermFor<T, B> && ...);
+template <class B, class... T>
+    requires(TermFor<T, B> && ...)
+void take_list(const List<T...>&);
 }  // namespace detail
+
+/// List<...> of terms that can be made for a beam.
+template <class L, class B>
+concept ListFor = requires(const L& list) { detail::take_list<B>(list); };
 
 /// The terms of a list on a site.
 template <class B, class... T>

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What a run takes for an observer: something that is told of snapshots, figures or failures, and of nothing by another name.
+
+#include <fibrant/observe/observer.hpp>
+#include <fibrant/simulation/report.hpp>
+
+#include <type_traits>
+
+namespace fibrant::simulation {
+
+template <class O>
+concept ToldOfIncrements = requires(O& observer, const IncrementReport& increment) { observer.reported(increment); };
+template <class O>
+concept ToldOfFailures = requires(O& observer, const FailedAttempt& attempt) { observer.gave_up(attempt); };
+template <class O>
+concept ChoosesIncrements = requires(O& observer, Index number) {
+    { observer.due(number) } -> std::convertible_to<bool>;
+};
+
+namespace detail {
+struct Names {
+    int accepted, reported, gave_up, due;
+};
+template <class O>
+struct AndNames : O, Names {};
+template <class O>
+concept Open = std::is_class_v<O> && !std::is_final_v<O>;
+// A name that a type has beside one of Names is ambiguous.
+template <class O>
+concept HasAccepted = Open<O> && !requires { &AndNames<O>::accepted; };
+template <class O>
+concept HasReported = Open<O> && !requires { &AndNames<O>::reported; };
+template <class O>
+concept HasGaveUp = Open<O> && !requires { &AndNames<O>::gave_up; };
+template <class O>
+concept HasDue = Open<O> && !requires { &AndNames<O>::due; };
+}  // namespace detail
+
+// A member that has the name of what an observer is told has to take what it is told.
+template <class O>
+concept TakesSnapshots = observe::Observer<O> || !detail::HasAccepted<std::remove_const_t<O>>;
+template <class O>
+concept TakesFigures = ToldOfIncrements<O> || !detail::HasReported<std::remove_const_t<O>>;
+template <class O>
+concept TakesFailures = ToldOfFailures<O> || !detail::HasGaveUp<std::remove_const_t<O>>;
+template <class O>
+concept TakesNumbers = ChoosesIncrements<O> || !detail::HasDue<std::remove_const_t<O>>;
+
+/// Has at least one of accepted(const observe::Snapshot&), reported(const IncrementReport&), gave_up(const FailedAttempt&); with
+/// due(number of the increment) it chooses.
+template <class O>
+concept Watching = TakesSnapshots<O> && TakesFigures<O> && TakesFailures<O> && TakesNumbers<O> &&
+                   (requires(O& observer, const observe::Snapshot& shot) { observer.accepted(shot); } ||
+                    requires(O& observer, const IncrementReport& increment) { observer.reported(increment); } ||
+                    requires(O& observer, const FailedAttempt& attempt) { observer.gave_up(attempt); });
+
+}  // namespace fibrant::simulation
