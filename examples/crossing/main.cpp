@@ -13,6 +13,10 @@
 
 using namespace fibrant;
 
+#ifdef CROSSING_COMPILED  // the same model, compiled once in fibrant::compiled
+#include <fibrant/compiled/rough_fibres.hpp>
+using Crossing = compiled::RoughFibres;
+#else
 struct Crossing {
     using Beam = beam::DirectorBeam<3>;
     using Proximity = proximity::GridSearch;
@@ -21,6 +25,7 @@ struct Crossing {
     using Solver = solver::SparseCholesky;
 };
 static_assert(simulation::Model<Crossing>);
+#endif
 
 int main() {
     const double radius = 0.0201, approach = 0.01;  // lengths in mm, forces in N

@@ -46,4 +46,6 @@ check() {
 }
 check umbrella "$scratch/umbrella.cpp" 30 700 "$@"
 check crossing "$project/examples/crossing/main.cpp" 175 1600 "$@"
+# The same program, whose model is in the compiled library.
+check compiled "$project/examples/crossing/main.cpp" 40 800 "$@" -DCROSSING_COMPILED
 exit $failed

@@ -10,12 +10,14 @@
 #include <fibrant/simulation/watching.hpp>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <concepts>
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -34,31 +36,8 @@ public:
     using Passage = typename detail::PassageOf<M>::Type;
 
     /// @throws std::invalid_argument naming the field that is wrong
-    Simulator(const scene::Assembly& assembly, const ModelParameters<M>& parameters)
-        : parameters_{checked(parameters)}, beam_{parameters.beam}, mesh_{assembly, beam_},
-          channels_{assembly, term::channels_of<Beam>(Acts(), parameters.acts)},
-          contacts_{assembly, mesh_, parameters.contact, typename M::Proximity(parameters.proximity),
-                    typename M::Normal(parameters.normal), typename M::Friction(parameters.friction)},
-          equilibrium_{assembly, mesh_, beam_, contacts_, channels_, Solid(parameters.solid), parameters.acts}, passage_{mesh_, parameters.contact.detection},
-          linear_{parameters.solver},
-          state_{mesh_.start_state()}, amplitudes_(channels_.names().size(), 0.0) {
-        if (mesh_.fibre_count() == 0) core::refuse("assembly.fibres", "none", "at least one fibre");
-        if constexpr (HasTools<M>) {
-            for (const scene::Tool& tool : assembly.tools()) tool_channels_.push_back(channels_.find(tool.channel));
-            move_tools(amplitudes_);
-        } else if (!assembly.tools().empty()) {
-            core::refuse("assembly.tools", std::to_string(assembly.tools().size()), "none, for a model without a part Tools");
-        }
-        if (const auto bodies = assembly.bodies().size() + assembly.cells().size(); !HasConnections<M> && bodies > 0)
-            core::refuse("assembly.bodies", std::to_string(bodies), "none, for a model without a part Connections");
-        if constexpr (HasSolid<M>) state_ = equilibrium_.solid().with_rest(state_);
-        else if (!assembly.solids().empty()) core::refuse("assembly.solids", std::to_string(assembly.solids().size()), "none, for a model without a part Solid");
-        require_agreement(equilibrium_.motion(), mesh_, channels_);
-        loose_ = loose_direction(assembly, mesh_);
-        radius_ = mesh_.fibre(0).section.radius();
-        for (const beam::MeshFibre& fibre : mesh_.fibres()) radius_ = std::min(radius_, fibre.section.radius());
-        if (mesh_.start_state() != mesh_.rest_state()) energy_.start(equilibrium_, state_);
-    }
+    Simulator(const scene::Assembly& assembly, const ModelParameters<M>& parameters);
+    ~Simulator();
     Simulator(const Simulator&) = delete;  // its parts look at each other
     Simulator& operator=(const Simulator&) = delete;
 
@@ -67,71 +46,15 @@ public:
     /// attempts that came to nothing.
     template <Watching... Observers>
     Report run(const Loading<M>& loading, Observers&... observers) {
-        loading.validate();
-        const auto start = std::chrono::steady_clock::now();
-        const std::vector<Stage<M>> stages = stages_of(loading, channels_);
-        check_ramps(stages, channels_, amplitudes_);
-        require_paths(stages, equilibrium_.motion(), mesh_, channels_, amplitudes_);
-        Report report;
-        report.reason = unheld(stages, loose_);
-        if (!report.reason.empty()) return report;
-        position_ = {};
-        position_.from = amplitudes_;
-        position_.holding.assign(core::at(mesh_.fibre_count()), 1.0);
-        contacts_.places().follow(position_.following);
-        motion_ = MeanMotion(mesh_, amplitudes_.size());
-        if (loading.resume && !loading.checkpoint.empty() && std::filesystem::exists(loading.checkpoint))
-            read_checkpoint(loading, stages, report);
-        const StartOverlap begun(*this, stages.front(), position_.accepted == 0);
-        if (begun.too_deep) {
-            report.reason = begun.said;
-            return report;
-        }
-        auto saved = start;
-        bool unsaved = false;
-        for (Index k = 0; k < position_.stage; ++k) take_laws(stages[core::at(k)]);  // they stay in force
-        for (; position_.stage < core::count(stages); position_.next_stage(stages, amplitudes_)) {
-            const Stage<M>& stage = stages[core::at(position_.stage)];
-            take_laws(stage);
-            while (!position_.stage_over) {
-                const auto gave_up = [&](const FailedAttempt& attempt) { (tell(observers, attempt), ...); };
-                if (!advance(loading, stages, stage, report, gave_up)) {
-                    if (position_.accepted == 0) report.reason += begun.remark();
-                    if (unsaved) write_checkpoint(loading, stages, report);
-                    finish(report, start);
-                    return report;
-                }
-                // Observers first: an increment that a checkpoint holds has been shown, and one shown twice is told by its number.
-                clock_.time(core::Part::output, [&] {
-                    (show(observers, report.increments.back()), ...);
-                    const auto now = std::chrono::steady_clock::now();
-                    unsaved = !loading.checkpoint.empty();
-                    if (!unsaved || (!position_.stage_over && std::chrono::duration<double>(now - saved).count() < loading.checkpoint_seconds)) return;
-                    write_checkpoint(loading, stages, report);
-                    saved = now, unsaved = false;
-                });
-                if (loading.stop && loading.stop()) {
-                    if (unsaved) write_checkpoint(loading, stages, report);
-                    report.reason = "stopped as asked, after increment " + std::to_string(position_.accepted);
-                    finish(report, start);
-                    return report;
-                }
-            }
-        }
-        report.converged = true;
-        finish(report, start);
-        return report;
+        const std::array<Watcher, sizeof...(Observers)> watchers{Watcher(observers)...};
+        return run_watched(loading, watchers);
     }
+    Report run_watched(const Loading<M>& loading, std::span<const Watcher> watchers);
 
     /// Starts from what a run of another scene of the same fibres left in a checkpoint, with what its contacts remember. What is held,
     /// tied and applied is that of this scene: averages and periodic pairs count from there.
     /// @throws std::runtime_error if the file cannot be read or has other fibres
-    void start_from(const std::string& checkpoint) {
-        CheckpointReader file = read_from_state(checkpoint, mesh_);
-        get_fibres(file, parts());
-        if constexpr (HasConnections<M>) equilibrium_.ties().anchor(state_);
-        energy_.start_from_other(equilibrium_, state_);
-    }
+    void start_from(const std::string& checkpoint);
 
     const ModelParameters<M>& parameters() const noexcept { return parameters_; }
     const Beam& beam() const noexcept { return beam_; }
@@ -152,12 +75,7 @@ public:
     }
 
     /// The present state as plain data.
-    observe::Snapshot snapshot() const {
-        observe::Snapshot shot = snapshot_of(mesh_, contacts_, state_);
-        if constexpr (HasSolid<M>) add_solid(shot, equilibrium_.solid(), state_);
-        equilibrium_.terms().each([&](const auto& term) { term.show(state_, shot); });
-        return shot;
-    }
+    observe::Snapshot snapshot() const;
 
     /// Takes over contacts and what they remember from a run of the same fibres, whose state the assembly begins at.
     /// @throws std::invalid_argument if the fibres are not where that run left them
@@ -296,20 +214,12 @@ private:
         return true;
     }
 
-    template <class Observer>
-    static void tell([[maybe_unused]] Observer& observer, [[maybe_unused]] const FailedAttempt& attempt) {
-        if constexpr (ToldOfFailures<Observer>) observer.gave_up(attempt);
-    }
-    template <class Observer>
-    void show(Observer& observer, const IncrementReport& increment) {
-        if constexpr (ToldOfIncrements<Observer>) observer.reported(increment);
-        if constexpr (ChoosesIncrements<Observer>)
-            if (!observer.due(increment.number)) return;
-        if constexpr (observe::Observer<Observer>) {
-            observe::Snapshot shot = snapshot();
-            shot.increment = increment.number, shot.stage = increment.stage, shot.progress = increment.progress;
-            observer.accepted(shot);
-        }
+    void show(const Watcher& watcher, const IncrementReport& increment) {
+        if (watcher.reported) watcher.reported(watcher.observer, increment);
+        if (!watcher.accepted || (watcher.due && !watcher.due(watcher.observer, increment.number))) return;
+        observe::Snapshot shot = snapshot();
+        shot.increment = increment.number, shot.stage = increment.stage, shot.progress = increment.progress;
+        watcher.accepted(watcher.observer, shot);
     }
 
     void finish(Report& report, std::chrono::steady_clock::time_point start) {
@@ -361,5 +271,114 @@ private:
     EnergyAccount energy_;
     core::StageClock clock_;
 };
+
+// What a program calls stands outside of the class: `extern template class` then leaves all below it to the file that has `template class`.
+
+template <Model M>
+Simulator<M>::Simulator(const scene::Assembly& assembly, const ModelParameters<M>& parameters)
+    : parameters_{checked(parameters)}, beam_{parameters.beam}, mesh_{assembly, beam_},
+      channels_{assembly, term::channels_of<Beam>(Acts(), parameters.acts)},
+      contacts_{assembly, mesh_, parameters.contact, typename M::Proximity(parameters.proximity),
+                typename M::Normal(parameters.normal), typename M::Friction(parameters.friction)},
+      equilibrium_{assembly, mesh_, beam_, contacts_, channels_, Solid(parameters.solid), parameters.acts}, passage_{mesh_, parameters.contact.detection},
+      linear_{parameters.solver},
+      state_{mesh_.start_state()}, amplitudes_(channels_.names().size(), 0.0) {
+    if (mesh_.fibre_count() == 0) core::refuse("assembly.fibres", "none", "at least one fibre");
+    if constexpr (HasTools<M>) {
+        for (const scene::Tool& tool : assembly.tools()) tool_channels_.push_back(channels_.find(tool.channel));
+        move_tools(amplitudes_);
+    } else if (!assembly.tools().empty()) {
+        core::refuse("assembly.tools", std::to_string(assembly.tools().size()), "none, for a model without a part Tools");
+    }
+    if (const auto bodies = assembly.bodies().size() + assembly.cells().size(); !HasConnections<M> && bodies > 0)
+        core::refuse("assembly.bodies", std::to_string(bodies), "none, for a model without a part Connections");
+    if constexpr (HasSolid<M>) state_ = equilibrium_.solid().with_rest(state_);
+    else if (!assembly.solids().empty()) core::refuse("assembly.solids", std::to_string(assembly.solids().size()), "none, for a model without a part Solid");
+    require_agreement(equilibrium_.motion(), mesh_, channels_);
+    loose_ = loose_direction(assembly, mesh_);
+    radius_ = mesh_.fibre(0).section.radius();
+    for (const beam::MeshFibre& fibre : mesh_.fibres()) radius_ = std::min(radius_, fibre.section.radius());
+    if (mesh_.start_state() != mesh_.rest_state()) energy_.start(equilibrium_, state_);
+}
+
+template <Model M>
+Simulator<M>::~Simulator() = default;
+
+template <Model M>
+Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watcher> watchers) {
+    loading.validate();
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<Stage<M>> stages = stages_of(loading, channels_);
+    check_ramps(stages, channels_, amplitudes_);
+    require_paths(stages, equilibrium_.motion(), mesh_, channels_, amplitudes_);
+    Report report;
+    report.reason = unheld(stages, loose_);
+    if (!report.reason.empty()) return report;
+    position_ = {};
+    position_.from = amplitudes_;
+    position_.holding.assign(core::at(mesh_.fibre_count()), 1.0);
+    contacts_.places().follow(position_.following);
+    motion_ = MeanMotion(mesh_, amplitudes_.size());
+    if (loading.resume && !loading.checkpoint.empty() && std::filesystem::exists(loading.checkpoint))
+        read_checkpoint(loading, stages, report);
+    const StartOverlap begun(*this, stages.front(), position_.accepted == 0);
+    if (begun.too_deep) {
+        report.reason = begun.said;
+        return report;
+    }
+    auto saved = start;
+    bool unsaved = false;
+    for (Index k = 0; k < position_.stage; ++k) take_laws(stages[core::at(k)]);  // they stay in force
+    for (; position_.stage < core::count(stages); position_.next_stage(stages, amplitudes_)) {
+        const Stage<M>& stage = stages[core::at(position_.stage)];
+        take_laws(stage);
+        while (!position_.stage_over) {
+            const auto gave_up = [&](const FailedAttempt& attempt) { 
+                for (const Watcher& watcher : watchers)
+                    if (watcher.gave_up) watcher.gave_up(watcher.observer, attempt);
+            };
+            if (!advance(loading, stages, stage, report, gave_up)) {
+                if (position_.accepted == 0) report.reason += begun.remark();
+                if (unsaved) write_checkpoint(loading, stages, report);
+                finish(report, start);
+                return report;
+            }
+            // Observers first: an increment that a checkpoint holds has been shown, and one shown twice is told by its number.
+            clock_.time(core::Part::output, [&] {
+                for (const Watcher& watcher : watchers) show(watcher, report.increments.back());
+                const auto now = std::chrono::steady_clock::now();
+                unsaved = !loading.checkpoint.empty();
+                if (!unsaved || (!position_.stage_over && std::chrono::duration<double>(now - saved).count() < loading.checkpoint_seconds)) return;
+                write_checkpoint(loading, stages, report);
+                saved = now, unsaved = false;
+            });
+            if (loading.stop && loading.stop()) {
+                if (unsaved) write_checkpoint(loading, stages, report);
+                report.reason = "stopped as asked, after increment " + std::to_string(position_.accepted);
+                finish(report, start);
+                return report;
+            }
+        }
+    }
+    report.converged = true;
+    finish(report, start);
+    return report;
+}
+
+template <Model M>
+void Simulator<M>::start_from(const std::string& checkpoint) {
+    CheckpointReader file = read_from_state(checkpoint, mesh_);
+    get_fibres(file, parts());
+    if constexpr (HasConnections<M>) equilibrium_.ties().anchor(state_);
+    energy_.start_from_other(equilibrium_, state_);
+}
+
+template <Model M>
+observe::Snapshot Simulator<M>::snapshot() const {
+    observe::Snapshot shot = snapshot_of(mesh_, contacts_, state_);
+    if constexpr (HasSolid<M>) add_solid(shot, equilibrium_.solid(), state_);
+    equilibrium_.terms().each([&](const auto& term) { term.show(state_, shot); });
+    return shot;
+}
 
 }  // namespace fibrant::simulation

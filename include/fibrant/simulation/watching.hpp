@@ -55,4 +55,25 @@ concept Watching = TakesSnapshots<O> && TakesFigures<O> && TakesFailures<O> && T
                     requires(O& observer, const IncrementReport& increment) { observer.reported(increment); } ||
                     requires(O& observer, const FailedAttempt& attempt) { observer.gave_up(attempt); });
 
+/// Any observer, by reference: what it is not told of is null.
+struct Watcher {
+    const void* observer;
+    void (*accepted)(const void*, const observe::Snapshot&) = nullptr;
+    void (*reported)(const void*, const IncrementReport&) = nullptr;
+    void (*gave_up)(const void*, const FailedAttempt&) = nullptr;
+    bool (*due)(const void*, Index) = nullptr;
+
+    template <Watching O>
+    explicit Watcher(O& one) noexcept : observer{&one} {
+        if constexpr (observe::Observer<O>) accepted = [](const void* of, const observe::Snapshot& shot) { self<O>(of).accepted(shot); };
+        if constexpr (ToldOfIncrements<O>) reported = [](const void* of, const IncrementReport& increment) { self<O>(of).reported(increment); };
+        if constexpr (ToldOfFailures<O>) gave_up = [](const void* of, const FailedAttempt& attempt) { self<O>(of).gave_up(attempt); };
+        if constexpr (ChoosesIncrements<O>) due = [](const void* of, Index number) -> bool { return self<O>(of).due(number); };
+    }
+
+private:
+    template <class O>
+    static O& self(const void* of) noexcept { return *static_cast<O*>(const_cast<void*>(of)); }  // as it was given
+};
+
 }  // namespace fibrant::simulation

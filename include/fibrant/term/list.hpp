@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file The terms of a model as a list, and all of them as one: folds over a tuple. An empty list is nothing.
+/// @file The terms of a model as a list, and all of them as one: folds. An empty list is nothing.
 
 #include <fibrant/term/term.hpp>
 
 #include <concepts>
 #include <string>
-#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -29,23 +28,28 @@ void take_list(const List<T...>&);
 template <class L, class B>
 concept ListFor = requires(const L& list) { detail::take_list<B>(list); };
 
+namespace detail {
+template <class T>
+struct Leaf {
+    T term;
+};
+}  // namespace detail
+
 /// The terms of a list on a site.
 template <class B, class... T>
-class Terms {
+class Terms : detail::Leaf<For<T, B>>... {
 public:
-    static constexpr bool empty = sizeof...(T) == 0;
-
     /// @param parameters  derives from the slots of those terms that have any
     template <class Parameters>
-    Terms(const SiteOf<B>& site, const Parameters& parameters) : all_{For<T, B>(site, of<T>(parameters))...} {}
+    Terms(const SiteOf<B>& site, const Parameters& parameters) : detail::Leaf<For<T, B>>{For<T, B>(site, of<T>(parameters))}... {}
 
     template <class Body>
     void each(const Body& body) {
-        std::apply([&](auto&... one) { (body(one), ...); }, all_);
+        (body(get<T>()), ...);
     }
     template <class Body>
     void each(const Body& body) const {
-        std::apply([&](const auto&... one) { (body(one), ...); }, all_);
+        (body(get<T>()), ...);
     }
     /// Those of one role.
     template <Role role, class Body>
@@ -55,9 +59,9 @@ public:
         });
     }
     template <class One>
-    For<One, B>& get() noexcept { return std::get<For<One, B>>(all_); }
+    For<One, B>& get() noexcept { return static_cast<detail::Leaf<For<One, B>>&>(*this).term; }
     template <class One>
-    const For<One, B>& get() const noexcept { return std::get<For<One, B>>(all_); }
+    const For<One, B>& get() const noexcept { return static_cast<const detail::Leaf<For<One, B>>&>(*this).term; }
 
 private:
     template <class One, class Parameters>
@@ -70,7 +74,6 @@ private:
             return {};
         }
     }
-    std::tuple<For<T, B>...> all_;
 };
 
 /// Channels that the terms of a list name, in any order.
