@@ -194,6 +194,13 @@ TEST_CASE("a fibre pressed between two plates carries what the theory of its sec
     std::printf("plates: %.6f N/mm below, %.6f above, %.6f expected; energy %.2e of %.2e missing\n", -down.z() / length, up.z() / length, load,
                 report.energy.error(), report.energy.external);
     CHECK((down + up).norm() < 1e-6 * up.norm());
+    // Observers and files are shown what presses.
+    const observe::Snapshot shot = simulator.snapshot();
+    Vec3 shown[2]{Vec3::Zero(), Vec3::Zero()};
+    for (const observe::ToolContactSnapshot& contact : shot.tool_contacts) shown[contact.tool] += contact.friction - contact.reaction * contact.normal;
+    CHECK((shown[0] - down).norm() < 1e-12 * down.norm());
+    CHECK((shown[1] - up).norm() < 1e-12 * up.norm());
+    CHECK(shot.contacts.empty());
     CHECK(std::abs(up.z() / length / load - 1.0) < 1e-3);
     CHECK(report.energy.external > 0.0);
     CHECK(std::abs(report.energy.error()) < 1e-3 * report.energy.external);  // the trapezoidal rule over six increments

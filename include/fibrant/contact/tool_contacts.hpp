@@ -200,6 +200,14 @@ public:
         }
         return sum;
     }
+    /// Greatest motion of a particle along its normal in a step, by the radius of its fibre [1].
+    double greatest_approach(const Vector& step) const {
+        return core::largest(core::count(elements_), 0.0, [&](Index k) {
+            const Element& element = elements_[core::at(k)];
+            const double motion = element.normal.dot(beam::Mesh<B>::motion(step, element.first, element.weights));
+            return std::abs(motion) / mesh_->fibre(element.fibre).section.radius();
+        });
+    }
     /// Half of the work that the forces of the last evaluation do on the way from the last accepted state: of the state that
     /// an increment ends with and, against the tools as they were, of that which it starts from [force * length].
     double half_work() const {

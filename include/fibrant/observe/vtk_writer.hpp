@@ -44,24 +44,26 @@ inline PolyData fibre_data(const Snapshot& snapshot) {
 }
 
 /// A vertex a contact element, with reaction, penetration (0 where open), gap, stiffness, crossing (1 or 0), the two
-/// fibres, and the vectors normal, normal_force (on fibre_j) and friction (on fibre_i).
+/// fibres, and the vectors normal, normal_force (on fibre_j) and friction (on fibre_i). Of a contact with tool t, fibre_i is -1 - t.
 inline PolyData contact_data(const Snapshot& snapshot) {
     PolyData data;
     std::vector<double> reaction, penetration, gap, stiffness, crossing, fibre_i, fibre_j;
     std::vector<Vec3> normal, normal_force, friction;
-    for (const ContactSnapshot& contact : snapshot.contacts) {
+    const auto add = [&](const auto& contact, bool crosses, Index i, Index j) {
         data.add_vertex(data.add_point(contact.position));
         reaction.push_back(contact.reaction);
         penetration.push_back(contact.gap < 0.0 ? -contact.gap : 0.0);
         gap.push_back(contact.gap);
         stiffness.push_back(contact.stiffness);
-        crossing.push_back(contact.crossing ? 1.0 : 0.0);
-        fibre_i.push_back(static_cast<double>(contact.fibre_i));
-        fibre_j.push_back(static_cast<double>(contact.fibre_j));
+        crossing.push_back(crosses ? 1.0 : 0.0);
+        fibre_i.push_back(static_cast<double>(i));
+        fibre_j.push_back(static_cast<double>(j));
         normal.push_back(contact.normal);
         normal_force.push_back(contact.reaction * contact.normal);
         friction.push_back(contact.friction);
-    }
+    };
+    for (const ContactSnapshot& contact : snapshot.contacts) add(contact, contact.crossing, contact.fibre_i, contact.fibre_j);
+    for (const ToolContactSnapshot& contact : snapshot.tool_contacts) add(contact, false, -1 - contact.tool, contact.fibre);
     data.point_scalars("reaction", reaction);
     data.point_scalars("penetration", penetration);
     data.point_scalars("gap", gap);

@@ -376,6 +376,7 @@ void Simulator<M>::start_from(const std::string& checkpoint) {
 template <Model M>
 observe::Snapshot Simulator<M>::snapshot() const {
     observe::Snapshot shot = snapshot_of(mesh_, contacts_, state_);
+    if constexpr (HasTools<M>) add_tools(shot, mesh_, contacts_.tools(), state_);
     if constexpr (HasSolid<M>) add_solid(shot, equilibrium_.solid(), state_);
     equilibrium_.terms().each([&](const auto& term) { term.show(state_, shot); });
     return shot;

@@ -6,6 +6,7 @@
 #include <fibrant/contact/contact_set.hpp>
 #include <fibrant/observe/snapshot.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -65,6 +66,22 @@ observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const contact::Conta
         contact.crossing = element.crossing;
     }, core::light_items);
     return shot;
+}
+
+/// Contacts with tools that have been evaluated at `state`, as plain data.
+template <beam::BeamElement Beam, class Tools>
+void add_tools(observe::Snapshot& shot, const beam::Mesh<Beam>& mesh, const Tools& tools, const Vector& state) {
+    for (Index k = 0; k < std::min(core::count(tools.elements()), core::count(tools.responses())); ++k) {
+        const auto& element = tools.elements()[core::at(k)];
+        observe::ToolContactSnapshot one;
+        one.fibre = element.fibre, one.tool = element.tool;
+        one.abscissa = element.u * mesh.fibre(element.fibre).element_length;
+        one.position = element.foot, one.normal = element.normal, one.gap = element.gap(state);
+        one.reaction = tools.responses()[core::at(k)].reaction;
+        one.friction = tools.force(k) + one.reaction * element.normal;
+        one.stiffness = tools.stiffness(element);
+        shot.tool_contacts.push_back(one);
+    }
 }
 
 /// Solids and bonds as plain data.

@@ -258,7 +258,10 @@ private:
             return std::abs(element.normal.dot(element.motion(step))) * (radius_ / radius);
         });
         const double bound = parameters_.largest_approach * radius_;
-        return equilibrium_->largest_part(step, bound, most > bound ? bound / most : 1.0);
+        double part = most > bound ? bound / most : 1.0;
+        if constexpr (requires { contacts_->tools(); })
+            part = std::min(part, parameters_.largest_approach / std::max(parameters_.largest_approach, contacts_->tools().greatest_approach(step)));
+        return equilibrium_->largest_part(step, bound, part);
     }
 
     Equilibrium* equilibrium_;
