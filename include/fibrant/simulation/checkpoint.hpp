@@ -57,6 +57,8 @@ public:
         if (file != nullptr) std::filesystem::remove(part, error);
         throw std::runtime_error("cannot write checkpoint " + path.string() + ": " + std::generic_category().message(reason));
     }
+    /// All that was put, without the sum.
+    const std::vector<char>& bytes() const noexcept { return data_; }
     /// Of what was put: two scenes with the same identity are taken for the same.
     std::uint64_t identity() const noexcept { return hash(data_.data(), data_.size()); }
     /// FNV-1a: tells a damaged file from a whole one.
