@@ -78,8 +78,8 @@ struct NewtonReport {
     assembly::ResidualFigures residual;
 };
 
-/// Numbers of Newton's method that no scene has had to change. Where no source is named, they were chosen on fabrics, strands and knots, and
-/// a factor of two either way changed iterations by a few per cent.
+/// Numbers of Newton's method that no scene has had to change. Where no source is named, they were chosen by trial on the scenes of the
+/// examples and the tests of stability.
 namespace newton_numbers {
 // Forcing terms of inexact Newton: eta = 0.9 (r / r_before)^2, at most 1e-2 (Eisenstat and Walker 1996, choice 2; their bound is 0.9, but
 // contact changes less along steps that are better solved).
