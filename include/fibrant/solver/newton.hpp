@@ -85,8 +85,6 @@ namespace newton_numbers {
 // contact changes less along steps that are better solved).
 inline constexpr double forcing_factor = 0.9, loosest_forcing = 1e-2;
 inline constexpr double enough_of_residual = 0.1;    ///< what the residual may have left, times this, is as good as nothing [1]
-inline constexpr double least_forcing_part = 1e-3;   ///< of eta, where the right side is far greater than all forces [1]
-inline constexpr double usable_solution = 0.3;       ///< residual of a linear solution that is still a step [1]
 inline constexpr double undriven = 1e-6;             ///< square of what is prescribed over that of a step: it has one energy [1]
 inline constexpr double inversion_cut = 0.25;        ///< of a step at whose end a cell is turned inside out [1]
 inline constexpr int most_inversion_cuts = 6;
@@ -96,9 +94,6 @@ inline constexpr Index growing_mixed = 2, growing_plain = 3;  ///< rises beyond 
 // Search along a step (regula falsi on the slope of the energy, kept away from its ends).
 inline constexpr int most_shortenings = 4;
 inline constexpr double least_shortening = 0.1, most_shortening = 0.8;
-// Indefinite tangents: without compression, then shifted by mean stiffness times 1e-4, 4e-4, ... up to 0.1.
-inline constexpr int most_tangents = 8;
-inline constexpr double first_shift = 1e-4, shift_growth = 4.0;
 }  // namespace newton_numbers
 
 /// Newton's method on an equilibrium whose contact elements and normals stand.
@@ -226,9 +221,8 @@ private:
     ///               no measure of what the solution may leave over
     bool direction(const Vector& state, double eta, double scale, IterationCounts& counts) {
         Equilibrium& equilibrium = *equilibrium_;
-        namespace with = newton_numbers;
         double shift = 0.0, tolerance = eta;
-        for (int attempt = 0; attempt < with::most_tangents; ++attempt) {
+        for (int attempt = 0; attempt < 8; ++attempt) {
             clock_->time(core::Part::assembly, [&] {
                 equilibrium.linearise(state, attempt > 0, shift);
                 if (contacts_->places().rehosted()) linear_->analyse(equilibrium.system());
@@ -240,7 +234,7 @@ private:
                     right_ -= product_;
                     scene::project_free(equilibrium.system().layout(), right_);
                     const double size = equilibrium.norm(right_);
-                    if (scale > 0.0 && size > scale) tolerance = std::max(eta * scale / size, with::least_forcing_part * eta);
+                    if (scale > 0.0 && size > scale) tolerance = std::max(eta * scale / size, 1e-3 * eta);
                 }
             });
             const SolveStatus prepared = clock_->time(core::Part::preparation, [&] { return linear_->prepare(equilibrium.system()); });
@@ -252,10 +246,10 @@ private:
             }
             if (report.status == SolveStatus::converged) return true;
             // A step that is not exact is still a step, as long as it is a good part of one.
-            if (report.status == SolveStatus::iteration_limit && report.residual < with::usable_solution) return true;
+            if (report.status == SolveStatus::iteration_limit && report.residual < 0.3) return true;
             if (report.status == SolveStatus::not_finite) return false;
             ++counts.indefinite;
-            if (attempt >= 1) shift = shift > 0.0 ? with::shift_growth * shift : with::first_shift * stiffness_scale();
+            if (attempt >= 1) shift = shift > 0.0 ? 4.0 * shift : 1e-4 * stiffness_scale();
         }
         return false;
     }
