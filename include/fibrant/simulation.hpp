@@ -4,6 +4,7 @@
 
 #include <fibrant/simulation/acceptance.hpp>
 #include <fibrant/simulation/audit.hpp>
+#include <fibrant/simulation/calming.hpp>
 #include <fibrant/simulation/checkpoint.hpp>
 #include <fibrant/simulation/energy_account.hpp>
 #include <fibrant/simulation/increment_file.hpp>

@@ -3,6 +3,7 @@
 /// @file Where a run stands in its loading.
 
 #include <fibrant/connection/channels.hpp>
+#include <fibrant/simulation/calming.hpp>
 #include <fibrant/simulation/loading.hpp>
 
 #include <algorithm>
@@ -20,6 +21,7 @@ struct Position {
     double damping = 1.0;        ///< over that of the stage
     double damping_floor = 0.0;  ///< that it does not fall below: what has failed is not tried again at once
     bool stage_over = false;
+    Calming calming{};
     bool following = false;      ///< places of crossings are followed
     std::pair<Index, double> tried{-1, 0.0};  ///< accepted increments and fraction at which another following was tried last
     std::vector<double> from;    ///< amplitudes at the start of the stage
@@ -100,7 +102,7 @@ struct Position {
     bool sound(Index stages) const {
         const auto finite = [](double value) { return std::isfinite(value) && value >= 0.0; };
         return stage >= 0 && stage <= stages && in_stage >= 0 && accepted >= 0 && finite(progress) && fraction > 0.0 &&
-               fraction <= 1.0 && finite(displacement) && finite(damping) && finite(damping_floor) &&
+               fraction <= 1.0 && finite(displacement) && finite(damping) && finite(damping_floor) && finite(calming.springs) && finite(calming.held) && finite(calming.failed) &&
                std::all_of(holding.begin(), holding.end(), finite);
     }
 
@@ -127,7 +129,7 @@ private:
     static void each_of(Self& self, const Body& body) {
         body(self.stage), body(self.in_stage), body(self.accepted), body(self.easy);
         body(self.progress), body(self.fraction), body(self.displacement);
-        body(self.damping), body(self.damping_floor), body(self.stage_over), body(self.following), body(self.tried.first), body(self.tried.second);
+        body(self.damping), body(self.damping_floor), body(self.stage_over), body(self.following), body(self.calming), body(self.tried.first), body(self.tried.second);
         for (auto& amplitude : self.from) body(amplitude);
         for (auto& factor : self.holding) body(factor);
     }

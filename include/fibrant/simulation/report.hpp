@@ -35,6 +35,7 @@ struct IncrementReport {
     double fraction = 1;        ///< of the stage's increment, smaller after cuts
     Index cuts = 0;             ///< rejected attempts at it
     solver::IterationCounts counts;  ///< rejected attempts included
+    bool unstable = false;      ///< its tangent was indefinite: it may rest on a saddle
     double residual = 0;        ///< over loads, reactions and contact forces [1]
     double displacement = 0;    ///< greatest [length]
     double damping = 0;         ///< norm of the damping's force, over loads, reactions and contact forces [1]

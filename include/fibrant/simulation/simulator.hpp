@@ -127,6 +127,7 @@ private:
             }
             double progress = stage.ramps.empty() && !stage.until ? 1.0 : std::min(1.0, position_.progress + position_.fraction / static_cast<double>(stage.increments));
             if (progress > 1.0 - 1e-9) progress = 1.0;
+            if (position_.calming.resting) progress = position_.progress;
             if constexpr (law::GapLimiting<typename M::Normal>) {
                 const double limit = stage.gap_limit ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
                 contacts_.normal_law() = contacts_.normal_law().with_limit(limit);
@@ -142,7 +143,7 @@ private:
             }
             Vector trial = state_;
             move_tools(amplitudes);
-            equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping, position_.holding);
+            equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping + position_.calming.springs, position_.holding);
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
                 equilibrium_, contacts_, linear_, passage_, parameters_.iteration, radius_, touching, clock_);
@@ -172,7 +173,7 @@ private:
                 increment.residual = attempt.residual, increment.use = attempt.use;
                 increment.displacement = attempt.displacement;
                 increment.damping = attempt.force_scale > 0.0 ? equilibrium_.norm(energy_.damping()) / attempt.force_scale : 0.0;
-                increment.fraction = position_.fraction;
+                increment.fraction = position_.fraction, increment.unstable = attempt.counts.indefinite > 0;
                 increment.springs = position_.damping, increment.hardest_springs = position_.hardest();
                 position_.progress = progress;
                 break;
@@ -181,10 +182,15 @@ private:
             gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, position_.fraction, position_.damping, attempt.counts.newton, attempt.reason,
                                   core::seconds_since(start)});
             contacts_.restore(), equilibrium_.restore();
-            if (touching && !stage.forced_orders) {
+            if (touching && !stage.forced_orders && !position_.calming.resting) {
                 const bool again = position_.try_other_places(parameters_.contact.places);
                 contacts_.places().follow(position_.following);
                 if (again) continue;
+            }
+            if (loading.calmed && report.rejected_increments <= loading.most_rejected && stage.damping == 0.0 && !stage.forced_orders &&
+                position_.calming.harder(position_.fraction, Calming::softest(mesh_))) {
+                contacts_.places().follow(position_.following = parameters_.contact.places == contact::Places::as_needed);
+                continue;
             }
             position_.give_way(stage, equilibrium_.greatest_by_fibre(attempt.unsettled), attempt.allowed, increment.cuts);
             if (position_.fraction < loading.smallest_fraction || report.rejected_increments > loading.most_rejected) {
@@ -195,13 +201,14 @@ private:
         }
         increment.contact = contacts_.figures(state_);
         position_.displacement = increment.displacement;
-        ++position_.accepted, ++position_.in_stage;
+        position_.calming.soften_after(increment.unstable, increment.displacement / radius_, Calming::softest(mesh_));
+        ++position_.accepted, position_.in_stage += position_.calming.resting ? 0 : 1;
         if (increment.cuts == 0 && ++position_.easy >= 2 && position_.fraction < 1.0)
             position_.fraction = std::min(1.0, loading.growth * position_.fraction), position_.easy = 0;
         increment.number = position_.accepted, increment.stage = stage.name, increment.stage_progress = position_.progress;
         increment.progress = part_done(stages, position_.stage, position_.progress);
         // At rest: what holds takes no more force than the balance may miss anyway.
-        const bool reached = position_.progress >= 1.0 && (!stage.until || stage.until(increment));
+        const bool reached = position_.progress >= 1.0 && !position_.calming.resting && (!stage.until || stage.until(increment));
         const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
         position_.stage_over = (reached && !held) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments);
         position_.adapt_damping(stage, increment, attempt_newton / static_cast<double>(parameters_.iteration.newton_limit));

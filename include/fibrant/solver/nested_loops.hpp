@@ -164,7 +164,7 @@ private:
     void step_back(Vector& state, const Vector& searched, bool forced) {
         if constexpr (core::Active<Passage>) {
             if (!contact_possible_) return;
-            const auto passed = clock_->time(core::Part::search, [&] { return passage_->first(searched, state, *contacts_, forced, false); });
+            const auto passed = clock_->time(core::Part::search, [&] { return passage_->first(searched, state, *contacts_, forced, false, true); });
             if (!passed) return;
             state = searched + passed->touch * (state - searched);
             equilibrium_->reset_stresses(state);
@@ -193,7 +193,7 @@ private:
                 if (settled || change < std::max(0.1 * parameters_.inexact * first, 0.1 * enough)) break;
                 // Fibres that roll over each other creep in equal steps: go several of them at once.
                 const double factor = extrapolation(travel, last_travel, change);
-                if (factor > 0.0) {
+                if (factor != 0.0) {
                     state += factor * travel;
                     last_travel.resize(0), travel.resize(0);
                     contacts_->refresh(state, accepted);
@@ -222,14 +222,19 @@ private:
         return true;
     }
 
-    /// Multiple of the last travel that a geometric series of passes still has before it, bounded; 0 if there is none.
+    /// Multiple of the last travel after which a geometric series of passes would end, bounded; 0 if there is none. One that grows or swings to and
+    /// fro has its end behind it (Aitken 1926): a loop that can turn freely about its ends is pushed by each normal that turns with it.
     double extrapolation(const Vector& travel, const Vector& last_travel, double change) const {
         if (travel.size() == 0 || last_travel.size() == 0) return 0.0;
-        const double ratio = equilibrium_->product(travel, last_travel) / equilibrium_->product(last_travel, last_travel);
+        const double along = equilibrium_->product(travel, last_travel), last = equilibrium_->product(last_travel, last_travel), ratio = along / last;
+        const bool parallel = along * along > same_way * same_way * last * equilibrium_->product(travel, travel);
+        if (parallel && (ratio > growing || ratio < -swinging)) return std::max(ratio / (1.0 - ratio), -0.25 * radius_ / change);
         if (!(ratio > 0.4)) return 0.0;
         const double series = ratio < 0.8 ? ratio / (1.0 - ratio) : 4.0;
         return std::min(series, 0.25 * radius_ / change);
     }
+    static constexpr double same_way = 0.9;  ///< cosine of two travels that follow one mode
+    static constexpr double growing = 1.3, swinging = 0.7;  ///< ratios of two travels from which a series does not end by itself, or hardly
 
     static std::string reason(const NewtonReport& inner) {
         const std::string figures = " after " + std::to_string(inner.iterations) + " iterations, residual " +
