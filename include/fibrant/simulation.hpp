@@ -5,6 +5,7 @@
 #include <fibrant/simulation/acceptance.hpp>
 #include <fibrant/simulation/audit.hpp>
 #include <fibrant/simulation/checkpoint.hpp>
+#include <fibrant/simulation/deep_places.hpp>
 #include <fibrant/simulation/energy_account.hpp>
 #include <fibrant/simulation/increment_file.hpp>
 #include <fibrant/simulation/loading.hpp>

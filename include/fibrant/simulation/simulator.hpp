@@ -5,6 +5,7 @@
 #include <fibrant/core/stage_clock.hpp>
 #include <fibrant/observe/observer.hpp>
 #include <fibrant/simulation/acceptance.hpp>
+#include <fibrant/simulation/deep_places.hpp>
 #include <fibrant/simulation/energy_account.hpp>
 #include <fibrant/simulation/increment_file.hpp>
 #include <fibrant/simulation/mean_motion.hpp>
@@ -204,8 +205,8 @@ private:
         const std::string present = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": ";
         const bool touching = mesh_.fibre_count() > 1 || parameters_.contact.detection.self_contact || HasTools<M>;
         while (true) {
-            if (position_.in_stage >= stage.most_increments) {
-                report.reason = "stage " + stage.name + " did not reach its end in " + std::to_string(stage.most_increments) + " increments";
+            if (position_.in_stage >= stage.most_increments || position_.mends > Position::most_mends) {
+                report.reason = position_.not_ended(stage.name) + deep_;
                 return false;
             }
             double progress = stage.ramps.empty() && !stage.until ? 1.0 : std::min(1.0, position_.progress + position_.fraction / static_cast<double>(stage.increments));
@@ -286,7 +287,8 @@ private:
         // At rest: what holds takes no more force than the balance may miss anyway.
         const bool reached = position_.progress >= 1.0 && (!stage.until || stage.until(increment));
         const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
-        position_.stage_over = (reached && !held) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments);
+        deep_ = reached && !held ? mend_deep_places(loading, stages, *this, contacts_, radius_, position_) : std::string();
+        position_.stage_over = (reached && !held && deep_.empty()) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments);
         position_.adapt_damping(stage, increment, attempt_newton / static_cast<double>(parameters_.iteration.newton_limit));
         contacts_.accept(state_);
         if constexpr (HasSolid<M>)
@@ -395,6 +397,7 @@ private:
     Vector state_;
     std::vector<double> amplitudes_;
     double radius_ = 0.0;
+    std::string deep_;  ///< what is too deep, in words
     std::optional<Vec3> loose_;  ///< what nothing holds the scene along
     std::vector<Index> tool_channels_;
     Position position_;

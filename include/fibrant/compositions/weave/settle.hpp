@@ -50,8 +50,6 @@ template <simulation::Model M>
 simulation::Loading<M> settling(const FabricParameters& fabric, const SettleParameters& settle) {
     const double r = smallest_radius(fabric), allowed = settle.allowed_penetration_over_radius * r;
     const double soft = settle.softness * allowed, motion = 0.08 * settle.gap_limit_over_radius * r;
-    // What is allowed holds anywhere between two fibres, and between contact points they are deeper, by up to 0.002 radii in weaves of 152 to 1,216 fibres.
-    const double deepest_at_rest = 0.75 * allowed;
     const double share_at_rest = settle.rest_share, share_on_the_way = std::max(1e-3, share_at_rest);
     simulation::Loading<M> loading;
     simulation::Stage<M> tension;
@@ -96,7 +94,8 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     simulation::Stage<M> rest;
     rest.name = "rest";
     rest.increments = 1;
-    rest.until = simulation::until_settled(settle.rest_motion_over_radius * r, deepest_at_rest, share_at_rest);
+    rest.until = simulation::until_settled(settle.rest_motion_over_radius * r, allowed, share_at_rest);
+    rest.deepest = allowed;
     rest.most_increments = settle.rest_increments;
     // Paths are only a means: an increment keeps its normals, what it leaves over moves in the next, and the last stage tells
     // when that is all.
