@@ -13,7 +13,7 @@ limit=${FABRICS_SECONDS:-600}
 rm -rf "$out"
 mkdir -p "$out" || exit 1
 # What fibres are is said by radius and inertia factor: those of 7 fibres that stand for 380.
-sed -e 's/^real_fibres.*/radius = 0.0663/' -e 's/^real_diameter.*/inertia_factor = 0.0184/' "$scene" > "$out/scene.toml"
+sed -e 's/^real_fibres.*/radius = 0.0663/' -e 's/^real_diameter.*/inertia_factor = 0.0184/' -e '/^weft_spacing/d' "$scene" > "$out/scene.toml"
 base="fabric.warp_tows=3 fabric.weft_tows=3 fabric.elements=20 warp.fibres=7 output.paraview=false output.pictures=false"
 printf '%-27s %4s %-9s %-5s %8s %5s %5s %6s %7s  %s\n' fabric exit converged clean 'gap / r' incr rej newton time reason
 value() {

@@ -98,6 +98,10 @@ struct Position {
         from = amplitudes;
     }
 
+    /// What was mended without success is solved to what is stated: a state that only nearly balances does not show what a mend does.
+    template <Model M>
+    double looseness(const Stage<M>& stage) const noexcept { return mends > 1 ? 1.0 : stage.looseness; }
+
     /// Why a stage is given up, before what else is known.
     std::string not_ended(const std::string& name) const { return "stage " + name + " did not reach its end in " + std::to_string(in_stage) + " increments"; }
 

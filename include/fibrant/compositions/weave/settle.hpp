@@ -24,7 +24,7 @@ inline double node_stiffness(const FabricParameters& fabric, double tension_stra
     const auto of = [&](Family family) {
         const TowParameters& tow = fabric.tow(family);
         const double pull = tension_strain * tow.material.young_modulus * tow.section().area();
-        return 4.0 * pull * static_cast<double>(fabric.elements) / fabric.fibre_length(family);
+        return 4.0 * pull * static_cast<double>(fabric.elements_of(family)) / fabric.fibre_length(family);
     };
     return std::min(of(Family::warp), of(Family::weft));
 }
@@ -49,7 +49,8 @@ simulation::ModelParameters<M> model_parameters(const FabricParameters& fabric, 
 template <simulation::Model M>
 simulation::Loading<M> settling(const FabricParameters& fabric, const SettleParameters& settle) {
     const double r = smallest_radius(fabric), allowed = settle.allowed_penetration_over_radius * r;
-    const double soft = settle.softness * allowed, motion = 0.08 * settle.gap_limit_over_radius * r;
+    // No softer than what parts the tows: a fifth of the gap that contact is shown. Softer contact is as deep as that, and pushes nothing apart.
+    const double soft = std::max(allowed, std::min(settle.softness * allowed, 0.2 * settle.gap_limit_over_radius * r)), motion = 0.08 * settle.gap_limit_over_radius * r;
     const double share_at_rest = settle.rest_share, share_on_the_way = std::max(1e-3, share_at_rest);
     simulation::Loading<M> loading;
     simulation::Stage<M> tension;
