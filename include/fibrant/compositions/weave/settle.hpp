@@ -91,11 +91,12 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     simulation::Stage<M> stiffening = relaxation;
     stiffening.name = "stiffening";
     stiffening.allowed_penetration.reset();
-    stiffening.until = simulation::until_settled(motion, allowed, share_at_rest);
+    // How deep contact points are says little where fibres bend sharply around each other: what ends is judged by the true gap, at rest.
+    stiffening.until = simulation::until_settled(motion, 5.0 * soft, share_at_rest);
     simulation::Stage<M> rest;
     rest.name = "rest";
     rest.increments = 1;
-    rest.until = simulation::until_settled(settle.rest_motion_over_radius * r, allowed, share_at_rest);
+    rest.until = simulation::until_settled(settle.rest_motion_over_radius * r, 5.0 * soft, share_at_rest);
     rest.deepest = allowed;
     rest.most_increments = settle.rest_increments;
     // Paths are only a means: an increment keeps its normals, what it leaves over moves in the next, and the last stage tells
@@ -117,6 +118,9 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     handover.damping_share = relaxation.damping_share = share_on_the_way;
     stiffening.damping_share = rest.damping_share = share_at_rest;
     stiffening.damping_waits = rest.damping_waits = true;
+    // What is still deep after a stage, or comes to be, parts as it did in the separation; cuts, which scale that, soften what Newton's method
+    // cannot solve at once.
+    for (simulation::Stage<M>* stage : {&handover, &release, &relaxation, &stiffening, &rest}) stage->gap_limit = separation.gap_limit;
     for (simulation::Stage<M>* stage : {&separation, &handover, &release, &relaxation, &stiffening, &rest})
         stage->largest_displacement = 4.0 * settle.gap_limit_over_radius * r;
     loading.stages = {tension, separation, handover, release, relaxation, stiffening, rest};
