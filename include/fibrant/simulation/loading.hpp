@@ -27,6 +27,7 @@ struct Stage {
     Index increments = 10;                      ///< that its ramps take when none is cut, >= 1
     std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
     std::optional<double> gap_limit{};          ///< of a law that limits the gap [length]; scaled down when cut
+    bool gap_limit_when_cut = false;            ///< limited in increments that were cut alone: what Newton's method cannot solve at once is softer then
     std::optional<double> allowed_penetration{};  ///< that the penalty adapts to in this stage, for the model's [length]
     bool forced_orders = false;                 ///< keep the scene's forced orders
     /// Spring from every centre to its last accepted place [force / length]: keeps what is slack from leaping.

@@ -98,6 +98,9 @@ struct Position {
         from = amplitudes;
     }
 
+    template <Model M>
+    bool limits_gap(const Stage<M>& stage) const noexcept { return stage.gap_limit && (fraction < 1.0 || !stage.gap_limit_when_cut); }
+
     /// What was mended without success is solved to what is stated: a state that only nearly balances does not show what a mend does.
     template <Model M>
     double looseness(const Stage<M>& stage) const noexcept { return mends > 1 ? 1.0 : stage.looseness; }

@@ -212,7 +212,7 @@ private:
             double progress = stage.ramps.empty() && !stage.until ? 1.0 : std::min(1.0, position_.progress + position_.fraction / static_cast<double>(stage.increments));
             if (progress > 1.0 - 1e-9) progress = 1.0;
             if constexpr (requires { contacts_.normal_law().with_limit(1.0); }) {
-                const double limit = stage.gap_limit ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
+                const double limit = position_.limits_gap(stage) ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
                 contacts_.normal_law() = contacts_.normal_law().with_limit(limit);
             }
             contacts_.allow_penetration(stage.allowed_penetration.value_or(parameters_.contact.stiffness.allowed_penetration));

@@ -10,8 +10,8 @@
 namespace fibrant::solver {
 
 /// Conjugate gradients say that a system is indefinite where rounding makes their preconditioner so, as that of stiff contacts between a few
-/// short fibres: no shift of the tangent helps then. From a number of such verdicts on, since the last analysis, the system is factored
-/// in double precision instead, until the next one. Small systems are factored at the first.
+/// short fibres: no shift of the tangent helps then. A small system is then factored in double precision, and that says what it is. A larger one
+/// is from a number of such verdicts in a row on, and until the next analysis: what it does depends on what was solved since the last one.
 template <class Iterative>
 class Confirmed {
 public:
@@ -37,6 +37,7 @@ public:
     }
     template <assembly::LinearSystem System>
     SolveStatus prepare(const System& system) {
+        if (small(system)) factored_ = false;
         if (factored_) return factor_.prepare(system);
         const SolveStatus status = iterative_.prepare(system);
         return status == SolveStatus::indefinite && factor_instead(system) ? factor_.prepare(system) : status;
@@ -57,8 +58,12 @@ public:
 
 private:
     template <class System>
+    bool small(const System& system) const noexcept {
+        return system.layout().unknowns() <= parameters_.small;
+    }
+    template <class System>
     bool factor_instead(const System& system) {
-        if (3 * system.layout().vectors() > parameters_.small && ++verdicts_ < parameters_.patience) return false;
+        if (!small(system) && ++verdicts_ < parameters_.patience) return false;
         factor_.analyse(system);
         return factored_ = static_cast<double>(factor_.fill()) <= parameters_.largest_fill;
     }

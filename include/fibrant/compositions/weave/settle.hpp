@@ -118,9 +118,9 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     handover.damping_share = relaxation.damping_share = share_on_the_way;
     stiffening.damping_share = rest.damping_share = share_at_rest;
     stiffening.damping_waits = rest.damping_waits = true;
-    // What is still deep after a stage, or comes to be, parts as it did in the separation; cuts, which scale that, soften what Newton's method
-    // cannot solve at once.
-    for (simulation::Stage<M>* stage : {&handover, &release, &relaxation, &stiffening, &rest}) stage->gap_limit = separation.gap_limit;
+    // What Newton's method cannot solve at once is softened: what is deep then parts as it did in the separation.
+    for (simulation::Stage<M>* stage : {&handover, &release, &relaxation, &stiffening, &rest})
+        stage->gap_limit = separation.gap_limit, stage->gap_limit_when_cut = true;
     for (simulation::Stage<M>* stage : {&separation, &handover, &release, &relaxation, &stiffening, &rest})
         stage->largest_displacement = 4.0 * settle.gap_limit_over_radius * r;
     loading.stages = {tension, separation, handover, release, relaxation, stiffening, rest};
