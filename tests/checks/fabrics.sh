@@ -9,7 +9,7 @@ out=$4
 every=${5:-1}
 share=${6:-98}
 only=${7:-.}
-limit=${FABRICS_SECONDS:-600}
+limit=${FABRICS_SECONDS:-300} # of processor time, each
 rm -rf "$out"
 mkdir -p "$out" || exit 1
 # What fibres are is said by radius and inertia factor: those of 7 fibres that stand for 380.
@@ -23,7 +23,7 @@ grep '^[a-z]' "$list" | grep -e "$only" | awk -v every="$every" 'NR % every == 1
 while read -r name sets; do
   set --
   for one in $base $sets; do set -- "$@" --set "$one"; done
-  timeout "$limit" "$weave" "$out/scene.toml" --output "$out/$name" --threads 1 --quiet "$@" > "$out/$name.said" 2>&1 < /dev/null
+  (ulimit -t "$limit"; exec "$weave" "$out/scene.toml" --output "$out/$name" --threads 1 --quiet "$@" > "$out/$name.said" 2>&1 < /dev/null)
   status=$?
   [ $status -eq 0 ] && echo "$name" >> "$out/clean"
   why=$(value reason)
