@@ -47,6 +47,16 @@ TEST_CASE("a fabric is at rest once forces balance and no two fibres are deeper 
     CHECK_FALSE(rest.until(increment));
 }
 
+TEST_CASE("tows part at no more tension than fibres of that many elements can turn under") {
+    cloth::FabricParameters fabric = small_fabric();
+    CHECK(cloth::parting_tension(fabric, 2e-3) == 1.0);
+    // E I / T = f r^2 / (4 strain) of round fibres; a third of an element is 0.3 L / n.
+    fabric.warp.inertia_factor = 1e-4;
+    const double turn = 0.3 * fabric.fibre_length(cloth::Family::warp) / 12.0;
+    CHECK(std::abs(cloth::parting_tension(fabric, 2e-3) / (1e-4 * 0.04 * 0.04 / (4.0 * 2e-3 * turn * turn)) - 1.0) < 1e-12);
+    CHECK(std::abs(cloth::parting_tension(fabric, 4e-3) / cloth::parting_tension(fabric, 2e-3) - 0.5) < 1e-12);
+}
+
 TEST_CASE("contact on the way is as soft as allowed, but no softer than what parts tows") {
     cloth::SettleParameters settle;
     const double r = cloth::smallest_radius(small_fabric());

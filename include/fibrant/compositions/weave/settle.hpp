@@ -29,6 +29,21 @@ inline double node_stiffness(const FabricParameters& fabric, double tension_stra
     return std::min(of(Family::warp), of(Family::weft));
 }
 
+/// Part of the tension that was asked for at which tows part, in (0, 1]: at most that under which a fibre turns within a third of an element.
+///
+/// Under a pull T a fibre turns over a length sqrt(E I / T). Where that is a small part of an element, elements kink at every crossing, contact points
+/// stand for corners that are none, and Newton's method goes to and fro between them. What is asked for at the end is not touched.
+inline double parting_tension(const FabricParameters& fabric, double tension_strain) {
+    const double least_turn = 0.3;  // of an element
+    double part = 1.0;
+    for (const Family family : {Family::warp, Family::weft}) {
+        const scene::CrossSection section = fabric.tow(family).section();
+        const double turn = least_turn * fabric.fibre_length(family) / static_cast<double>(fabric.elements_of(family));
+        part = std::min(part, section.second_moment_1() / (tension_strain * section.area() * turn * turn));
+    }
+    return part;
+}
+
 /// Parameters of a model whose normal law is a limited, regularised penalty.
 template <simulation::Model M>
 simulation::ModelParameters<M> model_parameters(const FabricParameters& fabric, const SettleParameters& settle) {
@@ -52,11 +67,12 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     // No softer than what parts the tows: a fifth of the gap that contact is shown. Softer contact is as deep as that, and pushes nothing apart.
     const double soft = std::max(allowed, std::min(settle.softness * allowed, 0.2 * settle.gap_limit_over_radius * r)), motion = 0.08 * settle.gap_limit_over_radius * r;
     const double share_at_rest = settle.rest_share, share_on_the_way = std::max(1e-3, share_at_rest);
+    const double parting = parting_tension(fabric, settle.tension_strain);
     simulation::Loading<M> loading;
     simulation::Stage<M> tension;
     tension.name = "tension";
     tension.increments = settle.tension_increments;
-    tension.ramps = {{tension_channel, 1.0, false}};
+    tension.ramps = {{tension_channel, parting, false}};
     tension.forced_orders = true;
     tension.gap_limit = 1e-3 * r;  // the tows hardly push while fibres are slack
     simulation::Stage<M> separation;
@@ -107,7 +123,7 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     // makes of an element's length; an increment is a time, and half the time is twice the spring, so that the path is the
     // same when increments are halved. After the tension it falls, at first until it holds a thousandth of the forces, then,
     // contact being stiff, a ten-thousandth, which is what the balance of forces is solved to: rest is an equilibrium.
-    const double damping = 0.1 / settle.gap_limit_over_radius * node_stiffness(fabric, settle.tension_strain);
+    const double damping = 0.1 / settle.gap_limit_over_radius * node_stiffness(fabric, parting * settle.tension_strain);
     separation.damping = handover.damping = release.damping = relaxation.damping = damping;
     stiffening.damping = 4.0 * damping;
     rest.damping = stiffening.damping;
