@@ -153,10 +153,10 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     programme.reversible_displacement = std::max(0.02 * r, friction * allowed);
     // Of a length of fibre, however many nodes it has.
     programme.damping = cloth::node_stiffness(load.scene.fabric, load.scene.settle.tension_strain) / static_cast<double>(load.parts);
-    load.settled_fabric = load.scene.fabric, load.scene.fabric.elements *= load.parts;
+    load.settled_fabric = load.scene.fabric, load.scene.fabric.elements *= load.parts, load.scene.fabric.weft_elements *= load.parts;
     example::require_room(
         file, "settled", "parts",
-        9.0 * static_cast<double>(load.scene.fabric.fibres()) * static_cast<double>(load.scene.fabric.nodes_per_fibre()));
+        9.0 * static_cast<double>(load.scene.fabric.nodes()));
     if (!programme.stages.front().friction) programme.stages.front().friction = friction;
     file.names({{"LoadProgramme.", "loading."}, {"load_case.name", "loading.case"}});
     programme.validate();

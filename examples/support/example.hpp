@@ -93,6 +93,7 @@ struct Output {
     void tell(Loading& loading, double seconds = 0.0) const {
         loading.checkpoint = checkpoint(), loading.checkpoint_seconds = seconds, loading.resume = resume;
         loading.scene = told, loading.other_scene = other_scene, loading.stop = stopped;
+        loading.audited = true, loading.deepest_over_radius = deepest_over_radius;
     }
 };
 

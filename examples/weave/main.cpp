@@ -6,6 +6,7 @@
 #include "scene_file.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
+#include <fibrant/compositions/weave/fabric_limits.hpp>
 #include <fibrant/compositions/weave/settle.hpp>
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/observe/vtk_writer.hpp>
@@ -13,6 +14,7 @@
 #include <fibrant/solver/any_solver.hpp>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 using namespace fibrant;
@@ -36,6 +38,7 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     simulation::Simulator<M> simulator(assembly, parameters);
 
     output.open(file);
+    for (const std::string& doubt : weave::cloth::doubts(scene.fabric)) std::fprintf(stderr, "weave: %s\n", doubt.c_str());
     const std::filesystem::path& folder = output.folder;
     const observe::Start start = output.start();
     auto progress = example::progress_printer(radius, 0, output.quiet);
@@ -64,6 +67,9 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     summary.peak_memory_bytes = example::peak_memory_bytes();
     weave::write_summary(folder, summary);
     if (!output.quiet) weave::print(summary, folder.string());
+    else if (!summary.converged) std::fprintf(stderr, "weave: not settled: %s\n", summary.reason.c_str());
+    else if (!summary.clean) std::fprintf(stderr, "weave: the audit is not clean: %td crossings against the pattern, %td missing, least gap %.4f radii\n",
+                                          summary.wrong_crossings, summary.missing_crossings, summary.least_gap_over_radius);
     return summary.converged && summary.clean;
 }
 

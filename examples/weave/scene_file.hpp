@@ -145,6 +145,7 @@ Scene read_fabric(SceneReader& file, const More& more) {
     file.require("fabric", "overhang", fabric.overhang, example::positive(), "length",
                  "free length of a fibre beyond its outermost crossings");
     file.require("fabric", "elements", fabric.elements, example::between(1, 100000), "quadratic elements a fibre");
+    file.read("fabric", "weft_elements", fabric.weft_elements, example::between(0, 100000), "of a weft fibre; 0: as many as of a warp fibre");
     scene::ElasticMaterial material;
     file.read("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2", "of the fibres");
     file.read("material", "poisson_ratio", material.poisson_ratio, example::poisson_ratio(), "1", "of the fibres");
@@ -198,7 +199,7 @@ Scene read_fabric(SceneReader& file, const More& more) {
         file.refuse("material", "young_modulus", "given, here or as warp.young_modulus");
     if (std::isnan(fabric.warp.material.poisson_ratio))
         file.refuse("material", "poisson_ratio", "given, here or as warp.poisson_ratio");
-    const double unknowns = 9.0 * static_cast<double>(fabric.fibres()) * static_cast<double>(fabric.nodes_per_fibre());
+    const double unknowns = 9.0 * static_cast<double>(fabric.nodes());
     const bool fine = fabric.elements > 100, many = fabric.warp_tows > 100 || fabric.weft_tows > 100;
     const char* blamed = many ? fabric.warp_tows > fabric.weft_tows ? "warp_tows" : "weft_tows" : "elements";
     if (!fine && !many)

@@ -24,6 +24,7 @@
 #include <fibrant/compositions/weave/audit.hpp>
 #include <fibrant/compositions/weave/edges.hpp>
 #include <fibrant/compositions/weave/fabric.hpp>
+#include <fibrant/compositions/weave/fabric_limits.hpp>
 #include <fibrant/compositions/weave/fabric_parameters.hpp>
 #include <fibrant/compositions/weave/fibre_figures.hpp>
 #include <fibrant/compositions/weave/load_cases.hpp>

@@ -6,6 +6,7 @@
 #include <fibrant/simulation/audit.hpp>
 #include <fibrant/simulation/calming.hpp>
 #include <fibrant/simulation/checkpoint.hpp>
+#include <fibrant/simulation/deep_places.hpp>
 #include <fibrant/simulation/energy_account.hpp>
 #include <fibrant/simulation/increment_file.hpp>
 #include <fibrant/simulation/loading.hpp>

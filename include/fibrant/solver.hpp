@@ -14,6 +14,7 @@
 #include <fibrant/solver/coarse_couplings.hpp>
 #include <fibrant/solver/coarse_ties.hpp>
 #include <fibrant/solver/compressed_panel.hpp>
+#include <fibrant/solver/confirmed.hpp>
 #include <fibrant/solver/conjugate_gradient.hpp>
 #include <fibrant/solver/dense_elimination.hpp>
 #include <fibrant/solver/dissection.hpp>

@@ -90,4 +90,40 @@ TEST_CASE("parameters of the automatic strategy that mean nothing are refused by
     CHECK(test::refusal([] { Solver{{.largest_fill = -1.0}}; }).starts_with("AutomaticSolver.largest_fill = -1"));
 }
 
+// Says of every system that it is indefinite, as conjugate gradients do where rounding spoils their preconditioner.
+struct Doubting {
+    struct Parameters {
+        void validate() const {}
+    };
+    Doubting() = default;
+    explicit Doubting(const Parameters&) {}
+    void analyse(const auto&) {}
+    solver::SolveStatus prepare(const auto&) { return solver::SolveStatus::converged; }
+    solver::SolveReport solve(const auto&, const Vector& b, double, Vector& x) {
+        x = b;
+        return {solver::SolveStatus::indefinite, 0, 1.0, 0.0};
+    }
+};
+
+TEST_CASE("what iterations call indefinite is factored: it is solved if it is not") {
+    const test::SyntheticSystem system = touching();
+    const Vector b = test::random_load(system.layout(), 1);
+    Vector x;
+    solver::Confirmed<Doubting> small;
+    CHECK(test::solve(small, system, b, 1e-9, x).status == solver::SolveStatus::converged);
+    CHECK(test::residual_of(system, b, x) < 1e-9);
+    // A larger one is shifted first, by whoever solves it.
+    solver::Confirmed<Doubting> large{{.small = 0, .patience = 3}};
+    CHECK(test::solve(large, system, b, 1e-9, x).status == solver::SolveStatus::indefinite);
+    CHECK(large.solve(system, b, 1e-9, x).status == solver::SolveStatus::indefinite);
+    CHECK(large.solve(system, b, 1e-9, x).status == solver::SolveStatus::converged);
+    CHECK(test::residual_of(system, b, x) < 1e-9);
+    large.analyse(system);
+    CHECK(!large.factored());
+    solver::Confirmed<Doubting> none{{.largest_fill = 10.0}};  // no factor that is larger than that
+    CHECK(test::solve(none, system, b, 1e-9, x).status ==
+          solver::SolveStatus::indefinite);
+    test::check_linear_solver(solver::Confirmed<solver::TwoLevelPcg>{});
+}
+
 }  // namespace automatic_solver_test

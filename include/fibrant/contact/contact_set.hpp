@@ -13,6 +13,7 @@
 #include <fibrant/contact/side_index.hpp>
 #include <fibrant/contact/station_pairs.hpp>
 #include <fibrant/contact/support.hpp>
+#include <fibrant/contact/watched_places.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -289,6 +290,7 @@ private:
     void inherit(Zone& zone, const Vector& state) const {
         rules_.apply(zone);
         const Zone* before = predecessor(zones_, zone.span, 1.0, accepted_.periods());
+        keep_watch(zone, before);
         zone.stiffness = before ? before->stiffness : parameters_.stiffness.initial_fraction * zone.reference;
         if (!accepted_zones_.empty()) zone.deepest = before ? before->deepest : 0.0;
         if (zone.forced) return;
@@ -299,7 +301,7 @@ private:
     }
 
     void generate(const Vector& state, const Vector& accepted, const Memory& memory) {
-        constexpr Index block = 64;  // zones a block: a block's elements stay together
+        constexpr Index block = 64;  // zones
         const Index blocks = (core::count(zones_) + block - 1) / block;
         std::vector<std::vector<Element>> made(core::at(blocks));
         const double forced_keep = 0.5;  // radii of clearance beyond which a forced pair needs no element
@@ -312,6 +314,7 @@ private:
                               [&](const auto& see) { memory.visit_places(zone.span, see); });
                 zone.first = core::count(made[core::at(b)]);
                 if (!pairs.empty() && places_.follows(pairs.back(), zone)) places_.settle(*mesh_, state, zone, memory, pairs);
+                add_watched(zone, pairs);
                 for (const StationPair& pair : pairs) {
                     Element element = make(zone, z, pair);
                     const auto* record = memory.nearest(zone.span.fibre_i, zone.span.fibre_j, pair.u_i, pair.u_j, 1.5);

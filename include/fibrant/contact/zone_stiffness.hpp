@@ -8,12 +8,20 @@
 #include <fibrant/scene/elastic_material.hpp>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numbers>
 #include <span>
 #include <vector>
 
 namespace fibrant::contact {
+
+/// Places of a zone that have a contact point of their own, since it was too deep there unseen; of more than it has room for the last ones.
+struct WatchedPlaces {
+    static constexpr Index most = 4;
+    std::array<std::array<double, 2>, most> at{};  ///< abscissae on both fibres
+    Index count = 0;                               ///< found so far
+};
 
 /// A proximity zone with what it remembers. Abscissae are counted in elements.
 struct Zone {
@@ -26,6 +34,8 @@ struct Zone {
     double valley = 0.0;       ///< direction in the plane of both arc lengths in which its fibres stay closest [radian]
     double friction_factor = 1.0;     ///< of its pair of groups, on the law's coefficient [1]
     double penetration_factor = 1.0;  ///< of its pair of groups, on the allowed penetration [1]
+    double narrowed = 1.0;            ///< part of it that is left where it is deeper between contact points, in (0, 1]
+    WatchedPlaces watched;
     /// In the last accepted state, 0 for a pair that had no zone there, infinite where nothing was accepted yet [length].
     double deepest = std::numeric_limits<double>::infinity();
     Index order = -1;          ///< forced order between the groups of its fibres, or -1

@@ -16,6 +16,7 @@
 #include <limits>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace fibrant::observe {
@@ -26,6 +27,7 @@ struct LeastGap {
     double gap_over_radius = std::numeric_limits<double>::infinity();  ///< over the smaller radius at rest [1]
     Index fibre_i = -1, fibre_j = -1;
     Vec3 position = Vec3::Zero();  ///< half way between the two axes [length]
+    double t = 0.0, u = 0.0;       ///< parameters of the two sections, counted in node intervals
 };
 
 /// Half extent of a fibre's deformed section along a unit direction [length].
@@ -77,92 +79,138 @@ inline void closest_points(const NodalCurve& a, const NodalCurve& b, double a_fr
 /// Whether a fibre is also held against itself, beyond the arc that contact leaves out.
 enum class OwnTurns : std::uint8_t { left_out, counted };
 
+namespace detail {
+
+/// Pairs of node intervals of a snapshot's fibres, and how close their surfaces are. Of a search over the half elements, inflated by their
+/// deviation from the chord.
+template <proximity::ProximitySearch Search>
+class SurfacePairs {
+public:
+    struct Candidate {
+        double bound, t, u;  ///< of the gap, from below; parameters of the closest points of the chords
+        Index i, j, p, q;    ///< fibres, and node intervals
+    };
+
+    SurfacePairs(const Snapshot& snapshot, Search search, OwnTurns own_turns) : snapshot_{&snapshot}, search_{std::move(search)} {
+        const std::size_t fibres = snapshot.fibres.size();
+        lines_.resize(fibres), inflation_.resize(fibres), wide_.resize(fibres), first_.assign(fibres + 1, 0);
+        for (std::size_t k = 0; k < fibres; ++k) {
+            const FibreSnapshot& fibre = snapshot.fibres[k];
+            surfaces_.emplace_back(fibre);
+            round_.push_back(surfaces_.back().round() ? 1 : 0);
+            const NodalCurve& curve = surfaces_.back().curve();
+            double radius = 0.0;  // of the sections as they are deformed
+            // Half an element deviates from its chord by |x''| (1/2)^2 / 2, x'' over the parameter of one node interval.
+            for (std::size_t piece = 0; piece + 1 < fibre.position.size(); ++piece) {
+                inflation_[k].push_back(curve.second(static_cast<double>(piece)).norm() / 8.0);
+                wide_[k].push_back(surfaces_.back().greatest_extent(piece));
+                radius = std::max(radius, wide_[k].back());
+                owner_.push_back(static_cast<Index>(k));
+            }
+            lines_[k] = {fibre.position, radius, inflation_[k], -1};
+            lines_[k].closed = fibre.closed;
+            if (own_turns == OwnTurns::counted)
+                lines_[k].self_skip = contact::self_contact_arc(fibre.section.radius(), curve.length(0.0, curve.end()) / static_cast<double>(curve.elements()));
+            first_[k + 1] = core::count(owner_);
+            greatest_radius_ = std::max(greatest_radius_, radius);
+            for (const Vec3& node : fibre.position) extent_ = std::max(extent_, (node - snapshot.fibres[0].position[0]).norm());
+        }
+    }
+    SurfacePairs(const SurfacePairs&) = delete;  // lines look at inflations
+    SurfacePairs& operator=(const SurfacePairs&) = delete;
+
+    double greatest_radius() const noexcept { return greatest_radius_; }  ///< of any section as it is deformed [length]
+    double extent() const noexcept { return extent_; }                    ///< greatest distance from the first node [length]
+
+    /// All within a reach, the closest first.
+    std::vector<Candidate> candidates(double reach) {
+        const std::vector<proximity::SegmentPair> pairs = search_.pairs(lines_, reach);
+        std::vector<Candidate> found(pairs.size());
+        core::parallel_for(core::count(pairs), [&](Index n) {
+            const proximity::SegmentPair& pair = pairs[core::at(n)];
+            const Index i = owner_[core::at(pair.i)], j = owner_[core::at(pair.j)];
+            const Index p = pair.i - first_[core::at(i)], q = pair.j - first_[core::at(j)];
+            const auto &a = lines_[core::at(i)].points, &b = lines_[core::at(j)].points;
+            const Vec3 u = a[core::at(p + 1)] - a[core::at(p)], v = b[core::at(q + 1)] - b[core::at(q)];
+            const auto near = proximity::segment_distance(a[core::at(p)], u, b[core::at(q)], v);
+            found[core::at(n)] = {std::sqrt(near.squared) - inflation_[core::at(i)][core::at(p)] - inflation_[core::at(j)][core::at(q)] -
+                                      wide_[core::at(i)][core::at(p)] - wide_[core::at(j)][core::at(q)],
+                                  static_cast<double>(p) + near.s,
+                                  static_cast<double>(q) + near.t,
+                                  i,
+                                  j,
+                                  p,
+                                  q};
+        });
+        std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
+            if (a.bound != b.bound) return a.bound < b.bound;
+            return std::tie(a.i, a.p, a.j, a.q) < std::tie(b.i, b.p, b.j, b.q);
+        });
+        return found;
+    }
+
+    /// Round sections are closest where the curves are, along the line that joins these points; others are searched by `PairedPieces`.
+    /// @param most  gap beyond which it is not looked for, and infinite
+    SurfaceGap measured(const Candidate& candidate, double most) const {
+        const FibreSurface &i = surfaces_[core::at(candidate.i)], &j = surfaces_[core::at(candidate.j)];
+        double t = candidate.t, u = candidate.u;
+        closest_points(i.curve(), j.curve(), static_cast<double>(candidate.p), static_cast<double>(candidate.q), t, u);
+        const Vec3 apart = j.curve().position(u) - i.curve().position(t);
+        const double distance = apart.norm();
+        const double widest = wide_[core::at(candidate.i)][core::at(candidate.p)] + wide_[core::at(candidate.j)][core::at(candidate.q)];
+        if (distance - widest > most) return SurfaceGap{};
+        if (round_[core::at(candidate.i)] == 0 || round_[core::at(candidate.j)] == 0)
+            return PairedPieces(i, j, static_cast<double>(candidate.p), static_cast<double>(candidate.q)).closest(t, u);
+        const Vec3 direction = distance > 0.0 ? Vec3(apart / distance) : Vec3(Vec3::UnitZ());
+        return SurfaceGap{distance - i.extent(t, direction) - j.extent(u, direction), t, u, direction};
+    }
+
+    /// Of one fibre only what is closest there counts, and not what is closest beside, where the arc that is left out begins.
+    bool counts(const Candidate& candidate, const SurfaceGap& found) const {
+        if (candidate.i != candidate.j) return true;
+        const double nearest = 1e-6;
+        const double p = static_cast<double>(candidate.p), q = static_cast<double>(candidate.q);
+        const bool around = snapshot_->fibres[core::at(candidate.i)].closed && q - p > 0.5 * surfaces_[core::at(candidate.i)].curve().end();
+        return !(around ? found.t < p + nearest || found.u > q + 1.0 - nearest : found.t > p + 1.0 - nearest || found.u < q + nearest);
+    }
+
+    LeastGap place(const Candidate& candidate, const SurfaceGap& found) const {
+        const FibreSurface &i = surfaces_[core::at(candidate.i)], &j = surfaces_[core::at(candidate.j)];
+        const scene::CrossSection &one = snapshot_->fibres[core::at(candidate.i)].section, &other = snapshot_->fibres[core::at(candidate.j)].section;
+        const double radius = std::min({one.semi_axis_1, one.semi_axis_2, other.semi_axis_1, other.semi_axis_2});
+        const Vec3 middle = 0.5 * (i.curve().position(found.t) + j.curve().position(found.u));
+        return {found.gap, found.gap / radius, candidate.i, candidate.j, middle, found.t, found.u};
+    }
+
+private:
+    const Snapshot* snapshot_;
+    Search search_;
+    std::vector<proximity::Centreline> lines_;
+    std::vector<std::vector<double>> inflation_, wide_;  // of each node interval
+    std::vector<Index> first_, owner_;
+    std::vector<FibreSurface> surfaces_;
+    std::vector<char> round_;
+    double greatest_radius_ = 0.0, extent_ = 0.0;
+};
+
+}  // namespace detail
+
 /// The least distance between the surfaces of any two fibres, which owes nothing to contact elements: what lies deeper in
 /// another one than they say, beside a crossing or where a mesh is too coarse for a section, is seen here.
 ///
 /// Fibres are those of three-node elements. Their ends are flat, and count.
-/// A search over the half elements, inflated by their deviation from the chord, gives the candidates. Round sections are closest
-/// where the curves are, along the line that joins these points; others are searched by `PairedPieces`. Candidates
-/// whose lower bound exceeds the best gap so far are passed over. Never quadratic: the reach grows from zero until a
+/// Candidates whose lower bound exceeds the best gap so far are passed over. Never quadratic: the reach grows from zero until a
 /// pair is met.
 /// @param own_turns  counted: a fibre against itself, where two places of it beyond that arc are closer than those beside them
 template <proximity::ProximitySearch Search>
 LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns = OwnTurns::left_out) {
-    const auto fibres = core::count(snapshot.fibres);
-    std::vector<proximity::Centreline> lines(core::at(fibres));
-    std::vector<std::vector<double>> inflation(core::at(fibres)), wide(core::at(fibres));  // of each node interval
-    std::vector<Index> first(core::at(fibres) + 1, 0), owner;
-    std::vector<FibreSurface> surfaces;
-    std::vector<char> round;
-    double greatest_radius = 0.0, extent = 0.0;
-    for (std::size_t k = 0; k < lines.size(); ++k) {
-        const FibreSnapshot& fibre = snapshot.fibres[k];
-        surfaces.emplace_back(fibre);
-        round.push_back(surfaces.back().round() ? 1 : 0);
-        const NodalCurve& curve = surfaces.back().curve();
-        double radius = 0.0;  // of the sections as they are deformed
-        // Half an element deviates from its chord by |x''| (1/2)^2 / 2, x'' over the parameter of one node interval.
-        for (std::size_t piece = 0; piece + 1 < fibre.position.size(); ++piece) {
-            inflation[k].push_back(curve.second(static_cast<double>(piece)).norm() / 8.0);
-            wide[k].push_back(surfaces.back().greatest_extent(piece));
-            radius = std::max(radius, wide[k].back());
-            owner.push_back(static_cast<Index>(k));
-        }
-        lines[k] = {fibre.position, radius, inflation[k], -1};
-        lines[k].closed = fibre.closed;
-        if (own_turns == OwnTurns::counted)
-            lines[k].self_skip = contact::self_contact_arc(fibre.section.radius(), curve.length(0.0, curve.end()) / static_cast<double>(curve.elements()));
-        first[k + 1] = core::count(owner);
-        greatest_radius = std::max(greatest_radius, radius);
-        for (const Vec3& node : fibre.position)
-            extent = std::max(extent, (node - snapshot.fibres[0].position[0]).norm());
-    }
-
+    detail::SurfacePairs<Search> surfaces(snapshot, std::move(search), own_turns);
     LeastGap least;
     double best_reach = 0.0;
     for (double reach = 0.0; std::isinf(least.gap) || least.gap > best_reach;
-         reach = std::max({2.0 * reach, 0.1 * greatest_radius, std::isinf(least.gap) ? 0.0 : least.gap})) {
+         reach = std::max({2.0 * reach, 0.1 * surfaces.greatest_radius(), std::isinf(least.gap) ? 0.0 : least.gap})) {
         best_reach = reach;
-        struct Candidate {
-            double bound, t, u;  ///< parameters of the closest points of the chords
-            Index i, j, p, q;    ///< fibres, and node intervals
-        };
-        const std::vector<proximity::SegmentPair> pairs = search.pairs(lines, reach);
-        std::vector<Candidate> candidates(pairs.size());
-        core::parallel_for(core::count(pairs), [&](Index n) {
-            const proximity::SegmentPair& pair = pairs[core::at(n)];
-            const Index i = owner[core::at(pair.i)], j = owner[core::at(pair.j)];
-            const Index p = pair.i - first[core::at(i)], q = pair.j - first[core::at(j)];
-            const auto &a = lines[core::at(i)].points, &b = lines[core::at(j)].points;
-            const Vec3 u = a[core::at(p + 1)] - a[core::at(p)], v = b[core::at(q + 1)] - b[core::at(q)];
-            const auto near = proximity::segment_distance(a[core::at(p)], u, b[core::at(q)], v);
-            candidates[core::at(n)] = {std::sqrt(near.squared) - inflation[core::at(i)][core::at(p)] -
-                                           inflation[core::at(j)][core::at(q)] - wide[core::at(i)][core::at(p)] -
-                                           wide[core::at(j)][core::at(q)],
-                                       static_cast<double>(p) + near.s,
-                                       static_cast<double>(q) + near.t,
-                                       i,
-                                       j,
-                                       p,
-                                       q};
-        });
-        std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-            if (a.bound != b.bound) return a.bound < b.bound;
-            return std::tie(a.i, a.p, a.j, a.q) < std::tie(b.i, b.p, b.j, b.q);
-        });
-        const auto measured = [&](const Candidate& candidate) {
-            const FibreSurface &i = surfaces[core::at(candidate.i)], &j = surfaces[core::at(candidate.j)];
-            double t = candidate.t, u = candidate.u;
-            detail::closest_points(i.curve(), j.curve(), static_cast<double>(candidate.p), static_cast<double>(candidate.q), t, u);
-            const Vec3 apart = j.curve().position(u) - i.curve().position(t);
-            const double distance = apart.norm();
-            const double widest = wide[core::at(candidate.i)][core::at(candidate.p)] + wide[core::at(candidate.j)][core::at(candidate.q)];
-            if (distance - widest > least.gap) return SurfaceGap{};
-            if (round[core::at(candidate.i)] == 0 || round[core::at(candidate.j)] == 0)
-                return PairedPieces(i, j, static_cast<double>(candidate.p), static_cast<double>(candidate.q)).closest(t, u);
-            const Vec3 direction = distance > 0.0 ? Vec3(apart / distance) : Vec3(Vec3::UnitZ());
-            return SurfaceGap{distance - i.extent(t, direction) - j.extent(u, direction), t, u, direction};
-        };
+        const auto candidates = surfaces.candidates(reach);
         // Block by block: what is passed over depends on the blocks, and these on nothing else.
         constexpr std::size_t most = 256;
         std::vector<SurfaceGap> found(most);
@@ -170,27 +218,42 @@ LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns =
         for (std::size_t start = 0, count = 0; start < candidates.size() && candidates[start].bound < least.gap; start += count) {
             count = std::min(together, candidates.size() - start);
             together = std::min(most, 2 * together);
-            core::parallel_for<core::Share::turns>(static_cast<Index>(count), [&](Index k) { found[core::at(k)] = measured(candidates[start + core::at(k)]); });
-            for (std::size_t k = 0; k < count; ++k) {
-                if (!(found[k].gap < least.gap)) continue;
-                const Candidate& candidate = candidates[start + k];
-                // Of one fibre only what is closest there and not beside, where the arc that is left out begins.
-                const double nearest = 1e-6;
-                const double p = static_cast<double>(candidate.p), q = static_cast<double>(candidate.q);
-                const bool around = snapshot.fibres[core::at(candidate.i)].closed && q - p > 0.5 * surfaces[core::at(candidate.i)].curve().end();
-                if (candidate.i == candidate.j && (around ? found[k].t < p + nearest || found[k].u > q + 1.0 - nearest
-                                                          : found[k].t > p + 1.0 - nearest || found[k].u < q + nearest))
-                    continue;
-                const FibreSurface &i = surfaces[core::at(candidate.i)], &j = surfaces[core::at(candidate.j)];
-                const scene::CrossSection &one = snapshot.fibres[core::at(candidate.i)].section, &other = snapshot.fibres[core::at(candidate.j)].section;
-                const double radius = std::min({one.semi_axis_1, one.semi_axis_2, other.semi_axis_1, other.semi_axis_2});
-                const Vec3 middle = 0.5 * (i.curve().position(found[k].t) + j.curve().position(found[k].u));
-                least = {found[k].gap, found[k].gap / radius, candidate.i, candidate.j, middle};
-            }
+            core::parallel_for<core::Share::turns>(static_cast<Index>(count), [&](Index k) { found[core::at(k)] = surfaces.measured(candidates[start + core::at(k)], least.gap); });
+            for (std::size_t k = 0; k < count; ++k)
+                if (found[k].gap < least.gap && surfaces.counts(candidates[start + k], found[k])) least = surfaces.place(candidates[start + k], found[k]);
         }
-        if (reach > 2.0 * extent) break;  // a single fibre
+        if (reach > 2.0 * surfaces.extent()) break;  // a single fibre
     }
     return least;
+}
+
+/// Every place where the surfaces of two fibres are deeper in each other than `depth`, the deepest first: of two of the same fibres that are
+/// less than a node interval apart on both, the deeper one.
+/// @param depth  >= 0 [length]
+template <proximity::ProximitySearch Search>
+std::vector<LeastGap> deep_places(const Snapshot& snapshot, Search search, double depth, OwnTurns own_turns = OwnTurns::left_out) {
+    detail::SurfacePairs<Search> surfaces(snapshot, std::move(search), own_turns);
+    auto candidates = surfaces.candidates(0.0);
+    candidates.resize(core::at(std::partition_point(candidates.begin(), candidates.end(), [&](const auto& one) { return one.bound < -depth; }) - candidates.begin()));
+    std::vector<SurfaceGap> found(candidates.size());
+    core::parallel_for<core::Share::turns>(core::count(candidates), [&](Index k) { found[core::at(k)] = surfaces.measured(candidates[core::at(k)], -depth); });
+    std::vector<LeastGap> places;
+    for (std::size_t k = 0; k < found.size(); ++k)
+        if (found[k].gap < -depth && surfaces.counts(candidates[k], found[k])) places.push_back(surfaces.place(candidates[k], found[k]));
+    const auto deeper = [](const LeastGap& a, const LeastGap& b) { return std::tie(a.gap, a.fibre_i, a.fibre_j, a.t, a.u) < std::tie(b.gap, b.fibre_i, b.fibre_j, b.t, b.u); };
+    // Fibre by fibre, so that each is compared with those of its own pair alone.
+    std::sort(places.begin(), places.end(), [&](const LeastGap& a, const LeastGap& b) {
+        return std::tie(a.fibre_i, a.fibre_j) != std::tie(b.fibre_i, b.fibre_j) ? std::tie(a.fibre_i, a.fibre_j) < std::tie(b.fibre_i, b.fibre_j) : deeper(a, b);
+    });
+    std::vector<LeastGap> kept;
+    for (const LeastGap& place : places) {
+        bool near = false;
+        for (auto other = kept.rbegin(); !near && other != kept.rend() && other->fibre_i == place.fibre_i && other->fibre_j == place.fibre_j; ++other)
+            near = std::abs(other->t - place.t) < 1.0 && std::abs(other->u - place.u) < 1.0;
+        if (!near) kept.push_back(place);
+    }
+    std::sort(kept.begin(), kept.end(), deeper);
+    return kept;
 }
 
 }  // namespace fibrant::observe

@@ -32,7 +32,7 @@ template <class Contacts>
 double stated_depth(const Contacts& contacts, const contact::ContactParameters& parameters, double radius) {
     double allowed = parameters.stiffness.allowed_penetration, factor = 1.0;
     if constexpr (requires { contacts.normal_law().largest_penetration(); }) allowed = contacts.normal_law().largest_penetration();
-    for (const contact::Zone& zone : contacts.zones()) factor = std::max(factor, zone.penetration_factor);
+    for (const contact::Zone& zone : contacts.zones()) factor = std::max(factor, zone.penetration_factor / zone.narrowed);
     return factor * allowed + parameters.spacing.largest_unseen * radius;
 }
 

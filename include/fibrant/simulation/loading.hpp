@@ -44,6 +44,7 @@ struct Stage {
     Index increments = 10;                      ///< that its ramps take when none is cut, >= 1
     std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
     GapLimitOf<typename M::Normal> gap_limit{};  ///< of a law that limits the gap [length], as std::optional; scaled down when cut
+    bool gap_limit_when_cut = false;            ///< limited in increments that were cut alone: what Newton's method cannot solve at once is softer then
     std::optional<double> allowed_penetration{};  ///< that the penalty adapts to in this stage, for the model's [length]
     bool forced_orders = false;                 ///< keep the scene's forced orders
     /// Spring from every centre to its last accepted place [force / length]: keeps what is slack from leaping.
@@ -64,6 +65,9 @@ struct Stage {
     double damping_calm = std::numeric_limits<double>::infinity();
     /// Displacement beyond which an attempt at an increment is given up and cut [length], > 0.
     double largest_displacement = std::numeric_limits<double>::infinity();
+    /// The stage ends only once no two fibres are deeper in each other than this anywhere, as `observe::least_gap` measures it [length], > 0. Pairs
+    /// that are get contact points there and become stiffer; where that has no success the run stops and says so.
+    std::optional<double> deepest{};
     double looseness = 1.0;                     ///< on the tolerances of contact and normal passes, >= 1
     std::optional<typename M::Normal> normal{};
     std::optional<typename M::Friction> friction{};
@@ -86,6 +90,9 @@ struct Loading {
     std::string checkpoint{};                ///< file written after accepted increments; empty: none
     double checkpoint_seconds = 0.0;         ///< at least between two of them, but for the end of a stage or of the run, >= 0
     bool resume = false;                     ///< start from that file, if it exists
+    /// The last stage is held to `Stage::deepest`, where it names none to `stated_depth`.
+    bool audited = false;
+    double deepest_over_radius = core::unset;  ///< of the thinnest fibre: in the place of both [1], > 0
     /// What the run is of, "name = value" line by line: kept in the file. A run does not resume from a file in which one of these
     /// names has another value.
     std::string scene{};
@@ -110,6 +117,7 @@ struct Loading {
             core::require(stage.largest_displacement > 0.0, "Stage.largest_displacement", stage.largest_displacement, "> 0");
             core::require(stage.looseness >= 1.0 && stage.looseness <= 1000.0, "Stage.looseness", stage.looseness, "in [1, 1000]");
             if (stage.allowed_penetration) core::require_positive("Stage.allowed_penetration", *stage.allowed_penetration);
+            if (stage.deepest) core::require_positive("Stage.deepest", *stage.deepest);
             if (stage.gap_limit) core::require_positive("Stage.gap_limit", *stage.gap_limit);
             for (const Ramp& ramp : stage.ramps) core::require_finite("Ramp.to", ramp.to);
         }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,8 @@ struct Position {
     double damping_floor = 0.0;  ///< that it does not fall below: what has failed is not tried again at once
     bool stage_over = false;
     Calming calming{};
+    Index mends = 0;             ///< of pairs that are too deep unseen, since that last became better
+    double mended = std::numeric_limits<double>::infinity();  ///< how deep they are then [length]
     bool following = false;      ///< places of crossings are followed
     std::pair<Index, double> tried{-1, 0.0};  ///< accepted increments and fraction at which another following was tried last
     std::vector<double> from;    ///< amplitudes at the start of the stage
@@ -30,6 +33,7 @@ struct Position {
     static constexpr double few = 0.1;             ///< of the fibres, which alone are held harder
     static constexpr double far = 0.25;            ///< of the greatest motion: what counts as restless
     static constexpr double most_holding = 4096.0;
+    static constexpr Index most_mends = 12;  ///< without a success
 
     /// After an attempt that has failed. What stops increments is often one fibre, or two at the edge of a bundle: those that moved
     /// most in the last iteration or pass, if they are few, are held four times as hard, and the increment stays as it is. Else it
@@ -85,6 +89,7 @@ struct Position {
         const double left = damping * stages[core::at(stage)].damping;
         ++stage;
         in_stage = 0, easy = 0, progress = 0.0, fraction = 1.0;
+        mends = 0, mended = std::numeric_limits<double>::infinity();
         damping = 1.0;
         if (stage >= core::count(stages) || !stages[core::at(stage)].damping_goes_on) damping_floor = 0.0;
         if (stage < core::count(stages)) {
@@ -94,6 +99,16 @@ struct Position {
         stage_over = false;
         from = amplitudes;
     }
+
+    template <Model M>
+    bool limits_gap(const Stage<M>& stage) const noexcept { return stage.gap_limit && (fraction < 1.0 || !stage.gap_limit_when_cut); }
+
+    /// What was mended without success is solved to what is stated: a state that only nearly balances does not show what a mend does.
+    template <Model M>
+    double looseness(const Stage<M>& stage) const noexcept { return mends > 1 ? 1.0 : stage.looseness; }
+
+    /// Why a stage is given up, before what else is known.
+    std::string not_ended(const std::string& name) const { return "stage " + name + " did not reach its end in " + std::to_string(in_stage) + " increments"; }
 
     /// Damping of the fibre that is held hardest, over that of the stage.
     double hardest() const { return damping * (holding.empty() ? 1.0 : *std::max_element(holding.begin(), holding.end())); }
@@ -128,8 +143,8 @@ private:
     template <class Self, class Body>
     static void each_of(Self& self, const Body& body) {
         body(self.stage), body(self.in_stage), body(self.accepted), body(self.easy);
-        body(self.progress), body(self.fraction), body(self.displacement);
-        body(self.damping), body(self.damping_floor), body(self.stage_over), body(self.following), body(self.calming), body(self.tried.first), body(self.tried.second);
+        body(self.progress), body(self.fraction), body(self.displacement), body(self.mends), body(self.mended), body(self.calming);
+        body(self.damping), body(self.damping_floor), body(self.stage_over), body(self.following), body(self.tried.first), body(self.tried.second);
         for (auto& amplitude : self.from) body(amplitude);
         for (auto& factor : self.holding) body(factor);
     }

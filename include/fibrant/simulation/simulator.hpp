@@ -4,6 +4,7 @@
 
 #include <fibrant/core/stage_clock.hpp>
 #include <fibrant/simulation/acceptance.hpp>
+#include <fibrant/simulation/deep_places.hpp>
 #include <fibrant/simulation/run_file.hpp>
 #include <fibrant/simulation/scene_checks.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
@@ -121,15 +122,15 @@ private:
         const std::string present = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": ";
         const bool touching = mesh_.fibre_count() > 1 || parameters_.contact.detection.self_contact || HasTools<M>;
         while (true) {
-            if (position_.in_stage >= stage.most_increments) {
-                report.reason = "stage " + stage.name + " did not reach its end in " + std::to_string(stage.most_increments) + " increments";
+            if (position_.in_stage >= stage.most_increments || position_.mends > Position::most_mends) {
+                report.reason = position_.not_ended(stage.name) + deep_;
                 return false;
             }
             double progress = stage.ramps.empty() && !stage.until ? 1.0 : std::min(1.0, position_.progress + position_.fraction / static_cast<double>(stage.increments));
             if (progress > 1.0 - 1e-9) progress = 1.0;
             if (position_.calming.resting) progress = position_.progress;
             if constexpr (law::GapLimiting<typename M::Normal>) {
-                const double limit = stage.gap_limit ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
+                const double limit = position_.limits_gap(stage) ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
                 contacts_.normal_law() = contacts_.normal_law().with_limit(limit);
             }
             contacts_.allow_penetration(stage.allowed_penetration.value_or(parameters_.contact.stiffness.allowed_penetration));
@@ -149,7 +150,7 @@ private:
                 equilibrium_, contacts_, linear_, passage_, parameters_.iteration, radius_, touching, clock_);
             // A limited gap moves fibres by about the limit: the search looks that far ahead.
             const double ahead = std::max(position_.displacement, stage.forced_orders ? stage.gap_limit.value_or(0.0) : 0.0);
-            solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, stage.looseness, stage.largest_displacement);
+            solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, position_.looseness(stage), stage.largest_displacement);
             increment.counts += attempt.counts;
             attempt_newton = static_cast<double>(attempt.counts.newton) / static_cast<double>(std::max<Index>(1, attempt.counts.normal_passes));
             if (attempt.converged) {
@@ -210,7 +211,8 @@ private:
         // At rest: what holds takes no more force than the balance may miss anyway.
         const bool reached = position_.progress >= 1.0 && !position_.calming.resting && (!stage.until || stage.until(increment));
         const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
-        position_.stage_over = (reached && !held) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments);
+        deep_ = reached && !held ? mend_deep_places(loading, stages, *this, contacts_, radius_, position_) : std::string();
+        position_.stage_over = (reached && !held && deep_.empty()) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments);
         position_.adapt_damping(stage, increment, attempt_newton / static_cast<double>(parameters_.iteration.newton_limit));
         contacts_.accept(state_), equilibrium_.accept(state_);
         if constexpr (HasSolid<M>)
@@ -271,6 +273,7 @@ private:
     Vector state_;
     std::vector<double> amplitudes_;
     double radius_ = 0.0;
+    std::string deep_;  ///< what is too deep, in words
     std::optional<Vec3> loose_;  ///< what nothing holds the scene along
     std::vector<Index> tool_channels_;
     Position position_;

@@ -3,6 +3,7 @@
 /// @file A linear solver chosen when the program runs: by a command line, a scene file or a benchmark.
 
 #include <fibrant/solver/automatic_solver.hpp>
+#include <fibrant/solver/confirmed.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
 
 #include <algorithm>
@@ -55,14 +56,14 @@ public:
     }
 
 private:
-    using Strategy = std::variant<TwoLevelPcg, AutomaticSolver, FibreBlockPcg, FloatBlockCholesky, DoubleBlockCholesky, SparseCholesky>;
+    using Strategy = std::variant<Confirmed<TwoLevelPcg>, AutomaticSolver, FibreBlockPcg, FloatBlockCholesky, DoubleBlockCholesky, SparseCholesky>;
     static Strategy make(const std::string& name) {
         if (name == "automatic") return AutomaticSolver();
         if (name == "fibre_block_pcg") return FibreBlockPcg();
         if (name == "float_block_cholesky") return FloatBlockCholesky();
         if (name == "double_block_cholesky") return DoubleBlockCholesky();
         if (name == "sparse_cholesky") return SparseCholesky();
-        return TwoLevelPcg();
+        return Confirmed<TwoLevelPcg>();
     }
     std::string name_;
     Strategy strategy_;

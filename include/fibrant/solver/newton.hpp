@@ -215,14 +215,16 @@ private:
     }
 
     /// Free part of the step. An indefinite tangent is met first by leaving compression out of its geometric part, then by
-    /// a shift that doubles.
+    /// a shift that grows. What the last tangent asked for, or one step less, is where the next one begins: slack fibres ask for the same
+    /// again and again.
     /// @param eta    of the linear solution
     /// @param scale  of forces: what a prescribed motion does at first, to the elements at its ends alone, is far more than they are, and
     ///               no measure of what the solution may leave over
     bool direction(const Vector& state, double eta, double scale, IterationCounts& counts) {
         Equilibrium& equilibrium = *equilibrium_;
-        double shift = 0.0, tolerance = eta;
-        for (int attempt = 0; attempt < 8; ++attempt) {
+        double tolerance = eta;
+        for (int attempt = std::max(0, shifted_ - 1); attempt < most_shifts; ++attempt) {
+            const double shift = attempt > 1 ? std::ldexp(least_shift * stiffness_, 2 * (attempt - 2)) : 0.0;
             clock_->time(core::Part::assembly, [&] {
                 equilibrium.linearise(state, attempt > 0, shift);
                 if (contacts_->places().rehosted()) linear_->analyse(equilibrium.system());
@@ -244,12 +246,13 @@ private:
                 report = clock_->time(core::Part::solution, [&] { return linear_->solve(equilibrium.system(), right_, tolerance, step_); });
                 ++counts.linear_solves, counts.linear_iterations += report.iterations;
             }
+            shifted_ = attempt;
             if (report.status == SolveStatus::converged) return true;
             // A step that is not exact is still a step, as long as it is a good part of one.
             if (report.status == SolveStatus::iteration_limit && report.residual < 0.3) return true;
             if (report.status == SolveStatus::not_finite) return false;
             ++counts.indefinite;
-            if (attempt >= 1) shift = shift > 0.0 ? 4.0 * shift : 1e-4 * stiffness_scale();
+            if (attempt == 1) stiffness_ = stiffness_scale();
         }
         return false;
     }
@@ -291,6 +294,10 @@ private:
     IterationParameters parameters_;
     double radius_;
     core::StageClock* clock_;
+    static constexpr int most_shifts = 10;        // the last one is beyond the mean stiffness
+    static constexpr double least_shift = 1e-4;   // over the mean stiffness; each one is four times the last
+    int shifted_ = 0;         // what the last tangent asked for: 0 nothing, 1 no compression, more a shift
+    double stiffness_ = 0.0;  // mean, when a shift was last begun with
     Vector residual_, right_, product_, step_, prescribed_, before_;
 };
 

@@ -2,8 +2,11 @@
 #include "compositions/weave/woven_snapshot.hpp"
 #include "refusal.hpp"
 
+#include <fibrant/compositions/weave/fabric_limits.hpp>
+
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -98,6 +101,44 @@ TEST_CASE("tows that overlap their neighbours, ends that miss a tow and elements
     CHECK(refused([](F& f) { f.elements = 55; }).empty());  // 4.4 / 55 = 0.08, a diameter
     CHECK(refused([](F& f) { f.elements = 56; }).find("FabricParameters.elements = 56, but it must be <= 55") == 0);
     CHECK(refused([](F& f) { f.warp_tows = 1; }).find("Pattern = plain on 1 warp and 4 weft tows") == 0);
+}
+
+TEST_CASE("a weft fibre may have elements of its own, and is refused by its own bound") {
+    FabricParameters fabric = small_fabric(4, 19);
+    fabric.weft_elements = 16;
+    CHECK(fabric.elements_of(Family::warp) == fabric.elements);
+    CHECK(fabric.elements_of(Family::weft) == 16);
+    CHECK(fabric.nodes() == fabric.fibres() / 2 * (2 * fabric.elements + 1 + 2 * 16 + 1));
+    CHECK(refused([](FabricParameters& f) { f.weft_elements = 56; }).find("FabricParameters.weft_elements = 56, but it must be <= 55") == 0);
+}
+
+TEST_CASE("single fibres jam where round ones touch their neighbours over every crossing: equal ones at 1.732 diameters") {
+    FabricParameters fabric = small_fabric(4, 19);
+    fabric.pattern = Pattern::named("plain");
+    fabric.warp.fibres = fabric.weft.fibres = 1;
+    fabric.warp.fibre_radius = fabric.weft.fibre_radius = 0.05;
+    fabric.warp_spacing = fabric.weft_spacing = 0.1 * std::sqrt(3.0);
+    CHECK(std::abs(jamming(fabric) - 1.0) < 1e-12);  // rounding
+    CHECK(doubts(fabric).empty() == (jamming(fabric) <= 1.0));
+    fabric.warp_spacing = fabric.weft_spacing = 0.18;
+    CHECK(jamming(fabric) < 1.0);
+    CHECK(doubts(fabric).empty());
+    // Straight wefts, so close that they nearly touch, take as much room from the warps as these have: a spacing of the sum of both diameters.
+    fabric.warp_spacing = 0.2, fabric.weft_spacing = 1e-9;
+    CHECK(std::abs(jamming(fabric) - 1.0) < 1e-12);
+    fabric.warp_spacing = 0.19, fabric.weft_spacing = 0.11;
+    CHECK(jamming(fabric) > 1.0);
+    REQUIRE(doubts(fabric).size() == 1);
+    CHECK(doubts(fabric).front().find("a spacing of 0.1732") != std::string::npos);
+    fabric.pattern = Pattern::named("twill22");
+    CHECK(jamming(fabric) == 0.0);
+}
+
+TEST_CASE("an overhang that ends may slip out of is told") {
+    FabricParameters fabric = small_fabric(4, 19);
+    CHECK(doubts(fabric).empty());
+    fabric.overhang = 0.51 * fabric.warp.packing().width;  // crossed at the ends, before they draw in
+    CHECK(doubts(fabric).size() == 2);
 }
 
 TEST_CASE("a programme of settling that cannot be is refused") {

@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstdio>
 
 using namespace fibrant;
@@ -32,15 +33,41 @@ TEST_CASE("a settled fabric's fibres cross as the pattern says and are nowhere d
     CHECK(audit.least_gap.gap < 0.0);  // fibres touch: the bound is one that could be broken
 }
 
-TEST_CASE("a fabric is not at rest while contact points are as deep as allowed, for between them fibres are deeper") {
+TEST_CASE("a fabric is at rest once forces balance and no two fibres are deeper in each other than allowed, whatever contact points say") {
     const cloth::SettleParameters settle;
     const double allowed = settle.allowed_penetration_over_radius * cloth::smallest_radius(small_fabric());
     const simulation::Loading<Model> loading = cloth::settling<Model>(small_fabric(), settle);
+    const simulation::Stage<Model>& rest = loading.stages.back();
+    REQUIRE(rest.deepest.has_value());
+    CHECK(*rest.deepest == allowed);
     simulation::IncrementReport increment;  // moves nothing
-    increment.contact.greatest_penetration = 0.9 * allowed;  // 0.002 of a radius more, seen in weaves, is more than allowed
-    CHECK_FALSE(loading.stages.back().until(increment));
-    increment.contact.greatest_penetration = 0.7 * allowed;
-    CHECK(loading.stages.back().until(increment));
+    increment.contact.greatest_penetration = 1.5 * allowed;
+    CHECK(rest.until(increment));
+    increment.displacement = 2.0 * settle.rest_motion_over_radius * cloth::smallest_radius(small_fabric()), increment.damping = 2.0 * settle.rest_share;
+    CHECK_FALSE(rest.until(increment));
+}
+
+TEST_CASE("tows part at no more tension than fibres of that many elements can turn under") {
+    cloth::FabricParameters fabric = small_fabric();
+    CHECK(cloth::parting_tension(fabric, 2e-3) == 1.0);
+    // E I / T = f r^2 / (4 strain) of round fibres; a third of an element is 0.3 L / n.
+    fabric.warp.inertia_factor = 1e-4;
+    const double turn = 0.3 * fabric.fibre_length(cloth::Family::warp) / 12.0;
+    CHECK(std::abs(cloth::parting_tension(fabric, 2e-3) / (1e-4 * 0.04 * 0.04 / (4.0 * 2e-3 * turn * turn)) - 1.0) < 1e-12);
+    CHECK(std::abs(cloth::parting_tension(fabric, 4e-3) / cloth::parting_tension(fabric, 2e-3) - 0.5) < 1e-12);
+}
+
+TEST_CASE("contact on the way is as soft as allowed, but no softer than what parts tows") {
+    cloth::SettleParameters settle;
+    const double r = cloth::smallest_radius(small_fabric());
+    const auto soft = [&] { return *cloth::settling<Model>(small_fabric(), settle).stages[1].allowed_penetration / r; };
+    CHECK(std::abs(soft() / 0.05 - 1.0) < 1e-12);  // five times 0.01, which is a fifth of the gap limit
+    settle.allowed_penetration_over_radius = 0.002;
+    CHECK(std::abs(soft() / 0.01 - 1.0) < 1e-12);
+    settle.allowed_penetration_over_radius = 0.04;
+    CHECK(std::abs(soft() / 0.05 - 1.0) < 1e-12);
+    settle.allowed_penetration_over_radius = 0.2;
+    CHECK(std::abs(soft() / 0.2 - 1.0) < 1e-12);
 }
 
 }  // namespace settle_test

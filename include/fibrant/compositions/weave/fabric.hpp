@@ -34,7 +34,7 @@ inline std::array<std::vector<Index>, 2> add_flat_fibres(scene::Assembly& assemb
                 scene::FibreSpecification fibre;
                 fibre.from = centre - half * along, fibre.to = centre + half * along;
                 fibre.section = tow.section(), fibre.material = tow.material;
-                fibre.elements = fabric.elements;
+                fibre.elements = fabric.elements_of(family);
                 fibre.director = Vec3::UnitZ();
                 fibre.group = group;
                 assembly.add(fibre);

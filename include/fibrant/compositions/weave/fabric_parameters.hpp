@@ -60,11 +60,14 @@ struct FabricParameters {
     double weft_spacing = core::unset;  ///< between the middles of neighbouring weft tows [length], > 0
     double overhang = core::unset;      ///< free length of a fibre beyond its outermost crossings [length], > 0
     Index elements = 32;                ///< 3-node elements of a fibre, >= 1
+    Index weft_elements = 0;            ///< of a weft fibre; 0: as many as of a warp fibre
 
     const TowParameters& tow(Family family) const noexcept { return family == Family::warp ? warp : weft; }
     Index tows(Family family) const noexcept { return family == Family::warp ? warp_tows : weft_tows; }
     Index fibres() const noexcept { return warp_tows * warp.fibres + weft_tows * weft.fibres; }
-    Index nodes_per_fibre() const noexcept { return 2 * elements + 1; }
+    Index elements_of(Family family) const noexcept { return family == Family::weft && weft_elements > 0 ? weft_elements : elements; }
+    Index nodes_per_fibre(Family family = Family::warp) const noexcept { return 2 * elements_of(family) + 1; }
+    Index nodes() const noexcept { return warp_tows * warp.fibres * nodes_per_fibre(Family::warp) + weft_tows * weft.fibres * nodes_per_fibre(Family::weft); }
 
     /// Number of a fibre in the fabric.
     Index fibre(Family family, Index tow, Index fibre) const noexcept {
@@ -97,6 +100,7 @@ struct FabricParameters {
         core::require_positive("FabricParameters.weft_spacing", weft_spacing);
         core::require_positive("FabricParameters.overhang", overhang);
         core::require_at_least("FabricParameters.elements", elements, 1);
+        core::require_at_least("FabricParameters.weft_elements", weft_elements, 0);
         pattern.require_holding(warp_tows, weft_tows);
         for (const Family family : {Family::warp, Family::weft}) {
             const std::string name = family == Family::warp ? "warp" : "weft";
@@ -109,9 +113,10 @@ struct FabricParameters {
             // The fibres of the other family must reach beyond the outermost tow of this one.
             core::require(overhang > 0.5 * packing.width, "FabricParameters.overhang", overhang,
                           "> half the width of a " + name + " tow = " + core::text(0.5 * packing.width));
-            const double element = fibre_length(family) / static_cast<double>(elements);
+            const double element = fibre_length(family) / static_cast<double>(elements_of(family));
             const double diameter = 2.0 * tow(family).fibre_radius;
-            core::require(element >= diameter, "FabricParameters.elements", static_cast<double>(elements),
+            core::require(element >= diameter, family == Family::weft && weft_elements > 0 ? "FabricParameters.weft_elements" : "FabricParameters.elements",
+                          static_cast<double>(elements_of(family)),
                           "<= " + core::text(std::floor(fibre_length(family) / diameter)) + ", for an element of a " +
                               name + " fibre (" + core::text(element) + ") is shorter than a diameter (" +
                               core::text(diameter) + ")");

@@ -96,8 +96,8 @@ inline Outline outline(const observe::Snapshot& snapshot, const FabricParameters
 inline double thickness(const observe::Snapshot& snapshot, const FabricParameters& fabric) {
     const Outline part = outline(snapshot, fabric);
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    const Index steps = 4 * (fabric.nodes_per_fibre() - 1);  // a quarter of a node interval
     for (const observe::FibreSnapshot& fibre : snapshot.fibres) {
+        const Index steps = 4 * (core::count(fibre.position) - 1);  // a quarter of a node interval
         const observe::NodalCurve curve{fibre.position};
         for (Index k = 0; k <= steps; ++k) {
             const double t = 0.25 * static_cast<double>(k);

@@ -24,9 +24,24 @@ inline double node_stiffness(const FabricParameters& fabric, double tension_stra
     const auto of = [&](Family family) {
         const TowParameters& tow = fabric.tow(family);
         const double pull = tension_strain * tow.material.young_modulus * tow.section().area();
-        return 4.0 * pull * static_cast<double>(fabric.elements) / fabric.fibre_length(family);
+        return 4.0 * pull * static_cast<double>(fabric.elements_of(family)) / fabric.fibre_length(family);
     };
     return std::min(of(Family::warp), of(Family::weft));
+}
+
+/// Part of the tension that was asked for at which tows part, in (0, 1]: at most that under which a fibre turns within a third of an element.
+///
+/// Under a pull T a fibre turns over a length sqrt(E I / T). Where that is a small part of an element, elements kink at every crossing, contact points
+/// stand for corners that are none, and Newton's method goes to and fro between them. What is asked for at the end is not touched.
+inline double parting_tension(const FabricParameters& fabric, double tension_strain) {
+    const double least_turn = 0.3;  // of an element
+    double part = 1.0;
+    for (const Family family : {Family::warp, Family::weft}) {
+        const scene::CrossSection section = fabric.tow(family).section();
+        const double turn = least_turn * fabric.fibre_length(family) / static_cast<double>(fabric.elements_of(family));
+        part = std::min(part, section.second_moment_1() / (tension_strain * section.area() * turn * turn));
+    }
+    return part;
 }
 
 /// Parameters of a model whose normal law is a limited, regularised penalty.
@@ -49,15 +64,15 @@ simulation::ModelParameters<M> model_parameters(const FabricParameters& fabric, 
 template <simulation::Model M>
 simulation::Loading<M> settling(const FabricParameters& fabric, const SettleParameters& settle) {
     const double r = smallest_radius(fabric), allowed = settle.allowed_penetration_over_radius * r;
-    const double soft = settle.softness * allowed, motion = 0.08 * settle.gap_limit_over_radius * r;
-    // What is allowed holds anywhere between two fibres, and between contact points they are deeper, by up to 0.002 radii in weaves of 152 to 1,216 fibres.
-    const double deepest_at_rest = 0.75 * allowed;
+    // No softer than what parts the tows: a fifth of the gap that contact is shown. Softer contact is as deep as that, and pushes nothing apart.
+    const double soft = std::max(allowed, std::min(settle.softness * allowed, 0.2 * settle.gap_limit_over_radius * r)), motion = 0.08 * settle.gap_limit_over_radius * r;
     const double share_at_rest = settle.rest_share, share_on_the_way = std::max(1e-3, share_at_rest);
+    const double parting = parting_tension(fabric, settle.tension_strain);
     simulation::Loading<M> loading;
     simulation::Stage<M> tension;
     tension.name = "tension";
     tension.increments = settle.tension_increments;
-    tension.ramps = {{tension_channel, 1.0, false}};
+    tension.ramps = {{tension_channel, parting, false}};
     tension.forced_orders = true;
     tension.gap_limit = 1e-3 * r;  // the tows hardly push while fibres are slack
     simulation::Stage<M> separation;
@@ -92,11 +107,13 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     simulation::Stage<M> stiffening = relaxation;
     stiffening.name = "stiffening";
     stiffening.allowed_penetration.reset();
-    stiffening.until = simulation::until_settled(motion, allowed, share_at_rest);
+    // How deep contact points are says little where fibres bend sharply around each other: what ends is judged by the true gap, at rest.
+    stiffening.until = simulation::until_settled(motion, 5.0 * soft, share_at_rest);
     simulation::Stage<M> rest;
     rest.name = "rest";
     rest.increments = 1;
-    rest.until = simulation::until_settled(settle.rest_motion_over_radius * r, deepest_at_rest, share_at_rest);
+    rest.until = simulation::until_settled(settle.rest_motion_over_radius * r, 5.0 * soft, share_at_rest);
+    rest.deepest = allowed;
     rest.most_increments = settle.rest_increments;
     // Paths are only a means: an increment keeps its normals, what it leaves over moves in the next, and the last stage tells
     // when that is all.
@@ -106,7 +123,7 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     // makes of an element's length; an increment is a time, and half the time is twice the spring, so that the path is the
     // same when increments are halved. After the tension it falls, at first until it holds a thousandth of the forces, then,
     // contact being stiff, a ten-thousandth, which is what the balance of forces is solved to: rest is an equilibrium.
-    const double damping = 0.1 / settle.gap_limit_over_radius * node_stiffness(fabric, settle.tension_strain);
+    const double damping = 0.1 / settle.gap_limit_over_radius * node_stiffness(fabric, parting * settle.tension_strain);
     separation.damping = handover.damping = release.damping = relaxation.damping = damping;
     stiffening.damping = 4.0 * damping;
     rest.damping = stiffening.damping;
@@ -117,6 +134,9 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     handover.damping_share = relaxation.damping_share = share_on_the_way;
     stiffening.damping_share = rest.damping_share = share_at_rest;
     stiffening.damping_waits = rest.damping_waits = true;
+    // What Newton's method cannot solve at once is softened: what is deep then parts as it did in the separation.
+    for (simulation::Stage<M>* stage : {&handover, &release, &relaxation, &stiffening, &rest})
+        stage->gap_limit = separation.gap_limit, stage->gap_limit_when_cut = true;
     for (simulation::Stage<M>* stage : {&separation, &handover, &release, &relaxation, &stiffening, &rest})
         stage->largest_displacement = 4.0 * settle.gap_limit_over_radius * r;
     loading.stages = {tension, separation, handover, release, relaxation, stiffening, rest};

@@ -19,10 +19,9 @@ inline void require_snapshot_of(const observe::Snapshot& snapshot, const FabricP
         core::refuse("Snapshot.fibres", std::to_string(snapshot.fibres.size()),
                      "those of the fabric, " + std::to_string(fabric.fibres()));
     for (std::size_t k = 0; k < snapshot.fibres.size(); ++k)
-        if (core::count(snapshot.fibres[k].position) != fabric.nodes_per_fibre())
-            core::refuse("Snapshot.fibres[" + std::to_string(k) + "].position",
-                         std::to_string(snapshot.fibres[k].position.size()) + " nodes",
-                         "of " + std::to_string(fabric.nodes_per_fibre()) + " nodes");
+        if (const Index nodes = fabric.nodes_per_fibre(fabric.place(static_cast<Index>(k)).family); core::count(snapshot.fibres[k].position) != nodes)
+            core::refuse("Snapshot.fibres[" + std::to_string(k) + "].position", std::to_string(snapshot.fibres[k].position.size()) + " nodes",
+                         "of " + std::to_string(nodes) + " nodes");
 }
 
 /// Coordinate along the fibres of a family: 0 for warp, 1 for weft.
@@ -34,7 +33,7 @@ constexpr Family other(Family family) noexcept { return family == Family::warp ?
 inline std::vector<Vec3> tow_centreline(const observe::Snapshot& snapshot, const FabricParameters& fabric,
                                         Family family, Index tow) {
     const Index fibres = fabric.tow(family).fibres;
-    std::vector<Vec3> mean(core::at(fabric.nodes_per_fibre()), Vec3::Zero());
+    std::vector<Vec3> mean(core::at(fabric.nodes_per_fibre(family)), Vec3::Zero());
     for (Index k = 0; k < fibres; ++k) {
         const auto& fibre = snapshot.fibres[core::at(fabric.fibre(family, tow, k))];
         for (std::size_t node = 0; node < mean.size(); ++node) mean[node] += fibre.position[node];

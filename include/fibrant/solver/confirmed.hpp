@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file An iterative strategy whose verdict that a system is indefinite is confirmed by a factorisation.
+
+#include <fibrant/solver/float_block_cholesky.hpp>
+#include <fibrant/solver/linear_solver.hpp>
+
+#include <utility>
+
+namespace fibrant::solver {
+
+/// Conjugate gradients say that a system is indefinite where rounding makes their preconditioner so, as that of stiff contacts between a few
+/// short fibres: no shift of the tangent helps then. A small system is then factored in double precision, and that says what it is. A larger one
+/// is from a number of such verdicts in a row on, and until the next analysis: what it does depends on what was solved since the last one.
+template <class Iterative>
+class Confirmed {
+public:
+    struct Parameters {
+        typename Iterative::Parameters iterative{};
+        Index small = 6000;           ///< unknowns up to which a factorisation costs no more than the iteration, >= 0
+        int patience = 6;             ///< verdicts in a row before a larger system is factored, >= 1: Newton's shifts mend what is truly indefinite
+        double largest_fill = 2.5e8;  ///< entries of a factor that is allowed (8 bytes each), >= 0
+        void validate() const {
+            iterative.validate();
+            core::require_at_least("Confirmed.small", small, 0);
+            core::require_at_least("Confirmed.patience", patience, 1);
+            core::require_not_negative("Confirmed.largest_fill", largest_fill);
+        }
+    };
+    Confirmed() : Confirmed(Parameters{}) {}
+    explicit Confirmed(const Parameters& parameters) : parameters_{core::validated(parameters)}, iterative_{parameters.iterative} {}
+
+    template <assembly::LinearSystem System>
+    void analyse(const System& system) {
+        iterative_.analyse(system);
+        verdicts_ = 0, factored_ = false;
+    }
+    template <assembly::LinearSystem System>
+    SolveStatus prepare(const System& system) {
+        if (small(system)) factored_ = false;
+        if (factored_) return factor_.prepare(system);
+        const SolveStatus status = iterative_.prepare(system);
+        return status == SolveStatus::indefinite && factor_instead(system) ? factor_.prepare(system) : status;
+    }
+    template <assembly::LinearSystem System>
+    SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
+        if (factored_) return factor_.solve(system, b, tolerance, x);
+        SolveReport report = iterative_.solve(system, b, tolerance, x);
+        if (report.status != SolveStatus::indefinite) verdicts_ = 0;
+        if (report.status != SolveStatus::indefinite || !factor_instead(system)) return report;
+        const SolveStatus status = factor_.prepare(system);
+        if (status != SolveStatus::not_finite) report = factor_.solve(system, b, tolerance, x);
+        if (status == SolveStatus::indefinite) report.status = status;
+        return report;
+    }
+    /// The present system is factored.
+    bool factored() const noexcept { return factored_; }
+
+private:
+    template <class System>
+    bool small(const System& system) const noexcept {
+        return system.layout().unknowns() <= parameters_.small;
+    }
+    template <class System>
+    bool factor_instead(const System& system) {
+        if (!small(system) && ++verdicts_ < parameters_.patience) return false;
+        factor_.analyse(system);
+        return factored_ = static_cast<double>(factor_.fill()) <= parameters_.largest_fill;
+    }
+
+    Parameters parameters_;
+    Iterative iterative_;
+    DoubleBlockCholesky factor_;
+    int verdicts_ = 0;
+    bool factored_ = false;
+};
+
+}  // namespace fibrant::solver

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "simulation/scenes.hpp"
+
+#include <doctest/doctest.h>
+
+#include <fibrant/simulation/audit.hpp>
+
+using namespace fibrant;
+
+namespace deep_places_test {
+
+constexpr double radius = 0.02, allowed = 0.01 * radius;
+
+// A hard fibre pressed across a soft one of few elements, whose sections it flattens within a part of one: beside the one contact element of a
+// crossing they are deeper in each other than that says.
+scene::Assembly pressed(double hardness, double half = 0.4, Index elements = 6, double approach = 1.0, double angle = 0.5 * std::numbers::pi) {
+    scene::Assembly assembly;
+    for (const bool upper : {false, true}) {
+        const Vec3 along = upper ? Vec3(std::cos(angle), std::sin(angle), 0.0) : Vec3(Vec3::UnitX()), middle = upper ? Vec3(0.1 * radius, 0.0, 2.0 * radius) : Vec3::Zero();
+        scene::FibreSpecification fibre;
+        fibre.from = middle - half * along, fibre.to = middle + half * along;
+        fibre.section = scene::circular(radius), fibre.material = {upper ? 7300.0 : 7300.0 / hardness, 0.3};
+        fibre.elements = elements, fibre.director = Vec3::UnitZ();
+        assembly.add(fibre);
+        for (const scene::Station& end : {scene::first_end(upper ? 1 : 0), scene::last_end(upper ? 1 : 0)}) {
+            assembly.clamp(end, upper ? Vec3(0, 0, -approach * radius) : Vec3(Vec3::Zero()), Vec3::Zero(), Vec3::Zero(), "press");
+        }
+    }
+    return assembly;
+}
+
+struct Ended {
+    simulation::Report report;
+    simulation::Audit audit;
+};
+Ended run(const scene::Assembly& scene, bool audited, double deepest_over_radius = core::unset) {
+    simulation::ModelParameters<test::Smooth> parameters;
+    parameters.normal.regularisation_depth = allowed;
+    parameters.contact.stiffness.allowed_penetration = allowed;
+    simulation::Simulator<test::Smooth> simulator(scene, parameters);
+    simulation::Loading<test::Smooth> loading;
+    loading.audited = audited, loading.deepest_over_radius = deepest_over_radius;
+    Ended ended;
+    ended.report = simulator.run(loading);
+    ended.audit = simulation::audit(simulator);
+    return ended;
+}
+
+TEST_CASE("a run that is audited ends once no two fibres are deeper in each other than stated, beside contact points as well") {
+    struct Coarse {
+        double approach, angle;
+    };
+    for (const Coarse& coarse : {Coarse{2.0, 0.5 * std::numbers::pi}, Coarse{2.0, 0.7}, Coarse{5.0, 0.7}}) {
+        const scene::Assembly scene = pressed(100.0, 0.3, 2, coarse.approach, coarse.angle);
+        const Ended unseen = run(scene, false), seen = run(scene, true);
+        CHECK(unseen.report.converged);
+        CHECK(unseen.report.contact.greatest_penetration < allowed);  // says contact,
+        CHECK_FALSE(unseen.audit.clean());                            // and is wrong
+        CHECK(seen.report.converged);
+        CHECK(seen.audit.clean());
+        CHECK(seen.report.increments.size() <= 15);  // it does not take a search
+    }
+}
+
+TEST_CASE("what is clean is left as it is, and a stricter bound is kept by stiffer contact") {
+    const scene::Assembly scene = pressed(10.0);
+    const Ended plain = run(scene, false), audited = run(scene, true), strict = run(scene, true, 0.002);
+    CHECK(plain.audit.least_gap.gap < -0.004 * radius);  // about half of what is allowed
+    CHECK(audited.report.increments.size() == plain.report.increments.size());
+    CHECK(audited.audit.least_gap.gap == plain.audit.least_gap.gap);
+    CHECK(strict.report.converged);
+    CHECK(strict.audit.least_gap.gap >= -0.002 * radius);
+}
+
+TEST_CASE("what cannot be reached is told: the fibres, how deep they are, the bound and what to do") {
+    const Ended ended = run(pressed(10.0), true, 1e-5);
+    CHECK_FALSE(ended.report.converged);
+    for (const char* words : {"stage loading did not reach its end in ", ": fibres 0 and 1 stay ", " radii deep in each other at (", "allowed are 1e-05: more elements"})
+        CHECK(ended.report.reason.find(words) != std::string::npos);
+}
+
+}  // namespace deep_places_test
