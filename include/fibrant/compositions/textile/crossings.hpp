@@ -39,6 +39,7 @@ inline std::vector<Line> lines_of(const Textile& textile, double step_over_radiu
         const auto pieces = std::max<Index>(64, static_cast<Index>(length / (step_over_radius * textile.type_of(p).radius)));
         std::vector<Vec3> points;
         for (Index k = 0; k <= pieces; ++k) points.push_back(path.curve(static_cast<double>(k) / static_cast<double>(pieces)));
+        if (path.kind == PathKind::closed) points.back() = points.front();
         lines.push_back(line_of(std::move(points)));
     }
     return lines;

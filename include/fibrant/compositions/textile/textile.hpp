@@ -212,24 +212,21 @@ inline void require_holding(const Textile& textile) {
     for (Index k = 0; k < n; ++k) {
         if (done[core::at(k)]) continue;
         const std::vector<bool> part = reached(k, joined), below = reached(k, down), above = reached(k, up);
-        std::string loose;
-        Index count = 0;
-        const auto add = [&](Index path) {
-            if (++count <= 4) loose += (count > 1 ? ", " : "") + textile.label(path);
-        };
         bool lower = false;
-        for (Index p = 0; p < n; ++p) {
-            if (!part[core::at(p)]) continue;
-            done[core::at(p)] = true;
-            if (!below[core::at(p)]) lower = true;
-        }
+        std::vector<Index> set, others;
+        for (Index p = 0; p < n; ++p)
+            if (part[core::at(p)]) done[core::at(p)] = true, lower = lower || !below[core::at(p)];
         // What is not reached downwards lies above all that is; else what does not reach it lies below.
         for (Index p = 0; p < n; ++p)
-            if (part[core::at(p)] && !(lower ? below : above)[core::at(p)]) add(p);
-        if (count > 0)
-            core::refuse("Textile.crossings", "an interlacing that comes apart",
-                         std::string("one that holds: ") + loose + (count > 4 ? ", ..." : "") + (count == 1 ? " lies " : " lie ") +
-                             (lower ? "above" : "below") + " all that " + (count == 1 ? "it crosses" : "they cross"));
+            if (part[core::at(p)]) ((lower ? below : above)[core::at(p)] ? others : set).push_back(p);
+        if (set.empty()) continue;
+        const bool fewer = set.size() <= others.size();  // are named
+        const std::vector<Index>& named = fewer ? set : others;
+        std::string loose;
+        for (std::size_t k = 0; k < std::min<std::size_t>(named.size(), 4); ++k) loose += (k > 0 ? ", " : "") + textile.label(named[k]);
+        core::refuse("Textile.crossings", "an interlacing that comes apart",
+                     "one that holds: " + loose + (named.size() > 4 ? ", ..." : "") + (named.size() == 1 ? " lies " : " lie ") +
+                         (lower == fewer ? "above" : "below") + " all that " + (named.size() == 1 ? "it crosses" : "they cross"));
     }
 }
 
