@@ -223,7 +223,7 @@ inline void require_holding(const Textile& textile) {
         const bool fewer = set.size() <= others.size();  // are named
         const std::vector<Index>& named = fewer ? set : others;
         std::string loose;
-        for (std::size_t k = 0; k < std::min<std::size_t>(named.size(), 4); ++k) loose += (k > 0 ? ", " : "") + textile.label(named[k]);
+        for (std::size_t m = 0; m < std::min<std::size_t>(named.size(), 4); ++m) loose += (m > 0 ? ", " : "") + textile.label(named[m]);
         core::refuse("Textile.crossings", "an interlacing that comes apart",
                      "one that holds: " + loose + (named.size() > 4 ? ", ..." : "") + (named.size() == 1 ? " lies " : " lie ") +
                          (lower == fewer ? "above" : "below") + " all that " + (named.size() == 1 ? "it crosses" : "they cross"));
