@@ -38,6 +38,12 @@ inline std::vector<Line> lines_of(const observe::Snapshot& snapshot) {
 }
 
 namespace detail {
+/// Unit chord of a line at an arc from its start.
+inline Vec3 direction_at(const Line& line, double arc) {
+    const auto after = std::upper_bound(line.arc.begin() + 1, line.arc.end() - 1, arc);
+    const auto k = static_cast<std::size_t>(after - line.arc.begin());
+    return (line.points[k] - line.points[k - 1]).normalized();
+}
 /// Pairs of lines whose boxes meet, in order: sorted along x and swept.
 inline std::vector<std::pair<Index, Index>> near_pairs(std::span<const Line> lines, double reach) {
     struct Bounds { Vec3 low, high; Index line; };
@@ -71,8 +77,17 @@ inline TopologyAudit audit_topology(const Textile& textile, const Assembled& ass
                 for (Index j = assembled.first_fibre[core::at(crossing.below)]; j < assembled.first_fibre[core::at(crossing.below + 1)]; ++j)
                     asked.push_back({i, j, crossing.at_above, crossing.at_below, crossing.axis});
         const auto own = [&](Index i, Index j) { return i != j && assembled.path_of[core::at(i)] == assembled.path_of[core::at(j)]; };
-        for (const Crossing& crossing : crossings_of(settled, textile.view))
-            if (!own(crossing.above, crossing.below)) found.push_back(crossing);
+        std::vector<std::pair<Index, Index>> pairs;
+        for (const Crossing& crossing : asked) pairs.emplace_back(std::min(crossing.above, crossing.below), std::max(crossing.above, crossing.below));
+        std::sort(pairs.begin(), pairs.end());
+        // Yarns that lie on each other, as those of a column of wefts, cross as seen from above wherever they like.
+        constexpr double along_each_other = 0.5;  // sine of 30 degrees
+        for (const Crossing& crossing : crossings_of(settled, textile.view)) {
+            if (own(crossing.above, crossing.below)) continue;
+            const Vec3 one = detail::direction_at(settled[core::at(crossing.above)], crossing.at_above), two = detail::direction_at(settled[core::at(crossing.below)], crossing.at_below);
+            const std::pair pair{std::min(crossing.above, crossing.below), std::max(crossing.above, crossing.below)};
+            if (one.cross(two).norm() >= along_each_other || std::binary_search(pairs.begin(), pairs.end(), pair)) found.push_back(crossing);
+        }
         std::erase_if(asked, [&](const Crossing& crossing) { return own(crossing.above, crossing.below); });
         audit.crossings = audit_crossings(std::move(asked), std::move(found));
         if (!audit.crossings.clean()) {

@@ -178,17 +178,11 @@ inline Textile leno(const LenoWeave& weave) {
         ground.name = "ground " + std::to_string(k), doup.name = "doup " + std::to_string(k);
         ground.family = 0, doup.family = 1;
         ground.curve = [=](double t) { return Vec3(length * t - beyond, y, -h); };
-        // Between picks a height of -2 h, at picks h, as cos 2 pi x / p says. No end stands on a crossing: half a gap is left out of both ends.
+        // Between picks at a height of -2 h, at picks h. Beyond the outermost picks it keeps its side: no end stands on a crossing.
         doup.curve = [=](double t) {
-            const double x = length * t - beyond, f = std::numbers::pi * std::clamp(x, -0.3 * p, length - 2.0 * beyond + 0.3 * p) / p;
-            const double level = 2.0 * std::numbers::pi * std::clamp(x, -0.3 * p, length - 2.0 * beyond + 0.3 * p) / p;
-            return Vec3(x, y + s * std::cos(f), h * (-0.5 + 1.5 * std::cos(level)));
+            const double x = length * t - beyond, f = std::numbers::pi * std::clamp(x, 0.0, length - 2.0 * beyond) / p;
+            return Vec3(x, y + s * std::cos(f), h * (-0.5 + 1.5 * std::cos(2.0 * f)));
         };
-        // Clamped waves would have corners: they are taken at points and joined.
-        std::vector<Vec3> points;
-        const Index count = 8 * weave.picks;
-        for (Index m = 0; m <= count; ++m) points.push_back(doup.curve(static_cast<double>(m) / static_cast<double>(count)));
-        doup.curve = scene::curve_through(std::move(points));
         textile.paths.push_back(std::move(ground)), textile.paths.push_back(std::move(doup));
     }
     for (Index m = 0; m < weave.picks; ++m) {
