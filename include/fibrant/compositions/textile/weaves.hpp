@@ -169,7 +169,7 @@ inline Textile leno(const LenoWeave& weave) {
     Textile textile;
     textile.name = "leno";
     textile.types = {weave.type};
-    const double p = weave.pick_spacing, s = weave.aside, h = 2.1 * half_width(weave.type), beyond = 0.5 * p;
+    const double p = weave.pick_spacing, s = weave.aside, h = 2.1 * half_width(weave.type), beyond = p;
     const double length = p * static_cast<double>(weave.picks - 1) + 2.0 * beyond;
     const double width = weave.pair_spacing * static_cast<double>(weave.pairs - 1) + 4.0 * s + 2.0 * p;
     for (Index k = 0; k < weave.pairs; ++k) {
