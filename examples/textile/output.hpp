@@ -5,6 +5,8 @@
 #include "../support/example.hpp"
 
 #include <fibrant/compositions/textile/audit.hpp>
+#include <fibrant/compositions/textile/imported.hpp>
+#include <fibrant/exchange/files.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -35,8 +37,11 @@ inline void tell(const cloth::Textile& textile, const cloth::TopologyAudit& audi
                  audit.first_yarn < 0 ? "-" : textile.label(audit.first_yarn).c_str(), audit.second_yarn < 0 ? "-" : textile.label(audit.second_yarn).c_str());
 }
 
-/// yarns.csv and crossings.csv.
+/// yarns.csv and crossings.csv, and the fibres as centrelines.csv and fibres.glb.
 inline void write_tables(const std::filesystem::path& folder, const cloth::Textile& textile, const cloth::Assembled& assembled, const observe::Snapshot& settled) {
+    const std::vector<fibrant::exchange::FileCurve> curves = cloth::curves_of(settled, assembled.path_of);
+    observe::write_file(folder / "centrelines.csv", fibrant::exchange::csv_of(curves));
+    observe::write_file(folder / "fibres.glb", fibrant::exchange::glb_of(curves));
     observe::CsvWriter yarns(folder / "yarns.csv");
     const std::vector<cloth::YarnFigures> figures = cloth::yarn_figures(textile, assembled, settled);
     for (Index p = 0; p < fibrant::core::count(textile.paths); ++p) {

@@ -7,13 +7,15 @@
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/compositions/textile/braids.hpp>
+#include <fibrant/compositions/textile/imported.hpp>
 #include <fibrant/compositions/textile/knits.hpp>
 #include <fibrant/compositions/textile/settle.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
+#include <fibrant/exchange/files.hpp>
 
 #include <cmath>
-#include <optional>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -33,7 +35,7 @@ struct Scene {
 };
 
 inline const std::vector<std::string> generators{"flat_braid", "tubular_braid", "levels", "leno", "triaxial_weave", "weft_knit",
-                                                 "tricot",     "plied",         "chain_mail", "net"};
+                                                 "tricot",     "plied",         "chain_mail", "net",  "file"};
 
 namespace detail {
 
@@ -195,6 +197,22 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         read_height(file, "net", net.height_over_radius);
         if (!all) file.complete(), made = cloth::net(net);
     }
+    if (wanted("file")) {
+        std::string path, seen = "plane";
+        double smooth = 0.0;
+        fibrant::exchange::CleanParameters clean;
+        file.require("file", "path", path, example::any_text(), "of the centrelines, from the folder of the scene: .csv, .vtk, .vtp, .obj, .bcc, .inp or .tg3");
+        file.read("file", "scale", clean.scale, positive, "1", "on all lengths of the file");
+        file.read("file", "smooth", smooth, example::between(0.0, 100.0), "1", "width of a Gaussian along the points that smooths them, in points; 0: as they are");
+        file.read("file", "largest_turn_deg", clean.largest_turn_deg, example::above(0.0, 180.0), "degree", "between neighbouring chords; more is refused");
+        file.read("file", "crossings", seen, {"plane", "tube", "none"}, "are as seen along z, from the z axis outwards, or not looked for: linking integrals are compared then");
+        if (!all) {
+            file.complete();
+            const std::filesystem::path whole = std::filesystem::path(file.file()).parent_path() / path;
+            made = cloth::textile_of(fibrant::exchange::read_curves(whole, clean), yarn, {fibrant::Vec3::UnitZ(), seen == "tube", fibrant::Vec3::Zero()}, smooth);
+            if (seen == "none") made.crossings.clear();
+        }
+    }
     return made;
 }
 
@@ -210,7 +228,7 @@ inline Scene read_scene(SceneReader& file) {
     std::string ends = "held";
     double tension = 0.0;
     bool straight = true;
-    file.require("textile", "generator", scene.generator, generators, "of the yarns' paths; its section has its numbers");
+    file.require("textile", "generator", scene.generator, generators, "of the yarns' paths, or a file of them; its section has its numbers");
     detail::read_type(file, "yarn", true, yarn);
     example::read_material(file, "yarn", yarn.material);
     cloth::YarnType binder = yarn;
@@ -252,7 +270,7 @@ inline Scene read_scene(SceneReader& file) {
     }
     example::require_room(file, "yarn", "element_over_radius", unknowns, 6000.0);
     cloth::validate(scene.textile);
-    if (!scene.textile.crossings.empty() && scene.generator != "weft_knit" && scene.generator != "tricot") cloth::require_holding(scene.textile);
+    if (!scene.textile.crossings.empty() && scene.generator != "weft_knit" && scene.generator != "tricot" && scene.generator != "file") cloth::require_holding(scene.textile);
     return scene;
 }
 
