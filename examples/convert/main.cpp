@@ -33,7 +33,11 @@ std::string report(const std::vector<exchange::FileCurve>& curves) {
     }
     const Mat3 a = exchange::orientation_of(curves);
     observe::JsonObject json;
-    json.add("curves", core::count(curves)).add("closed", closed).add("points", points).add("length", length).add("fibre_volume", volume);
+    json.add("curves", core::count(curves))
+        .add("closed", closed)
+        .add("points", points)
+        .add("length", length)
+        .add("fibre_volume", volume);
     json.add("low", std::vector<double>(low.begin(), low.end())).add("high", std::vector<double>(high.begin(), high.end()));
     json.add("orientation_xx_yy_zz_xy_yz_xz", std::vector<double>{a(0, 0), a(1, 1), a(2, 2), a(0, 1), a(1, 2), a(0, 2)});
     return json.text() + "\n";
@@ -47,7 +51,9 @@ int main(int argc, char** argv) {
     double spacing = 0.0, radius = core::unset, metre = 1000.0;
     bool wanted = false;
     exchange::CleanParameters clean;
-    CLI::App app{"Converts centrelines of fibres: .csv .txt .vtk .vtp .obj .bcc .inp .tg3 in, and .csv .vtk .vtp .obj .bcc .inp .tg3 .stl .glb .vti .raw out."};
+    CLI::App app{
+        "Converts centrelines of fibres: .csv .txt .vtk .vtp .obj .bcc .inp .tg3 in, and .csv .vtk .vtp .obj .bcc .inp .tg3 .stl "
+        ".glb .vti .raw out."};
     app.set_version_flag("--version", FIBRANT_VERSION);
     app.add_option("input", input, "file of centrelines")->required();
     app.add_option("--output", outputs, "file to write; may be given several times")->allow_extra_args(false);
@@ -75,13 +81,16 @@ int main(int argc, char** argv) {
             if (std::filesystem::equivalent(name, input, same)) core::refuse("--output", name, "another file than the input");
             const bool thick = kind == "stl" || kind == "glb" || kind == "vti" || kind == "raw";
             for (std::size_t c = 0; thick && c < curves.size(); ++c)
-                if (std::isnan(curves[c].radius)) core::refuse("radius of curve " + std::to_string(c), "not given", "in the file, or --radius");
+                if (std::isnan(curves[c].radius))
+                    core::refuse("radius of curve " + std::to_string(c), "not given", "in the file, or --radius");
             if (kind == "vti" || kind == "raw") {
                 core::require_positive("--voxels", spacing);
                 const exchange::Voxels voxels = exchange::voxels_of(curves, exchange::grid_around(curves, spacing));
                 observe::write_file(name, kind == "vti" ? exchange::vti_of(voxels) : exchange::raw_of(voxels));
                 if (kind == "raw") observe::write_file(name + ".json", exchange::raw_head_of(voxels));
-                if (wanted) std::printf("voxels: %td x %td x %td, fibre volume %.9g, of that %.3g in overlaps\n", voxels.grid.counts[0], voxels.grid.counts[1], voxels.grid.counts[2], voxels.volume, voxels.excess);
+                if (wanted)
+                    std::printf("voxels: %td x %td x %td, fibre volume %.9g, of that %.3g in overlaps\n", voxels.grid.counts[0],
+                                voxels.grid.counts[1], voxels.grid.counts[2], voxels.volume, voxels.excess);
             } else {
                 observe::write_file(name, exchange::file_of(curves, kind, metre));
             }

@@ -40,15 +40,17 @@ bool solve(example::SceneReader& file, example::Output& output) {
 
     const observe::Snapshot settled = simulator.snapshot();
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    const textile::cloth::TopologyAudit topology =
-        textile::cloth::audit_topology(scene.textile, assembled, textile::cloth::lines_of(drawn), textile::cloth::lines_of(settled));
+    const textile::cloth::TopologyAudit topology = textile::cloth::audit_topology(
+        scene.textile, assembled, textile::cloth::lines_of(drawn), textile::cloth::lines_of(settled));
     textile::tell(scene.textile, topology);
     textile::write_tables(output.folder, scene.textile, assembled, settled);
     textile::write_pictures(output, scene.textile, assembled, settled);
-    textile::write_summary(output, report, audit, topology, scene.textile, assembled, drawn, settled, simulator.mesh().layout().unknowns());
+    textile::write_summary(output, report, audit, topology, scene.textile, assembled, drawn, settled,
+                           simulator.mesh().layout().unknowns());
     return report.converged && audit.clean() && topology.clean();
 }
 
 int main(int argc, char** argv) {
-    return example::run(argc, argv, "textile", "Settles a textile of any kind from the paths of its yarns, and audits it.", solve);
+    return example::run(argc, argv, "textile", "Settles a textile of any kind from the paths of its yarns, and audits it.",
+                        solve);
 }

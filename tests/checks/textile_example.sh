@@ -12,8 +12,10 @@ fail() {
   exit 1
 }
 for name in braid_flat braid_tube interlock knit_plain tricot net chain_mail from_csv from_texgen; do
-  [ $name != from_texgen ] || "$program" "$scenes/$name.toml" --output "$out/try" --quiet 2>&1 | grep -qv pugixml || continue
-  "$program" "$scenes/$name.toml" --output "$out/$name" --quiet --set output.paraview=false || fail "$name did not settle"
+  text=$("$program" "$scenes/$name.toml" --output "$out/$name" --quiet --set output.paraview=false 2>&1) || {
+    case $text in *"needs pugixml"*) continue ;; esac  # built without it
+    fail "$name did not settle: $text"
+  }
   for file in summary.json increments.csv yarns.csv centrelines.csv fibres.glb view.svg; do
     [ -s "$out/$name/$file" ] || fail "$name: there is no $file"
   done

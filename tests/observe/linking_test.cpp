@@ -41,16 +41,20 @@ TEST_CASE("two linked rings have a linking number of one, whatever their chords,
         for (const Vec3& x : b) b2.push_back(turn * x + Vec3(5, -3, 2));
         CHECK(std::abs(linking_integral(a2, b2, true) - linking_integral(a, b, true)) < 1e-12);
     }
-    CHECK(test::refusal([&] { linking_number(std::vector<Vec3>{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, closed(flat, 8)); }).find("open curve") != std::string::npos);
+    CHECK(test::refusal([&] {
+              linking_number(std::vector<Vec3>{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, closed(flat, 8));
+          }).find("open curve") != std::string::npos);
 }
 
 TEST_CASE("a torus link of 2 and 2 k strands has the linking number k") {
     for (const int k : {1, 2, 5}) {
         const auto strand = [&](double start) {
-            return closed([&, start](double a) {
-                const double f = k * a + start;
-                return Vec3((3.0 + std::cos(f)) * std::cos(a), (3.0 + std::cos(f)) * std::sin(a), std::sin(f));
-            }, 200 * k);
+            return closed(
+                [&, start](double a) {
+                    const double f = k * a + start;
+                    return Vec3((3.0 + std::cos(f)) * std::cos(a), (3.0 + std::cos(f)) * std::sin(a), std::sin(f));
+                },
+                200 * k);
         };
         CHECK(std::abs(linking_number(strand(0.0), strand(pi))) == k);
         CHECK(std::abs(std::abs(linking_integral(strand(0.0), strand(pi), true)) - k) < 1e-12);
@@ -62,7 +66,8 @@ TEST_CASE("two pieces across each other link by what their distance says") {
     for (const double half : {2.0, 6.0, 12.0}) {
         const double d = 2.0;
         const double found = segment_linking(Vec3(-half, 0, 0), Vec3(half, 0, 0), Vec3(0, -half, d), Vec3(0, half, d));
-        CHECK(std::abs(found) == doctest::Approx(std::atan(half * half / (d * std::sqrt(2.0 * half * half + d * d))) / pi).epsilon(1e-12));
+        CHECK(std::abs(found) ==
+              doctest::Approx(std::atan(half * half / (d * std::sqrt(2.0 * half * half + d * d))) / pi).epsilon(1e-12));
     }
 }
 
@@ -72,7 +77,8 @@ TEST_CASE("far runs taken together change the integral by a part of what is far"
         const double t = 0.05 * static_cast<double>(k);
         a.emplace_back(t, std::sin(t), 0.3 * std::cos(2.0 * t)), b.emplace_back(t, std::cos(1.1 * t), 1.0 + 0.2 * std::sin(t));
     }
-    CHECK(std::abs(linking_integral(a, b) - linking_integral(a, b, true)) < 2e-4);  // (0.01)^2 of some 1 to 2 that far runs add up to, whatever their sign
+    CHECK(std::abs(linking_integral(a, b) - linking_integral(a, b, true)) <
+          2e-4);  // (0.01)^2 of some 1 to 2 that far runs add up to, whatever their sign
 }
 
 }  // namespace linking_test

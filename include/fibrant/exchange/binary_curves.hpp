@@ -70,14 +70,16 @@ private:
 
 }  // namespace detail
 
-/// `DATASET POLYDATA` with `POINTS` and `LINES`, as versions below and from 5 on write them, as text or as bytes (big-endian). Point data with the
-/// name radius is taken, all else is left.
+/// `DATASET POLYDATA` with `POINTS` and `LINES`, as versions below and from 5 on write them, as text or as bytes (big-endian).
+/// Point data with the name radius is taken, all else is left.
 inline std::vector<FileCurve> curves_of_vtk(std::string_view bytes, const std::string& file) {
     detail::ByteReader reader(bytes, file);
-    if (reader.line().rfind("# vtk DataFile Version", 0) != 0) refuse_file(file, "1", "does not begin with # vtk DataFile Version");
+    if (reader.line().rfind("# vtk DataFile Version", 0) != 0)
+        refuse_file(file, "1", "does not begin with # vtk DataFile Version");
     reader.line();
     const std::string format(reader.word());
-    if (format != "ASCII" && format != "BINARY") reader.refuse("format = " + format.substr(0, 40) + ", but it must be ASCII or BINARY");
+    if (format != "ASCII" && format != "BINARY")
+        reader.refuse("format = " + format.substr(0, 40) + ", but it must be ASCII or BINARY");
     const bool binary = format == "BINARY", swap = std::endian::native == std::endian::little;
     std::vector<Vec3> points;
     std::vector<std::vector<Index>> lines;
@@ -94,7 +96,8 @@ inline std::vector<FileCurve> curves_of_vtk(std::string_view bytes, const std::s
         if (binary) reader.line();
     };
     const auto index = [&](double value) {
-        if (!(value >= 0.0) || value >= static_cast<double>(points.size())) reader.refuse("point = " + core::text(value) + ", but it must be one of " + std::to_string(points.size()));
+        if (!(value >= 0.0) || value >= static_cast<double>(points.size()))
+            reader.refuse("point = " + core::text(value) + ", but it must be one of " + std::to_string(points.size()));
         return static_cast<Index>(value);
     };
     std::string section;
@@ -114,7 +117,8 @@ inline std::vector<FileCurve> curves_of_vtk(std::string_view bytes, const std::s
                 points.push_back(point);
             }
         } else if (word == "LINES") {
-            const Index count = reader.text_number<Index>("LINES"), size = reader.counted(reader.text_number<Index>("size of LINES"), binary ? 4 : 2, "size of LINES");
+            const Index count = reader.text_number<Index>("LINES"),
+                        size = reader.counted(reader.text_number<Index>("size of LINES"), binary ? 4 : 2, "size of LINES");
             const std::size_t mark = reader.place();
             if (const std::string next(reader.word()); next == "OFFSETS") {
                 const std::string type(reader.word());
@@ -127,7 +131,9 @@ inline std::vector<FileCurve> curves_of_vtk(std::string_view bytes, const std::s
                 std::vector<Index> all;
                 for (Index k = 0; k < size; ++k) all.push_back(index(read_one(second, "connectivity")));
                 for (std::size_t k = 0; k + 1 < offsets.size(); ++k) {
-                    if (offsets[k] < 0 || offsets[k + 1] < offsets[k] || offsets[k + 1] > size) reader.refuse("offset = " + std::to_string(offsets[k + 1]) + ", but it must rise and be <= " + std::to_string(size));
+                    if (offsets[k] < 0 || offsets[k + 1] < offsets[k] || offsets[k + 1] > size)
+                        reader.refuse("offset = " + std::to_string(offsets[k + 1]) +
+                                      ", but it must rise and be <= " + std::to_string(size));
                     lines.emplace_back(all.begin() + offsets[k], all.begin() + offsets[k + 1]);
                 }
             } else {
@@ -136,12 +142,15 @@ inline std::vector<FileCurve> curves_of_vtk(std::string_view bytes, const std::s
                 begin();
                 for (Index read = 0; read < size;) {
                     const auto n = static_cast<Index>(read_one("int", "points of a line"));
-                    if (n < 0 || read + n + 1 > size) reader.refuse("points of a line = " + std::to_string(n) + ", but it must fit the size of LINES");
+                    if (n < 0 || read + n + 1 > size)
+                        reader.refuse("points of a line = " + std::to_string(n) + ", but it must fit the size of LINES");
                     lines.emplace_back();
                     for (Index k = 0; k < n; ++k) lines.back().push_back(index(read_one("int", "point of a line")));
                     read += n + 1;
                 }
-                if (core::count(lines) != count) reader.refuse("LINES = " + std::to_string(count) + ", but it must be " + std::to_string(lines.size()) + ", as many as follow");
+                if (core::count(lines) != count)
+                    reader.refuse("LINES = " + std::to_string(count) + ", but it must be " + std::to_string(lines.size()) +
+                                  ", as many as follow");
             }
         } else if (word == "POINT_DATA" || word == "CELL_DATA") {
             section = word;
@@ -150,7 +159,8 @@ inline std::vector<FileCurve> curves_of_vtk(std::string_view bytes, const std::s
             const std::string name(reader.word()), type(reader.word());
             const std::string_view rest = reader.line();
             Index components = 1;
-            if (!detail::words(rest, "").empty()) components = detail::number<Index>(detail::words(rest, "")[0], file, "SCALARS", "components");
+            if (!detail::words(rest, "").empty())
+                components = detail::number<Index>(detail::words(rest, "")[0], file, "SCALARS", "components");
             const std::size_t mark = reader.place();
             if (std::string(reader.word()) == "LOOKUP_TABLE") {
                 reader.line();
@@ -176,7 +186,8 @@ inline std::vector<FileCurve> curves_of_vtk(std::string_view bytes, const std::s
         }
         if (!curve.radii.empty()) {
             curve.radius = curve.radii.front();
-            if (std::all_of(curve.radii.begin(), curve.radii.end(), [&](double r) { return r == curve.radius; })) curve.radii.clear();
+            if (std::all_of(curve.radii.begin(), curve.radii.end(), [&](double r) { return r == curve.radius; }))
+                curve.radii.clear();
         }
         curves.push_back(std::move(curve));
     }
@@ -191,7 +202,8 @@ inline std::string vtk_of(const std::vector<FileCurve>& curves) {
         const Index count = core::count(curve.points), all = count + (curve.closed ? 1 : 0);
         for (Index k = 0; k < count; ++k) {
             const Vec3& point = curve.points[core::at(k)];
-            points += observe::shortest(point.x()) + " " + observe::shortest(point.y()) + " " + observe::shortest(point.z()) + "\n";
+            points +=
+                observe::shortest(point.x()) + " " + observe::shortest(point.y()) + " " + observe::shortest(point.z()) + "\n";
             const double radius = curve.radii.empty() ? curve.radius : curve.radii[core::at(k)];
             radii += observe::shortest(std::isnan(radius) ? 1.0 : radius) + "\n";
         }
@@ -200,20 +212,24 @@ inline std::string vtk_of(const std::vector<FileCurve>& curves) {
         lines += "\n";
         first += count, size += all + 1;
     }
-    return "# vtk DataFile Version 3.0\ncurves\nASCII\nDATASET POLYDATA\nPOINTS " + std::to_string(first) + " double\n" + points + "LINES " + std::to_string(curves.size()) + " " +
-           std::to_string(size) + "\n" + lines + "POINT_DATA " + std::to_string(first) + "\nSCALARS radius double 1\nLOOKUP_TABLE default\n" + radii;
+    return "# vtk DataFile Version 3.0\ncurves\nASCII\nDATASET POLYDATA\nPOINTS " + std::to_string(first) + " double\n" + points +
+           "LINES " + std::to_string(curves.size()) + " " + std::to_string(size) + "\n" + lines + "POINT_DATA " +
+           std::to_string(first) + "\nSCALARS radius double 1\nLOOKUP_TABLE default\n" + radii;
 }
 
-/// Binary curve collections (Yuksel, yarn-level cloth models): a head of 64 bytes, then of each curve the count of its points, negative where it is
-/// closed, and these as single precision.
+/// Binary curve collections (Yuksel, yarn-level cloth models): a head of 64 bytes, then of each curve the count of its points,
+/// negative where it is closed, and these as single precision.
 inline std::vector<FileCurve> curves_of_bcc(std::string_view bytes, const std::string& file) {
     static_assert(std::endian::native == std::endian::little, "the numbers of the file are little-endian");
     detail::ByteReader reader(bytes, file);
-    if (bytes.size() < 64 || bytes.substr(0, 3) != "BCC") refuse_file(file, "byte 0", "does not begin with BCC and a head of 64 bytes");
+    if (bytes.size() < 64 || bytes.substr(0, 3) != "BCC")
+        refuse_file(file, "byte 0", "does not begin with BCC and a head of 64 bytes");
     if (static_cast<unsigned char>(bytes[3]) != 0x44) refuse_file(file, "byte 3", "numbers are not of four bytes (0x44)");
-    if (bytes[6] != 3) refuse_file(file, "byte 6", "dimensions = " + std::to_string(static_cast<int>(bytes[6])) + ", but it must be 3");
+    if (bytes[6] != 3)
+        refuse_file(file, "byte 6", "dimensions = " + std::to_string(static_cast<int>(bytes[6])) + ", but it must be 3");
     for (int k = 0; k < 8; ++k) reader.raw<char>();
-    const auto count = static_cast<std::int64_t>(reader.raw<std::uint64_t>()), total = static_cast<std::int64_t>(reader.raw<std::uint64_t>());
+    const auto count = static_cast<std::int64_t>(reader.raw<std::uint64_t>()),
+               total = static_cast<std::int64_t>(reader.raw<std::uint64_t>());
     for (int k = 0; k < 40; ++k) reader.raw<char>();
     reader.counted(count, 4, "curves");
     std::vector<FileCurve> curves;
@@ -231,7 +247,10 @@ inline std::vector<FileCurve> curves_of_bcc(std::string_view bytes, const std::s
         points += all;
         curves.push_back(std::move(curve));
     }
-    if (points != total) refuse_file(file, "byte 16", "points in all = " + std::to_string(total) + ", but it must be " + std::to_string(points) + ", as many as there are");
+    if (points != total)
+        refuse_file(
+            file, "byte 16",
+            "points in all = " + std::to_string(total) + ", but it must be " + std::to_string(points) + ", as many as there are");
     return curves;
 }
 inline std::string bcc_of(const std::vector<FileCurve>& curves) {

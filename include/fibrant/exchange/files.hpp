@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Curves of a file by the ending of its name. With FIBRANT_WITH_PUGIXML defined, and pugixml linked, files of XML are read as well.
+/// @file Curves of a file by the ending of its name. With FIBRANT_WITH_PUGIXML defined, and pugixml linked, files of XML are read
+/// as well.
 
 #include <fibrant/exchange/binary_curves.hpp>
 #include <fibrant/exchange/text_curves.hpp>
@@ -33,18 +34,27 @@ inline std::vector<FileCurve> read_curves(const std::filesystem::path& path, con
     if (!std::filesystem::is_regular_file(path, error)) refuse_file(name, "", "is no file that can be read");
     const std::string bytes = observe::read_file(path);
     std::vector<FileCurve> curves;
-    if (kind == "csv" || kind == "txt") curves = curves_of_csv(bytes, name);
-    else if (kind == "vtk") curves = curves_of_vtk(bytes, name);
-    else if (kind == "obj") curves = curves_of_obj(bytes, name);
-    else if (kind == "bcc") curves = curves_of_bcc(bytes, name);
-    else if (kind == "inp") curves = curves_of_inp(bytes, name);
+    if (kind == "csv" || kind == "txt")
+        curves = curves_of_csv(bytes, name);
+    else if (kind == "vtk")
+        curves = curves_of_vtk(bytes, name);
+    else if (kind == "obj")
+        curves = curves_of_obj(bytes, name);
+    else if (kind == "bcc")
+        curves = curves_of_bcc(bytes, name);
+    else if (kind == "inp")
+        curves = curves_of_inp(bytes, name);
 #if defined(FIBRANT_WITH_PUGIXML)
-    else if (kind == "vtp") curves = curves_of_vtp(bytes, name);
-    else if (kind == "tg3") curves = curves_of_tg3(bytes, name);
+    else if (kind == "vtp")
+        curves = curves_of_vtp(bytes, name);
+    else if (kind == "tg3")
+        curves = curves_of_tg3(bytes, name);
 #else
-    else if (kind == "vtp" || kind == "tg3") refuse_file(name, "", "is XML, which this program was built without: it needs pugixml");
+    else if (kind == "vtp" || kind == "tg3")
+        refuse_file(name, "", "is XML, which this program was built without: it needs pugixml");
 #endif
-    else refuse_file(name, "", "ends in ." + kind + ", but it must end in .csv, .txt, .vtk, .vtp, .obj, .bcc, .inp or .tg3");
+    else
+        refuse_file(name, "", "ends in ." + kind + ", but it must end in .csv, .txt, .vtk, .vtp, .obj, .bcc, .inp or .tg3");
     CleanParameters own = clean;
     if (kind == "tg3") own.largest_turn_deg = 180.0, own.least_points = 2;  // nodes of a spline, not points of its curve
     return cleaned(std::move(curves), name, own);
@@ -79,7 +89,8 @@ inline std::string file_of(const std::vector<FileCurve>& curves, const std::stri
         data.point_scalars("radius", radii), data.cell_scalars("group", groups);
         return data.text();
     }
-    core::refuse("ending of the file", "." + kind, ".csv, .vtk, .vtp, .obj, .bcc, .inp, .stl, .glb, or .tg3 where there is pugixml");
+    core::refuse("ending of the file", "." + kind,
+                 ".csv, .vtk, .vtp, .obj, .bcc, .inp, .stl, .glb, or .tg3 where there is pugixml");
 }
 
 }  // namespace fibrant::exchange

@@ -25,13 +25,14 @@ struct Surface {
     double volume() const {
         double sum = 0.0;
         const Vec3 origin = points.empty() ? Vec3(Vec3::Zero()) : points.front();
-        for (const auto& t : triangles) sum += (points[t[0]] - origin).dot((points[t[1]] - origin).cross(points[t[2]] - origin)) / 6.0;
+        for (const auto& t : triangles)
+            sum += (points[t[0]] - origin).dot((points[t[1]] - origin).cross(points[t[2]] - origin)) / 6.0;
         return sum;
     }
 };
 
-/// Adds a curve as a tube of so many sides, whose polygon has the area of its circle; ends are flat. Sections are carried along by the least turn from
-/// chord to chord, and round a closed curve the turn that is left over is shared out evenly.
+/// Adds a curve as a tube of so many sides, whose polygon has the area of its circle; ends are flat. Sections are carried along
+/// by the least turn from chord to chord, and round a closed curve the turn that is left over is shared out evenly.
 /// @param sides  >= 3
 inline void add_tube(Surface& surface, const FileCurve& curve, Index sides) {
     core::require_at_least("add_tube.sides", sides, 3);
@@ -58,7 +59,8 @@ inline void add_tube(Surface& surface, const FileCurve& curve, Index sides) {
     }
     const double m = static_cast<double>(sides), full = 2.0 * std::numbers::pi;
     const double wider = std::sqrt(full / m / std::sin(full / m));  // circle over inscribed polygon, by area
-    const auto first = static_cast<std::uint32_t>(surface.points.size()), s = static_cast<std::uint32_t>(sides), rings = static_cast<std::uint32_t>(n);
+    const auto first = static_cast<std::uint32_t>(surface.points.size()), s = static_cast<std::uint32_t>(sides),
+               rings = static_cast<std::uint32_t>(n);
     for (std::size_t k = 0; k < n; ++k) {
         const Vec3 h = tangent[k].cross(g[k]);
         const double radius = wider * (curve.radii.empty() ? curve.radius : curve.radii[k]);
@@ -79,8 +81,10 @@ inline void add_tube(Surface& surface, const FileCurve& curve, Index sides) {
         const std::uint32_t i = first + (last ? rings - 1 : 0) * s;
         for (std::uint32_t a = 0; a < s; ++a) {
             const std::uint32_t b = (a + 1) % s;
-            if (last) surface.triangles.push_back({middle, i + a, i + b});
-            else surface.triangles.push_back({middle, i + b, i + a});
+            if (last)
+                surface.triangles.push_back({middle, i + a, i + b});
+            else
+                surface.triangles.push_back({middle, i + b, i + a});
         }
     }
 }
@@ -114,7 +118,8 @@ inline std::string stl_of(const std::vector<FileCurve>& curves, Index sides = 12
 /// @param metre  one metre in the unit of the curves, 1000 for millimetres
 inline std::string glb_of(const std::vector<FileCurve>& curves, double metre = 1000.0, Index sides = 8) {
     core::require_positive("glb_of.metre", metre);
-    static constexpr std::array<std::array<double, 3>, 6> colours{{{0.20, 0.40, 0.75}, {0.85, 0.45, 0.15}, {0.30, 0.60, 0.30}, {0.70, 0.25, 0.35}, {0.50, 0.40, 0.70}, {0.55, 0.50, 0.40}}};
+    static constexpr std::array<std::array<double, 3>, 6> colours{
+        {{0.20, 0.40, 0.75}, {0.85, 0.45, 0.15}, {0.30, 0.60, 0.30}, {0.70, 0.25, 0.35}, {0.50, 0.40, 0.70}, {0.55, 0.50, 0.40}}};
     std::vector<Index> groups;
     for (const FileCurve& curve : curves) groups.push_back(std::max<Index>(curve.group, 0));
     std::vector<Index> all = groups;
@@ -143,27 +148,38 @@ inline std::string glb_of(const std::vector<FileCurve>& curves, double metre = 1
             for (std::size_t k = 0; k < 3; ++k) text += (k > 0 ? "," : "") + observe::shortest(static_cast<double>(v[k]));
             return text + "]";
         };
-        const std::string comma = number > 0 ? "," : "", n = std::to_string(number), m = std::to_string(2 * number), m1 = std::to_string(2 * number + 1);
-        views += comma + "{\"buffer\":0,\"byteOffset\":" + std::to_string(points_at) + ",\"byteLength\":" + std::to_string(triangles_at - points_at) + ",\"target\":34962},{\"buffer\":0,\"byteOffset\":" +
-                 std::to_string(triangles_at) + ",\"byteLength\":" + std::to_string(binary.size() - triangles_at) + ",\"target\":34963}";
-        accessors += comma + "{\"bufferView\":" + m + ",\"componentType\":5126,\"count\":" + std::to_string(surface.points.size()) + ",\"type\":\"VEC3\",\"min\":" + triple(low) + ",\"max\":" + triple(high) +
-                     "},{\"bufferView\":" + m1 + ",\"componentType\":5125,\"count\":" + std::to_string(3 * surface.triangles.size()) + ",\"type\":\"SCALAR\"}";
-        meshes += comma + "{\"name\":\"group " + std::to_string(group) + "\",\"primitives\":[{\"attributes\":{\"POSITION\":" + m + "},\"indices\":" + m1 + ",\"material\":" + n + "}]}";
+        const std::string comma = number > 0 ? "," : "", n = std::to_string(number), m = std::to_string(2 * number),
+                          m1 = std::to_string(2 * number + 1);
+        views += comma + "{\"buffer\":0,\"byteOffset\":" + std::to_string(points_at) +
+                 ",\"byteLength\":" + std::to_string(triangles_at - points_at) +
+                 ",\"target\":34962},{\"buffer\":0,\"byteOffset\":" + std::to_string(triangles_at) +
+                 ",\"byteLength\":" + std::to_string(binary.size() - triangles_at) + ",\"target\":34963}";
+        accessors +=
+            comma + "{\"bufferView\":" + m + ",\"componentType\":5126,\"count\":" + std::to_string(surface.points.size()) +
+            ",\"type\":\"VEC3\",\"min\":" + triple(low) + ",\"max\":" + triple(high) + "},{\"bufferView\":" + m1 +
+            ",\"componentType\":5125,\"count\":" + std::to_string(3 * surface.triangles.size()) + ",\"type\":\"SCALAR\"}";
+        meshes += comma + "{\"name\":\"group " + std::to_string(group) + "\",\"primitives\":[{\"attributes\":{\"POSITION\":" + m +
+                  "},\"indices\":" + m1 + ",\"material\":" + n + "}]}";
         nodes += ",{\"mesh\":" + n + "}", children += comma + std::to_string(number + 1);
         const auto& colour = colours[static_cast<std::size_t>(group) % colours.size()];
-        materials += comma + "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[" + observe::shortest(colour[0]) + "," + observe::shortest(colour[1]) + "," + observe::shortest(colour[2]) +
+        materials += comma + "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[" + observe::shortest(colour[0]) + "," +
+                     observe::shortest(colour[1]) + "," + observe::shortest(colour[2]) +
                      ",1],\"metallicFactor\":0,\"roughnessFactor\":0.8}}";
         ++number;
     }
     // The root turns z up into y up, and scales to metres.
     const std::string scale = observe::shortest(1.0 / metre), half = observe::shortest(std::sqrt(0.5));
-    std::string json = "{\"asset\":{\"version\":\"2.0\",\"generator\":\"fibrant\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"rotation\":[-" + half + ",0,0," + half + "],\"scale\":[" + scale +
-                       "," + scale + "," + scale + "],\"children\":[" + children + "]}" + nodes + "],\"meshes\":[" + meshes + "],\"materials\":[" + materials + "],\"accessors\":[" + accessors +
-                       "],\"bufferViews\":[" + views + "],\"buffers\":[{\"byteLength\":" + std::to_string(binary.size()) + "}]}";
+    std::string json =
+        "{\"asset\":{\"version\":\"2.0\",\"generator\":\"fibrant\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{"
+        "\"rotation\":[-" +
+        half + ",0,0," + half + "],\"scale\":[" + scale + "," + scale + "," + scale + "],\"children\":[" + children + "]}" +
+        nodes + "],\"meshes\":[" + meshes + "],\"materials\":[" + materials + "],\"accessors\":[" + accessors +
+        "],\"bufferViews\":[" + views + "],\"buffers\":[{\"byteLength\":" + std::to_string(binary.size()) + "}]}";
     json.resize((json.size() + 3) / 4 * 4, ' ');
     binary.resize((binary.size() + 3) / 4 * 4, '\0');
     std::string bytes;
-    detail::put(bytes, std::uint32_t{0x46546C67}), detail::put(bytes, std::uint32_t{2}), detail::put(bytes, static_cast<std::uint32_t>(28 + json.size() + binary.size()));
+    detail::put(bytes, std::uint32_t{0x46546C67}), detail::put(bytes, std::uint32_t{2}),
+        detail::put(bytes, static_cast<std::uint32_t>(28 + json.size() + binary.size()));
     detail::put(bytes, static_cast<std::uint32_t>(json.size())), detail::put(bytes, std::uint32_t{0x4E4F534A});
     bytes += json;
     detail::put(bytes, static_cast<std::uint32_t>(binary.size())), detail::put(bytes, std::uint32_t{0x004E4942});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Gauss's linking integral of two curves of chords: an integer for closed ones, however they are deformed without passing through each other.
+/// @file Gauss's linking integral of two curves of chords: an integer for closed ones, however they are deformed without passing
+/// through each other.
 
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/types.hpp>
@@ -17,8 +18,8 @@
 
 namespace fibrant::observe {
 
-/// Linking integral of the segments from p0 to p1 and from q0 to q1, in closed form (Klenin and Langowski 2000): the solid angle of their
-/// difference, over 4 pi [1]. 0 where they lie in a plane.
+/// Linking integral of the segments from p0 to p1 and from q0 to q1, in closed form (Klenin and Langowski 2000): the solid angle
+/// of their difference, over 4 pi [1]. 0 where they lie in a plane.
 inline double segment_linking(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1) {
     const Vec3 a = q0 - p0, b = q0 - p1, c = q1 - p1, d = q1 - p0;
     // Solid angle of a triangle (van Oosterom and Strackee 1983), twice.
@@ -31,7 +32,8 @@ inline double segment_linking(const Vec3& p0, const Vec3& p1, const Vec3& q0, co
 
 namespace detail {
 
-/// Segments of one curve under a binary tree of runs: each knows its middle, its reach, the sum of its chords and their first moments.
+/// Segments of one curve under a binary tree of runs: each knows its middle, its reach, the sum of its chords and their first
+/// moments.
 class LinkingTree {
 public:
     explicit LinkingTree(std::span<const Vec3> points) : points_{points} { build(0, core::count(points) - 1); }
@@ -40,8 +42,8 @@ public:
         Index first, last;  ///< segments [first, last)
         Index right = -1;   ///< child; the left one follows its parent
         Vec3 middle, sum;
-        Mat3 moment;        ///< sum of chord (x) (its middle - middle)
-        double reach;       ///< of points from the middle
+        Mat3 moment;   ///< sum of chord (x) (its middle - middle)
+        double reach;  ///< of points from the middle
     };
     const std::vector<Node>& nodes() const noexcept { return nodes_; }
     std::span<const Vec3> points() const noexcept { return points_; }
@@ -86,8 +88,9 @@ inline double far_linking(const LinkingTree::Node& a, const LinkingTree::Node& b
 
 }  // namespace detail
 
-/// Linking integral of two curves of chords. Runs of chords that are farther from each other than a hundred times what they reach are taken
-/// together, by two terms of a series: an error of (0.01)^2 of what is far, which is little; all else is exact but for rounding.
+/// Linking integral of two curves of chords. Runs of chords that are farther from each other than a hundred times what they reach
+/// are taken together, by two terms of a series: an error of (0.01)^2 of what is far, which is little; all else is exact but for
+/// rounding.
 /// @param first, second  points, at least two each; a closed curve ends with its first point
 /// @param exact          take nothing together: time with the product of the counts
 inline double linking_integral(std::span<const Vec3> first, std::span<const Vec3> second, bool exact = false) {
@@ -106,7 +109,8 @@ inline double linking_integral(std::span<const Vec3> first, std::span<const Vec3
         } else if (a.right < 0 && b.right < 0) {
             for (Index k = a.first; k < a.last; ++k)
                 for (Index l = b.first; l < b.last; ++l)
-                    sum += segment_linking(first[core::at(k)], first[core::at(k + 1)], second[core::at(l)], second[core::at(l + 1)]);
+                    sum +=
+                        segment_linking(first[core::at(k)], first[core::at(k + 1)], second[core::at(l)], second[core::at(l + 1)]);
         } else if (b.right < 0 || (a.right >= 0 && a.reach >= b.reach)) {
             open.emplace_back(i + 1, j), open.emplace_back(a.right, j);
         } else {
@@ -117,14 +121,17 @@ inline double linking_integral(std::span<const Vec3> first, std::span<const Vec3
 }
 
 /// Linking number of two closed curves, the integral rounded.
-/// @throws std::invalid_argument where a curve does not end with its first point, or the integral is not a whole number: chords that touch
+/// @throws std::invalid_argument where a curve does not end with its first point, or the integral is not a whole number: chords
+/// that touch
 inline Index linking_number(std::span<const Vec3> first, std::span<const Vec3> second) {
     for (const auto& points : {first, second})
-        if (points.size() < 4 || points.front() != points.back()) core::refuse("linking_number.points", "an open curve", "one that ends with its first point");
+        if (points.size() < 4 || points.front() != points.back())
+            core::refuse("linking_number.points", "an open curve", "one that ends with its first point");
     double value = linking_integral(first, second);
     constexpr double whole = 1e-6;
     if (std::abs(value - std::round(value)) > whole) value = linking_integral(first, second, true);
-    core::require(std::abs(value - std::round(value)) <= whole, "linking_number: integral", value, "a whole number: the curves touch");
+    core::require(std::abs(value - std::round(value)) <= whole, "linking_number: integral", value,
+                  "a whole number: the curves touch");
     return static_cast<Index>(std::llround(value));
 }
 

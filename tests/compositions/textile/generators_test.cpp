@@ -41,7 +41,11 @@ bool in_runs_of(const std::string& word, std::size_t run) {
 TEST_CASE("a flat braid of N yarns has N (N - 1) crossings a period, and each yarn alternates across its turns") {
     for (const Index n : {3, 4, 5, 7, 8}) {
         const double r = 0.05;
-        const Textile braid = flat_braid({.yarns = n, .half_width = 1.6 * static_cast<double>(n) * r, .period = 16.0 * static_cast<double>(n) * r, .periods = 3.0, .type = yarn(r)});
+        const Textile braid = flat_braid({.yarns = n,
+                                          .half_width = 1.6 * static_cast<double>(n) * r,
+                                          .period = 16.0 * static_cast<double>(n) * r,
+                                          .periods = 3.0,
+                                          .type = yarn(r)});
         CHECK(core::count(braid.crossings) == 3 * n * (n - 1));
         for (const std::string& word : order_words(braid.crossings, n)) {
             CHECK(core::count(word) == 3 * 2 * (n - 1));
@@ -56,7 +60,8 @@ TEST_CASE("a tubular braid of n and n carriers has 2 n^2 crossings a turn, in ru
     for (const Index over : {1, 2})
         for (const Index n : {4, 6, 8}) {
             const double r = 0.05, radius = 2.0 * static_cast<double>(n) * r, pitch = 2.0 * std::numbers::pi * radius;
-            const TubularBraid parameters{.carriers = n, .radius = radius, .pitch = pitch, .turns = 1.0, .over = over, .type = yarn(r)};
+            const TubularBraid parameters{
+                .carriers = n, .radius = radius, .pitch = pitch, .turns = 1.0, .over = over, .type = yarn(r)};
             const Textile braid = tubular_braid(parameters);
             CHECK(core::count(braid.crossings) == 2 * n * n);
             for (const std::string& word : order_words(braid.crossings, 2 * n)) {
@@ -70,13 +75,20 @@ TEST_CASE("a tubular braid of n and n carriers has 2 n^2 crossings a turn, in ru
             CHECK(std::tan(parameters.angle()) == doctest::Approx(2.0 * std::numbers::pi * radius / rise).epsilon(1e-12));
             CHECK(refusal([&] { require_holding(braid); }).empty());
         }
-    CHECK(refusal([] { tubular_braid({.carriers = 5, .radius = 1.0, .pitch = 1.0, .over = 2, .type = yarn()}); }).find("TubularBraid.over = 2") == 0);
+    CHECK(refusal([] {
+              tubular_braid({.carriers = 5, .radius = 1.0, .pitch = 1.0, .over = 2, .type = yarn()});
+          }).find("TubularBraid.over = 2") == 0);
 }
 
 TEST_CASE("axial yarns of a triaxial tube pass between the two that meet on them: two orders a passage") {
     const Index n = 6;
     const double r = 0.05, radius = 3.0 * static_cast<double>(n) * r;
-    const Textile braid = tubular_braid({.carriers = n, .radius = radius, .pitch = 2.0 * std::numbers::pi * radius, .turns = 1.0, .axials = true, .type = yarn(r)});
+    const Textile braid = tubular_braid({.carriers = n,
+                                         .radius = radius,
+                                         .pitch = 2.0 * std::numbers::pi * radius,
+                                         .turns = 1.0,
+                                         .axials = true,
+                                         .type = yarn(r)});
     // An axial line meets each carrier of each way once a turn.
     CHECK(core::count(braid.crossings) == 2 * n * n + 2 * n * n);
     for (const Crossing& crossing : braid.crossings) {
@@ -90,15 +102,22 @@ TEST_CASE("a level matrix has warps x columns x layers crossings, and warp w lie
         std::vector<std::string> levels;
         Index layers;
     };
-    for (const Case& c : {Case{{"01", "10"}, 1}, Case{{"0033", "3300", "1111", "2222"}, 3}, Case{{"0123321", "3210123", "1111111", "2222222"}, 3}, Case{{"0220", "2002", "1111"}, 2}}) {
-        LevelPlan plan{.levels = levels_of(c.levels), .layers = c.layers, .column_spacing = 0.6, .warp_spacing = 0.3, .warp = yarn(), .weft = yarn()};
+    for (const Case& c : {Case{{"01", "10"}, 1}, Case{{"0033", "3300", "1111", "2222"}, 3},
+                          Case{{"0123321", "3210123", "1111111", "2222222"}, 3}, Case{{"0220", "2002", "1111"}, 2}}) {
+        LevelPlan plan{.levels = levels_of(c.levels),
+                       .layers = c.layers,
+                       .column_spacing = 0.6,
+                       .warp_spacing = 0.3,
+                       .warp = yarn(),
+                       .weft = yarn()};
         const Textile weave = woven(plan);
         const Index columns = plan.column_count();
         REQUIRE(core::count(weave.crossings) == plan.warps() * columns * c.layers);
         Index right = 0;
         for (const Crossing& crossing : weave.crossings) {
             const bool warp_above = crossing.above < plan.warps();
-            const Index w = warp_above ? crossing.above : crossing.below, weft = (warp_above ? crossing.below : crossing.above) - plan.warps();
+            const Index w = warp_above ? crossing.above : crossing.below,
+                        weft = (warp_above ? crossing.below : crossing.above) - plan.warps();
             right += warp_above == (weft % c.layers < plan.level(w, weft / c.layers)) ? 1 : 0;
         }
         CHECK(right == core::count(weave.crossings));
@@ -112,8 +131,17 @@ TEST_CASE("a level matrix has warps x columns x layers crossings, and warp w lie
     }
     CHECK(angle_interlock(3) == std::vector<Index>{0, 1, 2, 3, 2, 1});
     CHECK(angle_interlock(3, 1) == std::vector<Index>{1, 2, 3, 2, 1, 0});
-    CHECK(refusal([] { woven({.levels = levels_of({"04"}), .layers = 3, .column_spacing = 0.6, .warp_spacing = 0.3, .warp = yarn(), .weft = yarn()}); }).find("LevelPlan.levels[0][1] = 4") == 0);
-    CHECK(refusal([] { woven({.levels = levels_of({"01"}), .column_spacing = 0.15, .warp_spacing = 0.3, .warp = yarn(), .weft = yarn()}); }).find("LevelPlan.column_spacing") == 0);
+    CHECK(refusal([] {
+              woven({.levels = levels_of({"04"}),
+                     .layers = 3,
+                     .column_spacing = 0.6,
+                     .warp_spacing = 0.3,
+                     .warp = yarn(),
+                     .weft = yarn()});
+          }).find("LevelPlan.levels[0][1] = 4") == 0);
+    CHECK(refusal([] {
+              woven({.levels = levels_of({"01"}), .column_spacing = 0.15, .warp_spacing = 0.3, .warp = yarn(), .weft = yarn()});
+          }).find("LevelPlan.column_spacing") == 0);
 }
 
 TEST_CASE("a lift plan gives back its levels, and one bit that contradicts them is refused by warp and pick") {
@@ -130,10 +158,20 @@ TEST_CASE("a lift plan gives back its levels, and one bit that contradicts them 
 }
 
 TEST_CASE("a cloth whose warps all lie above comes apart, and is refused by name before work") {
-    const Textile loose = woven({.levels = levels_of({"1111", "0101", "1010"}), .column_spacing = 0.6, .warp_spacing = 0.3, .warp = yarn(), .weft = yarn()});
+    const Textile loose = woven({.levels = levels_of({"1111", "0101", "1010"}),
+                                 .column_spacing = 0.6,
+                                 .warp_spacing = 0.3,
+                                 .warp = yarn(),
+                                 .weft = yarn()});
     const std::string message = refusal([&] { require_holding(loose); });
     CHECK(message.find("warp 0") != std::string::npos);
-    CHECK(refusal([] { require_holding(woven({.levels = levels_of({"0101", "1010"}), .column_spacing = 0.6, .warp_spacing = 0.3, .warp = yarn(), .weft = yarn()})); }).empty());
+    CHECK(refusal([] {
+              require_holding(woven({.levels = levels_of({"0101", "1010"}),
+                                     .column_spacing = 0.6,
+                                     .warp_spacing = 0.3,
+                                     .warp = yarn(),
+                                     .weft = yarn()}));
+          }).empty());
 }
 
 TEST_CASE("leno has two crossings a pick and one a gap for each pair, always in the one order of its yarns") {
@@ -163,10 +201,18 @@ TEST_CASE("a triaxial weave crosses each pair once at most, in cyclic order, and
     CHECK(refusal([&] { validate(weave); }).empty());
 }
 
-TEST_CASE("each loop of a weft knit crosses the one above it four times: heads over legs, legs under feet, or the other way round") {
+TEST_CASE(
+    "each loop of a weft knit crosses the one above it four times: heads over legs, legs under feet, or the other way round") {
     const double r = 0.1;
     for (const std::vector<std::string>& stitches : {std::vector<std::string>{"f"}, {"fr"}, {"f", "r"}, {"fr", "rf"}}) {
-        const WeftKnit parameters{.stitches = stitches, .courses = 4, .wales = 3, .wale_spacing = 12.0 * r, .course_spacing = 9.0 * r, .loop_height = 8.0 * r, .height_over_radius = 0.3, .type = yarn(r)};
+        const WeftKnit parameters{.stitches = stitches,
+                                  .courses = 4,
+                                  .wales = 3,
+                                  .wale_spacing = 12.0 * r,
+                                  .course_spacing = 9.0 * r,
+                                  .loop_height = 8.0 * r,
+                                  .height_over_radius = 0.3,
+                                  .type = yarn(r)};
         const Textile knit = weft_knit(parameters);
         CHECK(core::count(knit.crossings) == 3 * 3 * 4);
         for (const Crossing& c : knit.crossings) CHECK(std::abs(c.above - c.below) == 1);
@@ -190,8 +236,14 @@ TEST_CASE("each loop of a weft knit crosses the one above it four times: heads o
 
 TEST_CASE("each loop of a tricot crosses that drawn through it four times") {
     const double r = 0.05;
-    const Textile knit = tricot({.needles = 4, .courses = 4, .needle_spacing = 20.0 * r, .course_spacing = 16.0 * r, .loop_height = 22.0 * r, .type = yarn(r)});
-    // Needle m is laid by yarn m in even courses and by yarn m - 1 in odd ones: of 3 gaps of courses, on 4 needles all but those that an edge leaves.
+    const Textile knit = tricot({.needles = 4,
+                                 .courses = 4,
+                                 .needle_spacing = 20.0 * r,
+                                 .course_spacing = 16.0 * r,
+                                 .loop_height = 22.0 * r,
+                                 .type = yarn(r)});
+    // Needle m is laid by yarn m in even courses and by yarn m - 1 in odd ones: of 3 gaps of courses, on 4 needles all but those
+    // that an edge leaves.
     std::vector<Index> of_pair(16, 0);
     for (const Crossing& c : knit.crossings) ++of_pair[core::at(4 * std::min(c.above, c.below) + std::max(c.above, c.below))];
     for (Index m = 0; m + 1 < 4; ++m) CHECK(of_pair[core::at(4 * m + m + 1)] == 3 * 4);
@@ -203,14 +255,18 @@ TEST_CASE("plies lie on helices as long as their angle says, and do not touch") 
     const Plied parameters{.plies = 3, .pitch = pitch, .length = length, .type = yarn(r)};
     const Textile yarn3 = plied(parameters);
     const double a = parameters.lay_radius(3, r, pitch);
-    for (const Path& path : yarn3.paths) CHECK(scene::length_of(path.curve) == doctest::Approx(length * helix_length_ratio(a, pitch)).epsilon(1e-4));
+    for (const Path& path : yarn3.paths)
+        CHECK(scene::length_of(path.curve) == doctest::Approx(length * helix_length_ratio(a, pitch)).epsilon(1e-4));
     double least = 1e9;
     for (Index k = 0; k <= 400; ++k)
         for (Index l = 0; l <= 400; ++l)
-            least = std::min(least, (yarn3.paths[0].curve(static_cast<double>(k) / 400.0) - yarn3.paths[1].curve(static_cast<double>(l) / 400.0)).norm());
+            least = std::min(least, (yarn3.paths[0].curve(static_cast<double>(k) / 400.0) -
+                                     yarn3.paths[1].curve(static_cast<double>(l) / 400.0))
+                                        .norm());
     CHECK(least > 2.0 * r);
     CHECK(least < 2.3 * r);
-    const Textile rope = plied({.plies = 3, .pitch = pitch, .strands = 3, .strand_pitch = 100.0 * r, .length = length, .type = yarn(r)});
+    const Textile rope =
+        plied({.plies = 3, .pitch = pitch, .strands = 3, .strand_pitch = 100.0 * r, .length = length, .type = yarn(r)});
     CHECK(core::count(rope.paths) == 9);
     CHECK(refusal([&] { validate(rope); }).empty());
 }
@@ -235,7 +291,8 @@ TEST_CASE("yarns of a net clasp each other at every turn: two crossings, one abo
     CHECK(core::count(meshes.crossings) == 2 * (2 + 2 + 2));
     for (Index k = 0; k + 1 < 4; ++k) {
         Index above = 0, below = 0;
-        for (const Crossing& c : meshes.crossings) above += c.above == k && c.below == k + 1, below += c.below == k && c.above == k + 1;
+        for (const Crossing& c : meshes.crossings)
+            above += c.above == k && c.below == k + 1, below += c.below == k && c.above == k + 1;
         CHECK(above == 2);
         CHECK(below == 2);
     }

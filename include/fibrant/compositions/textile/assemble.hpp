@@ -33,7 +33,8 @@ struct Assembled {
     scene::Assembly assembly;
     std::vector<Index> path_of;      ///< of each fibre
     std::vector<Index> first_fibre;  ///< of each path, and the count of all at the end
-    double longest_spacing = 0.0;    ///< mean arc from crossing to crossing of the paths; a quarter of the shortest path where there are none [length]
+    double longest_spacing =
+        0.0;  ///< mean arc from crossing to crossing of the paths; a quarter of the shortest path where there are none [length]
 };
 
 namespace detail {
@@ -47,7 +48,8 @@ inline std::vector<scene::Curve> fibre_curves(const Textile& textile, Index p) {
     const auto samples = std::max<Index>(64, static_cast<Index>(length / type.radius));
     const bool repeats = path.kind != PathKind::open;
     if (repeats)
-        core::require(std::abs(turns - std::round(turns)) < 1e-9, textile.label(p) + ": turns of its twist over its length", turns, "whole, of a path that repeats");
+        core::require(std::abs(turns - std::round(turns)) < 1e-9, textile.label(p) + ": turns of its twist over its length",
+                      turns, "whole, of a path that repeats");
     std::vector<scene::Curve> curves;
     for (const Eigen::Vector2d& centre : packing.centres)
         // g_1 is the direction of the thickness: across it lies -g_2.
@@ -59,7 +61,8 @@ inline std::vector<scene::Curve> fibre_curves(const Textile& textile, Index p) {
 /// Mean arc between neighbouring crossings of a path.
 inline double crossing_spacing(const Textile& textile) {
     std::vector<Index> crossings(textile.paths.size(), 0);
-    for (const Crossing& crossing : textile.crossings) ++crossings[core::at(crossing.above)], ++crossings[core::at(crossing.below)];
+    for (const Crossing& crossing : textile.crossings)
+        ++crossings[core::at(crossing.above)], ++crossings[core::at(crossing.below)];
     double length = 0.0, shortest = std::numeric_limits<double>::infinity();
     Index count = 0;
     for (std::size_t p = 0; p < textile.paths.size(); ++p) {
@@ -70,10 +73,11 @@ inline double crossing_spacing(const Textile& textile) {
 }
 }  // namespace detail
 
-/// Adds what a textile is to a scene of its own. Fibres start as drawn; those of paths that are straight at rest are so, of the same length.
+/// Adds what a textile is to a scene of its own. Fibres start as drawn; those of paths that are straight at rest are so, of the
+/// same length.
 ///
-/// Pairs of yarns that have several fibres are given the order of their crossing, where they cross with one order only: a forced order belongs to
-/// two groups. Yarns of one fibre keep the side on which they are drawn.
+/// Pairs of yarns that have several fibres are given the order of their crossing, where they cross with one order only: a forced
+/// order belongs to two groups. Yarns of one fibre keep the side on which they are drawn.
 /// @throws std::invalid_argument naming yarn, field and bound
 inline Assembled assemble(const Textile& textile, const Fineness& fineness) {
     validate(textile);
@@ -97,7 +101,8 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness) {
         answer.first_fibre.push_back(core::count(answer.path_of));
         const std::vector<scene::Curve> curves = detail::fibre_curves(textile, p);
         const double path_length = scene::length_of(path.curve, 128);
-        const Index elements = std::max(fineness.least_elements, static_cast<Index>(std::ceil(path_length / (fineness.element_over_radius * type.radius))));
+        const Index elements = std::max(
+            fineness.least_elements, static_cast<Index>(std::ceil(path_length / (fineness.element_over_radius * type.radius))));
         for (const scene::Curve& curve : curves) {
             scene::FibreSpecification fibre;
             fibre.section = scene::circular(type.radius, type.inertia_factor), fibre.material = type.material;
@@ -109,7 +114,8 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness) {
                 fibre.start = curve;
                 if (!fibre.closed) {
                     const double length = scene::reference_shape(curve, 2 * elements + 1).length;
-                    const Vec3 chord = curve(1.0) - curve(0.0), along = chord.norm() > 0.0 ? Vec3(chord.normalized()) : Vec3(Vec3::UnitX());
+                    const Vec3 chord = curve(1.0) - curve(0.0),
+                               along = chord.norm() > 0.0 ? Vec3(chord.normalized()) : Vec3(Vec3::UnitX());
                     fibre.from = curve(0.0), fibre.to = curve(0.0) + length * along;
                 }
             }
@@ -143,7 +149,8 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness) {
     // One order a pair; pairs that cross both ways have none.
     std::vector<std::pair<Index, Index>> orders;
     for (const Crossing& crossing : textile.crossings)
-        if (crossing.above != crossing.below && (textile.type_of(crossing.above).fibres > 1 || textile.type_of(crossing.below).fibres > 1))
+        if (crossing.above != crossing.below &&
+            (textile.type_of(crossing.above).fibres > 1 || textile.type_of(crossing.below).fibres > 1))
             orders.emplace_back(crossing.above, crossing.below);
     std::sort(orders.begin(), orders.end());
     orders.erase(std::unique(orders.begin(), orders.end()), orders.end());

@@ -42,8 +42,9 @@ inline double rounded_wave(double x, double tip) noexcept {
 }
 }  // namespace detail
 
-/// Yarn k lies at x = A tri(y / P + k / N): meetings are at x_m = A (2 m / N - 1), m from 1 to N - 1, in a quincunx. The yarn that goes to the
-/// right is above where the whole part of m over `over` is even, so that each yarn alternates, across its turns as well. N (N - 1) crossings a period.
+/// Yarn k lies at x = A tri(y / P + k / N): meetings are at x_m = A (2 m / N - 1), m from 1 to N - 1, in a quincunx. The yarn
+/// that goes to the right is above where the whole part of m over `over` is even, so that each yarn alternates, across its turns
+/// as well. N (N - 1) crossings a period.
 inline Textile flat_braid(const FlatBraid& braid) {
     braid.validate();
     Textile textile;
@@ -63,11 +64,14 @@ inline Textile flat_braid(const FlatBraid& braid) {
         };
         textile.paths.push_back(std::move(path));
     }
-    interlace(textile, [&](const PlanCrossing& crossing) {
-        const auto column = static_cast<Index>(std::lround(0.5 * n * (crossing.place.x() / braid.half_width + 1.0)));
-        const bool right_above = (column / braid.over) % 2 == 0;
-        return one_above((crossing.along_first.x() > 0.0) == right_above);
-    }, braid.height_over_radius * half_width(braid.type));
+    interlace(
+        textile,
+        [&](const PlanCrossing& crossing) {
+            const auto column = static_cast<Index>(std::lround(0.5 * n * (crossing.place.x() / braid.half_width + 1.0)));
+            const bool right_above = (column / braid.over) % 2 == 0;
+            return one_above((crossing.along_first.x() > 0.0) == right_above);
+        },
+        braid.height_over_radius * half_width(braid.type));
     return textile;
 }
 
@@ -88,7 +92,8 @@ struct TubularBraid {
         core::require_positive("TubularBraid.pitch", pitch);
         core::require_positive("TubularBraid.turns", turns);
         core::require_at_least("TubularBraid.over", over, 1);
-        if (carriers % over != 0) core::refuse("TubularBraid.over", std::to_string(over), "a divisor of the carriers, " + std::to_string(carriers));
+        if (carriers % over != 0)
+            core::refuse("TubularBraid.over", std::to_string(over), "a divisor of the carriers, " + std::to_string(carriers));
         if (axials && over != 1) core::refuse("TubularBraid.over", std::to_string(over), "1 with axial yarns");
         core::require_positive("TubularBraid.height_over_radius", height_over_radius);
         type.validate();
@@ -96,12 +101,14 @@ struct TubularBraid {
     /// Angle of the carriers to the axis: tan alpha = 2 pi R / H [radian].
     double angle() const noexcept { return std::atan(2.0 * std::numbers::pi * radius / pitch); }
     /// Distance of neighbours of one direction, across them [length].
-    double spacing() const noexcept { return 2.0 * std::numbers::pi * radius * std::cos(angle()) / static_cast<double>(carriers); }
+    double spacing() const noexcept {
+        return 2.0 * std::numbers::pi * radius * std::cos(angle()) / static_cast<double>(carriers);
+    }
 };
 
-/// With f = 2 pi z / H carriers lie at angles f + 2 pi i / n and -f + 2 pi j / n. They meet where n f = pi (j' - i), j' = j + n m, at the angle
-/// pi (i + j') / n, and there the first is outside where (i + j') mod 2 p < p, in a p x p braid. 2 n^2 crossings a turn. An axial yarn stands at
-/// the angles pi (2 k + 1) / n, between the two that meet there.
+/// With f = 2 pi z / H carriers lie at angles f + 2 pi i / n and -f + 2 pi j / n. They meet where n f = pi (j' - i), j' = j + n
+/// m, at the angle pi (i + j') / n, and there the first is outside where (i + j') mod 2 p < p, in a p x p braid. 2 n^2 crossings
+/// a turn. An axial yarn stands at the angles pi (2 k + 1) / n, between the two that meet there.
 inline Textile tubular_braid(const TubularBraid& braid) {
     braid.validate();
     Textile textile;
@@ -134,19 +141,22 @@ inline Textile tubular_braid(const TubularBraid& braid) {
             textile.paths.push_back(std::move(path));
         }
     const Index n2 = 2 * braid.over;
-    interlace(textile, [&, n2](const PlanCrossing& crossing) -> std::array<double, 2> {
-        const bool axial = crossing.second >= 2 * braid.carriers;
-        const double angle = std::atan2(crossing.place.y(), crossing.place.x());
-        if (axial) {  // 1x1: at these angles sums of numbers are odd, and what goes right is inside
-            const bool right = crossing.first < braid.carriers;
-            return {right ? -2.0 : 2.0, 0.0};
-        }
-        // Where three meet, the two carriers leave room for the axial one between them.
-        const auto sum = static_cast<Index>(std::lround(n * angle / std::numbers::pi));
-        const Index rest = ((sum % n2) + n2) % n2;
-        const double high = braid.axials && rest == 1 ? 2.0 : 1.0;
-        return rest < braid.over ? std::array{high, -high} : std::array{-high, high};
-    }, braid.height_over_radius * half_width(braid.type));
+    interlace(
+        textile,
+        [&, n2](const PlanCrossing& crossing) -> std::array<double, 2> {
+            const bool axial = crossing.second >= 2 * braid.carriers;
+            const double angle = std::atan2(crossing.place.y(), crossing.place.x());
+            if (axial) {  // 1x1: at these angles sums of numbers are odd, and what goes right is inside
+                const bool right = crossing.first < braid.carriers;
+                return {right ? -2.0 : 2.0, 0.0};
+            }
+            // Where three meet, the two carriers leave room for the axial one between them.
+            const auto sum = static_cast<Index>(std::lround(n * angle / std::numbers::pi));
+            const Index rest = ((sum % n2) + n2) % n2;
+            const double high = braid.axials && rest == 1 ? 2.0 : 1.0;
+            return rest < braid.over ? std::array{high, -high} : std::array{-high, high};
+        },
+        braid.height_over_radius* half_width(braid.type));
     return textile;
 }
 

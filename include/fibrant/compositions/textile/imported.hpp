@@ -14,7 +14,8 @@
 
 namespace fibrant::compositions::textile {
 
-/// Points drawn towards their neighbours by a Gaussian along the index; the ends of an open curve are mirrored and keep their places.
+/// Points drawn towards their neighbours by a Gaussian along the index; the ends of an open curve are mirrored and keep their
+/// places.
 /// @param width  its standard deviation in points, >= 0; 0: as they are
 inline std::vector<Vec3> smoothed(const std::vector<Vec3>& points, double width, bool closed) {
     core::require_not_negative("smoothed.width", width);
@@ -48,7 +49,8 @@ inline std::vector<Vec3> smoothed(const std::vector<Vec3>& points, double width,
 /// @param type    of all yarns; its radius, where it is not set, is that of the file
 /// @param smooth  width of the Gaussian that points are smoothed by [points], >= 0
 /// @throws std::invalid_argument naming the curve whose radius nobody says
-inline Textile textile_of(const std::vector<exchange::FileCurve>& curves, const YarnType& type, const View& view, double smooth = 0.0) {
+inline Textile textile_of(const std::vector<exchange::FileCurve>& curves, const YarnType& type, const View& view,
+                          double smooth = 0.0) {
     Textile textile;
     textile.name = "imported";
     textile.view = view;
@@ -66,7 +68,9 @@ inline Textile textile_of(const std::vector<exchange::FileCurve>& curves, const 
         path.kind = curve.closed ? PathKind::closed : PathKind::open;
         std::vector<Vec3> points = smoothed(curve.points, smooth, curve.closed);
         if (curve.closed) points.push_back(points.front());
-        path.curve = scene::curve_through(std::move(points), curve.closed ? scene::SplineEnds::repeating : scene::SplineEnds::natural, scene::SplineKnots::by_distance, path.name);
+        path.curve =
+            scene::curve_through(std::move(points), curve.closed ? scene::SplineEnds::repeating : scene::SplineEnds::natural,
+                                 scene::SplineSteps::by_distance, path.name);
         textile.paths.push_back(std::move(path));
     }
     textile.crossings = crossings_of(textile);
@@ -80,7 +84,8 @@ inline std::vector<exchange::FileCurve> curves_of(const observe::Snapshot& snaps
     for (std::size_t f = 0; f < snapshot.fibres.size(); ++f) {
         const observe::FibreSnapshot& fibre = snapshot.fibres[f];
         exchange::FileCurve curve;
-        curve.points = fibre.position, curve.radius = fibre.section.radius(), curve.closed = fibre.closed, curve.group = group_of[f];
+        curve.points = fibre.position, curve.radius = fibre.section.radius(), curve.closed = fibre.closed,
+        curve.group = group_of[f];
         if (fibre.closed) curve.points.pop_back();
         curves.push_back(std::move(curve));
     }
@@ -94,8 +99,10 @@ inline std::vector<exchange::FileCurve> curves_of(const Textile& textile, Index 
         const Path& path = textile.paths[core::at(p)];
         exchange::FileCurve curve;
         const bool closed = path.kind == PathKind::closed;
-        for (Index k = 0; k < points; ++k) curve.points.push_back(path.curve(static_cast<double>(k) / static_cast<double>(closed ? points : points - 1)));
-        curve.radius = half_width(textile.type_of(p)), curve.closed = closed, curve.group = p, curve.name = path.name, curve.period = path.image;
+        for (Index k = 0; k < points; ++k)
+            curve.points.push_back(path.curve(static_cast<double>(k) / static_cast<double>(closed ? points : points - 1)));
+        curve.radius = half_width(textile.type_of(p)), curve.closed = closed, curve.group = p, curve.name = path.name,
+        curve.period = path.image;
         curves.push_back(std::move(curve));
     }
     return curves;

@@ -17,8 +17,8 @@ namespace fibrant::compositions::textile {
 /// A crossing of two paths in the surface, as a rule sees it.
 struct PlanCrossing {
     Index first = -1, second = -1;
-    double at_first = 0.0, at_second = 0.0;          ///< parameters of the two curves, in [0, 1]
-    Vec3 place = Vec3::Zero();                       ///< [length]
+    double at_first = 0.0, at_second = 0.0;                        ///< parameters of the two curves, in [0, 1]
+    Vec3 place = Vec3::Zero();                                     ///< [length]
     Vec3 along_first = Vec3::Zero(), along_second = Vec3::Zero();  ///< chords of the two paths there [length]
 };
 
@@ -53,7 +53,8 @@ public:
         if (knots_.empty()) return 0.0;
         if (t <= knots_.front().first) return knots_.front().second;
         if (t >= knots_.back().first) return knots_.back().second;
-        const auto after = std::upper_bound(knots_.begin(), knots_.end(), t, [](double x, const auto& knot) { return x < knot.first; });
+        const auto after =
+            std::upper_bound(knots_.begin(), knots_.end(), t, [](double x, const auto& knot) { return x < knot.first; });
         const auto& [a, low] = *(after - 1);
         const auto& [b, high] = *after;
         const double s = (t - a) / (b - a);
@@ -71,10 +72,10 @@ inline scene::Curve raised(scene::Curve plan, std::vector<std::pair<double, doub
     const Vec3 axis = view.axis.normalized();
     return [plan = std::move(plan), heights, view, axis](double t) -> Vec3 {
         const Vec3 place = plan(t);
-        if (!view.radial) return place + (*heights)(t) * axis;
+        if (!view.radial) return place + (*heights)(t)*axis;
         Vec3 out = place - view.centre;
         out -= out.dot(axis) * axis;
-        return place + (*heights)(t) * out.normalized();
+        return place + (*heights)(t)*out.normalized();
     };
 }
 
@@ -94,8 +95,13 @@ inline void interlace(Textile& textile, const HeightRule& rule, double height) {
         const Line &a = lines[core::at(m.line_a)], &b = lines[core::at(m.line_b)];
         const std::size_t i = core::at(m.piece_a), j = core::at(m.piece_b);
         const detail::MeetingPlace place = detail::place_of(m, lines, plan, textile.view);
-        PlanCrossing crossing{m.line_a, m.line_b, 0.0, 0.0, (1.0 - m.part_a) * a.points[i] + m.part_a * a.points[i + 1],
-                              a.points[i + 1] - a.points[i], b.points[j + 1] - b.points[j]};
+        PlanCrossing crossing{m.line_a,
+                              m.line_b,
+                              0.0,
+                              0.0,
+                              (1.0 - m.part_a) * a.points[i] + m.part_a * a.points[i + 1],
+                              a.points[i + 1] - a.points[i],
+                              b.points[j + 1] - b.points[j]};
         crossing.at_first = (static_cast<double>(i) + m.part_a) / static_cast<double>(a.points.size() - 1);
         crossing.at_second = (static_cast<double>(j) + m.part_b) / static_cast<double>(b.points.size() - 1);
         const std::array<double, 2> heights = rule(crossing);
@@ -111,9 +117,11 @@ inline void interlace(Textile& textile, const HeightRule& rule, double height) {
     textile.crossings = crossings_of(textile);
     const CrossingAudit audit = audit_crossings(asked, textile.crossings);
     if (!audit.clean())
-        core::refuse(textile.name + ": crossings of " + textile.label(audit.first_path) + " and " + textile.label(audit.second_path),
-                     std::to_string(audit.wrong) + " wrong, " + std::to_string(audit.missing) + " missing and " + std::to_string(audit.extra) + " more",
-                     "as the rule says");
+        core::refuse(
+            textile.name + ": crossings of " + textile.label(audit.first_path) + " and " + textile.label(audit.second_path),
+            std::to_string(audit.wrong) + " wrong, " + std::to_string(audit.missing) + " missing and " +
+                std::to_string(audit.extra) + " more",
+            "as the rule says");
 }
 
 }  // namespace fibrant::compositions::textile

@@ -15,7 +15,8 @@ namespace fibrant::compositions::textile {
 
 /// A weft knit on its needles: courses of loops, each drawn through the one below, from the front to the back or the other way.
 ///
-/// A loop of a course is x = W u + a sin 4 pi u, y = -H cos 2 pi u, u in [0, 1], with its feet at u = 0 and 1 and its head in the middle.
+/// A loop of a course is x = W u + a sin 4 pi u, y = -H cos 2 pi u, u in [0, 1], with its feet at u = 0 and 1 and its head in the
+/// middle.
 struct WeftKnit {
     std::vector<std::string> stitches{"f"};  ///< a text a course, 'f' face or 'r' reverse a wale; repeated both ways
     Index courses = 3, wales = 3;            ///< >= 1
@@ -36,19 +37,22 @@ struct WeftKnit {
         if (stitches.empty()) core::refuse("WeftKnit.stitches", "none", "at least one course");
         for (std::size_t k = 0; k < stitches.size(); ++k)
             if (stitches[k].empty() || stitches[k].find_first_not_of("fr") != std::string::npos)
-                core::refuse("WeftKnit.stitches[" + std::to_string(k) + "]", "\"" + stitches[k] + "\"", "letters f (face) and r (reverse), at least one");
+                core::refuse("WeftKnit.stitches[" + std::to_string(k) + "]", "\"" + stitches[k] + "\"",
+                             "letters f (face) and r (reverse), at least one");
         core::require_at_least("WeftKnit.courses", courses, 1);
         core::require_at_least("WeftKnit.wales", wales, 1);
         core::require_positive("WeftKnit.wale_spacing", wale_spacing);
         core::require_positive("WeftKnit.course_spacing", course_spacing);
-        core::require(loop_height > 0.5 * course_spacing, "WeftKnit.loop_height", loop_height, "> half of course_spacing, or loops do not reach the next course");
+        core::require(loop_height > 0.5 * course_spacing, "WeftKnit.loop_height", loop_height,
+                      "> half of course_spacing, or loops do not reach the next course");
         core::require_positive("WeftKnit.height_over_radius", height_over_radius);
         type.validate();
     }
 };
 
-/// Four crossings of each loop with that above it: heads over legs, legs under feet, as seen from where feet of face stitches lie in front, and the
-/// other way round for reverse ones. The feet of the first course and the heads of the last one are held, as on needles, and so are ends.
+/// Four crossings of each loop with that above it: heads over legs, legs under feet, as seen from where feet of face stitches lie
+/// in front, and the other way round for reverse ones. The feet of the first course and the heads of the last one are held, as on
+/// needles, and so are ends.
 inline Textile weft_knit(const WeftKnit& knit) {
     knit.validate();
     Textile textile;
@@ -60,12 +64,20 @@ inline Textile weft_knit(const WeftKnit& knit) {
     for (Index k = 0; k < knit.courses; ++k) {
         Path path;
         path.name = "course " + std::to_string(k), path.family = k, path.straight = false;
-        // Heights along the course, a loop a unit: feet and lower legs by this course's stitch, upper legs and head by that above.
+        // Heights along the course, a loop a unit: feet and lower legs by this course's stitch, upper legs and head by that
+        // above.
         std::vector<std::pair<double, double>> knots;
         const auto sign = [&](Index course, Index wale) { return knit.face(course, wale) ? h : -h; };
         for (Index m = 0; m < knit.wales; ++m) {
             const double u = static_cast<double>(m), low = sign(k, m), high = sign(k + 1, m);
-            for (const auto& [at, height] : {std::pair{0.06, low}, {0.215, -low}, {0.285, -high}, {0.44, high}, {0.56, high}, {0.715, -high}, {0.785, -low}, {0.94, low}})
+            for (const auto& [at, height] : {std::pair{0.06, low},
+                                             {0.215, -low},
+                                             {0.285, -high},
+                                             {0.44, high},
+                                             {0.56, high},
+                                             {0.715, -high},
+                                             {0.785, -low},
+                                             {0.94, low}})
                 knots.emplace_back(u + at, height);
         }
         const double loops = static_cast<double>(knit.wales);
@@ -109,20 +121,22 @@ struct Tricot {
         core::require_at_least("Tricot.courses", courses, 2);
         core::require_positive("Tricot.needle_spacing", needle_spacing);
         core::require_positive("Tricot.course_spacing", course_spacing);
-        core::require(loop_height > course_spacing, "Tricot.loop_height", loop_height, "> course_spacing, or loops do not reach the next course");
+        core::require(loop_height > course_spacing, "Tricot.loop_height", loop_height,
+                      "> course_spacing, or loops do not reach the next course");
         core::require_positive("Tricot.height_over_radius", height_over_radius);
         type.validate();
     }
 };
 
-/// Yarn m lays its loops on needles m and m + 1 by turns. Loops are closed: feet lie side by side, heads above the legs of the loop that is drawn
-/// through them, underlaps and feet above the legs of the loop below.
+/// Yarn m lays its loops on needles m and m + 1 by turns. Loops are closed: feet lie side by side, heads above the legs of the
+/// loop that is drawn through them, underlaps and feet above the legs of the loop below.
 inline Textile tricot(const Tricot& knit) {
     knit.validate();
     Textile textile;
     textile.name = "tricot";
     textile.types = {knit.type};
-    const double w = knit.needle_spacing, c = knit.course_spacing, top = knit.loop_height, h = knit.height_over_radius * half_width(knit.type);
+    const double w = knit.needle_spacing, c = knit.course_spacing, top = knit.loop_height,
+                 h = knit.height_over_radius * half_width(knit.type);
     const double neck = 0.14 * w, head = 0.30 * w;
     for (Index m = 0; m < knit.needles; ++m) {
         Path path;

@@ -14,12 +14,12 @@ namespace fibrant::compositions::textile {
 
 /// Yarns wound around each other, in one or two stages: plies of a yarn, or strands of a rope that are plied themselves.
 struct Plied {
-    Index plies = 3;              ///< around each other, >= 2
-    double pitch = core::unset;   ///< of the plies [length], > 0
-    Index strands = 1;            ///< of so many plies each, around each other; 1: one stage
+    Index plies = 3;                    ///< around each other, >= 2
+    double pitch = core::unset;         ///< of the plies [length], > 0
+    Index strands = 1;                  ///< of so many plies each, around each other; 1: one stage
     double strand_pitch = core::unset;  ///< of the strands, against the hand of the plies [length], > 0
-    double length = core::unset;  ///< along the axis [length], > 0
-    double slack = 0.05;          ///< distance of neighbours over their thickness [1], >= 0
+    double length = core::unset;        ///< along the axis [length], > 0
+    double slack = 0.05;                ///< distance of neighbours over their thickness [1], >= 0
     YarnType type{};
 
     void validate() const {
@@ -31,18 +31,21 @@ struct Plied {
         core::require_not_negative("Plied.slack", slack);
         type.validate();
     }
-    /// Distance of an axis from that which it goes around, of `count` cylinders of radius r that lean by their pitch: in the plane across the axis
-    /// a section is an ellipse, wider around the axis by 1 / cos of the lean [length].
+    /// Distance of an axis from that which it goes around, of `count` cylinders of radius r that lean by their pitch: in the
+    /// plane across the axis a section is an ellipse, wider around the axis by 1 / cos of the lean [length].
     double lay_radius(Index count, double r, double of_pitch) const noexcept {
         const double n = static_cast<double>(count), width = r * (1.0 + slack), straight = width / std::sin(std::numbers::pi / n);
         double a = straight;
-        for (int k = 0; k < 50; ++k) a = straight * std::hypot(1.0, 2.0 * std::numbers::pi * a / of_pitch);  // a fixed point: the lean grows with a
+        for (int k = 0; k < 50; ++k)
+            a = straight * std::hypot(1.0, 2.0 * std::numbers::pi * a / of_pitch);  // a fixed point: the lean grows with a
         return a;
     }
 };
 
 /// Length of a helix over that of its axis: sqrt(1 + (2 pi a / H)^2).
-inline double helix_length_ratio(double radius, double pitch) noexcept { return std::hypot(1.0, 2.0 * std::numbers::pi * radius / pitch); }
+inline double helix_length_ratio(double radius, double pitch) noexcept {
+    return std::hypot(1.0, 2.0 * std::numbers::pi * radius / pitch);
+}
 
 inline Textile plied(const Plied& rope) {
     rope.validate();
@@ -50,9 +53,12 @@ inline Textile plied(const Plied& rope) {
     textile.name = rope.strands > 1 ? "rope" : "plied yarn";
     textile.types = {rope.type};
     const double thick = half_width(rope.type), a = rope.lay_radius(rope.plies, thick, rope.pitch);
-    core::require(2.0 * std::numbers::pi * a / rope.pitch < 2.0, "Plied.pitch", rope.pitch, "longer: plies would lie at more than 63 degrees");
+    core::require(2.0 * std::numbers::pi * a / rope.pitch < 2.0, "Plied.pitch", rope.pitch,
+                  "longer: plies would lie at more than 63 degrees");
     const double b = rope.strands > 1 ? rope.lay_radius(rope.strands, a + thick, rope.strand_pitch) : 0.0;
-    if (rope.strands > 1) core::require(2.0 * std::numbers::pi * b / rope.strand_pitch < 2.0, "Plied.strand_pitch", rope.strand_pitch, "longer: strands would lie at more than 63 degrees");
+    if (rope.strands > 1)
+        core::require(2.0 * std::numbers::pi * b / rope.strand_pitch < 2.0, "Plied.strand_pitch", rope.strand_pitch,
+                      "longer: strands would lie at more than 63 degrees");
     for (Index s = 0; s < rope.strands; ++s) {
         const double start = 2.0 * std::numbers::pi * static_cast<double>(s) / static_cast<double>(rope.strands);
         const scene::Curve axis = [=, length = rope.length, pitch = rope.strand_pitch](double t) {
@@ -65,20 +71,22 @@ inline Textile plied(const Plied& rope) {
             const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(rope.plies);
             Path path;
             path.name = "ply " + std::to_string(s) + "." + std::to_string(k), path.family = s;
-            path.curve = scene::beside(axis, a * std::cos(angle), a * std::sin(angle), along / rope.pitch, samples, Vec3::UnitX());
+            path.curve =
+                scene::beside(axis, a * std::cos(angle), a * std::sin(angle), along / rope.pitch, samples, Vec3::UnitX());
             textile.paths.push_back(std::move(path));
         }
     }
     return textile;
 }
 
-/// European chain mail: rings at a quincunx, rows tilted one way and the other, each ring linked with those of the rows beside it.
+/// European chain mail: rings at a quincunx, rows tilted one way and the other, each ring linked with those of the rows beside
+/// it.
 struct ChainMail {
-    Index rows = 3, columns = 3;      ///< >= 2
+    Index rows = 3, columns = 3;       ///< >= 2
     double ring_radius = core::unset;  ///< of the middle line [length]
-    double pitch = core::unset;       ///< of rings in a row [length]; unset: 2.6 ring radii
-    double row_pitch = core::unset;   ///< unset: 0.9 ring radii
-    double tilt_deg = 35.0;           ///< of rings about the direction of the rows [degree], in (0, 80]
+    double pitch = core::unset;        ///< of rings in a row [length]; unset: 2.6 ring radii
+    double row_pitch = core::unset;    ///< unset: 0.9 ring radii
+    double tilt_deg = 35.0;            ///< of rings about the direction of the rows [degree], in (0, 80]
     YarnType type{};
 
     double along() const noexcept { return std::isnan(pitch) ? 2.6 * ring_radius : pitch; }
@@ -95,7 +103,8 @@ struct ChainMail {
     }
 };
 
-/// Row j is shifted by half a pitch where j is odd, and tilted the other way: a ring inside is linked with two of each row beside its own.
+/// Row j is shifted by half a pitch where j is odd, and tilted the other way: a ring inside is linked with two of each row beside
+/// its own.
 inline Textile chain_mail(const ChainMail& mail) {
     mail.validate();
     Textile textile;
@@ -104,7 +113,8 @@ inline Textile chain_mail(const ChainMail& mail) {
     for (Index j = 0; j < mail.rows; ++j)
         for (Index i = 0; i < mail.columns; ++i) {
             const double tilt = (j % 2 == 0 ? 1.0 : -1.0) * mail.tilt_deg * std::numbers::pi / 180.0;
-            const Vec3 centre(mail.along() * (static_cast<double>(i) + (j % 2 == 0 ? 0.0 : 0.5)), mail.across() * static_cast<double>(j), 0.0);
+            const Vec3 centre(mail.along() * (static_cast<double>(i) + (j % 2 == 0 ? 0.0 : 0.5)),
+                              mail.across() * static_cast<double>(j), 0.0);
             const Vec3 side(0.0, std::cos(tilt), std::sin(tilt));
             Path path;
             path.name = "ring " + std::to_string(j) + "." + std::to_string(i), path.family = j % 2;
@@ -139,13 +149,15 @@ struct Net {
     }
 };
 
-/// Yarn k lies at x = k p + (p + o) / 2 cos(2 pi y / P + pi k): neighbours cross twice at each of their turns, first the one above, then the other.
+/// Yarn k lies at x = k p + (p + o) / 2 cos(2 pi y / P + pi k): neighbours cross twice at each of their turns, first the one
+/// above, then the other.
 inline Textile net(const Net& given) {
     given.validate();
     Textile textile;
     textile.name = "net";
     textile.types = {given.type};
-    const double overlap = given.overlap > 0.0 ? given.overlap : 4.0 * half_width(given.type), length = given.period * given.periods;
+    const double overlap = given.overlap > 0.0 ? given.overlap : 4.0 * half_width(given.type),
+                 length = given.period * given.periods;
     for (Index k = 0; k < given.yarns; ++k) {
         Path path;
         path.name = "yarn " + std::to_string(k), path.family = k % 2;
@@ -158,11 +170,15 @@ inline Textile net(const Net& given) {
         textile.paths.push_back(std::move(path));
     }
     // Turning points lie at whole halves of a period less a quarter; before one the left yarn is above, behind it the right one.
-    interlace(textile, [&](const PlanCrossing& crossing) {
-        const double half = 0.5 * given.period, turn = std::round((crossing.place.y() + 0.5 * half) / half) * half - 0.5 * half;
-        const bool left_above = crossing.place.y() < turn;
-        return one_above((crossing.first < crossing.second) == left_above);
-    }, given.height_over_radius * half_width(given.type));
+    interlace(
+        textile,
+        [&](const PlanCrossing& crossing) {
+            const double half = 0.5 * given.period,
+                         turn = std::round((crossing.place.y() + 0.5 * half) / half) * half - 0.5 * half;
+            const bool left_above = crossing.place.y() < turn;
+            return one_above((crossing.first < crossing.second) == left_above);
+        },
+        given.height_over_radius * half_width(given.type));
     return textile;
 }
 

@@ -12,17 +12,19 @@
 
 namespace fibrant::compositions::textile {
 
-/// A weave of several layers: a row a warp, a column a column of wefts, the level being how many wefts of the column lie below the warp.
+/// A weave of several layers: a row a warp, a column a column of wefts, the level being how many wefts of the column lie below
+/// the warp.
 ///
-/// Warp w is above the weft of layer l, 0 the lowest, where l < level: one number says all orders of a column and cannot contradict itself.
+/// Warp w is above the weft of layer l, 0 the lowest, where l < level: one number says all orders of a column and cannot
+/// contradict itself.
 struct LevelPlan {
     std::vector<std::vector<Index>> levels{};  ///< [warp][column], repeated over the columns, in [0, layers]
-    Index layers = 1;                 ///< of wefts, >= 1
-    Index columns = 0;                ///< in all; 0: as many as the matrix has
-    double column_spacing = core::unset;  ///< along the warp [length], > 0
-    double warp_spacing = core::unset;    ///< between neighbouring warps, > 0
-    double layer_spacing = 0.0;       ///< between wefts of one column [length]; 0: of yarns that just do not touch
-    double overhang = 0.0;            ///< beyond the outermost crossings [length]; 0: as far as they are apart
+    Index layers = 1;                          ///< of wefts, >= 1
+    Index columns = 0;                         ///< in all; 0: as many as the matrix has
+    double column_spacing = core::unset;       ///< along the warp [length], > 0
+    double warp_spacing = core::unset;         ///< between neighbouring warps, > 0
+    double layer_spacing = 0.0;                ///< between wefts of one column [length]; 0: of yarns that just do not touch
+    double overhang = 0.0;                     ///< beyond the outermost crossings [length]; 0: as far as they are apart
     YarnType warp{}, weft{};
     std::vector<Index> warp_types{};  ///< 0 the warp type, 1 the binder's, by row; empty: all 0
     YarnType binder{};                ///< of rows of that type
@@ -48,16 +50,20 @@ struct LevelPlan {
             if (levels[w].empty()) core::refuse("LevelPlan.levels[" + std::to_string(w) + "]", "none", "at least one column");
             for (std::size_t c = 0; c < levels[w].size(); ++c)
                 if (levels[w][c] < 0 || levels[w][c] > layers)
-                    core::refuse("LevelPlan.levels[" + std::to_string(w) + "][" + std::to_string(c) + "]", std::to_string(levels[w][c]), "in [0, layers = " + std::to_string(layers) + "]");
+                    core::refuse("LevelPlan.levels[" + std::to_string(w) + "][" + std::to_string(c) + "]",
+                                 std::to_string(levels[w][c]), "in [0, layers = " + std::to_string(layers) + "]");
         }
         core::require_positive("LevelPlan.warp_spacing", warp_spacing);
         core::require_not_negative("LevelPlan.layer_spacing", layer_spacing);
         core::require_not_negative("LevelPlan.overhang", overhang);
-        if (!warp_types.empty() && warp_types.size() != levels.size()) core::refuse("LevelPlan.warp_types", std::to_string(warp_types.size()), "one for each warp, " + std::to_string(levels.size()));
+        if (!warp_types.empty() && warp_types.size() != levels.size())
+            core::refuse("LevelPlan.warp_types", std::to_string(warp_types.size()),
+                         "one for each warp, " + std::to_string(levels.size()));
         warp.validate(), weft.validate();
         // Between two wefts side by side a warp passes only if their surfaces are two warps' radii apart.
         const double least = 2.0 * (half_width(weft) + thickest());
-        core::require(std::isfinite(column_spacing) && column_spacing >= least, "LevelPlan.column_spacing", column_spacing, ">= " + core::text(least) + ", for warps to pass between wefts");
+        core::require(std::isfinite(column_spacing) && column_spacing >= least, "LevelPlan.column_spacing", column_spacing,
+                      ">= " + core::text(least) + ", for warps to pass between wefts");
     }
 };
 
@@ -74,7 +80,8 @@ inline std::vector<std::vector<Index>> levels_of(const std::vector<std::string>&
     return levels;
 }
 
-/// A warp that goes through the thickness: up by one layer a column, and down again. @param shift  columns by which it starts later
+/// A warp that goes through the thickness: up by one layer a column, and down again. @param shift  columns by which it starts
+/// later
 inline std::vector<Index> angle_interlock(Index layers, Index shift = 0) {
     std::vector<Index> levels;
     for (Index c = 0; c < 2 * layers; ++c) {
@@ -91,14 +98,18 @@ inline std::vector<std::vector<Index>> levels_of_lifts(const std::vector<std::ve
     std::vector<std::vector<Index>> levels;
     for (std::size_t w = 0; w < lift.size(); ++w) {
         const std::string warp = "lift[" + std::to_string(w) + "]";
-        if (lift[w].empty() || core::count(lift[w]) % layers != 0) core::refuse(warp, std::to_string(lift[w].size()) + " picks", "a whole number of columns of " + std::to_string(layers));
+        if (lift[w].empty() || core::count(lift[w]) % layers != 0)
+            core::refuse(warp, std::to_string(lift[w].size()) + " picks",
+                         "a whole number of columns of " + std::to_string(layers));
         levels.emplace_back();
         for (Index c = 0; c < core::count(lift[w]) / layers; ++c) {
             Index level = 0;
             for (Index l = 0; l < layers; ++l) {
                 const Index pick = layers * c + l;
                 if (!lift[w][core::at(pick)]) continue;
-                if (level < l) core::refuse(warp + "[" + std::to_string(pick) + "]", "1", "0: in column " + std::to_string(c) + " the warp lies below a lower weft");
+                if (level < l)
+                    core::refuse(warp + "[" + std::to_string(pick) + "]", "1",
+                                 "0: in column " + std::to_string(c) + " the warp lies below a lower weft");
                 ++level;
             }
             levels.back().push_back(level);
@@ -107,8 +118,8 @@ inline std::vector<std::vector<Index>> levels_of_lifts(const std::vector<std::ve
     return levels;
 }
 
-/// Wefts lie straight, warps at their levels between them, level where they cross and joined by arcs of the third degree: nothing overlaps where
-/// there is room. warps x columns x layers crossings.
+/// Wefts lie straight, warps at their levels between them, level where they cross and joined by arcs of the third degree: nothing
+/// overlaps where there is room. warps x columns x layers crossings.
 inline Textile woven(const LevelPlan& plan) {
     plan.validate();
     Textile textile;
@@ -126,9 +137,11 @@ inline Textile woven(const LevelPlan& plan) {
         path.upward = Vec3::UnitZ();
         std::vector<std::pair<double, double>> knots;
         for (Index c = 0; c < columns; ++c)
-            knots.emplace_back((beyond_x + px * static_cast<double>(c)) / length, pz * (static_cast<double>(plan.level(w, c)) - 0.5 * static_cast<double>(layers)));
+            knots.emplace_back((beyond_x + px * static_cast<double>(c)) / length,
+                               pz * (static_cast<double>(plan.level(w, c)) - 0.5 * static_cast<double>(layers)));
         const double y = py * static_cast<double>(w);
-        path.curve = detail::raised([=](double t) { return Vec3(length * t - beyond_x, y, 0.0); }, std::move(knots), false, textile.view);
+        path.curve =
+            detail::raised([=](double t) { return Vec3(length * t - beyond_x, y, 0.0); }, std::move(knots), false, textile.view);
         textile.paths.push_back(std::move(path));
     }
     for (Index c = 0; c < columns; ++c)
@@ -136,7 +149,8 @@ inline Textile woven(const LevelPlan& plan) {
             Path path;
             path.name = "weft " + std::to_string(c) + "." + std::to_string(l);
             path.type = 1, path.family = 1, path.upward = Vec3::UnitZ();
-            const double x = px * static_cast<double>(c), z = pz * (static_cast<double>(l) - 0.5 * static_cast<double>(layers - 1));
+            const double x = px * static_cast<double>(c),
+                         z = pz * (static_cast<double>(l) - 0.5 * static_cast<double>(layers - 1));
             const double width = py * static_cast<double>(warps - 1) + 2.0 * beyond_y;
             path.curve = [=](double t) { return Vec3(x, width * t - beyond_y, z); };
             textile.paths.push_back(std::move(path));
@@ -147,10 +161,10 @@ inline Textile woven(const LevelPlan& plan) {
 
 /// Leno: pairs of a ground end and a doup end that crosses to its other side between picks, below it, and lies above all wefts.
 struct LenoWeave {
-    Index pairs = 2, picks = 6;           ///< >= 1, >= 2
-    double pick_spacing = core::unset;    ///< [length], > 0
-    double pair_spacing = core::unset;    ///< [length], > 0
-    double aside = core::unset;           ///< of the doup from its ground end at a pick [length], > 0
+    Index pairs = 2, picks = 6;         ///< >= 1, >= 2
+    double pick_spacing = core::unset;  ///< [length], > 0
+    double pair_spacing = core::unset;  ///< [length], > 0
+    double aside = core::unset;         ///< of the doup from its ground end at a pick [length], > 0
     YarnType type{};
 
     void validate() const {
@@ -158,12 +172,15 @@ struct LenoWeave {
         core::require_at_least("LenoWeave.picks", picks, 2);
         core::require_positive("LenoWeave.pick_spacing", pick_spacing);
         type.validate();
-        core::require(aside >= 2.4 * half_width(type), "LenoWeave.aside", aside, ">= " + core::text(2.4 * half_width(type)) + ", 1.2 diameters");
-        core::require(pair_spacing > 2.0 * aside, "LenoWeave.pair_spacing", pair_spacing, "> 2 aside = " + core::text(2.0 * aside));
+        core::require(aside >= 2.4 * half_width(type), "LenoWeave.aside", aside,
+                      ">= " + core::text(2.4 * half_width(type)) + ", 1.2 diameters");
+        core::require(pair_spacing > 2.0 * aside, "LenoWeave.pair_spacing", pair_spacing,
+                      "> 2 aside = " + core::text(2.0 * aside));
     }
 };
 
-/// Each pair of yarns has one order for good: doup above wefts, wefts above ground, ground above doup. 2 crossings a pick and one a gap for each pair.
+/// Each pair of yarns has one order for good: doup above wefts, wefts above ground, ground above doup. 2 crossings a pick and one
+/// a gap for each pair.
 inline Textile leno(const LenoWeave& weave) {
     weave.validate();
     Textile textile;
@@ -178,7 +195,8 @@ inline Textile leno(const LenoWeave& weave) {
         ground.name = "ground " + std::to_string(k), doup.name = "doup " + std::to_string(k);
         ground.family = 0, doup.family = 1;
         ground.curve = [=](double t) { return Vec3(length * t - beyond, y, -h); };
-        // Between picks at a height of -2 h, at picks h. Beyond the outermost picks it keeps its side: no end stands on a crossing.
+        // Between picks at a height of -2 h, at picks h. Beyond the outermost picks it keeps its side: no end stands on a
+        // crossing.
         doup.curve = [=](double t) {
             const double x = length * t - beyond, f = std::numbers::pi * std::clamp(x, 0.0, length - 2.0 * beyond) / p;
             return Vec3(x, y + s * std::cos(f), h * (-0.5 + 1.5 * std::cos(2.0 * f)));
@@ -189,7 +207,9 @@ inline Textile leno(const LenoWeave& weave) {
         Path path;
         path.name = "weft " + std::to_string(m), path.family = 2;
         const double x = p * static_cast<double>(m);
-        path.curve = [=](double t) { return Vec3(x, width * (t - 0.5) + 0.5 * weave.pair_spacing * static_cast<double>(weave.pairs - 1), 0.0); };
+        path.curve = [=](double t) {
+            return Vec3(x, width * (t - 0.5) + 0.5 * weave.pair_spacing * static_cast<double>(weave.pairs - 1), 0.0);
+        };
         textile.paths.push_back(std::move(path));
     }
     textile.crossings = crossings_of(textile);
@@ -211,7 +231,8 @@ struct TriaxialWeave {
     }
 };
 
-/// Orders are cyclic by families: the first above the second, the second above the third, the third above the first. One crossing a pair that meets.
+/// Orders are cyclic by families: the first above the second, the second above the third, the third above the first. One crossing
+/// a pair that meets.
 inline Textile triaxial_weave(const TriaxialWeave& weave) {
     weave.validate();
     Textile textile;
@@ -237,10 +258,13 @@ inline Textile triaxial_weave(const TriaxialWeave& weave) {
             family.push_back(f);
         }
     }
-    interlace(textile, [&](const PlanCrossing& crossing) {
-        const Index a = family[core::at(crossing.first)], b = family[core::at(crossing.second)];
-        return one_above((a + 1) % 3 == b);
-    }, weave.height_over_radius * half_width(weave.type));
+    interlace(
+        textile,
+        [&](const PlanCrossing& crossing) {
+            const Index a = family[core::at(crossing.first)], b = family[core::at(crossing.second)];
+            return one_above((a + 1) % 3 == b);
+        },
+        weave.height_over_radius * half_width(weave.type));
     return textile;
 }
 
