@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -110,7 +111,12 @@ inline TopologyAudit audit_topology(const Textile& textile, const Assembled& ass
             audit.second_yarn = assembled.path_of[core::at(audit.crossings.second_path)];
         }
     }
-    for (const auto& [i, j] : detail::near_pairs(settled, textile.smallest_radius())) {
+    // What was near as drawn may have parted, if it was not linked.
+    const auto before_pairs = detail::near_pairs(drawn, textile.smallest_radius()),
+               after_pairs = detail::near_pairs(settled, textile.smallest_radius());
+    std::vector<std::pair<Index, Index>> near;
+    std::set_union(before_pairs.begin(), before_pairs.end(), after_pairs.begin(), after_pairs.end(), std::back_inserter(near));
+    for (const auto& [i, j] : near) {
         const Index p = assembled.path_of[core::at(i)], q = assembled.path_of[core::at(j)];
         if (p == q) continue;
         const auto closed = [&](Index path) { return textile.paths[core::at(path)].kind == PathKind::closed; };
@@ -127,18 +133,6 @@ inline TopologyAudit audit_topology(const Textile& textile, const Assembled& ass
             wrong = !audit.told_by_crossings && change >= 0.5;
         }
         if (wrong && audit.first_yarn < 0) audit.first_yarn = p, audit.second_yarn = q;
-    }
-    // Pairs that were near as drawn and are not any more may have parted only if they were not linked.
-    for (const auto& [i, j] : detail::near_pairs(drawn, textile.smallest_radius())) {
-        const Index p = assembled.path_of[core::at(i)], q = assembled.path_of[core::at(j)];
-        if (p == q || textile.paths[core::at(p)].kind != PathKind::closed || textile.paths[core::at(q)].kind != PathKind::closed)
-            continue;
-        const std::vector<Line> pair{settled[core::at(i)], settled[core::at(j)]};
-        if (!detail::near_pairs(pair, textile.smallest_radius()).empty()) continue;
-        if (observe::linking_number(drawn[core::at(i)].points, drawn[core::at(j)].points) != 0) {
-            ++audit.links_changed;
-            if (audit.first_yarn < 0) audit.first_yarn = p, audit.second_yarn = q;
-        }
     }
     return audit;
 }
