@@ -305,6 +305,7 @@ inline Scene read_scene(SceneReader& file) {
         "solver", "linear_solver", scene.linear_solver,
         {"automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"},
         "strategy of linear systems");
+    if (scene.generator.empty()) file.complete();  // says what is missing
     scene.textile = detail::generate(file, scene.generator, yarn, binder);
     if (file.describes()) file.complete();
     file.check(ends != "pulled" || tension > 0.0, "ends", "tension_strain", "> 0, where ends are pulled");

@@ -37,7 +37,10 @@ inline std::vector<Line> lines_of(const Textile& textile, double step_over_radiu
     for (Index p = 0; p < core::count(textile.paths); ++p) {
         const Path& path = textile.paths[core::at(p)];
         const double length = scene::length_of(path.curve, 128);
-        const auto pieces = std::max<Index>(64, static_cast<Index>(length / (step_over_radius * textile.type_of(p).radius)));
+        constexpr double most = 1e7;  // points of a path: more is a slip of the unit
+        const double steps = length / (step_over_radius * textile.type_of(p).radius);
+        core::require(steps <= most, textile.label(p) + ": length over the radius of its fibres", 0.5 * steps, "<= 5e6");
+        const auto pieces = std::max<Index>(64, static_cast<Index>(steps));
         std::vector<Vec3> points;
         for (Index k = 0; k <= pieces; ++k) points.push_back(path.curve(static_cast<double>(k) / static_cast<double>(pieces)));
         if (path.kind == PathKind::closed) points.back() = points.front();
