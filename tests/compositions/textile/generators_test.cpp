@@ -80,6 +80,30 @@ TEST_CASE("a tubular braid of n and n carriers has 2 n^2 crossings a turn, in ru
           }).find("TubularBraid.over = 2") == 0);
 }
 
+/// Where a path is at an arc from its start, and where it goes.
+std::pair<Vec3, Vec3> place_at(const Line& line, double arc) {
+    const auto k = static_cast<std::size_t>(std::upper_bound(line.arc.begin() + 1, line.arc.end() - 1, arc) - line.arc.begin());
+    return {line.points[k], line.points[k] - line.points[k - 1]};
+}
+
+TEST_CASE("orders of braids are those of their closed forms: z = h sin 2 f over x = A sin f, and r = R + h cos n f going right") {
+    const double r = 0.05;
+    const Textile flat = flat_braid({.yarns = 3, .half_width = 5.0 * r, .period = 50.0 * r, .type = yarn(r)});
+    std::vector<Line> lines = lines_of(flat);
+    for (const Crossing& crossing : flat.crossings) {
+        const auto [place, along] = place_at(lines[core::at(crossing.above)], crossing.at_above);
+        CHECK((along.x() > 0.0) == (place.x() > 0.0));  // sin 2 f = 2 sin f cos f > 0
+    }
+    const Index n = 4;
+    const double radius = 0.4, pitch = 2.5;
+    const Textile tube = tubular_braid({.carriers = n, .radius = radius, .pitch = pitch, .turns = 1.0, .type = yarn(r)});
+    lines = lines_of(tube);
+    for (const Crossing& crossing : tube.crossings) {
+        const double f = 2.0 * std::numbers::pi * place_at(lines[core::at(crossing.above)], crossing.at_above).first.z() / pitch;
+        CHECK((crossing.above < n) == (std::cos(static_cast<double>(n) * f) > 0.0));
+    }
+}
+
 TEST_CASE("axial yarns of a triaxial tube pass between the two that meet on them: two orders a passage") {
     const Index n = 6;
     const double r = 0.05, radius = 3.0 * static_cast<double>(n) * r;
