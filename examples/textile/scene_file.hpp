@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -305,7 +306,13 @@ inline Scene read_scene(SceneReader& file) {
         "solver", "linear_solver", scene.linear_solver,
         {"automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"},
         "strategy of linear systems");
-    if (scene.generator.empty()) file.complete();  // says what is missing
+    if (scene.generator.empty() && !file.describes()) {
+        for (const std::string& name : generators)  // nobody has asked for its section yet
+            if (file.has_section(name))
+                throw std::invalid_argument(file.file() + ": textile.generator is missing, but it must be given: \"" + name +
+                                            "\", as the file has that section");
+        file.complete();
+    }
     scene.textile = detail::generate(file, scene.generator, yarn, binder);
     if (file.describes()) file.complete();
     file.check(ends != "pulled" || tension > 0.0, "ends", "tension_strain", "> 0, where ends are pulled");
