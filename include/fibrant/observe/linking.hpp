@@ -74,14 +74,14 @@ private:
 
 /// Integral over two runs that are far from each other, by the first terms of Taylor's series of the kernel about their middles.
 inline double far_linking(const LinkingTree::Node& a, const LinkingTree::Node& b) {
-    const Vec3 r = b.middle - a.middle;
+    const Vec3 r = a.middle - b.middle;
     const double d = r.norm(), d3 = d * d * d;
     const Vec3 kernel = r / d3;
     const Mat3 slope = Mat3::Identity() / d3 - 3.0 * r * r.transpose() / (d3 * d * d);
     double sum = a.sum.cross(b.sum).dot(kernel);
-    for (int j = 0; j < 3; ++j) {  // the places of b move the kernel forwards, those of a backwards
+    for (int j = 0; j < 3; ++j) {  // the places of a move the kernel forwards, those of b backwards
         const Vec3 ma = a.moment.col(j), mb = b.moment.col(j), s = slope.col(j);
-        sum += a.sum.cross(mb).dot(s) - ma.cross(b.sum).dot(s);
+        sum += ma.cross(b.sum).dot(s) - a.sum.cross(mb).dot(s);
     }
     return sum / (4.0 * std::numbers::pi);
 }
