@@ -274,9 +274,10 @@ fibrant::simulation::Audit audit(const Output& output, const Simulator& simulato
 }
 
 /// summary.json: what every run says, and what `figures` adds.
+/// @param begin  what stands before it
 inline void write_summary(const Output& output, const fibrant::simulation::Report& report, const fibrant::simulation::Audit& audit, double radius,
-                          const std::vector<std::pair<std::string, double>>& figures) {
-    observe::JsonObject json;
+                          const std::vector<std::pair<std::string, double>>& figures, observe::JsonObject begin = {}) {
+    observe::JsonObject& json = begin;
     json.add("converged", report.converged).add("audit_clean", audit.clean()).add("reason", report.reason);
     json.add("least_gap_over_radius", audit.least_gap.gap_over_radius).add("deepest_allowed_over_radius", audit.allowed / radius);
     // Of the last increment, then the most of any, over what is stated: 1 or less where that was kept.

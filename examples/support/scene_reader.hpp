@@ -62,6 +62,7 @@ public:
     const std::string& file() const noexcept { return file_; }
 
     bool given(const std::string& section, const std::string& key) const { return find(section, key) != nullptr; }
+    bool has_section(const std::string& section) const { return table_[section].is_table(); }
     /// Sections of the file in which the key is given.
     std::vector<std::string> sections_with(const std::string& key) const {
         std::vector<std::string> names;

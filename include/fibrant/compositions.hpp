@@ -19,6 +19,18 @@
 #include <fibrant/compositions/strand/strand_parameters.hpp>
 #include <fibrant/compositions/strand/wire_line.hpp>
 
+#include <fibrant/compositions/textile/assemble.hpp>
+#include <fibrant/compositions/textile/audit.hpp>
+#include <fibrant/compositions/textile/braids.hpp>
+#include <fibrant/compositions/textile/crossings.hpp>
+#include <fibrant/compositions/textile/imported.hpp>
+#include <fibrant/compositions/textile/interlaced.hpp>
+#include <fibrant/compositions/textile/knits.hpp>
+#include <fibrant/compositions/textile/settle.hpp>
+#include <fibrant/compositions/textile/strands.hpp>
+#include <fibrant/compositions/textile/textile.hpp>
+#include <fibrant/compositions/textile/weaves.hpp>
+
 #include <fibrant/compositions/two_ply/two_ply.hpp>
 
 #include <fibrant/compositions/weave/audit.hpp>

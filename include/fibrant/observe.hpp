@@ -6,6 +6,7 @@
 #include <fibrant/observe/csv_writer.hpp>
 #include <fibrant/observe/json.hpp>
 #include <fibrant/observe/least_gap.hpp>
+#include <fibrant/observe/linking.hpp>
 #include <fibrant/observe/loading_curve.hpp>
 #include <fibrant/observe/nodal_curve.hpp>
 #include <fibrant/observe/observer.hpp>

@@ -13,5 +13,6 @@
 #include <fibrant/scene/reference_shape.hpp>
 #include <fibrant/scene/rigid_body.hpp>
 #include <fibrant/scene/solid.hpp>
+#include <fibrant/scene/spline.hpp>
 #include <fibrant/scene/tied_vectors.hpp>
 #include <fibrant/scene/tool.hpp>

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// Converts centrelines of fibres between files of other programs, and to surfaces and voxels.
+//   convert IN [--output FILE]... [--voxels SPACING] [--radius R] [--scale S] [--metre M] [--largest-turn DEGREES] [--report]
+#include <fibrant/exchange/files.hpp>
+#include <fibrant/exchange/voxels.hpp>
+#include <fibrant/observe/json.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+using namespace fibrant;
+
+namespace {
+
+std::string report(const std::vector<exchange::FileCurve>& curves) {
+    double length = 0.0, volume = 0.0;
+    Index points = 0, closed = 0;
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    for (const exchange::FileCurve& curve : curves) {
+        const std::size_t n = curve.points.size();
+        double own = 0.0;
+        for (std::size_t k = 0; k + (curve.closed ? 0 : 1) < n; ++k) own += (curve.points[(k + 1) % n] - curve.points[k]).norm();
+        length += own, points += core::count(curve.points), closed += curve.closed ? 1 : 0;
+        volume += std::numbers::pi * curve.radius * curve.radius * own;
+        for (const Vec3& point : curve.points) low = low.cwiseMin(point), high = high.cwiseMax(point);
+    }
+    const Mat3 a = exchange::orientation_of(curves);
+    observe::JsonObject json;
+    json.add("curves", core::count(curves))
+        .add("closed", closed)
+        .add("points", points)
+        .add("length", length)
+        .add("fibre_volume", volume);
+    json.add("low", std::vector<double>(low.begin(), low.end())).add("high", std::vector<double>(high.begin(), high.end()));
+    json.add("orientation_xx_yy_zz_xy_yz_xz", std::vector<double>{a(0, 0), a(1, 1), a(2, 2), a(0, 1), a(1, 2), a(0, 2)});
+    return json.text() + "\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::string input;
+    std::vector<std::string> outputs;
+    double spacing = 0.0, radius = core::unset, metre = 1000.0;
+    bool wanted = false;
+    exchange::CleanParameters clean;
+    CLI::App app{
+        "Converts centrelines of fibres: .csv .txt .vtk .vtp .obj .bcc .inp .tg3 in, and .csv .vtk .vtp .obj .bcc .inp .tg3 .stl "
+        ".glb .vti .raw out."};
+    app.set_version_flag("--version", FIBRANT_VERSION);
+    app.add_option("input", input, "file of centrelines")->required();
+    app.add_option("--output", outputs, "file to write; may be given several times")->allow_extra_args(false);
+    app.add_option("--voxels", spacing, "spacing of voxels, for .vti and .raw [length]");
+    app.add_option("--radius", radius, "of all fibres, in the place of what the file says [length]");
+    app.add_option("--scale", clean.scale, "on all lengths of the file");
+    app.add_option("--metre", metre, "one metre in the unit of lengths, for .glb");
+    app.add_option("--largest-turn", clean.largest_turn_deg, "between neighbouring chords, more is refused [degree]");
+    app.add_flag("--report", wanted, "print counts, lengths and the orientation tensor");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    try {
+        std::vector<exchange::FileCurve> curves = exchange::read_curves(input, clean);
+        if (app.count("--radius") > 0) {
+            core::require_positive("--radius", radius);
+            for (exchange::FileCurve& curve : curves) curve.radius = radius, curve.radii.clear();
+        }
+        if (outputs.empty() && !wanted) core::refuse("--output", "not given", "given, or --report");
+        for (const std::string& name : outputs) {
+            const std::string kind = exchange::ending(name);
+            std::error_code same;
+            if (std::filesystem::equivalent(name, input, same)) core::refuse("--output", name, "another file than the input");
+            const bool thick = kind == "stl" || kind == "glb" || kind == "vti" || kind == "raw";
+            for (std::size_t c = 0; thick && c < curves.size(); ++c)
+                if (std::isnan(curves[c].radius))
+                    core::refuse("radius of curve " + std::to_string(c), "not given", "in the file, or --radius");
+            if (kind == "vti" || kind == "raw") {
+                core::require_positive("--voxels", spacing);
+                const exchange::Voxels voxels = exchange::voxels_of(curves, exchange::grid_around(curves, spacing));
+                observe::write_file(name, kind == "vti" ? exchange::vti_of(voxels) : exchange::raw_of(voxels));
+                if (kind == "raw") observe::write_file(name + ".json", exchange::raw_head_of(voxels));
+                if (wanted)
+                    std::printf("voxels: %td x %td x %td, fibre volume %.9g, of that %.3g in overlaps\n", voxels.grid.counts[0],
+                                voxels.grid.counts[1], voxels.grid.counts[2], voxels.volume, voxels.excess);
+            } else {
+                observe::write_file(name, exchange::file_of(curves, kind, metre));
+            }
+        }
+        if (wanted) std::fputs(report(curves).c_str(), stdout);
+        return 0;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "convert: %s\n", error.what());
+        return 2;
+    }
+}

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file What a run of a textile writes: summary, tables of yarns and crossings, pictures.
+
+#include "../support/example.hpp"
+
+#include <fibrant/compositions/textile/audit.hpp>
+#include <fibrant/compositions/textile/imported.hpp>
+#include <fibrant/exchange/files.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace textile {
+
+using fibrant::Index;
+namespace cloth = fibrant::compositions::textile;
+namespace observe = fibrant::observe;
+
+/// Greatest distance of a node from where it began [length].
+inline double greatest_move(const observe::Snapshot& from, const observe::Snapshot& to) {
+    double most = 0.0;
+    for (std::size_t f = 0; f < from.fibres.size(); ++f)
+        for (std::size_t k = 0; k < from.fibres[f].position.size(); ++k)
+            most = std::max(most, (to.fibres[f].position[k] - from.fibres[f].position[k]).norm());
+    return most;
+}
+
+/// Says what is wrong with the topology.
+inline void tell(const cloth::Textile& textile, const cloth::TopologyAudit& audit) {
+    if (audit.clean()) return;
+    std::fprintf(stderr,
+                 "audit: crossings %td right, %td wrong, %td missing, %td more than asked for; links changed %td, linking "
+                 "integral by %.3f at most; first %s and %s\n",
+                 audit.crossings.right, audit.crossings.wrong, audit.crossings.missing, audit.crossings.extra,
+                 audit.links_changed, audit.greatest_linking_change,
+                 audit.first_yarn < 0 ? "-" : textile.label(audit.first_yarn).c_str(),
+                 audit.second_yarn < 0 ? "-" : textile.label(audit.second_yarn).c_str());
+}
+
+/// yarns.csv and crossings.csv, and the fibres as centrelines.csv and fibres.glb.
+inline void write_tables(const std::filesystem::path& folder, const cloth::Textile& textile, const cloth::Assembled& assembled,
+                         const observe::Snapshot& settled) {
+    const std::vector<fibrant::exchange::FileCurve> curves = cloth::curves_of(settled, assembled.path_of);
+    observe::write_file(folder / "centrelines.csv", fibrant::exchange::csv_of(curves));
+    observe::write_file(folder / "fibres.glb", fibrant::exchange::glb_of(curves));
+    observe::CsvWriter yarns(folder / "yarns.csv");
+    const std::vector<cloth::YarnFigures> figures = cloth::yarn_figures(textile, assembled, settled);
+    for (Index p = 0; p < fibrant::core::count(textile.paths); ++p) {
+        const cloth::Path& path = textile.paths[fibrant::core::at(p)];
+        const cloth::YarnFigures& yarn = figures[fibrant::core::at(p)];
+        yarns.row({{"yarn", p},
+                   {"name", path.name},
+                   {"family", path.family},
+                   {"fibres", textile.type_of(p).fibres},
+                   {"length", yarn.length},
+                   {"crimp", yarn.crimp},
+                   {"strain", yarn.strain},
+                   {"greatest_curvature", yarn.greatest_curvature},
+                   {"mean_angle_deg", yarn.mean_angle * 180.0 / std::numbers::pi}});
+    }
+    if (textile.crossings.empty()) return;
+    observe::CsvWriter crossings(folder / "crossings.csv");
+    for (const cloth::Crossing& crossing : textile.crossings)
+        crossings.row({{"above", crossing.above},
+                       {"below", crossing.below},
+                       {"at_above", crossing.at_above},
+                       {"at_below", crossing.at_below},
+                       {"axis_x", crossing.axis.x()},
+                       {"axis_y", crossing.axis.y()},
+                       {"axis_z", crossing.axis.z()}});
+}
+
+/// view.svg and top.svg, a colour a yarn of one fibre, a family of others.
+inline void write_pictures(const example::Output& output, const cloth::Textile& textile, const cloth::Assembled& assembled,
+                           const observe::Snapshot& settled) {
+    if (!output.pictures) return;
+    observe::Snapshot coloured = settled;
+    for (std::size_t f = 0; f < coloured.fibres.size(); ++f)
+        coloured.fibres[f].group = textile.paths[fibrant::core::at(assembled.path_of[f])].family;
+    observe::ViewParameters view;
+    view.unit = output.unit, view.pieces = 60000;
+    if (textile.view.radial) view.elevation = 15.0;
+    observe::write_file(output.folder / "view.svg", observe::svg_view(coloured, view));
+    view.azimuth = -90.0, view.elevation = textile.view.radial ? 0.0 : 90.0;
+    observe::write_file(output.folder / "top.svg", observe::svg_view(coloured, view));
+}
+
+inline void write_summary(const example::Output& output, const fibrant::simulation::Report& report,
+                          const fibrant::simulation::Audit& audit, const cloth::TopologyAudit& topology,
+                          const cloth::Textile& textile, const cloth::Assembled& assembled, const observe::Snapshot& drawn,
+                          const observe::Snapshot& settled, Index unknowns) {
+    const double radius = textile.smallest_radius();
+    const std::vector<cloth::YarnFigures> figures = cloth::yarn_figures(textile, assembled, settled);
+    std::vector<Index> families;
+    for (const cloth::Path& path : textile.paths) families.push_back(path.family);
+    std::sort(families.begin(), families.end());
+    families.erase(std::unique(families.begin(), families.end()), families.end());
+    std::vector<observe::JsonObject> list;
+    for (const Index family : families) {
+        double length = 0.0, crimp = 0.0, count = 0.0;
+        for (std::size_t p = 0; p < figures.size(); ++p)
+            if (textile.paths[p].family == family) length += figures[p].length, crimp += figures[p].crimp, count += 1.0;
+        observe::JsonObject one;
+        one.add("family", family)
+            .add("yarns", static_cast<Index>(count))
+            .add("mean_length", length / count)
+            .add("mean_crimp", crimp / count);
+        list.push_back(one);
+    }
+    observe::JsonObject json;
+    json.add("textile", textile.name).add("topology_clean", topology.clean());
+    json.add("yarns", fibrant::core::count(textile.paths))
+        .add("fibres", fibrant::core::count(settled.fibres))
+        .add("dofs", unknowns);
+    json.add("greatest_move_over_radius", greatest_move(drawn, settled) / radius);
+    json.add("crossings", topology.crossings.right + topology.crossings.wrong).add("right_crossings", topology.crossings.right);
+    json.add("wrong_crossings", topology.crossings.wrong)
+        .add("missing_crossings", topology.crossings.missing)
+        .add("extra_crossings", topology.crossings.extra);
+    json.add("linked_pairs", topology.linked)
+        .add("links_changed", topology.links_changed)
+        .add("greatest_linking_change", topology.greatest_linking_change);
+    json.add("families", list);
+    example::write_summary(output, report, audit, radius, {}, json);
+}
+
+}  // namespace textile

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Flat and tubular braids.
+
+#include <fibrant/compositions/textile/interlaced.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace fibrant::compositions::textile {
+
+/// A flat braid: yarns that go to and fro between two edges.
+struct FlatBraid {
+    Index yarns = 3;                  ///< >= 3
+    double half_width = core::unset;  ///< from the middle to an edge [length], > 0
+    double period = core::unset;      ///< of a yarn, to and fro [length], > 0
+    double periods = 2.0;             ///< in all [1], > 0
+    Index over = 1;                   ///< yarns in turn that one passes above, then below: 1 or 2
+    YarnType type{};
+    double height_over_radius = 1.05;  ///< of a yarn at a crossing out of the middle plane [1], > 0
+
+    void validate() const {
+        core::require_at_least("FlatBraid.yarns", yarns, 3);
+        core::require_positive("FlatBraid.half_width", half_width);
+        core::require_positive("FlatBraid.period", period);
+        core::require_positive("FlatBraid.periods", periods);
+        if (over != 1 && over != 2) core::refuse("FlatBraid.over", std::to_string(over), "1 or 2");
+        core::require_positive("FlatBraid.height_over_radius", height_over_radius);
+        type.validate();
+    }
+};
+
+namespace detail {
+/// A triangle wave of period 1 in [-1, 1], 1 at 0, whose tips are parabolas over a part of the period on each side.
+inline double rounded_wave(double x, double tip) noexcept {
+    const double p = x - std::floor(x), d = std::min(p, 1.0 - p);  // from the upper tip
+    const double straight = 1.0 - 4.0 * d;
+    if (d < tip) return 1.0 - 2.0 * tip - 2.0 * d * d / tip;
+    if (0.5 - d < tip) return -1.0 + 2.0 * tip + 2.0 * (0.5 - d) * (0.5 - d) / tip;
+    return straight;
+}
+}  // namespace detail
+
+/// Yarn k lies at x = A tri(y / P + k / N): meetings are at x_m = A (2 m / N - 1), m from 1 to N - 1, in a quincunx. The yarn
+/// that goes to the right is above where the whole part of m over `over` is even, so that each yarn alternates, across its turns
+/// as well. N (N - 1) crossings a period.
+inline Textile flat_braid(const FlatBraid& braid) {
+    braid.validate();
+    Textile textile;
+    textile.name = "flat braid";
+    textile.types = {braid.type};
+    const double n = static_cast<double>(braid.yarns), length = braid.period * braid.periods;
+    const double tip = 0.4 / n;  // within the outermost meetings, which are half of 1 / N from a tip
+    // No end stands on a crossing: meetings are at whole multiples of 1 / (2 N) of a period.
+    const double shift = 0.25 / n;
+    for (Index k = 0; k < braid.yarns; ++k) {
+        Path path;
+        path.name = "strand " + std::to_string(k);
+        path.family = k;
+        path.curve = [=, a = braid.half_width, period = braid.period, phase = static_cast<double>(k) / n](double t) {
+            const double y = length * t;
+            return Vec3(a * detail::rounded_wave(y / period + phase + shift, tip), y, 0.0);
+        };
+        textile.paths.push_back(std::move(path));
+    }
+    interlace(
+        textile,
+        [&](const PlanCrossing& crossing) {
+            const auto column = static_cast<Index>(std::lround(0.5 * n * (crossing.place.x() / braid.half_width + 1.0)));
+            const bool right_above = (column / braid.over) % 2 == 0;
+            return one_above((crossing.along_first.x() > 0.0) == right_above);
+        },
+        braid.height_over_radius * half_width(braid.type));
+    return textile;
+}
+
+/// A tubular braid: as many carriers one way round as the other, and straight axial yarns if wanted.
+struct TubularBraid {
+    Index carriers = 8;           ///< each way, >= 2
+    double radius = core::unset;  ///< of the middle surface [length], > 0
+    double pitch = core::unset;   ///< length of a full turn along the axis [length], > 0
+    double turns = 0.5;           ///< > 0
+    Index over = 1;               ///< 1: 1x1; 2: 2x2; divides the carriers
+    bool axials = false;          ///< an axial yarn at every other line of meetings, with 1x1 only
+    YarnType type{};
+    double height_over_radius = 1.05;
+
+    void validate() const {
+        core::require_at_least("TubularBraid.carriers", carriers, 2);
+        core::require_positive("TubularBraid.radius", radius);
+        core::require_positive("TubularBraid.pitch", pitch);
+        core::require_positive("TubularBraid.turns", turns);
+        core::require_at_least("TubularBraid.over", over, 1);
+        if (carriers % over != 0)
+            core::refuse("TubularBraid.over", std::to_string(over), "a divisor of the carriers, " + std::to_string(carriers));
+        if (axials && over != 1) core::refuse("TubularBraid.over", std::to_string(over), "1 with axial yarns");
+        core::require_positive("TubularBraid.height_over_radius", height_over_radius);
+        type.validate();
+    }
+    /// Angle of the carriers to the axis: tan alpha = 2 pi R / H [radian].
+    double angle() const noexcept { return std::atan(2.0 * std::numbers::pi * radius / pitch); }
+    /// Distance of neighbours of one direction, across them [length].
+    double spacing() const noexcept {
+        return 2.0 * std::numbers::pi * radius * std::cos(angle()) / static_cast<double>(carriers);
+    }
+};
+
+/// With f = 2 pi z / H carriers lie at angles f + 2 pi i / n and -f + 2 pi j / n. They meet where n f = pi (j' - i), j' = j + n
+/// m, at the angle pi (i + j') / n, and there the first is outside where (i + j') mod 2 p < p, in a p x p braid. 2 n^2 crossings
+/// a turn. An axial yarn stands at the angles pi (2 k + 1) / n, between the two that meet there.
+inline Textile tubular_braid(const TubularBraid& braid) {
+    braid.validate();
+    Textile textile;
+    textile.name = "tubular braid";
+    textile.types = {braid.type};
+    textile.view = {Vec3::UnitZ(), true, Vec3::Zero()};
+    const double n = static_cast<double>(braid.carriers), full = 2.0 * std::numbers::pi;
+    const double first = std::numbers::pi / (2.0 * n), last = first + full * braid.turns;  // of f: no end stands on a meeting
+    for (const int way : {1, -1})
+        for (Index k = 0; k < braid.carriers; ++k) {
+            Path path;
+            path.name = (way > 0 ? "right " : "left ") + std::to_string(k);
+            path.family = way > 0 ? 0 : 1;
+            path.curve = [=, radius = braid.radius, pitch = braid.pitch, start = full * static_cast<double>(k) / n](double t) {
+                const double f = first + (last - first) * t, angle = way * f + start;
+                return Vec3(radius * std::cos(angle), radius * std::sin(angle), pitch * f / full);
+            };
+            textile.paths.push_back(std::move(path));
+        }
+    if (braid.axials)
+        for (Index k = 0; k < braid.carriers; ++k) {
+            Path path;
+            path.name = "axial " + std::to_string(k);
+            path.family = 2;
+            const double angle = std::numbers::pi * (2.0 * static_cast<double>(k) + 1.0) / n;
+            path.curve = [=, radius = braid.radius, pitch = braid.pitch](double t) {
+                const double f = first + (last - first) * t;
+                return Vec3(radius * std::cos(angle), radius * std::sin(angle), pitch * f / full);
+            };
+            textile.paths.push_back(std::move(path));
+        }
+    const Index n2 = 2 * braid.over;
+    interlace(
+        textile,
+        [&, n2](const PlanCrossing& crossing) -> std::array<double, 2> {
+            const bool axial = crossing.second >= 2 * braid.carriers;
+            const double angle = std::atan2(crossing.place.y(), crossing.place.x());
+            if (axial) {  // 1x1: at these angles sums of numbers are odd, and what goes right is inside
+                const bool right = crossing.first < braid.carriers;
+                return {right ? -2.0 : 2.0, 0.0};
+            }
+            // Where three meet, the two carriers leave room for the axial one between them.
+            const auto sum = static_cast<Index>(std::lround(n * angle / std::numbers::pi));
+            const Index rest = ((sum % n2) + n2) % n2;
+            const double high = braid.axials && rest == 1 ? 2.0 : 1.0;
+            return rest < braid.over ? std::array{high, -high} : std::array{-high, high};
+        },
+        braid.height_over_radius* half_width(braid.type));
+    return textile;
+}
+
+}  // namespace fibrant::compositions::textile

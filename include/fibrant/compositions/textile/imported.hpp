@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file A textile from curves of a file, and curves of its fibres for files.
+
+#include <fibrant/compositions/textile/crossings.hpp>
+#include <fibrant/exchange/curves.hpp>
+#include <fibrant/observe/snapshot.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fibrant::compositions::textile {
+
+/// Points drawn towards their neighbours by a Gaussian along the index; the ends of an open curve are mirrored and keep their
+/// places.
+/// @param width  its standard deviation in points, >= 0; 0: as they are
+inline std::vector<Vec3> smoothed(const std::vector<Vec3>& points, double width, bool closed) {
+    core::require_not_negative("smoothed.width", width);
+    if (width == 0.0) return points;
+    const Index n = core::count(points), reach = static_cast<Index>(std::ceil(3.0 * width));
+    std::vector<Vec3> answer;
+    for (Index k = 0; k < n; ++k) {
+        Vec3 sum = Vec3::Zero();
+        double all = 0.0;
+        for (Index d = -reach; d <= reach; ++d) {
+            const double weight = std::exp(-0.5 * static_cast<double>(d * d) / (width * width));
+            Index at = k + d;
+            Vec3 point;
+            if (closed) {
+                point = points[core::at(((at % n) + n) % n)];
+            } else if (at < 0) {
+                point = 2.0 * points.front() - points[core::at(std::min(-at, n - 1))];
+            } else if (at >= n) {
+                point = 2.0 * points.back() - points[core::at(std::max<Index>(0, 2 * (n - 1) - at))];
+            } else {
+                point = points[core::at(at)];
+            }
+            sum += weight * point, all += weight;
+        }
+        answer.push_back(sum / all);
+    }
+    return answer;
+}
+
+/// A textile of single fibres, one a curve, at rest as they are drawn; crossings are those that their heights say.
+/// @param type    of all yarns; its radius, where it is not set, is that of the file
+/// @param smooth  width of the Gaussian that points are smoothed by [points], >= 0
+/// @throws std::invalid_argument naming the curve whose radius nobody says
+inline Textile textile_of(const std::vector<exchange::FileCurve>& curves, const YarnType& type, const View& view,
+                          double smooth = 0.0) {
+    Textile textile;
+    textile.name = "imported";
+    textile.view = view;
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+        const exchange::FileCurve& curve = curves[c];
+        YarnType own = type;
+        if (std::isnan(own.radius)) own.radius = curve.radius;
+        if (std::isnan(own.radius)) core::refuse("radius of curve " + std::to_string(c), "not given", "in the file, or told");
+        Index number = 0;
+        while (number < core::count(textile.types) && textile.types[core::at(number)].radius != own.radius) ++number;
+        if (number == core::count(textile.types)) textile.types.push_back(own);
+        Path path;
+        path.name = curve.name.empty() ? "curve " + std::to_string(c) : curve.name;
+        path.type = number, path.family = std::max<Index>(curve.group, 0), path.straight = false;
+        path.kind = curve.closed ? PathKind::closed : PathKind::open;
+        std::vector<Vec3> points = smoothed(curve.points, smooth, curve.closed);
+        if (curve.closed) points.push_back(points.front());
+        path.curve =
+            scene::curve_through(std::move(points), curve.closed ? scene::SplineEnds::repeating : scene::SplineEnds::natural,
+                                 scene::SplineSteps::by_distance, path.name);
+        textile.paths.push_back(std::move(path));
+    }
+    textile.crossings = crossings_of(textile);
+    return textile;
+}
+
+/// The curves of a state's fibres, at their nodes.
+/// @param group_of  of each fibre: its yarn
+inline std::vector<exchange::FileCurve> curves_of(const observe::Snapshot& snapshot, const std::vector<Index>& group_of) {
+    std::vector<exchange::FileCurve> curves;
+    for (std::size_t f = 0; f < snapshot.fibres.size(); ++f) {
+        const observe::FibreSnapshot& fibre = snapshot.fibres[f];
+        exchange::FileCurve curve;
+        curve.points = fibre.position, curve.radius = fibre.section.radius(), curve.closed = fibre.closed,
+        curve.group = group_of[f];
+        if (fibre.closed) curve.points.pop_back();
+        curves.push_back(std::move(curve));
+    }
+    return curves;
+}
+
+/// The paths of a textile as curves, so many points each.
+inline std::vector<exchange::FileCurve> curves_of(const Textile& textile, Index points) {
+    std::vector<exchange::FileCurve> curves;
+    for (Index p = 0; p < core::count(textile.paths); ++p) {
+        const Path& path = textile.paths[core::at(p)];
+        exchange::FileCurve curve;
+        const bool closed = path.kind == PathKind::closed;
+        for (Index k = 0; k < points; ++k)
+            curve.points.push_back(path.curve(static_cast<double>(k) / static_cast<double>(closed ? points : points - 1)));
+        curve.radius = half_width(textile.type_of(p)), curve.closed = closed, curve.group = p, curve.name = path.name,
+        curve.period = path.image;
+        curves.push_back(std::move(curve));
+    }
+    return curves;
+}
+
+}  // namespace fibrant::compositions::textile

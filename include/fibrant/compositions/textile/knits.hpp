@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Weft knits from a matrix of stitches, and tricot.
+
+#include <fibrant/compositions/textile/crossings.hpp>
+#include <fibrant/compositions/textile/interlaced.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace fibrant::compositions::textile {
+
+/// A weft knit on its needles: courses of loops, each drawn through the one below, from the front to the back or the other way.
+///
+/// A loop of a course is x = W u + a sin 4 pi u, y = -H cos 2 pi u, u in [0, 1], with its feet at u = 0 and 1 and its head in the
+/// middle.
+struct WeftKnit {
+    std::vector<std::string> stitches{"f"};  ///< a text a course, 'f' face or 'r' reverse a wale; repeated both ways
+    Index courses = 3, wales = 3;            ///< >= 1
+    double wale_spacing = core::unset;       ///< W [length], > 0
+    double course_spacing = core::unset;     ///< C [length], > 0
+    double loop_height = core::unset;        ///< H, half of a loop's height in the plane [length], > C / 2
+    double bulge = core::unset;              ///< a [length]; unset: W / 5
+    double height_over_radius = 1.05;        ///< of yarns at crossings out of the middle plane [1], > 0
+    YarnType type{};
+
+    bool face(Index course, Index wale) const {
+        const std::string& row = stitches[core::at(course % core::count(stitches))];
+        return row[core::at(wale % core::count(row))] == 'f';
+    }
+    double width() const noexcept { return std::isnan(bulge) ? 0.2 * wale_spacing : bulge; }
+
+    void validate() const {
+        if (stitches.empty()) core::refuse("WeftKnit.stitches", "none", "at least one course");
+        for (std::size_t k = 0; k < stitches.size(); ++k)
+            if (stitches[k].empty() || stitches[k].find_first_not_of("fr") != std::string::npos)
+                core::refuse("WeftKnit.stitches[" + std::to_string(k) + "]", "\"" + stitches[k] + "\"",
+                             "letters f (face) and r (reverse), at least one");
+        core::require_at_least("WeftKnit.courses", courses, 1);
+        core::require_at_least("WeftKnit.wales", wales, 1);
+        core::require_positive("WeftKnit.wale_spacing", wale_spacing);
+        core::require_positive("WeftKnit.course_spacing", course_spacing);
+        core::require(loop_height > 0.5 * course_spacing, "WeftKnit.loop_height", loop_height,
+                      "> half of course_spacing, or loops do not reach the next course");
+        core::require_positive("WeftKnit.height_over_radius", height_over_radius);
+        type.validate();
+    }
+};
+
+/// Four crossings of each loop with that above it: heads over legs, legs under feet, as seen from where feet of face stitches lie
+/// in front, and the other way round for reverse ones. The feet of the first course and the heads of the last one are held, as on
+/// needles, and so are ends.
+inline Textile weft_knit(const WeftKnit& knit) {
+    knit.validate();
+    Textile textile;
+    textile.name = "weft knit";
+    textile.types = {knit.type};
+    const double w = knit.wale_spacing, c = knit.course_spacing, hh = knit.loop_height, a = knit.width(), tail = 0.75 * w;
+    const double h = knit.height_over_radius * half_width(knit.type);
+    constexpr Index per_loop = 32;
+    for (Index k = 0; k < knit.courses; ++k) {
+        Path path;
+        path.name = "course " + std::to_string(k), path.family = k, path.straight = false;
+        // Heights along the course, a loop a unit: feet and lower legs by this course's stitch, upper legs and head by that
+        // above.
+        std::vector<std::pair<double, double>> knots;
+        const auto sign = [&](Index course, Index wale) { return knit.face(course, wale) ? h : -h; };
+        for (Index m = 0; m < knit.wales; ++m) {
+            const double u = static_cast<double>(m), low = sign(k, m), high = sign(k + 1, m);
+            for (const auto& [at, height] : {std::pair{0.06, low},
+                                             {0.215, -low},
+                                             {0.285, -high},
+                                             {0.44, high},
+                                             {0.56, high},
+                                             {0.715, -high},
+                                             {0.785, -low},
+                                             {0.94, low}})
+                knots.emplace_back(u + at, height);
+        }
+        const double loops = static_cast<double>(knit.wales);
+        // HeightLine counts in parameters of [0, 1]: loops are scaled to it.
+        for (auto& knot : knots) knot.first /= loops;
+        const detail::HeightLine heights(std::move(knots), false);
+        std::vector<Vec3> points;
+        const double y0 = c * static_cast<double>(k);
+        points.emplace_back(-tail, y0 - hh, heights(0.0));
+        points.emplace_back(-0.5 * tail, y0 - hh, heights(0.0));
+        for (Index n = 0; n <= per_loop * knit.wales; ++n) {
+            const double u = static_cast<double>(n) / static_cast<double>(per_loop), f = 2.0 * std::numbers::pi * u;
+            points.emplace_back(w * u + a * std::sin(2.0 * f), y0 - hh * std::cos(f), heights(u / loops));
+        }
+        points.emplace_back(w * loops + 0.5 * tail, y0 - hh, heights(1.0));
+        points.emplace_back(w * loops + tail, y0 - hh, heights(1.0));
+        const Line line = line_of(points);
+        for (Index m = 0; m < knit.wales; ++m) {
+            const auto at = [&](Index n) { return line.arc[core::at(n + 2)] / line.arc.back(); };
+            if (k == 0 && m > 0) path.guides.push_back({at(per_loop * m)});
+            if (k + 1 == knit.courses) path.guides.push_back({at(per_loop * m + per_loop / 2)});
+        }
+        path.curve = scene::curve_through(std::move(points));
+        textile.paths.push_back(std::move(path));
+    }
+    textile.crossings = crossings_of(textile);
+    return textile;
+}
+
+/// Tricot of one bar: each yarn lays a loop on a needle and on its neighbour by turns, joined by underlaps.
+struct Tricot {
+    Index needles = 4, courses = 4;       ///< >= 2
+    double needle_spacing = core::unset;  ///< W [length], > 0
+    double course_spacing = core::unset;  ///< C [length], > 0
+    double loop_height = core::unset;     ///< of a loop above its feet [length], > C
+    double height_over_radius = 1.05;
+    YarnType type{};
+
+    void validate() const {
+        core::require_at_least("Tricot.needles", needles, 2);
+        core::require_at_least("Tricot.courses", courses, 2);
+        core::require_positive("Tricot.needle_spacing", needle_spacing);
+        core::require_positive("Tricot.course_spacing", course_spacing);
+        core::require(loop_height > course_spacing, "Tricot.loop_height", loop_height,
+                      "> course_spacing, or loops do not reach the next course");
+        core::require_positive("Tricot.height_over_radius", height_over_radius);
+        type.validate();
+    }
+};
+
+/// Yarn m lays its loops on needles m and m + 1 by turns. Loops are closed: feet lie side by side, heads above the legs of the
+/// loop that is drawn through them, underlaps and feet above the legs of the loop below.
+inline Textile tricot(const Tricot& knit) {
+    knit.validate();
+    Textile textile;
+    textile.name = "tricot";
+    textile.types = {knit.type};
+    const double w = knit.needle_spacing, c = knit.course_spacing, top = knit.loop_height,
+                 h = knit.height_over_radius * half_width(knit.type);
+    const double neck = 0.14 * w, head = 0.30 * w;
+    for (Index m = 0; m < knit.needles; ++m) {
+        Path path;
+        path.name = "end " + std::to_string(m), path.family = m % 2, path.straight = false;
+        std::vector<Vec3> points;
+        std::vector<std::size_t> heads;
+        for (Index k = 0; k < knit.courses; ++k) {
+            const Index odd = k % 2;
+            const double x = w * static_cast<double>(m + odd), y = c * static_cast<double>(k), way = odd == 0 ? 1.0 : -1.0;
+            if (k == 0) points.emplace_back(x - way * neck, y - 1.5 * c, h);
+            // In on the side away from the next needle, out on the side towards it.
+            points.emplace_back(x - way * neck, y, h);
+            points.emplace_back(x - way * neck, y + 0.30 * top, -h);
+            points.emplace_back(x - way * head, y + 0.72 * top, -h);
+            points.emplace_back(x - way * 0.6 * head, y + 0.95 * top, h);
+            heads.push_back(points.size());
+            points.emplace_back(x, y + top, h);
+            points.emplace_back(x + way * 0.6 * head, y + 0.95 * top, h);
+            points.emplace_back(x + way * head, y + 0.72 * top, -h);
+            points.emplace_back(x + way * neck, y + 0.30 * top, -h);
+            points.emplace_back(x + way * neck, y, h);
+            if (k + 1 == knit.courses) points.emplace_back(x + way * (neck + 0.5 * w), y - 0.2 * c, h);
+        }
+        const Line line = line_of(points);
+        path.guides.push_back({line.arc[heads.back()] / line.arc.back()});
+        path.curve = scene::curve_through(std::move(points));
+        textile.paths.push_back(std::move(path));
+    }
+    textile.crossings = crossings_of(textile);
+    return textile;
+}
+
+}  // namespace fibrant::compositions::textile

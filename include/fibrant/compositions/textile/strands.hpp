@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Plied yarns, ropes, rings of chain mail and nets.
+
+#include <fibrant/compositions/textile/interlaced.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace fibrant::compositions::textile {
+
+/// Yarns wound around each other, in one or two stages: plies of a yarn, or strands of a rope that are plied themselves.
+struct Plied {
+    Index plies = 3;                    ///< around each other, >= 2
+    double pitch = core::unset;         ///< of the plies [length], > 0
+    Index strands = 1;                  ///< of so many plies each, around each other; 1: one stage
+    double strand_pitch = core::unset;  ///< of the strands, against the hand of the plies [length], > 0
+    double length = core::unset;        ///< along the axis [length], > 0
+    double slack = 0.05;                ///< distance of neighbours over their thickness [1], >= 0
+    YarnType type{};
+
+    void validate() const {
+        core::require_at_least("Plied.plies", plies, 2);
+        core::require_at_least("Plied.strands", strands, 1);
+        core::require_positive("Plied.pitch", pitch);
+        if (strands > 1) core::require_positive("Plied.strand_pitch", strand_pitch);
+        core::require_positive("Plied.length", length);
+        core::require_not_negative("Plied.slack", slack);
+        type.validate();
+    }
+    /// Distance of an axis from that which it goes around, of `count` cylinders of radius r that lean by their pitch: in the
+    /// plane across the axis a section is an ellipse, wider around the axis by 1 / cos of the lean [length].
+    double lay_radius(Index count, double r, double of_pitch) const noexcept {
+        const double n = static_cast<double>(count), width = r * (1.0 + slack), straight = width / std::sin(std::numbers::pi / n);
+        double a = straight;
+        for (int k = 0; k < 50; ++k)
+            a = straight * std::hypot(1.0, 2.0 * std::numbers::pi * a / of_pitch);  // a fixed point: the lean grows with a
+        return a;
+    }
+};
+
+/// Length of a helix over that of its axis: sqrt(1 + (2 pi a / H)^2).
+inline double helix_length_ratio(double radius, double pitch) noexcept {
+    return std::hypot(1.0, 2.0 * std::numbers::pi * radius / pitch);
+}
+
+inline Textile plied(const Plied& rope) {
+    rope.validate();
+    Textile textile;
+    textile.name = rope.strands > 1 ? "rope" : "plied yarn";
+    textile.types = {rope.type};
+    const double thick = half_width(rope.type), a = rope.lay_radius(rope.plies, thick, rope.pitch);
+    core::require(2.0 * std::numbers::pi * a / rope.pitch < 2.0, "Plied.pitch", rope.pitch,
+                  "longer: plies would lie at more than 63 degrees");
+    const double b = rope.strands > 1 ? rope.lay_radius(rope.strands, a + thick, rope.strand_pitch) : 0.0;
+    if (rope.strands > 1)
+        core::require(2.0 * std::numbers::pi * b / rope.strand_pitch < 2.0, "Plied.strand_pitch", rope.strand_pitch,
+                      "longer: strands would lie at more than 63 degrees");
+    for (Index s = 0; s < rope.strands; ++s) {
+        const double start = 2.0 * std::numbers::pi * static_cast<double>(s) / static_cast<double>(rope.strands);
+        const scene::Curve axis = [=, length = rope.length, pitch = rope.strand_pitch](double t) {
+            const double f = b > 0.0 ? -2.0 * std::numbers::pi * length * t / pitch + start : 0.0;
+            return Vec3(b * std::cos(f), b * std::sin(f), length * t);
+        };
+        const double along = rope.length * (b > 0.0 ? helix_length_ratio(b, rope.strand_pitch) : 1.0);
+        const auto samples = std::max<Index>(64, static_cast<Index>(2.0 * along / thick));
+        for (Index k = 0; k < rope.plies; ++k) {
+            const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(rope.plies);
+            Path path;
+            path.name = "ply " + std::to_string(s) + "." + std::to_string(k), path.family = s;
+            path.curve =
+                scene::beside(axis, a * std::cos(angle), a * std::sin(angle), along / rope.pitch, samples, Vec3::UnitX());
+            textile.paths.push_back(std::move(path));
+        }
+    }
+    return textile;
+}
+
+/// European chain mail: rings at a quincunx, rows tilted one way and the other, each ring linked with those of the rows beside
+/// it.
+struct ChainMail {
+    Index rows = 3, columns = 3;       ///< >= 2
+    double ring_radius = core::unset;  ///< of the middle line [length]
+    double pitch = core::unset;        ///< of rings in a row [length]; unset: 2.6 ring radii
+    double row_pitch = core::unset;    ///< unset: 0.9 ring radii
+    double tilt_deg = 35.0;            ///< of rings about the direction of the rows [degree], in (0, 80]
+    YarnType type{};
+
+    double along() const noexcept { return std::isnan(pitch) ? 2.6 * ring_radius : pitch; }
+    double across() const noexcept { return std::isnan(row_pitch) ? 0.9 * ring_radius : row_pitch; }
+    void validate() const {
+        core::require_at_least("ChainMail.rows", rows, 2);
+        core::require_at_least("ChainMail.columns", columns, 2);
+        type.validate();
+        core::require(ring_radius > 4.0 * type.radius, "ChainMail.ring_radius", ring_radius, "> 4 radii of the wire");
+        core::require_positive("ChainMail.pitch", along());
+        core::require_positive("ChainMail.row_pitch", across());
+        core::require(tilt_deg > 0.0 && tilt_deg <= 80.0, "ChainMail.tilt_deg", tilt_deg, "> 0 and <= 80");
+        if (type.fibres != 1) core::refuse("ChainMail.type.fibres", std::to_string(type.fibres), "1");
+    }
+};
+
+/// Row j is shifted by half a pitch where j is odd, and tilted the other way: a ring inside is linked with two of each row beside
+/// its own.
+inline Textile chain_mail(const ChainMail& mail) {
+    mail.validate();
+    Textile textile;
+    textile.name = "chain mail";
+    textile.types = {mail.type};
+    for (Index j = 0; j < mail.rows; ++j)
+        for (Index i = 0; i < mail.columns; ++i) {
+            const double tilt = (j % 2 == 0 ? 1.0 : -1.0) * mail.tilt_deg * std::numbers::pi / 180.0;
+            const Vec3 centre(mail.along() * (static_cast<double>(i) + (j % 2 == 0 ? 0.0 : 0.5)),
+                              mail.across() * static_cast<double>(j), 0.0);
+            const Vec3 side(0.0, std::cos(tilt), std::sin(tilt));
+            Path path;
+            path.name = "ring " + std::to_string(j) + "." + std::to_string(i), path.family = j % 2;
+            path.kind = PathKind::closed, path.straight = false;
+            path.curve = [=, a = mail.ring_radius](double t) {
+                const double f = 2.0 * std::numbers::pi * t;
+                return Vec3(centre + a * (std::cos(f) * Vec3::UnitX() + std::sin(f) * side));
+            };
+            textile.paths.push_back(std::move(path));
+        }
+    return textile;
+}
+
+/// A net of clasped yarns: each goes to and fro, and hooks into its neighbours at its turns, as in chain link fences and sprang.
+struct Net {
+    Index yarns = 4;               ///< >= 2
+    double spacing = core::unset;  ///< of yarns [length], > 0
+    double period = core::unset;   ///< of a yarn [length], > 0
+    double periods = 2.0;          ///< > 0
+    double overlap = 0.0;          ///< by which a yarn reaches beyond its neighbour's turns [length]; 0: four half widths
+    YarnType type{};
+    double height_over_radius = 1.05;
+
+    void validate() const {
+        core::require_at_least("Net.yarns", yarns, 2);
+        core::require_positive("Net.spacing", spacing);
+        core::require_positive("Net.period", period);
+        core::require_positive("Net.periods", periods);
+        core::require_not_negative("Net.overlap", overlap);
+        core::require_positive("Net.height_over_radius", height_over_radius);
+        type.validate();
+    }
+};
+
+/// Yarn k lies at x = k p + (p + o) / 2 cos(2 pi y / P + pi k): neighbours cross twice at each of their turns, first the one
+/// above, then the other.
+inline Textile net(const Net& given) {
+    given.validate();
+    Textile textile;
+    textile.name = "net";
+    textile.types = {given.type};
+    const double overlap = given.overlap > 0.0 ? given.overlap : 4.0 * half_width(given.type),
+                 length = given.period * given.periods;
+    for (Index k = 0; k < given.yarns; ++k) {
+        Path path;
+        path.name = "yarn " + std::to_string(k), path.family = k % 2;
+        const double x0 = given.spacing * static_cast<double>(k), a = 0.5 * (given.spacing + overlap);
+        // Half a period beside a turn: no end stands on a crossing.
+        path.curve = [=, period = given.period, phase = std::numbers::pi * static_cast<double>(k)](double t) {
+            const double y = length * t;
+            return Vec3(x0 + a * std::cos(2.0 * std::numbers::pi * (y / period + 0.25) + phase), y, 0.0);
+        };
+        textile.paths.push_back(std::move(path));
+    }
+    // Turning points lie at whole halves of a period less a quarter; before one the left yarn is above, behind it the right one.
+    interlace(
+        textile,
+        [&](const PlanCrossing& crossing) {
+            const double half = 0.5 * given.period,
+                         turn = std::round((crossing.place.y() + 0.5 * half) / half) * half - 0.5 * half;
+            const bool left_above = crossing.place.y() < turn;
+            return one_above((crossing.first < crossing.second) == left_above);
+        },
+        given.height_over_radius * half_width(given.type));
+    return textile;
+}
+
+}  // namespace fibrant::compositions::textile

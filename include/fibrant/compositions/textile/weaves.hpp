@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Weaves of any number of layers from a matrix of levels, lift plans, leno and triaxial weaves.
+
+#include <fibrant/compositions/textile/interlaced.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace fibrant::compositions::textile {
+
+/// A weave of several layers: a row a warp, a column a column of wefts, the level being how many wefts of the column lie below
+/// the warp.
+///
+/// Warp w is above the weft of layer l, 0 the lowest, where l < level: one number says all orders of a column and cannot
+/// contradict itself.
+struct LevelPlan {
+    std::vector<std::vector<Index>> levels{};  ///< [warp][column], repeated over the columns, in [0, layers]
+    Index layers = 1;                          ///< of wefts, >= 1
+    Index columns = 0;                         ///< in all; 0: as many as the matrix has
+    double column_spacing = core::unset;       ///< along the warp [length], > 0
+    double warp_spacing = core::unset;         ///< between neighbouring warps, > 0
+    double layer_spacing = 0.0;                ///< between wefts of one column [length]; 0: of yarns that just do not touch
+    double overhang = 0.0;                     ///< beyond the outermost crossings [length]; 0: as far as they are apart
+    YarnType warp{}, weft{};
+    std::vector<Index> warp_types{};  ///< 0 the warp type, 1 the binder's, by row; empty: all 0
+    YarnType binder{};                ///< of rows of that type
+
+    Index warps() const noexcept { return core::count(levels); }
+    Index column_count() const noexcept { return columns > 0 ? columns : levels.empty() ? 0 : core::count(levels.front()); }
+    Index level(Index w, Index c) const { return levels[core::at(w)][core::at(c % core::count(levels[core::at(w)]))]; }
+    bool bound(Index w) const { return !warp_types.empty() && warp_types[core::at(w)] == 1; }
+    double thickest() const {
+        double most = warp.fibres == 1 ? warp.radius : half_width(warp);
+        for (Index w = 0; w < warps(); ++w)
+            if (bound(w)) most = std::max(most, half_width(binder));
+        return most;
+    }
+    /// A twentieth of a diameter more than thickness of warp and weft.
+    double pitch() const { return layer_spacing > 0.0 ? layer_spacing : 2.1 * (thickest() + half_width(weft)); }
+
+    void validate() const {
+        if (levels.empty()) core::refuse("LevelPlan.levels", "none", "at least one warp");
+        core::require_at_least("LevelPlan.layers", layers, 1);
+        core::require_at_least("LevelPlan.columns", columns, 0);
+        for (std::size_t w = 0; w < levels.size(); ++w) {
+            if (levels[w].empty()) core::refuse("LevelPlan.levels[" + std::to_string(w) + "]", "none", "at least one column");
+            for (std::size_t c = 0; c < levels[w].size(); ++c)
+                if (levels[w][c] < 0 || levels[w][c] > layers)
+                    core::refuse("LevelPlan.levels[" + std::to_string(w) + "][" + std::to_string(c) + "]",
+                                 std::to_string(levels[w][c]), "in [0, layers = " + std::to_string(layers) + "]");
+        }
+        core::require_positive("LevelPlan.warp_spacing", warp_spacing);
+        core::require_not_negative("LevelPlan.layer_spacing", layer_spacing);
+        core::require_not_negative("LevelPlan.overhang", overhang);
+        if (!warp_types.empty() && warp_types.size() != levels.size())
+            core::refuse("LevelPlan.warp_types", std::to_string(warp_types.size()),
+                         "one for each warp, " + std::to_string(levels.size()));
+        warp.validate(), weft.validate();
+        // Between two wefts side by side a warp passes only if their surfaces are two warps' radii apart.
+        const double least = 2.0 * (half_width(weft) + thickest());
+        core::require(std::isfinite(column_spacing) && column_spacing >= least, "LevelPlan.column_spacing", column_spacing,
+                      ">= " + core::text(least) + ", for warps to pass between wefts");
+    }
+};
+
+/// Levels from texts of digits, a text a warp.
+inline std::vector<std::vector<Index>> levels_of(const std::vector<std::string>& rows) {
+    std::vector<std::vector<Index>> levels;
+    for (const std::string& row : rows) {
+        levels.emplace_back();
+        for (const char c : row) {
+            if (c < '0' || c > '9') core::refuse("levels: \"" + row + "\"", std::string(1, c), "digits, a column each");
+            levels.back().push_back(c - '0');
+        }
+    }
+    return levels;
+}
+
+/// A warp that goes through the thickness: up by one layer a column, and down again. @param shift  columns by which it starts
+/// later
+inline std::vector<Index> angle_interlock(Index layers, Index shift = 0) {
+    std::vector<Index> levels;
+    for (Index c = 0; c < 2 * layers; ++c) {
+        const Index at = (c + shift) % (2 * layers);
+        levels.push_back(at <= layers ? at : 2 * layers - at);
+    }
+    return levels;
+}
+
+/// Levels from lifts: is warp w up while pick p is laid? Picks come column by column, in each from the lowest layer up.
+/// @throws std::invalid_argument naming warp, column and pick, where a warp lies above a weft and below a lower one
+inline std::vector<std::vector<Index>> levels_of_lifts(const std::vector<std::vector<bool>>& lift, Index layers) {
+    core::require_at_least("levels_of_lifts.layers", layers, 1);
+    std::vector<std::vector<Index>> levels;
+    for (std::size_t w = 0; w < lift.size(); ++w) {
+        const std::string warp = "lift[" + std::to_string(w) + "]";
+        if (lift[w].empty() || core::count(lift[w]) % layers != 0)
+            core::refuse(warp, std::to_string(lift[w].size()) + " picks",
+                         "a whole number of columns of " + std::to_string(layers));
+        levels.emplace_back();
+        for (Index c = 0; c < core::count(lift[w]) / layers; ++c) {
+            Index level = 0;
+            for (Index l = 0; l < layers; ++l) {
+                const Index pick = layers * c + l;
+                if (!lift[w][core::at(pick)]) continue;
+                if (level < l)
+                    core::refuse(warp + "[" + std::to_string(pick) + "]", "1",
+                                 "0: in column " + std::to_string(c) + " the warp lies below a lower weft");
+                ++level;
+            }
+            levels.back().push_back(level);
+        }
+    }
+    return levels;
+}
+
+/// Wefts lie straight, warps at their levels between them, level where they cross and joined by arcs of the third degree: nothing
+/// overlaps where there is room. warps x columns x layers crossings.
+inline Textile woven(const LevelPlan& plan) {
+    plan.validate();
+    Textile textile;
+    textile.name = "weave";
+    textile.types = {plan.warp, plan.weft};
+    if (!plan.warp_types.empty()) plan.binder.validate(), textile.types.push_back(plan.binder);
+    const Index warps = plan.warps(), columns = plan.column_count(), layers = plan.layers;
+    const double px = plan.column_spacing, py = plan.warp_spacing, pz = plan.pitch();
+    const double beyond_x = plan.overhang > 0.0 ? plan.overhang : px, beyond_y = plan.overhang > 0.0 ? plan.overhang : py;
+    const double length = px * static_cast<double>(columns - 1) + 2.0 * beyond_x;
+    for (Index w = 0; w < warps; ++w) {
+        Path path;
+        path.name = (plan.bound(w) ? "binder " : "warp ") + std::to_string(w);
+        path.type = plan.bound(w) ? 2 : 0, path.family = plan.bound(w) ? 2 : 0;
+        path.upward = Vec3::UnitZ();
+        std::vector<std::pair<double, double>> knots;
+        for (Index c = 0; c < columns; ++c)
+            knots.emplace_back((beyond_x + px * static_cast<double>(c)) / length,
+                               pz * (static_cast<double>(plan.level(w, c)) - 0.5 * static_cast<double>(layers)));
+        const double y = py * static_cast<double>(w);
+        path.curve =
+            detail::raised([=](double t) { return Vec3(length * t - beyond_x, y, 0.0); }, std::move(knots), false, textile.view);
+        textile.paths.push_back(std::move(path));
+    }
+    for (Index c = 0; c < columns; ++c)
+        for (Index l = 0; l < layers; ++l) {
+            Path path;
+            path.name = "weft " + std::to_string(c) + "." + std::to_string(l);
+            path.type = 1, path.family = 1, path.upward = Vec3::UnitZ();
+            const double x = px * static_cast<double>(c),
+                         z = pz * (static_cast<double>(l) - 0.5 * static_cast<double>(layers - 1));
+            const double width = py * static_cast<double>(warps - 1) + 2.0 * beyond_y;
+            path.curve = [=](double t) { return Vec3(x, width * t - beyond_y, z); };
+            textile.paths.push_back(std::move(path));
+        }
+    textile.crossings = crossings_of(textile);
+    return textile;
+}
+
+/// Leno: pairs of a ground end and a doup end that crosses to its other side between picks, below it, and lies above all wefts.
+struct LenoWeave {
+    Index pairs = 2, picks = 6;         ///< >= 1, >= 2
+    double pick_spacing = core::unset;  ///< [length], > 0
+    double pair_spacing = core::unset;  ///< [length], > 0
+    double aside = core::unset;         ///< of the doup from its ground end at a pick [length], > 0
+    YarnType type{};
+
+    void validate() const {
+        core::require_at_least("LenoWeave.pairs", pairs, 1);
+        core::require_at_least("LenoWeave.picks", picks, 2);
+        core::require_positive("LenoWeave.pick_spacing", pick_spacing);
+        type.validate();
+        core::require(aside >= 2.4 * half_width(type), "LenoWeave.aside", aside,
+                      ">= " + core::text(2.4 * half_width(type)) + ", 1.2 diameters");
+        core::require(pair_spacing > 2.0 * aside, "LenoWeave.pair_spacing", pair_spacing,
+                      "> 2 aside = " + core::text(2.0 * aside));
+    }
+};
+
+/// Each pair of yarns has one order for good: doup above wefts, wefts above ground, ground above doup. 2 crossings a pick and one
+/// a gap for each pair.
+inline Textile leno(const LenoWeave& weave) {
+    weave.validate();
+    Textile textile;
+    textile.name = "leno";
+    textile.types = {weave.type};
+    const double p = weave.pick_spacing, s = weave.aside, h = 2.1 * half_width(weave.type), beyond = p;
+    const double length = p * static_cast<double>(weave.picks - 1) + 2.0 * beyond;
+    const double width = weave.pair_spacing * static_cast<double>(weave.pairs - 1) + 4.0 * s + 2.0 * p;
+    for (Index k = 0; k < weave.pairs; ++k) {
+        const double y = weave.pair_spacing * static_cast<double>(k);
+        Path ground, doup;
+        ground.name = "ground " + std::to_string(k), doup.name = "doup " + std::to_string(k);
+        ground.family = 0, doup.family = 1;
+        ground.curve = [=](double t) { return Vec3(length * t - beyond, y, -h); };
+        // Between picks at a height of -2 h, at picks h. Beyond the outermost picks it keeps its side: no end stands on a
+        // crossing.
+        doup.curve = [=](double t) {
+            const double x = length * t - beyond, f = std::numbers::pi * std::clamp(x, 0.0, length - 2.0 * beyond) / p;
+            return Vec3(x, y + s * std::cos(f), h * (-0.5 + 1.5 * std::cos(2.0 * f)));
+        };
+        textile.paths.push_back(std::move(ground)), textile.paths.push_back(std::move(doup));
+    }
+    for (Index m = 0; m < weave.picks; ++m) {
+        Path path;
+        path.name = "weft " + std::to_string(m), path.family = 2;
+        const double x = p * static_cast<double>(m);
+        path.curve = [=](double t) {
+            return Vec3(x, width * (t - 0.5) + 0.5 * weave.pair_spacing * static_cast<double>(weave.pairs - 1), 0.0);
+        };
+        textile.paths.push_back(std::move(path));
+    }
+    textile.crossings = crossings_of(textile);
+    return textile;
+}
+
+/// Three families of straight yarns at 0, 60 and -60 degrees within a circle, no three of which meet at a point.
+struct TriaxialWeave {
+    double spacing = core::unset;  ///< of a family, across it [length], > 0
+    double radius = core::unset;   ///< of the circle within which yarns cross [length], > spacing
+    YarnType type{};
+    double height_over_radius = 1.05;
+
+    void validate() const {
+        core::require_positive("TriaxialWeave.spacing", spacing);
+        core::require(radius > spacing, "TriaxialWeave.radius", radius, "> spacing");
+        core::require_positive("TriaxialWeave.height_over_radius", height_over_radius);
+        type.validate();
+    }
+};
+
+/// Orders are cyclic by families: the first above the second, the second above the third, the third above the first. One crossing
+/// a pair that meets.
+inline Textile triaxial_weave(const TriaxialWeave& weave) {
+    weave.validate();
+    Textile textile;
+    textile.name = "triaxial weave";
+    textile.types = {weave.type};
+    std::vector<Index> family;
+    const double overhang = 0.75 * weave.spacing;
+    for (Index f = 0; f < 3; ++f) {
+        const double angle = std::numbers::pi / 3.0 * (f == 0 ? 0.0 : f == 1 ? 1.0 : -1.0);
+        const Vec3 along(std::cos(angle), std::sin(angle), 0.0), across(-along.y(), along.x(), 0.0);
+        // With a quarter of the spacing, and one family by half of it more, lines of three families never meet in one point.
+        const double shift = (0.25 + (f == 2 ? 0.5 : 0.0)) * weave.spacing;
+        const auto most = static_cast<Index>(std::floor(weave.radius / weave.spacing)) + 1;
+        for (Index k = -most; k <= most; ++k) {
+            const double d = shift + weave.spacing * static_cast<double>(k), chord = weave.radius * weave.radius - d * d;
+            if (chord < 0.25 * weave.spacing * weave.spacing) continue;
+            const double half = std::sqrt(chord) + overhang;
+            Path path;
+            path.name = std::string(1, static_cast<char>('A' + f)) + std::to_string(k);
+            path.family = f;
+            path.curve = [=](double t) { return Vec3(d * across + half * (2.0 * t - 1.0) * along); };
+            textile.paths.push_back(std::move(path));
+            family.push_back(f);
+        }
+    }
+    interlace(
+        textile,
+        [&](const PlanCrossing& crossing) {
+            const Index a = family[core::at(crossing.first)], b = family[core::at(crossing.second)];
+            return one_above((a + 1) % 3 == b);
+        },
+        weave.height_over_radius * half_width(weave.type));
+    return textile;
+}
+
+}  // namespace fibrant::compositions::textile

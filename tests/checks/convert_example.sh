@@ -1,0 +1,46 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Converts centrelines to every kind of file and back: what comes back is what was given. A wrong file is refused by line and value.
+# usage: convert_example.sh <the program> <scratch folder>
+program=$1
+out=$2
+rm -rf "$out"
+mkdir -p "$out" || exit 1
+fail() {
+  echo "convert_example: $*"
+  exit 1
+}
+cat > "$out/given.csv" <<'END'
+fibre,x,y,z,radius,yarn,closed
+0,0,0.1,0,0.05,0,0
+0,0.3333333333333333,0.14,0.02,0.05,0,0
+0,0.7,0.11,0.03,0.05,0,0
+0,1.1,0.05,0.01,0.05,0,0
+1,0.5,-1,0.1,0.05,1,0
+1,0.52,-0.3,0.11,0.05,1,0
+1,0.51,0.4,0.12,0.05,1,0
+1,0.5,1.1,0.1,0.05,1,0
+END
+kinds="vtk obj inp"
+"$program" "$out/given.csv" --output "$out/a.vtp" && "$program" "$out/a.vtp" --report >/dev/null 2>&1 && kinds="$kinds tg3"
+for kind in $kinds; do
+  "$program" "$out/given.csv" --output "$out/a.$kind" || fail "no $kind"
+  "$program" "$out/a.$kind" --radius 0.05 --output "$out/$kind.csv" || fail "$kind is not read again"
+  cut -d, -f1-5 "$out/given.csv" > "$out/one"
+  cut -d, -f1-5 "$out/$kind.csv" > "$out/two"
+  cmp -s "$out/one" "$out/two" || fail "$kind comes back otherwise"
+done
+"$program" "$out/given.csv" --output "$out/a.glb" --output "$out/a.stl" --output "$out/a.bcc" --voxels 0.05 --output "$out/a.vti" --output "$out/a.raw" --report > "$out/report" ||
+  fail "surfaces and voxels"
+for file in a.glb a.stl a.bcc a.vti a.raw a.raw.json; do
+  [ -s "$out/$file" ] || fail "there is no $file"
+done
+grep -q '"curves": 2' "$out/report" || fail "the report does not count the curves"
+printf 'fibre,x,y,z\n0,0,0,0\n0,1,oops,0\n' > "$out/wrong.csv"
+text=$("$program" "$out/wrong.csv" --output "$out/b.vtk" 2>&1)
+[ $? -eq 2 ] || fail "a wrong file was not refused"
+case $text in
+  *"wrong.csv:3: y = oops"*) ;;
+  *) fail "the refusal does not name line and value: $text" ;;
+esac
+exit 0

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: MIT
+// Generators: crossings counted against closed forms, and who alternates how.
+#include "../../refusal.hpp"
+
+#include <fibrant/compositions/textile/braids.hpp>
+#include <fibrant/compositions/textile/knits.hpp>
+#include <fibrant/compositions/textile/strands.hpp>
+#include <fibrant/compositions/textile/weaves.hpp>
+#include <fibrant/observe/linking.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace textile_generators_test {
+
+using namespace fibrant;
+using namespace fibrant::compositions::textile;
+using fibrant::test::refusal;
+
+YarnType yarn(double radius = 0.05) {
+    YarnType type;
+    type.radius = radius;
+    type.material = {3000.0, 0.3};
+    return type;
+}
+/// Letters come in runs of `run`, but for the first and the last run, which ends may have cut.
+bool in_runs_of(const std::string& word, std::size_t run) {
+    std::size_t start = 0;
+    for (std::size_t k = 1; k <= word.size(); ++k) {
+        if (k < word.size() && word[k] == word[start]) continue;
+        const std::size_t size = k - start;
+        if (size > run || (size < run && start > 0 && k < word.size())) return false;
+        start = k;
+    }
+    return true;
+}
+
+TEST_CASE("a flat braid of N yarns has N (N - 1) crossings a period, and each yarn alternates across its turns") {
+    for (const Index n : {3, 4, 5, 7, 8}) {
+        const double r = 0.05;
+        const Textile braid = flat_braid({.yarns = n,
+                                          .half_width = 1.6 * static_cast<double>(n) * r,
+                                          .period = 16.0 * static_cast<double>(n) * r,
+                                          .periods = 3.0,
+                                          .type = yarn(r)});
+        CHECK(core::count(braid.crossings) == 3 * n * (n - 1));
+        for (const std::string& word : order_words(braid.crossings, n)) {
+            CHECK(core::count(word) == 3 * 2 * (n - 1));
+            CHECK(in_runs_of(word, 1));
+        }
+        CHECK(refusal([&] { validate(braid); }).empty());
+        CHECK(refusal([&] { require_holding(braid); }).empty());
+    }
+}
+
+TEST_CASE("a tubular braid of n and n carriers has 2 n^2 crossings a turn, in runs of one or two, at the angle of its pitch") {
+    for (const Index over : {1, 2})
+        for (const Index n : {4, 6, 8}) {
+            const double r = 0.05, radius = 2.0 * static_cast<double>(n) * r, pitch = 2.0 * std::numbers::pi * radius;
+            const TubularBraid parameters{
+                .carriers = n, .radius = radius, .pitch = pitch, .turns = 1.0, .over = over, .type = yarn(r)};
+            const Textile braid = tubular_braid(parameters);
+            CHECK(core::count(braid.crossings) == 2 * n * n);
+            for (const std::string& word : order_words(braid.crossings, 2 * n)) {
+                CHECK(core::count(word) == 2 * n);
+                CHECK(in_runs_of(word, static_cast<std::size_t>(over)));
+            }
+            CHECK(parameters.angle() == doctest::Approx(std::numbers::pi / 4.0).epsilon(1e-12));
+            // The mean of a carrier's slope over a whole turn is that of the helix: heights only go to and fro.
+            const Path& path = braid.paths.front();
+            const double rise = path.curve(1.0).z() - path.curve(0.0).z();
+            CHECK(std::tan(parameters.angle()) == doctest::Approx(2.0 * std::numbers::pi * radius / rise).epsilon(1e-12));
+            CHECK(refusal([&] { require_holding(braid); }).empty());
+        }
+    CHECK(refusal([] {
+              tubular_braid({.carriers = 5, .radius = 1.0, .pitch = 1.0, .over = 2, .type = yarn()});
+          }).find("TubularBraid.over = 2") == 0);
+}
+
+/// Where a path is at an arc from its start, and where it goes.
+std::pair<Vec3, Vec3> place_at(const Line& line, double arc) {
+    const auto k = static_cast<std::size_t>(std::upper_bound(line.arc.begin() + 1, line.arc.end() - 1, arc) - line.arc.begin());
+    return {line.points[k], line.points[k] - line.points[k - 1]};
+}
+
+TEST_CASE("orders of braids are those of their closed forms: z = h sin 2 f over x = A sin f, and r = R + h cos n f going right") {
+    const double r = 0.05;
+    const Textile flat = flat_braid({.yarns = 3, .half_width = 5.0 * r, .period = 50.0 * r, .type = yarn(r)});
+    std::vector<Line> lines = lines_of(flat);
+    for (const Crossing& crossing : flat.crossings) {
+        const auto [place, along] = place_at(lines[core::at(crossing.above)], crossing.at_above);
+        CHECK((along.x() > 0.0) == (place.x() > 0.0));  // sin 2 f = 2 sin f cos f > 0
+    }
+    const Index n = 4;
+    const double radius = 0.4, pitch = 2.5;
+    const Textile tube = tubular_braid({.carriers = n, .radius = radius, .pitch = pitch, .turns = 1.0, .type = yarn(r)});
+    lines = lines_of(tube);
+    for (const Crossing& crossing : tube.crossings) {
+        const double f = 2.0 * std::numbers::pi * place_at(lines[core::at(crossing.above)], crossing.at_above).first.z() / pitch;
+        CHECK((crossing.above < n) == (std::cos(static_cast<double>(n) * f) > 0.0));
+    }
+}
+
+TEST_CASE("axial yarns of a triaxial tube pass between the two that meet on them: two orders a passage") {
+    const Index n = 6;
+    const double r = 0.05, radius = 3.0 * static_cast<double>(n) * r;
+    const Textile braid = tubular_braid({.carriers = n,
+                                         .radius = radius,
+                                         .pitch = 2.0 * std::numbers::pi * radius,
+                                         .turns = 1.0,
+                                         .axials = true,
+                                         .type = yarn(r)});
+    // An axial line meets each carrier of each way once a turn.
+    CHECK(core::count(braid.crossings) == 2 * n * n + 2 * n * n);
+    for (const Crossing& crossing : braid.crossings) {
+        if (crossing.below >= 2 * n) CHECK(crossing.above >= n);
+        if (crossing.above >= 2 * n) CHECK(crossing.below < n);
+    }
+}
+
+TEST_CASE("a level matrix has warps x columns x layers crossings, and warp w lies above the weft of layer l where l < level") {
+    struct Case {
+        std::vector<std::string> levels;
+        Index layers;
+    };
+    for (const Case& c : {Case{{"01", "10"}, 1}, Case{{"0033", "3300", "1111", "2222"}, 3},
+                          Case{{"0123321", "3210123", "1111111", "2222222"}, 3}, Case{{"0220", "2002", "1111"}, 2}}) {
+        LevelPlan plan{.levels = levels_of(c.levels),
+                       .layers = c.layers,
+                       .column_spacing = 0.6,
+                       .warp_spacing = 0.3,
+                       .warp = yarn(),
+                       .weft = yarn()};
+        const Textile weave = woven(plan);
+        const Index columns = plan.column_count();
+        REQUIRE(core::count(weave.crossings) == plan.warps() * columns * c.layers);
+        Index right = 0;
+        for (const Crossing& crossing : weave.crossings) {
+            const bool warp_above = crossing.above < plan.warps();
+            const Index w = warp_above ? crossing.above : crossing.below,
+                        weft = (warp_above ? crossing.below : crossing.above) - plan.warps();
+            right += warp_above == (weft % c.layers < plan.level(w, weft / c.layers)) ? 1 : 0;
+        }
+        CHECK(right == core::count(weave.crossings));
+        CHECK(refusal([&] { validate(weave); }).empty());
+        // Turned over, every order is the other way round.
+        Textile mirrored = weave;
+        mirrored.view.axis = -Vec3::UnitZ();
+        for (const Crossing& crossing : crossings_of(mirrored)) right -= crossing.axis.z() < 0.0 ? 1 : 0;
+        CHECK(right == 0);
+        CHECK(audit_crossings(weave.crossings, crossings_of(mirrored)).wrong == core::count(weave.crossings));
+    }
+    CHECK(angle_interlock(3) == std::vector<Index>{0, 1, 2, 3, 2, 1});
+    CHECK(angle_interlock(3, 1) == std::vector<Index>{1, 2, 3, 2, 1, 0});
+    CHECK(refusal([] {
+              woven({.levels = levels_of({"04"}),
+                     .layers = 3,
+                     .column_spacing = 0.6,
+                     .warp_spacing = 0.3,
+                     .warp = yarn(),
+                     .weft = yarn()});
+          }).find("LevelPlan.levels[0][1] = 4") == 0);
+    CHECK(refusal([] {
+              woven({.levels = levels_of({"01"}), .column_spacing = 0.15, .warp_spacing = 0.3, .warp = yarn(), .weft = yarn()});
+          }).find("LevelPlan.column_spacing") == 0);
+}
+
+TEST_CASE("a lift plan gives back its levels, and one bit that contradicts them is refused by warp and pick") {
+    const std::vector<std::vector<Index>> levels = levels_of({"0123", "3210", "1111"});
+    std::vector<std::vector<bool>> lift;
+    for (const auto& row : levels) {
+        lift.emplace_back();
+        for (const Index level : row)
+            for (Index l = 0; l < 3; ++l) lift.back().push_back(l < level);
+    }
+    CHECK(levels_of_lifts(lift, 3) == levels);
+    lift[1][0] = false;  // below the lowest weft and above the two over it
+    CHECK(refusal([&] { levels_of_lifts(lift, 3); }).find("lift[1][1] = 1, but it must be 0: in column 0") == 0);
+}
+
+TEST_CASE("a cloth whose warps all lie above comes apart, and is refused by name before work") {
+    const Textile loose = woven({.levels = levels_of({"1111", "0101", "1010"}),
+                                 .column_spacing = 0.6,
+                                 .warp_spacing = 0.3,
+                                 .warp = yarn(),
+                                 .weft = yarn()});
+    const std::string message = refusal([&] { require_holding(loose); });
+    CHECK(message.find("warp 0") != std::string::npos);
+    CHECK(refusal([] {
+              require_holding(woven({.levels = levels_of({"0101", "1010"}),
+                                     .column_spacing = 0.6,
+                                     .warp_spacing = 0.3,
+                                     .warp = yarn(),
+                                     .weft = yarn()}));
+          }).empty());
+}
+
+TEST_CASE("leno has two crossings a pick and one a gap for each pair, always in the one order of its yarns") {
+    const LenoWeave parameters{.pairs = 3, .picks = 5, .pick_spacing = 1.0, .pair_spacing = 0.6, .aside = 0.15, .type = yarn()};
+    const Textile weave = leno(parameters);
+    CHECK(core::count(weave.crossings) == 3 * (2 * 5 + 4));
+    for (const Crossing& crossing : weave.crossings) {  // ground and doup by turns, then wefts
+        const auto kind = [](Index path) -> Index { return path >= 6 ? 2 : path % 2; };
+        const Index above = kind(crossing.above), below = kind(crossing.below);
+        CHECK(((above == 1 && below == 2) || (above == 2 && below == 0) || (above == 0 && below == 1)));
+    }
+    CHECK(refusal([&] { require_holding(weave); }).empty());
+    CHECK(refusal([&] { validate(weave); }).empty());
+}
+
+TEST_CASE("a triaxial weave crosses each pair once at most, in cyclic order, and every yarn alternates") {
+    const Textile weave = triaxial_weave({.spacing = 0.8, .radius = 2.4, .type = yarn()});
+    std::vector<std::pair<Index, Index>> pairs;
+    for (const Crossing& c : weave.crossings) {
+        const Index a = weave.paths[core::at(c.above)].family, b = weave.paths[core::at(c.below)].family;
+        CHECK((a + 1) % 3 == b);
+        pairs.emplace_back(std::min(c.above, c.below), std::max(c.above, c.below));
+    }
+    std::sort(pairs.begin(), pairs.end());
+    CHECK(std::adjacent_find(pairs.begin(), pairs.end()) == pairs.end());
+    for (const std::string& word : order_words(weave.crossings, core::count(weave.paths))) CHECK(in_runs_of(word, 1));
+    CHECK(refusal([&] { validate(weave); }).empty());
+}
+
+TEST_CASE(
+    "each loop of a weft knit crosses the one above it four times: heads over legs, legs under feet, or the other way round") {
+    const double r = 0.1;
+    for (const std::vector<std::string>& stitches : {std::vector<std::string>{"f"}, {"fr"}, {"f", "r"}, {"fr", "rf"}}) {
+        const WeftKnit parameters{.stitches = stitches,
+                                  .courses = 4,
+                                  .wales = 3,
+                                  .wale_spacing = 12.0 * r,
+                                  .course_spacing = 9.0 * r,
+                                  .loop_height = 8.0 * r,
+                                  .height_over_radius = 0.3,
+                                  .type = yarn(r)};
+        const Textile knit = weft_knit(parameters);
+        CHECK(core::count(knit.crossings) == 3 * 3 * 4);
+        for (const Crossing& c : knit.crossings) CHECK(std::abs(c.above - c.below) == 1);
+        for (Index k = 0; k + 1 < 4; ++k) {
+            std::vector<std::pair<double, bool>> seen;  // along the lower course
+            for (const Crossing& c : knit.crossings) {
+                if (std::min(c.above, c.below) != k || std::max(c.above, c.below) != k + 1) continue;
+                seen.emplace_back(c.above == k ? c.at_above : c.at_below, c.above == k);
+            }
+            std::sort(seen.begin(), seen.end());
+            REQUIRE(seen.size() == 12);
+            for (Index m = 0; m < 3; ++m) {  // legs and heads of the lower loop: -, +, +, - where the loop above is a face stitch
+                const bool face = parameters.face(k + 1, m);
+                for (const auto& [at, head] : {std::pair{0, false}, {1, true}, {2, true}, {3, false}})
+                    CHECK(seen[core::at(4 * m + at)].second == (head == face));
+            }
+        }
+        CHECK(refusal([&] { validate(knit); }).empty());
+    }
+}
+
+TEST_CASE("each loop of a tricot crosses that drawn through it four times") {
+    const double r = 0.05;
+    const Textile knit = tricot({.needles = 4,
+                                 .courses = 4,
+                                 .needle_spacing = 20.0 * r,
+                                 .course_spacing = 16.0 * r,
+                                 .loop_height = 22.0 * r,
+                                 .type = yarn(r)});
+    // Needle m is laid by yarn m in even courses and by yarn m - 1 in odd ones: of 3 gaps of courses, on 4 needles all but those
+    // that an edge leaves.
+    std::vector<Index> of_pair(16, 0);
+    for (const Crossing& c : knit.crossings) ++of_pair[core::at(4 * std::min(c.above, c.below) + std::max(c.above, c.below))];
+    for (Index m = 0; m + 1 < 4; ++m) CHECK(of_pair[core::at(4 * m + m + 1)] == 3 * 4);
+    CHECK(refusal([&] { validate(knit); }).empty());
+}
+
+TEST_CASE("plies lie on helices as long as their angle says, and do not touch") {
+    const double r = 0.05, pitch = 40.0 * r, length = 3.0 * pitch;
+    const Plied parameters{.plies = 3, .pitch = pitch, .length = length, .type = yarn(r)};
+    const Textile yarn3 = plied(parameters);
+    const double a = parameters.lay_radius(3, r, pitch);
+    for (const Path& path : yarn3.paths)
+        CHECK(scene::length_of(path.curve) == doctest::Approx(length * helix_length_ratio(a, pitch)).epsilon(1e-4));
+    double least = 1e9;
+    for (Index k = 0; k <= 400; ++k)
+        for (Index l = 0; l <= 400; ++l)
+            least = std::min(least, (yarn3.paths[0].curve(static_cast<double>(k) / 400.0) -
+                                     yarn3.paths[1].curve(static_cast<double>(l) / 400.0))
+                                        .norm());
+    CHECK(least > 2.0 * r);
+    CHECK(least < 2.3 * r);
+    const Textile rope =
+        plied({.plies = 3, .pitch = pitch, .strands = 3, .strand_pitch = 100.0 * r, .length = length, .type = yarn(r)});
+    CHECK(core::count(rope.paths) == 9);
+    CHECK(refusal([&] { validate(rope); }).empty());
+}
+
+TEST_CASE("a ring of chain mail is linked once with each of four neighbours, and with no other") {
+    const Textile mail = chain_mail({.rows = 5, .columns = 4, .ring_radius = 1.0, .type = yarn(0.08)});
+    const std::vector<Line> lines = lines_of(mail);
+    std::vector<Index> links(lines.size(), 0);
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        for (std::size_t j = i + 1; j < lines.size(); ++j) {
+            const Index link = std::abs(observe::linking_number(lines[i].points, lines[j].points));
+            CHECK(link <= 1);
+            links[i] += link, links[j] += link;
+        }
+    CHECK(links[4 * 2 + 1] == 4);  // inside
+    CHECK(links[0] == 1);          // at a corner that a row stands back from
+}
+
+TEST_CASE("yarns of a net clasp each other at every turn: two crossings, one above, then the other") {
+    const double r = 0.05;
+    const Textile meshes = net({.yarns = 4, .spacing = 16.0 * r, .period = 60.0 * r, .periods = 2.0, .type = yarn(r)});
+    CHECK(core::count(meshes.crossings) == 2 * (2 + 2 + 2));
+    for (Index k = 0; k + 1 < 4; ++k) {
+        Index above = 0, below = 0;
+        for (const Crossing& c : meshes.crossings)
+            above += c.above == k && c.below == k + 1, below += c.below == k && c.above == k + 1;
+        CHECK(above == 2);
+        CHECK(below == 2);
+    }
+    CHECK(refusal([&] { require_holding(meshes); }).empty());
+}
+
+}  // namespace textile_generators_test

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+// Files of curves: written and read again they are the same; what is wrong in them is refused by its place.
+#include "../refusal.hpp"
+
+#include <fibrant/exchange/binary_curves.hpp>
+#include <fibrant/exchange/text_curves.hpp>
+#include <fibrant/exchange/tubes.hpp>
+#include <fibrant/exchange/voxels.hpp>
+#if __has_include(<pugixml.hpp>) && defined(FIBRANT_WITH_PUGIXML)
+#include <fibrant/exchange/xml_curves.hpp>
+#endif
+#include <fibrant/observe/poly_data.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace exchange_curves_test {
+
+using namespace fibrant;
+using namespace fibrant::exchange;
+using fibrant::test::refusal;
+constexpr double pi = std::numbers::pi;
+
+std::vector<FileCurve> sample() {
+    FileCurve wave, ring;
+    for (Index k = 0; k <= 20; ++k) {
+        const double t = 0.1 * static_cast<double>(k);
+        wave.points.emplace_back(t / 3.0, std::sin(t), 0.2 * std::cos(2.0 * t));
+    }
+    for (Index k = 0; k < 24; ++k) {
+        const double a = 2.0 * pi * static_cast<double>(k) / 24.0;
+        ring.points.emplace_back(std::cos(a), std::sin(a), 1.0 / 3.0);
+    }
+    wave.radius = 0.05, wave.group = 3, ring.radius = 0.07, ring.group = 4, ring.closed = true;
+    return {wave, ring};
+}
+double greatest_difference(const std::vector<FileCurve>& a, const std::vector<FileCurve>& b) {
+    if (a.size() != b.size()) return 1e9;
+    double most = 0.0;
+    for (std::size_t c = 0; c < a.size(); ++c) {
+        if (a[c].points.size() != b[c].points.size() || a[c].closed != b[c].closed) return 1e9;
+        for (std::size_t k = 0; k < a[c].points.size(); ++k) most = std::max(most, (a[c].points[k] - b[c].points[k]).norm());
+    }
+    return most;
+}
+
+TEST_CASE("text files give back the same numbers, closed curves closed and radii where the file has them") {
+    const std::vector<FileCurve> given = sample();
+    const std::vector<FileCurve> csv = cleaned(curves_of_csv(csv_of(given), "a.csv"), "a.csv"),
+                                 vtk = cleaned(curves_of_vtk(vtk_of(given), "a.vtk"), "a.vtk"),
+                                 obj = cleaned(curves_of_obj(obj_of(given), "a.obj"), "a.obj"),
+                                 inp = cleaned(curves_of_inp(inp_of(given), "a.inp"), "a.inp");
+    for (const auto* read : {&csv, &vtk, &obj, &inp}) CHECK(greatest_difference(given, *read) == 0.0);
+    for (const auto* read : {&csv, &vtk, &inp}) CHECK((*read)[1].radius == 0.07);
+    CHECK(csv[0].group == 3);
+}
+
+TEST_CASE("binary curves are the same in single precision, and closed where their count is negative") {
+    const std::vector<FileCurve> read = cleaned(curves_of_bcc(bcc_of(sample()), "a.bcc"), "a.bcc");
+    CHECK(greatest_difference(sample(), read) < 1e-7);
+    CHECK(curves_of_bcc(bcc_of(read), "a.bcc")[0].points == read[0].points);
+}
+
+TEST_CASE("VTK's binary numbers are big-endian, and lines of version 5 are offsets") {
+    std::string text =
+        "# vtk DataFile Version 5.1\nt\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0\n2 0 0 3 0.5 0\nLINES 2 4\nOFFSETS "
+        "vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n0 1 2 3\n";
+    CHECK(curves_of_vtk(text, "b.vtk")[0].points[3] == Vec3(3.0, 0.5, 0.0));
+    std::string bytes = "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\nPOINTS 2 float\n";
+    for (const int c : {0x3f, 0x80, 0, 0, 0, 0, 0, 0, 0x40, 0, 0, 0, 0x40, 0x40, 0, 0, 0, 0, 0, 0, 0xbf, 0x80, 0, 0})
+        bytes += static_cast<char>(c);
+    bytes += "\nLINES 1 3\n";
+    for (const int c : {0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 1}) bytes += static_cast<char>(c);
+    const std::vector<FileCurve> read = curves_of_vtk(bytes + "\n", "b.vtk");
+    CHECK(read.at(0).points == std::vector<Vec3>{Vec3(1, 0, 2), Vec3(3, 0, -1)});
+}
+
+TEST_CASE("an Abaqus file of quadratic beams in any order makes one chain, its radius that of its section") {
+    const std::string text =
+        "*Heading\n** a comment\n*Node\n 1, 0., 0., 0.\n2, 1,0,0\n3, 2,0,0\n4,3,0.1,0\n5,4,0.2,0\n*Element, type=B32, "
+        "elset=tow\n2, 3, 4, 5\n1, 1,\n 2, 3\n*Beam section, section=CIRC, elset=TOW, material=m\n0.25\n0,1,0\n";
+    const std::vector<FileCurve> read = curves_of_inp(text, "c.inp");
+    REQUIRE(read.size() == 1);
+    CHECK(read[0].points.size() == 5);
+    CHECK(read[0].radius == 0.25);
+    CHECK(refusal([&] { curves_of_inp("*NODE\n1, 0,0,0\n*ELEMENT, TYPE=B31\n1, 1, 7\n", "c.inp"); }) ==
+          "c.inp:4: node = 7, but it must be one of *NODE");
+}
+
+TEST_CASE("what is wrong in a file is refused by file, place and value") {
+    CHECK(refusal([] { curves_of_csv("fibre,x,y,z\n0,1,2,3\n0,1,two,3\n", "d.csv"); }) ==
+          "d.csv:3: y = two, but it must be a finite number");
+    CHECK(refusal([] { curves_of_csv("fibre,x,y,z\n0,1,2\n", "d.csv"); }).find("d.csv:2: 3 values, but it must be 4") == 0);
+    CHECK(refusal([] { curves_of_csv("fibre,x,y\n0,1,2\n", "d.csv"); }).find("d.csv:1: has no column z") == 0);
+    CHECK(refusal([] { curves_of_csv("fibre;x;y;z\n0;1;2;nan\n", "d.csv"); }).find("d.csv:2: z = nan") == 0);
+    CHECK(refusal([] { curves_of_obj("v 0 0 0\nl 1 2\n", "d.obj"); }).find("d.obj:2: point = 2") == 0);
+    CHECK(refusal([] { curves_of_bcc("BCX", "d.bcc"); }).find("d.bcc:byte 0") == 0);
+    std::string cut = bcc_of(sample());
+    CHECK(refusal([&] { curves_of_bcc(std::string_view(cut).substr(0, cut.size() - 5), "d.bcc"); }).find("points of curve 1") !=
+          std::string::npos);
+    CHECK(refusal([] {
+              curves_of_vtk("# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS -3 float\n", "d.vtk");
+          }).find("POINTS = -3") != std::string::npos);
+    std::vector<FileCurve> sharp{FileCurve{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(2, 1, 0)}}};
+    CHECK(refusal([&] { cleaned(sharp, "e.csv"); }).find("e.csv:curve 0, point 1: chords turn by 90 degrees") == 0);
+    CHECK(refusal([&] {
+              cleaned({FileCurve{{Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)}}}, "e.csv");
+          }).find("e.csv:curve 0: 3 points that differ") == 0);
+}
+
+#if __has_include(<pugixml.hpp>) && defined(FIBRANT_WITH_PUGIXML)
+TEST_CASE("what ParaView is given is read again, whatever way its numbers are written") {
+    observe::PolyData data;
+    const std::vector<FileCurve> given = sample();
+    for (const FileCurve& curve : given) {
+        const Index first = data.add_point(curve.points.front());
+        for (std::size_t k = 1; k < curve.points.size(); ++k) data.add_point(curve.points[k]);
+        data.add_line(first, core::count(curve.points), curve.closed);
+    }
+    CHECK(greatest_difference(given, cleaned(curves_of_vtp(data.text(), "f.vtp"), "f.vtp")) == 0.0);
+    const std::string ascii =
+        "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"2\"><Points><DataArray "
+        "type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0\n1 2 3</DataArray></Points><Lines><DataArray "
+        "type=\"Int32\" Name=\"connectivity\" format=\"binary\">CAAAAAAAAAABAAAA</DataArray><DataArray type=\"Int32\" "
+        "Name=\"offsets\" format=\"binary\">BAAAAA==AgAAAA==</DataArray></Lines></Piece></PolyData></VTKFile>";
+    CHECK(curves_of_vtp(ascii, "g.vtp").at(0).points == std::vector<Vec3>{Vec3(0, 0, 0), Vec3(1, 2, 3)});
+    CHECK(refusal([] { curves_of_vtp("<VTKFile type=\"ImageData\"/>", "g.vtp"); }).find("g.vtp: VTKFile type = ImageData") == 0);
+    CHECK(refusal([] { curves_of_vtp("<VTKFile", "g.vtp"); }).find("is no XML") != std::string::npos);
+}
+
+TEST_CASE("yarns of TexGen come back with their nodes, periods and widths") {
+    std::vector<FileCurve> given = sample();
+    given[0].period = given[0].points.back() - given[0].points.front();
+    const std::vector<FileCurve> read = cleaned(curves_of_tg3(tg3_of(given), "h.tg3"), "h.tg3");
+    CHECK(greatest_difference(given, read) == 0.0);
+    CHECK(read[1].radius == 0.07);
+    CHECK((read[0].period - given[0].period).norm() == 0.0);
+    CHECK(refusal([] {
+              curves_of_tg3("<TexGenModel><Textile type=\"CTextileWeave2D\"/></TexGenModel>", "h.tg3");
+          }).find("h.tg3: Textile type = CTextileWeave2D, but it must be CTextile") == 0);
+}
+#endif
+
+TEST_CASE("surfaces of fibres are closed, look outwards, and hold the volume of the fibres") {
+    FileCurve straight{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(3, 0, 0)}};
+    straight.radius = 0.1;
+    for (const FileCurve& curve : {straight, sample()[1]}) {
+        Surface surface;
+        add_tube(surface, curve, 8);
+        double length = 0.0;
+        const std::size_t n = curve.points.size();
+        for (std::size_t k = 0; k + (curve.closed ? 0 : 1) < n; ++k)
+            length += (curve.points[(k + 1) % n] - curve.points[k]).norm();
+        CHECK(surface.volume() == doctest::Approx(pi * curve.radius * curve.radius * length)
+                                      .epsilon(curve.closed ? 0.02 : 1e-12));  // chords of a ring of 24
+        // Each edge belongs to two triangles that go along it in opposite ways.
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+        for (const auto& t : surface.triangles)
+            for (std::size_t k = 0; k < 3; ++k) edges.emplace_back(t[k], t[(k + 1) % 3]);
+        std::sort(edges.begin(), edges.end());
+        CHECK(std::adjacent_find(edges.begin(), edges.end()) == edges.end());
+        for (const auto& [a, b] : edges) CHECK(std::binary_search(edges.begin(), edges.end(), std::pair{b, a}));
+        CHECK(surface.points.size() + surface.triangles.size() == edges.size() / 2 + (curve.closed ? 0 : 2));  // Euler
+    }
+    const std::string glb = glb_of(sample());
+    CHECK(glb.substr(0, 4) == "glTF");
+    std::uint32_t size = 0;
+    std::memcpy(&size, glb.data() + 8, 4);
+    CHECK(size == glb.size());
+    const std::string stl = stl_of(sample());
+    std::memcpy(&size, stl.data() + 80, 4);
+    CHECK(stl.size() == 84 + 50 * size);
+}
+
+TEST_CASE("voxels hold the volume of fibres to a thousandth at half a radius, and their orientation") {
+    FileCurve slanted;
+    const Vec3 along = Vec3(3, 2, 1).normalized();
+    for (Index k = 0; k <= 40; ++k) slanted.points.push_back(0.05 * static_cast<double>(k) * along);
+    slanted.radius = 0.1, slanted.group = 7;
+    const double volume = pi * 0.01 * 2.0;
+    const Voxels fine = voxels_of({slanted}, grid_around({slanted}, 0.05));
+    CHECK(std::abs(fine.volume / volume - 1.0) < 1e-3);
+    CHECK(fine.excess == 0.0);
+    CHECK((fine.mean_orientation - along * along.transpose()).norm() < 1e-6);
+    CHECK((orientation_of({slanted}) - along * along.transpose()).norm() < 1e-12);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < fine.share.size(); ++k) {
+        sum += static_cast<double>(fine.share[k]);
+        if (fine.share[k] == 0.0f) continue;
+        CHECK(fine.yarn[k] == 7);
+        CHECK(std::abs(static_cast<double>(fine.orientation[k][0] + fine.orientation[k][1] + fine.orientation[k][2]) - 1.0) <
+              1e-6);  // single precision
+    }
+    CHECK(sum * std::pow(0.05, 3) == doctest::Approx(fine.volume).epsilon(1e-6));
+    // A ring: tr A = 1, and as much along x as along y.
+    FileCurve ring;
+    for (Index k = 0; k < 400; ++k)
+        ring.points.emplace_back(std::cos(2.0 * pi * static_cast<double>(k) / 400.0),
+                                 std::sin(2.0 * pi * static_cast<double>(k) / 400.0), 0.0);
+    ring.radius = 0.2, ring.closed = true;
+    const Voxels around = voxels_of({ring}, grid_around({ring}, 0.1));
+    CHECK(std::abs(around.volume / (pi * 0.04 * 2.0 * pi) - 1.0) < 1e-3);
+    CHECK((orientation_of({ring}) - Mat3(Vec3(0.5, 0.5, 0.0).asDiagonal())).norm() < 1e-6);
+    CHECK(vti_of(around).find("fibre_volume_fraction") != std::string::npos);
+}
+
+}  // namespace exchange_curves_test
