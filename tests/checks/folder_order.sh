@@ -5,7 +5,7 @@
 # usage: folder_order.sh INCLUDE_FOLDER
 set -eu
 cd "$1"
-order='core scene beam solid proximity law contact connection assembly solver observe simulation compositions'
+order='core scene beam material solid proximity law contact connection assembly solver observe simulation compositions'
 failed=0
 
 find fibrant -name '*.hpp' | sort | xargs grep -nE '^[[:space:]]*#[[:space:]]*include' /dev/null | awk -v order="$order" '
