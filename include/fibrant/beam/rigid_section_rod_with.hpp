@@ -32,6 +32,7 @@ public:
     Rest rest(const SectionConstants& section, const scene::ElasticMaterial& material, const ElementVector& y) const {
         Rest rest{Base::rest(section, scene::ElasticMaterial{material.young_modulus, 0.0}, y), {}};
         Laws::begin(rest, section, material, this->parameters_.shear_factor);
+        rest.memory.section.keep_shape();
         return rest;
     }
     double energy(const Rest& rest, const ElementVector& y) const { return rest.length * answers(rest, y)[0].stored; }

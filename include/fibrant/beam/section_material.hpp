@@ -86,10 +86,13 @@ concept SectionMaterial = core::Policy<M> && core::Active<M> && Memory<typename 
     typename M::Section;
     requires M::entries[11].row == 11 && M::entries[11].column == 11;
     { M::has_rate } -> std::convertible_to<bool>;  // needs increments that have a duration
-} && requires(const M material, const SectionConstants& shape, const scene::ElasticMaterial& elastic, const PointPlace& place,
-              const typename M::Section& section, const SectionStrains& strain, const typename M::History& accepted, const Drive& drive) {
+} && requires(const M material, const SectionConstants& shape, const scene::ElasticMaterial& elastic, const typename M::Section& section) {
     { material.section(shape, elastic, 1.0) } -> std::same_as<typename M::Section>;  // and the shear factor
     { section.contraction } -> std::convertible_to<double>;
+} && requires(typename M::Section& section) {
+    section.keep_shape();  // of a beam whose sections do
+} && requires(const M material, const PointPlace& place, const typename M::Section& section, const SectionStrains& strain,
+              const typename M::History& accepted, const Drive& drive) {
     { material.fresh(section, place) } -> std::same_as<typename M::History>;
     { material.response(section, strain, accepted, drive) } -> std::same_as<SectionAnswer<typename M::History, M::entries.size()>>;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file A section law put together of laws of groups of strains, as tests of yarns and tows give them.
+/// @file A section law put together of laws of groups of strains, as tests of bundles give them.
 
 #include <fibrant/material/elastic.hpp>
 
@@ -185,7 +185,7 @@ private:
 };
 
 /// Stretch by one law, bending by another, torsion, shear and the section elastic. Where the stretch carries less than E A e, the section
-/// contracts by less: by nu times N / (E A), or that of a slack tow would swell.
+/// contracts by less: by nu times N / (E A), or that of a slack bundle would swell.
 template <AxialLaw Axial, BendingLaw Bending>
 class Composed {
 public:

@@ -49,6 +49,8 @@ struct ElasticSection {
         diagonal[strain::c12] = even - odd, diagonal[strain::c21] = even + odd;
         twist_coupling = 0.25 * shear * (m1 + m2) * (1.0 - f);
     }
+    /// Of a beam whose sections keep their shape: nothing is stored there, and they contract freely.
+    void keep_shape() noexcept { diagonal[strain::e11] = diagonal[strain::e22] = diagonal[strain::e12] = lateral = 0.0; }
     SectionStrains stress(const SectionStrains& e) const noexcept {
         SectionStrains s;
         for (std::size_t c = 0; c < s.size(); ++c) s[c] = diagonal[c] * e[c];

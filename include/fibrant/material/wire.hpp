@@ -13,8 +13,8 @@ namespace fibrant::material {
 /// radius, so that area and second moments are exact). At each the stress (sigma, tau_1, tau_2) obeys q^2 = sigma^2 + 3 tau^2 of stress
 /// less back stress, q <= sy; closest point (Simo and Hughes, Computational Inelasticity, ch. 3, for a diagonal elasticity):
 ///   x_i = x_trial,i / (1 + l (C + H)_i P_i),  x . P x = sy^2,  d ep = l P x,  C = (E, G, G),  H = (h, h/3, h/3),  P = (1, 3, 3).
-/// Plastic flow keeps the volume: the section contracts by half of the mean of what was accepted. The strains of the section stay
-/// elastic. Strains are Green's: right to 1 % up to 5 %.
+/// Plastic flow keeps the volume: the section contracts by half of the mean of what was accepted (what its own stress does on that is
+/// not booked: a free section has none). The strains of the section stay elastic. Strains are Green's: right to 1 % up to 5 %.
 ///
 /// With 3 x 16 points the moment beyond yield is within 1.4 % of the continuous section's, in any direction.
 template <int Rings, int Angles>
