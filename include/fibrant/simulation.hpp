@@ -17,6 +17,7 @@
 #include <fibrant/simulation/report.hpp>
 #include <fibrant/simulation/scene_checks.hpp>
 #include <fibrant/simulation/scene_difference.hpp>
+#include <fibrant/simulation/section_laws.hpp>
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 #include <fibrant/simulation/state_file.hpp>

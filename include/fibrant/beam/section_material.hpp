@@ -64,6 +64,10 @@ inline constexpr auto elastic_entries =
     with_diagonal(std::array<Entry, 2>{{{strain::e11, strain::e22}, {strain::c12, strain::c21}}});
 }  // namespace detail
 
+/// Beyond a bound by less than this part of it a point has not begun to flow: what was accepted at its bound starts the next increment
+/// there, with the tangent that unloading has. A rounding error, and far below what a strain is known to.
+inline constexpr double at_bound = 1e-9;
+
 /// What a law answers at a point, a unit of rest length.
 template <class H, std::size_t Entries>
 struct SectionAnswer {

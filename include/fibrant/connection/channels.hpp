@@ -17,6 +17,8 @@ class Channels {
 public:
     Channels() = default;
     explicit Channels(const scene::Assembly& assembly) {
+        for (const scene::FibreSpecification& fibre : assembly.fibres())
+            if (!fibre.law_channel.empty()) names_.push_back(fibre.law_channel);
         for (const scene::Hold& hold : assembly.holds()) names_.push_back(hold.channel);
         for (const scene::DeadForce& force : assembly.forces()) names_.push_back(force.channel);
         for (const scene::LinePressure& load : assembly.pressures()) names_.push_back(load.channel);

@@ -166,7 +166,7 @@ public:
             const double g = p_.share[i], bound = g * p_.curvature[i];
             std::array<double, 2> m{accepted.moment[i][0] + g * (b[0] - accepted.curvature[0]), accepted.moment[i][1] + g * (b[1] - accepted.curvature[1])};
             const double size = std::hypot(m[0], m[1]);
-            if (size > bound) {
+            if (size > bound * (1.0 + beam::at_bound)) {
                 const double n0 = m[0] / size, n1 = m[1] / size, t = B * g * bound / size;
                 m = {bound * n0, bound * n1};
                 answer.tangent[0] += t * (1.0 - n0 * n0), answer.tangent[1] -= t * n0 * n1, answer.tangent[2] += t * (1.0 - n1 * n1);

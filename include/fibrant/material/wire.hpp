@@ -167,7 +167,7 @@ private:
             q += P[i] * x[i] * x[i];
             answer.tangent[i][i] = C[i];
         }
-        if (q <= square) return answer;
+        if (q <= square * (1.0 + beam::at_bound)) return answer;
         // Convex and falling in l: Newton from 0 comes from one side. Where it stops moving it is there.
         const Three trial = x;
         double l = 0.0;

@@ -25,6 +25,7 @@ template <Model M>
 struct Stage {
     std::string name = "loading";
     Index increments = 10;                      ///< that its ramps take when none is cut, >= 1
+    double duration = 0.0;                      ///< of its ramps, for laws with a rate, >= 0; what follows them takes no time [time]
     std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
     std::optional<double> gap_limit{};          ///< of a law that limits the gap [length]; scaled down when cut
     std::optional<double> allowed_penetration{};  ///< that the penalty adapts to in this stage, for the model's [length]
@@ -86,6 +87,7 @@ struct Loading {
             core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);
             core::require_at_least("Stage.enough_increments", stage.enough_increments, 1);
             core::require_not_negative("Stage.damping", stage.damping);
+            core::require_not_negative("Stage.duration", stage.duration);
             core::require(stage.damping_decay > 0.0 && stage.damping_decay <= 1.0, "Stage.damping_decay", stage.damping_decay, "in (0, 1]");
             core::require(stage.damping_calm > 0.0, "Stage.damping_calm", stage.damping_calm, "> 0");
             core::require_not_negative("Stage.damping_share", stage.damping_share);

@@ -10,6 +10,7 @@
 #include <fibrant/simulation/mean_motion.hpp>
 #include <fibrant/simulation/position.hpp>
 #include <fibrant/simulation/scene_checks.hpp>
+#include <fibrant/simulation/section_laws.hpp>
 #include <fibrant/simulation/state_file.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 
@@ -42,7 +43,7 @@ public:
           contacts_{assembly, mesh_, parameters.contact, typename M::Proximity(parameters.proximity),
                     typename M::Normal(parameters.normal), typename M::Friction(parameters.friction)},
           equilibrium_{assembly, mesh_, beam_, contacts_, channels_, Solid(parameters.solid)}, passage_{mesh_, parameters.contact.detection},
-          linear_{parameters.solver},
+          linear_{parameters.solver}, laws_{assembly, mesh_, beam_, channels_},
           state_{mesh_.start_state()}, amplitudes_(channels_.names().size(), 0.0) {
         if (mesh_.fibre_count() == 0) core::refuse("assembly.fibres", "none", "at least one fibre");
         if constexpr (HasTools<M>) {
@@ -73,6 +74,7 @@ public:
         const auto start = std::chrono::steady_clock::now();
         const std::vector<Stage<M>> stages = stages_of(loading, channels_);
         check_ramps(stages, channels_, amplitudes_);
+        laws_.check(stages);
         require_paths(stages, equilibrium_.motion(), mesh_, channels_, amplitudes_);
         Report report;
         report.reason = unheld(stages, loose_);
@@ -168,6 +170,7 @@ public:
         if (before.size() > state_.size() || before != state_.head(before.size()))
             core::refuse("Simulator.state", "another", "that of the run to go on from: use Assembly::begin_at");
         contacts_.resume(other.contacts().accepted_memory().records(), other.contacts().accepted_zones());
+        laws_.go_on_from(mesh_, other.mesh());
         energy_.start(equilibrium_, state_, other.contacts(), before);
     }
 
@@ -175,12 +178,6 @@ private:
     Index first_of(const scene::Station& at, scene::NodeVector vector) const {
         return 3 * mesh_.node_vector(at.fibre, connection::station_node(mesh_, at), static_cast<Index>(vector));
     }
-    static const ModelParameters<M>& checked(const ModelParameters<M>& parameters) {
-        parameters.contact.validate();
-        parameters.iteration.validate();
-        return parameters;
-    }
-
     void move_tools([[maybe_unused]] const std::vector<double>& amplitudes) {
         if constexpr (HasTools<M>) {
             std::vector<double> own;
@@ -208,8 +205,7 @@ private:
                 report.reason = "stage " + stage.name + " did not reach its end in " + std::to_string(stage.most_increments) + " increments";
                 return false;
             }
-            double progress = stage.ramps.empty() && !stage.until ? 1.0 : std::min(1.0, position_.progress + position_.fraction / static_cast<double>(stage.increments));
-            if (progress > 1.0 - 1e-9) progress = 1.0;
+            const double progress = laws_.again() ? position_.progress : position_.next(stage);
             if constexpr (requires { contacts_.normal_law().with_limit(1.0); }) {
                 const double limit = stage.gap_limit ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
                 contacts_.normal_law() = contacts_.normal_law().with_limit(limit);
@@ -225,6 +221,7 @@ private:
             }
             Vector trial = state_;
             move_tools(amplitudes);
+            laws_.drive(mesh_, amplitudes, stage.duration * (progress - position_.progress));
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping, position_.holding);
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
@@ -236,6 +233,7 @@ private:
             attempt_newton = static_cast<double>(attempt.counts.newton) / static_cast<double>(std::max<Index>(1, attempt.counts.normal_passes));
             if (attempt.converged) {
                 attempt.reason = clock_.time(core::Part::search, [&] { return refusal(mesh_, beam_, passage_, contacts_, state_, trial, stage.forced_orders, touching); });
+                if (attempt.reason.empty()) attempt.reason = laws_.refusal(mesh_, beam_, trial);
                 if (!attempt.reason.empty()) attempt.converged = false, attempt.unsettled.resize(0);  // whoever moved most is not at fault
             }
             // What nothing foretells would be held back: a first solution tells where it goes.
@@ -245,7 +243,8 @@ private:
                 continue;
             }
             if (attempt.converged) {
-                energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders);
+                energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again());
+                laws_.accept(mesh_, beam_, trial, energy_);
                 increment.energy = energy_.balance();
                 if (stage.damping_carried) motion_.learn(mesh_, state_, trial, change);
                 state_ = trial;
@@ -286,7 +285,7 @@ private:
         // At rest: what holds takes no more force than the balance may miss anyway.
         const bool reached = position_.progress >= 1.0 && (!stage.until || stage.until(increment));
         const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
-        position_.stage_over = (reached && !held) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments);
+        position_.stage_over = !laws_.again() && ((reached && !held) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments));
         position_.adapt_damping(stage, increment, attempt_newton / static_cast<double>(parameters_.iteration.newton_limit));
         contacts_.accept(state_);
         if constexpr (HasSolid<M>)
@@ -332,6 +331,7 @@ private:
         file.put(state_);
         energy_.each([&](const auto& value) { file.put(value); });
         put_memory(file, contacts_.accepted_memory().records(), contacts_.accepted_zones());
+        file.put(laws_.numbers(mesh_));
         for (const double amplitude : amplitudes_) file.put(amplitude);
         position_.each([&](const auto& value) { file.put(value); });
         if constexpr (HasTools<M>) contacts_.tools().each_accepted([&](const auto& value) { file.put(value); });
@@ -356,6 +356,7 @@ private:
         std::vector<contact::Zone> zones;
         get_memory(file, records, zones, mesh_.fibre_count());
         contacts_.resume(std::move(records), std::move(zones));
+        laws_.take(mesh_, get_state(file, laws_.count(mesh_)));
     }
 
     void read_checkpoint(const Loading<M>& loading, const std::vector<Stage<M>>& stages, Report& report) {
@@ -392,6 +393,7 @@ private:
     Equilibrium equilibrium_;
     [[no_unique_address]] Passage passage_;
     typename M::Solver linear_;
+    [[no_unique_address]] SectionLaws<Beam> laws_;
     Vector state_;
     std::vector<double> amplitudes_;
     double radius_ = 0.0;
