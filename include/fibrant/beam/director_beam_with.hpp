@@ -99,10 +99,14 @@ public:
     using Parameters = LawParameters<Base, M>;
     using ElementVector = typename Base::ElementVector;
     using ElementMatrix = typename Base::ElementMatrix;
-    using Stresses = typename Base::Stresses;
     using Strains = typename Base::Strains;
     using Answer = SectionAnswer<typename M::History, M::entries.size()>;
     using Answers = std::array<Answer, Base::points>;
+    /// Of an iteration: at strains of its own, with the tangent there.
+    struct Stresses : Base::Stresses {
+        std::array<SectionStrains, Base::points> strain{}, law{};
+        std::array<std::array<double, M::entries.size()>, Base::points> tangent{};
+    };
     struct Rest : Base::Rest {
         ElementMemory<M, Base::points> memory{};
     };
@@ -125,47 +129,48 @@ public:
         return rest;
     }
     double energy(const Rest& rest, const ElementVector& y) const { return Laws::figures(rest, y).stored; }
-    ElementVector internal_force(const Rest& rest, const ElementVector& y) const {
-        ElementVector force;
-        Base::write_force(rest, y, Interpolation::all_fields(rest.point, y), stresses(rest, y), force);
-        return force;
-    }
-    ElementMatrix tangent_stiffness(const Rest& rest, const ElementVector& y) const {
-        const Answers now = answers(rest, y);
-        ElementMatrix tangent;
-        write_tangent(rest, y, now, of_law(rest, now), tangent);
-        return tangent;
-    }
-    ElementMatrix tangent_stiffness(const Rest& rest, const ElementVector& y, const Stresses& geometric) const {
-        ElementMatrix tangent;
-        write_tangent(rest, y, answers(rest, y), geometric, tangent);
-        return tangent;
-    }
-    void residual_and_tangent(const Rest& rest, const ElementVector& y, const Stresses& geometric, ElementVector& force,
-                              ElementMatrix& tangent) const {
-        const Answers now = answers(rest, y);
-        Base::write_force(rest, y, Interpolation::all_fields(rest.point, y), of_law(rest, now), force);
-        write_tangent(rest, y, now, geometric, tangent);
-    }
-    Stresses stresses(const Rest& rest, const ElementVector& y) const { return of_law(rest, answers(rest, y)); }
-    /// S(q) + C_alg B(q) step.
-    Stresses predicted_stresses(const Rest& rest, const ElementVector& y, const ElementVector& step) const {
-        const Answers now = answers(rest, y);
-        const typename Interpolation::Fields f = Interpolation::all_fields(rest.point, y), df = Interpolation::all_fields(rest.point, step);
-        std::array<Strains, Base::points> e{};
-        for (std::size_t p = 0; p < e.size(); ++p) Kernel::add_rate(rest.law, f[p], df[p], e[p]);
-        const typename Base::Section::Three section = Base::Section::rate(y, step);
-        for (std::size_t p = 0; p < e.size(); ++p) Base::Section::interpolate(p, section, e[p]);
-        Answers ahead = now;
+    ElementVector internal_force(const Rest& rest, const ElementVector& y) const { return internal_force(rest, y, stresses(rest, y)); }
+    /// S(e*) + C(e*) (e - e*) for the strains e* of the iteration.
+    ElementVector internal_force(const Rest& rest, const ElementVector& y, const Stresses& iterated) const {
+        std::array<SectionStrains, Base::points> e = law_strains(rest, y), s = iterated.law;
         for (std::size_t p = 0; p < e.size(); ++p) {
-            const SectionStrains x = to_law(rest, e[p]);
+            for (std::size_t c = 0; c < 12; ++c) e[p][c] -= iterated.strain[p][c];
             for (std::size_t k = 0; k < M::entries.size(); ++k) {
                 const auto a = static_cast<std::size_t>(M::entries[k].row), b = static_cast<std::size_t>(M::entries[k].column);
-                ahead[p].stress[a] += now[p].tangent[k] * x[b];
-                if (a != b) ahead[p].stress[b] += now[p].tangent[k] * x[a];
+                s[p][a] += iterated.tangent[p][k] * e[p][b];
+                if (a != b) s[p][b] += iterated.tangent[p][k] * e[p][a];
             }
         }
-        return of_law(rest, ahead);
+        ElementVector force;
+        Base::write_force(rest, y, Interpolation::all_fields(rest.point, y), of_law(rest, s), force);
+        return force;
+    }
+    ElementMatrix tangent_stiffness(const Rest& rest, const ElementVector& y) const { return tangent_stiffness(rest, y, stresses(rest, y)); }
+    /// With the stresses and the tangents of an iteration.
+    ElementMatrix tangent_stiffness(const Rest& rest, const ElementVector& y, const Stresses& iterated) const {
+        ElementMatrix tangent;
+        write_tangent(rest, y, iterated, tangent);
+        return tangent;
+    }
+    void residual_and_tangent(const Rest& rest, const ElementVector& y, const Stresses& iterated, ElementVector& force,
+                              ElementMatrix& tangent) const {
+        force = internal_force(rest, y);
+        write_tangent(rest, y, iterated, tangent);
+    }
+    Stresses stresses(const Rest& rest, const ElementVector& y) const { return stresses_at(rest, law_strains(rest, y)); }
+    /// At the strains e(q) + B(q) step.
+    Stresses predicted_stresses(const Rest& rest, const ElementVector& y, const ElementVector& step) const {
+        const typename Interpolation::Fields f = Interpolation::all_fields(rest.point, y), df = Interpolation::all_fields(rest.point, step);
+        std::array<SectionStrains, Base::points> e = Base::strains(rest, Base::change(rest, y));
+        for (std::size_t p = 0; p < e.size(); ++p) Kernel::add_rate(rest.law, f[p], df[p], e[p]);
+        const typename Base::Section::Three section = Base::Section::rate(y, step);
+        for (std::size_t p = 0; p < e.size(); ++p) Base::Section::interpolate(p, section, e[p]), e[p] = to_law(rest, e[p]);
+        return stresses_at(rest, e);
+    }
+    static Stresses without_compression(const Stresses& stresses) noexcept {
+        Stresses tension = stresses;
+        static_cast<typename Base::Stresses&>(tension) = Base::without_compression(stresses);
+        return tension;
     }
     static double weight(const Rest& rest, std::size_t p) noexcept { return rest.point[p].weight; }
     Answers answers(const Rest& rest, const ElementVector& y) const {
@@ -191,33 +196,39 @@ private:
         e[strain::e11] += contracted, e[strain::e22] += contracted;
         return e;
     }
-    static Stresses of_law(const Rest& rest, const Answers& answers) noexcept {
+    static typename Base::Stresses of_law(const Rest& rest, const std::array<SectionStrains, Base::points>& s) noexcept {
+        typename Base::Stresses all{s};
+        for (SectionStrains& at : all.value) at[strain::e33] += rest.memory.section.contraction * (at[strain::e11] + at[strain::e22]);
+        return all;
+    }
+    Stresses stresses_at(const Rest& rest, const std::array<SectionStrains, Base::points>& e) const {
         Stresses s;
-        for (std::size_t p = 0; p < answers.size(); ++p) {
-            s.value[p] = answers[p].stress;
-            s.value[p][strain::e33] += rest.memory.section.contraction * (s.value[p][strain::e11] + s.value[p][strain::e22]);
+        s.strain = e;
+        for (std::size_t p = 0; p < e.size(); ++p) {
+            const Answer at = Laws::answer(rest, p, e[p]);
+            s.law[p] = at.stress, s.tangent[p] = at.tangent;
         }
+        static_cast<typename Base::Stresses&>(s) = of_law(rest, s.law);
         return s;
     }
-    static double number(const Answer& answer, int entry) noexcept { return entry < 0 ? 0.0 : answer.tangent[core::at(entry)]; }
-
-    static void write_tangent(const Rest& rest, const ElementVector& y, const Answers& now, const Stresses& geometric, ElementMatrix& tangent) noexcept {
+    static void write_tangent(const Rest& rest, const ElementVector& y, const Stresses& iterated, ElementMatrix& tangent) noexcept {
         const typename Interpolation::Fields f = Interpolation::all_fields(rest.point, y);
         std::array<typename Kernel::FieldTangent, Base::points> D;
         std::array<Eigen::Matrix4d, Base::points> C;  // of E_11, E_22, 2 E_12, and between them and E_33
         const double nu = rest.memory.section.contraction;
         for (std::size_t p = 0; p < D.size(); ++p) {
-            const auto& t = now[p].tangent;
-            const double c01 = number(now[p], e11_22), l0 = number(now[p], e33_11), l1 = number(now[p], e33_22);
+            const auto& t = iterated.tangent[p];
+            const auto number = [&](int entry) { return entry < 0 ? 0.0 : t[core::at(entry)]; };
+            const double c01 = number(e11_22), l0 = number(e33_11), l1 = number(e33_22);
             const double c03 = l0 + nu * (t[0] + c01), c13 = l1 + nu * (t[1] + c01);
             C[p] << t[0], c01, 0, c03, c01, t[1], 0, c13, 0, 0, t[2], 0, c03, c13, 0, 0;
-            detail::LawTangent<M, Kernel>::fields(f[p], t, t[strain::e33] + nu * (c03 + c13 + l0 + l1), Kernel::geometric(rest.law, f[p], geometric.value[p]),
-                                                  geometric.value[p], rest.point[p].weight, D[p]);
+            detail::LawTangent<M, Kernel>::fields(f[p], t, t[strain::e33] + nu * (c03 + c13 + l0 + l1), Kernel::geometric(rest.law, f[p], iterated.value[p]),
+                                                  iterated.value[p], rest.point[p].weight, D[p]);
         }
         double* out = tangent.data();
         for (std::size_t J = 0; J < Nodes; ++J)
             for (std::size_t j = 0; j < 9; ++j, out += 9 * Nodes) Interpolation::column(rest.point, D, J, j, out);
-        const typename Base::Section::Three stress = Base::Section::gather(rest.point, geometric.value);
+        const typename Base::Section::Three stress = Base::Section::gather(rest.point, iterated.value);
         for (std::size_t p = 0; p < D.size(); ++p) {
             Eigen::Matrix<double, 9 * Nodes, 4> B = Eigen::Matrix<double, 9 * Nodes, 4>::Zero();
             for (int I = 0; I < Nodes; ++I) {

@@ -16,8 +16,13 @@ class RigidSectionRodWith : public RigidSectionRod, public Lawful<RigidSectionRo
 
 public:
     using Parameters = LawParameters<Base, M>;
-    using Base::ElementMatrix, Base::ElementVector, Base::Strains, Base::Stresses;
+    using Base::ElementMatrix, Base::ElementVector, Base::Strains;
     using Answer = SectionAnswer<typename M::History, M::entries.size()>;
+    /// Of an iteration: at strains of its own, with the tangent there.
+    struct Stresses : Base::Stresses {
+        Strains strain = Strains::Zero();
+        Eigen::Matrix<double, 6, 6> tangent = Eigen::Matrix<double, 6, 6>::Zero();
+    };
     struct Rest : Base::Rest {
         ElementMemory<M, 1> memory{};
     };
@@ -36,42 +41,52 @@ public:
         return rest;
     }
     double energy(const Rest& rest, const ElementVector& y) const { return rest.length * answers(rest, y)[0].stored; }
-    ElementVector internal_force(const Rest& rest, const ElementVector& y) const {
+    ElementVector internal_force(const Rest& rest, const ElementVector& y) const { return internal_force(rest, y, stresses(rest, y)); }
+    /// S(e*) + C(e*) (e - e*) for the strains e* of the iteration.
+    ElementVector internal_force(const Rest& rest, const ElementVector& y, const Stresses& iterated) const {
         const typename Base::Turned turned(rest, y);
-        return rest.length * Base::slope(turned).transpose() * of_law(answer_to(rest, turned).stress);
+        const Strains s = iterated.value + iterated.tangent * (Base::strains(turned) - rest.strains - iterated.strain);
+        return rest.length * Base::slope(turned).transpose() * s;
     }
     ElementMatrix tangent_stiffness(const Rest& rest, const ElementVector& y) const { return tangent_stiffness(rest, y, stresses(rest, y)); }
-    ElementMatrix tangent_stiffness(const Rest& rest, const ElementVector& y, const Stresses& geometric) const {
-        ElementVector force;
-        ElementMatrix tangent;
-        residual_and_tangent(rest, y, geometric, force, tangent);
-        return tangent;
-    }
-    void residual_and_tangent(const Rest& rest, const ElementVector& y, const Stresses& geometric, ElementVector& force,
-                              ElementMatrix& tangent) const {
+    /// With the stresses and the tangent of an iteration.
+    ElementMatrix tangent_stiffness(const Rest& rest, const ElementVector& y, const Stresses& iterated) const {
         const typename Base::Turned turned(rest, y);
         const typename Base::Slope B = Base::slope(turned);
-        const Answer now = answer_to(rest, turned);
-        force = rest.length * B.transpose() * of_law(now.stress);
-        tangent = rest.length * B.transpose() * stiffness(now) * B;
-        Base::add_geometric(turned, geometric, tangent);
+        ElementMatrix tangent = rest.length * B.transpose() * iterated.tangent * B;
+        Base::add_geometric(turned, iterated, tangent);
+        return tangent;
     }
-    Stresses stresses(const Rest& rest, const ElementVector& y) const { return {of_law(answers(rest, y)[0].stress)}; }
+    void residual_and_tangent(const Rest& rest, const ElementVector& y, const Stresses& iterated, ElementVector& force,
+                              ElementMatrix& tangent) const {
+        force = internal_force(rest, y);
+        tangent = tangent_stiffness(rest, y, iterated);
+    }
+    Stresses stresses(const Rest& rest, const ElementVector& y) const {
+        return stresses_at(rest, Base::strains(typename Base::Turned(rest, y)) - rest.strains);
+    }
+    /// At the strains e(q) + B(q) step.
     Stresses predicted_stresses(const Rest& rest, const ElementVector& y, const ElementVector& step) const {
         const typename Base::Turned turned(rest, y);
-        const Answer now = answer_to(rest, turned);
-        return {Strains(of_law(now.stress) + stiffness(now) * (Base::slope(turned) * step))};
+        return stresses_at(rest, Base::strains(turned) - rest.strains + Base::slope(turned) * step);
+    }
+    static Stresses without_compression(const Stresses& stresses) noexcept {
+        Stresses tension = stresses;
+        static_cast<Base::Stresses&>(tension) = Base::without_compression(stresses);
+        return tension;
     }
     static double weight(const Rest& rest, std::size_t) noexcept { return rest.length; }
-    std::array<Answer, 1> answers(const Rest& rest, const ElementVector& y) const { return {answer_to(rest, typename Base::Turned(rest, y))}; }
+    std::array<Answer, 1> answers(const Rest& rest, const ElementVector& y) const { return {Laws::answer(rest, 0, law_strains(rest, y)[0])}; }
     std::array<SectionStrains, 1> law_strains(const Rest& rest, const ElementVector& y) const {
         return {to_law(Base::strains(typename Base::Turned(rest, y)) - rest.strains)};
     }
 
 private:
     using Matrix = Eigen::Matrix<double, 6, 6>;
-    Answer answer_to(const Rest& rest, const typename Base::Turned& turned) const {
-        return Laws::answer(rest, 0, to_law(Base::strains(turned) - rest.strains));
+    Stresses stresses_at(const Rest& rest, const Strains& e) const {
+        const Answer at = Laws::answer(rest, 0, to_law(e));
+        Stresses s{{of_law(at.stress)}, e, stiffness(at)};
+        return s;
     }
     /// G and K on the axes of the section: g_1' = K_3 g_2 - K_2 g_3 and g_2' = K_1 g_3 - K_3 g_1.
     static SectionStrains to_law(const Strains& e) noexcept {

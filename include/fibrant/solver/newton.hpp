@@ -98,6 +98,7 @@ public:
         bool mixed = parameters_.mixed;
         Index growing = 0;
         const Forgotten learned{equilibrium.learned()};
+        if constexpr (Equilibrium::iterated_strains) equilibrium.reset_stresses(state);
         report.residual = evaluate(state);
         for (Index iteration = 0; iteration < parameters_.newton_limit; ++iteration) {
             equilibrium.prescribed_step(state, prescribed_);
@@ -116,22 +117,22 @@ public:
             const assembly::ResidualFigures before = report.residual;
             before_ = state;
             state += step_;
-            report.residual = evaluate(state);
+            report.residual = arrive(state, mixed);
             // Where a cell of a solid is turned inside out there are no forces.
             for (int cut = 0; cut < 6 && !std::isfinite(report.residual.residual) && step_.allFinite(); ++cut) {
                 step_ *= 0.25, scale *= 0.25;
                 state = before_ + step_;
-                report.residual = evaluate(state);
+                report.residual = arrive(state, mixed);
             }
-            if (watched) scale *= shorten(scale * slope, state, report.residual);
-            if (mixed) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
+            if (watched) scale *= shorten(scale * slope, state, report.residual, mixed);
+            if (mixed && !Equilibrium::iterated_strains) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
             ++report.iterations, ++counts.newton;
             report.step = equilibrium.greatest(step_);
             if (!std::isfinite(report.residual.residual) || !std::isfinite(report.step)) {
                 report.status = NewtonStatus::diverged;
                 return report;
             }
-            if (!mixed) equilibrium.reset_stresses(state);
+            if (!mixed && !Equilibrium::iterated_strains) equilibrium.reset_stresses(state);
             const double ratio = before.residual > 0.0 ? report.residual.residual / before.residual : 0.0;
             // A tenth of what the residual may have left is as good as nothing.
             const double enough = 0.1 * residual_tolerance(tolerance) / std::max(report.residual.relative(), residual_tolerance(tolerance));
@@ -147,7 +148,10 @@ public:
             // The mixed iteration may start with a large residual, so only a lasting growth counts.
             if (iteration > 2 && report.residual.residual > worst) ++growing;
             worst = iteration <= 2 ? std::max(worst, report.residual.residual) : worst;
-            if (growing >= 2 && mixed) mixed = false, growing = 0, equilibrium.reset_stresses(state);
+            if (growing >= 2 && mixed) {
+                mixed = false, growing = 0, equilibrium.reset_stresses(state);
+                if constexpr (Equilibrium::iterated_strains) report.residual = evaluate(state);
+            }
             if (growing >= 3 && !watched) {  // else the energy falls
                 report.status = NewtonStatus::diverged;
                 return report;
@@ -174,12 +178,19 @@ private:
                clock_->time(core::Part::assembly, [&] { return equilibrium_->residual(state, residual_); });
     }
 
+    /// After step_ from before_. Forces of laws that bend over are those of the strains of the iteration, which come first.
+    assembly::ResidualFigures arrive(const Vector& state, [[maybe_unused]] bool mixed) {
+        if constexpr (Equilibrium::iterated_strains)
+            clock_->time(core::Part::assembly, [&] { mixed ? equilibrium_->predict_stresses(before_, step_) : equilibrium_->reset_stresses(state); });
+        return evaluate(state);
+    }
+
     /// Shortens a step beyond whose end the energy rises steeply: contacts that close or let go within it, one after the other,
     /// would send Newton's method to and fro for ever. With normals and bounds of friction that stand the energy is convex, and the
     /// place where it rises is found between. What contacts were beyond it goes into the next tangent.
     /// @param slope  of the energy along the step, at its start [force * length]
     /// @returns the part of the step that is left
-    double shorten(double slope, Vector& state, assembly::ResidualFigures& figures) {
+    double shorten(double slope, Vector& state, assembly::ResidualFigures& figures, bool mixed) {
         double part = 1.0;
         for (int trial = 0; trial < 4 && slope < 0.0 && std::isfinite(figures.residual); ++trial) {
             const double end = residual_.dot(step_);
@@ -188,7 +199,7 @@ private:
             const double factor = std::clamp(slope / (slope - end), 0.1, 0.8);
             step_ *= factor, part *= factor, slope *= factor;
             state = before_ + step_;
-            figures = evaluate(state);
+            figures = arrive(state, mixed);
         }
         return part;
     }
