@@ -4,6 +4,7 @@
 
 #include <fibrant/law/augmented.hpp>
 #include <fibrant/law/coulomb_friction.hpp>
+#include <fibrant/law/directed_friction.hpp>
 #include <fibrant/law/friction_law.hpp>
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/limited_gap.hpp>

@@ -7,6 +7,7 @@
 #include <fibrant/connection/channels.hpp>
 #include <fibrant/simulation/energy_account.hpp>
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,7 +25,7 @@ public:
                 core::refuse(mesh.label(f) + ": law_channel", channel, "empty, for a beam without a law of its own");
     }
     static constexpr bool again() noexcept { return false; }
-    static void check(const auto&) noexcept {}
+    static constexpr bool begin(const auto&, const Mesh&, const B&, const Vector&) noexcept { return false; }
     static void drive(const Mesh&, const std::vector<double>&, double) noexcept {}
     static std::string refusal(const Mesh&, const B&, const Vector&) { return {}; }
     static void accept(const Mesh&, const B&, const Vector&, const EnergyAccount&) noexcept {}
@@ -51,12 +52,16 @@ public:
     }
     /// Whether a point has broken, so that the next increment moves nothing.
     bool again() const noexcept { return again_; }
-    /// Throws std::invalid_argument for stages without a duration, if the law has a rate.
+    /// Throws std::invalid_argument for stages without a duration, if the law has a rate. Memory that has come from another mesh is put
+    /// where the strains of this one have it: back on bounds that they would exceed. @returns whether it was
     template <class Stages>
-    static void check(const Stages& stages) {
+    bool begin(const Stages& stages, Mesh& mesh, const B& beam, const Vector& state) {
         if constexpr (M::has_rate)
             for (const auto& stage : stages)
                 core::require(stage.duration > 0.0, "Stage.duration of stage " + stage.name, stage.duration, "> 0: the law of the section has a rate");
+        if (settled_) return false;
+        for_elements(mesh, [&](Index f, Index e, typename B::Rest& rest) { beam.accept(rest, mesh.element(state, f, e)); });
+        return settled_ = true;
     }
     void drive(Mesh& mesh, const std::vector<double>& amplitudes, double duration) const {
         for_elements(mesh, [&](Index f, Index, typename B::Rest& rest) {
@@ -99,13 +104,14 @@ public:
     Vector numbers(Mesh& mesh) const {
         Vector all(count(mesh));
         Index k = 0;
-        all[k++] = again_ ? 1.0 : 0.0;
+        all[k++] = (again_ ? 1.0 : 0.0) + (settled_ ? 0.0 : from_other_mesh);
         for_elements(mesh, [&](Index, Index, typename B::Rest& rest) { B::visit(rest, [&](const double& value) { all[k++] = value; }); });
         return all;
     }
     void take(Mesh& mesh, const Vector& all) {
         Index k = 0;
-        again_ = all[k++] != 0.0;
+        settled_ = all[k] < from_other_mesh;
+        again_ = std::fmod(all[k++], from_other_mesh) != 0.0;
         for_elements(mesh, [&](Index, Index, typename B::Rest& rest) { B::visit(rest, [&](double& value) { value = all[k++]; }); });
     }
     static Index count(Mesh& mesh) {
@@ -122,6 +128,7 @@ public:
             for (double& place : xi) place = (2.0 * static_cast<double>(e % parts) + 1.0 + place) / static_cast<double>(parts) - 1.0;
             B::take_part(part, mesh.rest(f, e / parts), xi, B::point_places);
         });
+        laws.settled_ = false;
         return laws.numbers(finer);
     }
     /// Memory of another run of the same fibres, where its beam obeys the same law.
@@ -151,7 +158,8 @@ private:
             for (Index e = 0; e < mesh.fibre(f).elements; ++e) body(f, e, mesh.rests()[core::at(mesh.element_index(f, e))]);
     }
     std::vector<Index> channel_;  ///< of each fibre, or -1
-    bool again_ = false;
+    bool again_ = false, settled_ = true;
+    static constexpr double from_other_mesh = 2.0;  ///< in the first of the numbers
 };
 
 }  // namespace fibrant::simulation

@@ -74,7 +74,7 @@ public:
         const auto start = std::chrono::steady_clock::now();
         const std::vector<Stage<M>> stages = stages_of(loading, channels_);
         check_ramps(stages, channels_, amplitudes_);
-        laws_.check(stages);
+        if (laws_.begin(stages, mesh_, beam_, state_)) energy_.start_from_other(equilibrium_, state_);
         require_paths(stages, equilibrium_.motion(), mesh_, channels_, amplitudes_);
         Report report;
         report.reason = unheld(stages, loose_);
@@ -105,7 +105,7 @@ public:
                     finish(report, start);
                     return report;
                 }
-                // Observers first: an increment that a checkpoint holds has been shown, and one shown twice is told by its number.
+                // Observers first: what a checkpoint holds has been shown, and what is shown twice is told by its number.
                 clock_.time(core::Part::output, [&] {
                     (show(observers, report.increments.back()), ...);
                     const auto now = std::chrono::steady_clock::now();
@@ -162,7 +162,7 @@ public:
         return shot;
     }
 
-    /// Takes over contacts and what they remember from a run of the same fibres, whose state the assembly begins at.
+    /// Takes over what contacts and laws remember from a run of the same fibres, whose state the assembly begins at.
     /// @throws std::invalid_argument if the fibres are not where that run left them
     template <Model Other>
     void go_on_from(const Simulator<Other>& other) {
