@@ -65,7 +65,7 @@ TEST_CASE_TEMPLATE("a law that sees has its derivatives, a potential, no directi
             slope.col(c) = (a.force - b.force) / (2.0 * h);
             by_energy[c] = (a.stored + a.dissipated - b.stored - b.dissipated) / (2.0 * h);
         }
-        CHECK((slope - now.tangent).leftCols<2>().norm() < 1e-5 * now.tangent.norm());
+        CHECK(Mat3((slope - now.tangent) * Vec3(1, 1, 0).asDiagonal()).norm() < 1e-5 * now.tangent.norm());
         if (!rate) CHECK((by_energy - now.force).norm() < 1e-5 * now.force.norm());
         Touch more = touch, less = touch;
         more.reaction *= 1.0 + 1e-6, less.reaction *= 1.0 - 1e-6;
@@ -101,20 +101,17 @@ Vec3 sliding(const DirectedFriction& law, double angle, double of_j) {
 TEST_CASE("friction along and across a fibre: resistance, side force, and a block on an incline") {
     const DirectedFriction law = crossed(0.2, 0.4);
     const double psi[] = {0, 30, 45, 60, 90}, resistance[] = {0.2, 0.264575, 0.316228, 0.360555, 0.4}, size[] = {0.2, 0.329502, 0.368782, 0.388290, 0.4};
-    const double sizes[] = {0.2, 0.264575, 0.316228, 0.360555, 0.4};
-    static_cast<void>(size), static_cast<void>(sizes);
     for (int k = 0; k < 5; ++k) {
         const Vec3 way(std::cos(psi[k] * degree), std::sin(psi[k] * degree), 0.0), force = sliding(law, psi[k] * degree, 0.0);
         CHECK(force.dot(way) == doctest::Approx(resistance[k]).epsilon(1e-5));
+        CHECK(force.norm() == doctest::Approx(size[k]).epsilon(1e-5));
     }
-    CHECK(sliding(law, 30 * degree, 0.0).norm() == doctest::Approx(0.329502 * 1.0).epsilon(0.2));
     // Crossed fibres, slid along one of them: M is the mean of both ellipses.
     const double angle[] = {0, 30, 60, 90}, along[] = {0.2, 0.234521, 0.291548, 0.316228}, side[] = {0, -0.110782, -0.089113, 0};
     for (int k = 0; k < 4; ++k) {
         const Vec3 force = sliding(law, 0.0, angle[k] * degree);
         CHECK(force.x() == doctest::Approx(along[k]).epsilon(1e-5));
         CHECK(force.y() == doctest::Approx(side[k]).epsilon(1e-5).scale(0.1));
-        CHECK(sliding(law, 0.5 * angle[k] * degree, angle[k] * degree).norm() > 0.0);
     }
     // An incline of the drive phi to the fibre, steepened until the block slides: the force that holds it leaves the ellipse.
     const double phi[] = {0, 15, 30, 45, 60, 75, 90}, alpha[] = {11.309932, 11.597313, 12.510125, 14.196947, 16.823825, 20.052189, 21.801409};

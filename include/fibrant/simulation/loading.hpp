@@ -82,7 +82,10 @@ struct Loading {
         core::require(growth > 1.0, "Loading.growth", growth, "> 1");
         core::require_finite("Loading.growth", growth);
         core::require_at_least("Loading.most_rejected", most_rejected, 0);
+        const bool timed = law::FrictionWithRate<typename M::Friction>;
+        if (timed && stages.empty()) core::refuse("Loading.stages", "none", "at least one that has a duration: the law of friction has a rate");
         for (const Stage<M>& stage : stages) {
+            if (timed) core::require(stage.duration > 0.0, "Stage.duration of stage " + stage.name, stage.duration, "> 0: the law of friction has a rate");
             core::require_at_least("Stage.increments", stage.increments, 1);
             core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);
             core::require_at_least("Stage.enough_increments", stage.enough_increments, 1);

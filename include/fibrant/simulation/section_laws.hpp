@@ -5,14 +5,25 @@
 #include <fibrant/beam/element_memory.hpp>
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/connection/channels.hpp>
+#include <fibrant/law/friction_law.hpp>
 #include <fibrant/simulation/energy_account.hpp>
 
 #include <cmath>
+#include <limits>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace fibrant::simulation {
+
+/// Tells a law of friction that has a rate how long an increment lasts; in one that takes no time what flows is at rest. @returns the duration
+template <class Contacts>
+double let_last([[maybe_unused]] Contacts& contacts, double duration) {
+    if constexpr (law::FrictionWithRate<std::decay_t<decltype(contacts.friction_law())>>)
+        contacts.friction_law().last(duration > 0.0 ? duration : std::numeric_limits<double>::infinity());
+    return duration;
+}
 
 /// Of a beam whose law has no memory: nothing.
 template <beam::BeamElement B>

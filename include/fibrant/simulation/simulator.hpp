@@ -191,7 +191,7 @@ private:
         if (stage.friction) contacts_.friction_law() = *stage.friction;
     }
 
-    /// One accepted increment, after as many cuts as it takes; gave_up(attempt) is told of those.
+    /// One accepted increment, after as many cuts as it takes; gave_up(attempt) hears of it.
     template <class GaveUp>
     bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report, const GaveUp& gave_up) {
         const auto start = std::chrono::steady_clock::now();
@@ -221,7 +221,7 @@ private:
             }
             Vector trial = state_;
             move_tools(amplitudes);
-            laws_.drive(mesh_, amplitudes, stage.duration * (progress - position_.progress));
+            laws_.drive(mesh_, amplitudes, let_last(contacts_, stage.duration * (progress - position_.progress)));
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping, position_.holding);
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
@@ -236,7 +236,7 @@ private:
                 if (attempt.reason.empty()) attempt.reason = laws_.refusal(mesh_, beam_, trial);
                 if (!attempt.reason.empty()) attempt.converged = false, attempt.unsettled.resize(0);  // whoever moved most is not at fault
             }
-            // What nothing foretells would be held back: a first solution tells where it goes.
+            // What nothing foretells would be held back: the first tells.
             if (attempt.converged && stage.damping_carried && stage.damping > 0.0 && !rehearsed && !motion_.foretells(change)) {
                 motion_.learn(mesh_, state_, trial, change);
                 contacts_.restore(), rehearsed = true;
