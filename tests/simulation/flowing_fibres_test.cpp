@@ -19,7 +19,6 @@ namespace flowing_fibres_test {
 
 using test::refusal;
 using test::Rod;
-const double pi = std::numbers::pi;
 
 template <class Material>
 struct Lawful {
