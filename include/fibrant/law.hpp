@@ -10,6 +10,7 @@
 #include <fibrant/law/limited_gap.hpp>
 #include <fibrant/law/linear_penalty.hpp>
 #include <fibrant/law/normal_law.hpp>
+#include <fibrant/law/physical_normal.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/law/smooth_coulomb.hpp>

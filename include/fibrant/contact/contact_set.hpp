@@ -112,7 +112,7 @@ public:
             const Zone& zone = zones_[core::at(element.zone)];
             const bool none = start && apart < -2.0 * zone.deepest;
             const double gap = (none ? 0.0 : apart) + element.shift.value();
-            const law::NormalResponse response = normal_.response(gap, zone.stiffness);
+            const law::NormalResponse response = normal_answer(normal_, *mesh_, element, gap, zone.stiffness);
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             if constexpr (core::Active<Friction>) {
                 slip -= slip.dot(element.normal) * element.normal;
@@ -240,7 +240,7 @@ public:
                 if (response.reaction > 0.0) ++sum.active;
                 if (element.shift.value() > 0.0) ++sum.shifted;
                 sum.greatest_penetration = std::max(sum.greatest_penetration, -element.gap(state));
-                sum.work += normal_.energy(response.gap, stiffness(element));
+                sum.work += normal_energy(normal_, *mesh_, element, response.gap, stiffness(element));
                 sum.reaction_sum += response.reaction;
                 if constexpr (core::Active<Friction>)
                     sum.work += frictions_[core::at(k)].stored, sum.dissipated += frictions_[core::at(k)].dissipated;
@@ -300,7 +300,7 @@ private:
     }
 
     void generate(const Vector& state, const Vector& accepted, const Memory& memory) {
-        constexpr Index block = 64;  // zones a block: a block's elements stay together
+        constexpr Index block = 64;  // zones
         const Index blocks = (core::count(zones_) + block - 1) / block;
         std::vector<std::vector<Element>> made(core::at(blocks));
         const double forced_keep = 0.5;  // radii of clearance beyond which a forced pair needs no element
@@ -327,6 +327,7 @@ private:
                     made[core::at(b)].push_back(element);
                 }
                 zone.last = core::count(made[core::at(b)]);
+                see_lengths(*mesh_, std::span<Element>(made[core::at(b)]).subspan(core::at(zone.first)));
                 if constexpr (law::Augmenting<Normal>) {
                     const auto first = made[core::at(b)].begin() + zone.first;
                     hand_multipliers(memory, zone.span, std::span<Element>(first, made[core::at(b)].end()));
@@ -362,7 +363,7 @@ private:
         element.u_i = pair.u_i, element.u_j = pair.u_j;
         element.crossing = pair.crossing, element.slide = pair.slide, element.end_i = pair.end_i, element.end_j = pair.end_j;
         places_.host(*mesh_, element);
-        see_length(element, pair.crossing || pair.end_i || pair.end_j ? 0.0 : pair.length);
+        see_length(element, pair);
         return element;
     }
 

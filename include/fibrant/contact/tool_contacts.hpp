@@ -150,7 +150,7 @@ public:
                 slip += beam::Mesh<B>::point(state, element.first, element.friction.weights_j) - element.foot - element.friction.accepted_offset;
             follow_support(element, state);
             const double gap = element.gap(state) + element.normal.dot(back) + element.shift.value();
-            const law::NormalResponse response = normal.response(gap, stiffness(element));
+            const law::NormalResponse response = normal_answer(normal, *mesh_, element, gap, stiffness(element));
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             if constexpr (core::Active<Friction>) {
                 slip -= slip.dot(element.normal) * element.normal;
@@ -226,7 +226,7 @@ public:
             if (response.reaction > 0.0) ++sum.active;
             if (element.shift.value() > 0.0) ++sum.shifted;
             sum.greatest_penetration = std::max(sum.greatest_penetration, -element.gap(state));
-            sum.work += normal.energy(response.gap, stiffness(element));
+            sum.work += normal_energy(normal, *mesh_, element, response.gap, stiffness(element));
             sum.reaction_sum += response.reaction;
             if constexpr (core::Active<Friction>)
                 sum.work += frictions_[core::at(k)].stored, sum.dissipated += frictions_[core::at(k)].dissipated;

@@ -75,6 +75,7 @@ struct StiffnessAdaptation {
 template <law::NormalLaw Normal>
 double adapted_stiffness(StiffnessAdaptation adaptation, const Normal& normal, double stiffness, double reference,
                          double penetration, double factor = 1.0) noexcept {
+    if constexpr (law::SeeingNormal<Normal>) return stiffness;
     adaptation.allowed_penetration *= factor;
     const double adapted = adaptation.adapted(stiffness, reference, penetration, law::regularisation_depth(normal));
     return law::Augmenting<Normal> ? std::max(stiffness, adapted) : adapted;

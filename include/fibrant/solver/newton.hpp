@@ -98,7 +98,7 @@ public:
         bool mixed = parameters_.mixed;
         Index growing = 0;
         const Forgotten learned{equilibrium.learned()};
-        if constexpr (Equilibrium::iterated_strains) equilibrium.reset_stresses(state);
+        if constexpr (iterated) equilibrium.reset_stresses(state);
         report.residual = evaluate(state);
         for (Index iteration = 0; iteration < parameters_.newton_limit; ++iteration) {
             equilibrium.prescribed_step(state, prescribed_);
@@ -125,14 +125,14 @@ public:
                 report.residual = arrive(state, mixed);
             }
             if (watched) scale *= shorten(scale * slope, state, report.residual, mixed);
-            if (mixed && !Equilibrium::iterated_strains) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
+            if (mixed && !iterated) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
             ++report.iterations, ++counts.newton;
             report.step = equilibrium.greatest(step_);
             if (!std::isfinite(report.residual.residual) || !std::isfinite(report.step)) {
                 report.status = NewtonStatus::diverged;
                 return report;
             }
-            if (!mixed && !Equilibrium::iterated_strains) equilibrium.reset_stresses(state);
+            if (!mixed && !iterated) equilibrium.reset_stresses(state);
             const double ratio = before.residual > 0.0 ? report.residual.residual / before.residual : 0.0;
             // A tenth of what the residual may have left is as good as nothing.
             const double enough = 0.1 * residual_tolerance(tolerance) / std::max(report.residual.relative(), residual_tolerance(tolerance));
@@ -150,7 +150,7 @@ public:
             worst = iteration <= 2 ? std::max(worst, report.residual.residual) : worst;
             if (growing >= 2 && mixed) {
                 mixed = false, growing = 0, equilibrium.reset_stresses(state);
-                if constexpr (Equilibrium::iterated_strains) report.residual = evaluate(state);
+                if constexpr (iterated) report.residual = evaluate(state);
             }
             if (growing >= 3 && !watched) {  // else the energy falls
                 report.status = NewtonStatus::diverged;
@@ -164,6 +164,8 @@ public:
     const Vector& last_step() const noexcept { return step_; }
 
 private:
+    /// Its forces are those of strains that the step predicts.
+    static constexpr bool iterated = requires { requires Equilibrium::iterated_strains; };
     struct Forgotten {  // when the contacts change, at the latest
         contact::LearnedContacts& all;
         ~Forgotten() { all.clear(); }
@@ -180,7 +182,7 @@ private:
 
     /// After step_ from before_. Forces of laws that bend over are those of the strains of the iteration, which come first.
     assembly::ResidualFigures arrive(const Vector& state, [[maybe_unused]] bool mixed) {
-        if constexpr (Equilibrium::iterated_strains)
+        if constexpr (iterated)
             clock_->time(core::Part::assembly, [&] { mixed ? equilibrium_->predict_stresses(before_, step_) : equilibrium_->reset_stresses(state); });
         return evaluate(state);
     }
