@@ -79,9 +79,9 @@ TEST_CASE("rods side by side carry what a line of their length does, in twice th
             const double line = K * std::pow(sink, m);
             std::printf("%s, %g points: N/N0 %.6f, T %.6f %.6f\n", sideways ? "across" : "along", points, -force.y() / (line * length), force.x(), force.z());
             // Slid by a hundredth of its length the line is shorter by that; slid aside, the normal leans by 0.01, and friction with it.
-            CHECK(-force.y() / (line * length) == doctest::Approx(sideways ? 1.0 : 0.99).epsilon(sideways ? 0.01 : 1e-4));
+            CHECK(-force.y() / (line * length) == doctest::Approx(sideways ? 1.0 : 0.99).epsilon(sideways ? 0.02 : 1e-4));
             const double bound = (sideways ? across : a) * std::pow(line, n) * length;
-            CHECK((sideways ? force.x() : force.z()) / bound == doctest::Approx(sideways ? 1.0 : 0.99).epsilon(sideways ? 0.01 : 1e-3));
+            CHECK((sideways ? force.x() : force.z()) / bound == doctest::Approx(sideways ? 1.0 : 0.99).epsilon(sideways ? 0.02 : 1e-3));
         }
 }
 

@@ -75,13 +75,13 @@ law::Approach approach(const beam::Mesh<B>& mesh, const Element& element, double
 template <law::NormalLaw Normal, beam::BeamElement B, class Element>
 law::NormalResponse normal_answer(const Normal& normal, [[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] const Element& element, double gap,
                                   [[maybe_unused]] double stiffness) {
-    if constexpr (law::SeeingNormal<Normal>) return normal.response(approach(mesh, element, gap));
+    if constexpr (law::SeeingNormal<Normal>) return normal.response(approach(mesh, element, gap), 0.0);
     else return normal.response(gap, stiffness);
 }
 template <law::NormalLaw Normal, beam::BeamElement B, class Element>
 double normal_energy(const Normal& normal, [[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] const Element& element, double gap,
                      [[maybe_unused]] double stiffness) {
-    if constexpr (law::SeeingNormal<Normal>) return normal.energy(approach(mesh, element, gap));
+    if constexpr (law::SeeingNormal<Normal>) return normal.energy(approach(mesh, element, gap), 0.0);
     else return normal.energy(gap, stiffness);
 }
 

@@ -13,6 +13,7 @@ namespace fibrant::law {
 /// For beams whose sections keep their shape: those that flatten by themselves would be soft twice.
 class PowerNormal {
 public:
+    using Sees = Approach;
     struct Parameters {
         double line_stiffness = core::unset;      ///< K [force / length^(1 + m)], > 0
         double line_exponent = 1.5;               ///< m [1], >= 1
@@ -26,13 +27,13 @@ public:
         }
     };
     explicit PowerNormal(const Parameters& parameters) : p_{core::validated(parameters)} {}
-    NormalResponse response(const Approach& a) const noexcept {
+    NormalResponse response(const Approach& a, double = 0.0) const noexcept {
         if (a.gap >= 0.0) return {0.0, 0.0};
         const auto [K, m] = of(a);
         const double slope = K * m * std::pow(-a.gap, m - 1.0);
         return {-slope * a.gap / m, -slope};
     }
-    double energy(const Approach& a) const noexcept {
+    double energy(const Approach& a, double = 0.0) const noexcept {
         if (a.gap >= 0.0) return 0.0;
         const auto [K, m] = of(a);
         return K * std::pow(-a.gap, m + 1.0) / (m + 1.0);
@@ -50,6 +51,7 @@ private:
 /// most (after van Wyk 1946). Beyond `last_part` of e D it goes on straight, so that an iteration may try what it likes.
 class HardeningNormal {
 public:
+    using Sees = Approach;
     struct Parameters {
         double line_force = core::unset;      ///< R_0 of a line of contact [force / length], > 0
         double crossing_force = core::unset;  ///< R_0 of a crossing [force], > 0
@@ -64,13 +66,13 @@ public:
     };
     static constexpr double last_part = 0.95;  ///< [1]
     explicit HardeningNormal(const Parameters& parameters) : p_{core::validated(parameters)} {}
-    NormalResponse response(const Approach& a) const noexcept {
+    NormalResponse response(const Approach& a, double = 0.0) const noexcept {
         if (a.gap >= 0.0) return {0.0, 0.0};
         const double R = force(a), limit = p_.share * a.reach, x = std::min(last_part, -a.gap / limit), beyond = -a.gap - x * limit;
         const double slope = R * p_.exponent / limit * std::pow(1.0 - x, -p_.exponent - 1.0);
         return {R * (std::pow(1.0 - x, -p_.exponent) - 1.0) + slope * beyond, -slope};
     }
-    double energy(const Approach& a) const noexcept {
+    double energy(const Approach& a, double = 0.0) const noexcept {
         if (a.gap >= 0.0) return 0.0;
         const double R = force(a), q = p_.exponent, limit = p_.share * a.reach, x = std::min(last_part, -a.gap / limit), beyond = -a.gap - x * limit;
         const double slope = R * q / limit * std::pow(1.0 - x, -q - 1.0);
@@ -82,6 +84,6 @@ private:
     Parameters p_;
 };
 
-static_assert(SeeingNormal<PowerNormal> && SeeingNormal<HardeningNormal> && !PenaltyLaw<PowerNormal>);
+static_assert(SeeingNormal<PowerNormal> && SeeingNormal<HardeningNormal>);
 
 }  // namespace fibrant::law
