@@ -1,29 +1,90 @@
 // SPDX-License-Identifier: MIT
-// A strand of 7 to 91 wires with friction is bent to an arc; prints the moment between its bounds, and the time.
+// A strand of 7 to 91 wires with friction is bent to an arc, and back if asked for; prints the moment between its bounds, and the time. The
+// wires may yield: [material.law] kind = "wire".
 //   strand_bending SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
 #include "../support/usual_keys.hpp"
 
-#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/with_law.hpp>
 #include <fibrant/compositions/strand/bending.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/material/wire.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/float_block_cholesky.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 using namespace fibrant;
 namespace strand = compositions::strand;
 
+/// @tparam Law  of the section of the wires
+template <class Law>
 struct Strand {
-    using Beam = beam::DirectorBeam<>;
+    using Beam = beam::With<beam::DirectorBeam<>, Law>;
     using Proximity = proximity::GridSearch;
     using Normal = law::RegularisedPenalty;
     using Friction = law::RegularisedCoulomb;
     using Solver = solver::FloatBlockCholesky;
 };
+
+/// What the scene file asks for.
+struct Asked {
+    strand::StrandParameters strand;
+    strand::Bending bending;
+    double radius, mu, depth, reversible, angle, back;  ///< angles in degrees
+    Index increments;
+};
+
+template <class Law>
+bool bend(const Asked& asked, const std::vector<typename beam::With<beam::DirectorBeam<>, Law>::Parameters>& beams, example::SceneReader& file, example::Output& output) {
+    using Model = Strand<Law>;
+    const strand::StrandParameters& parameters = asked.strand;
+    const double radius = asked.radius, angle = asked.angle;
+    simulation::ModelParameters<Model> model;
+    for (const auto& beam : beams) model.beam = beam;
+    model.normal.regularisation_depth = 0.5 * asked.depth * radius;
+    model.friction = {.friction_coefficient = asked.mu, .reversible_displacement = asked.reversible * radius};
+    model.contact.stiffness.allowed_penetration = asked.depth * radius;
+    model.iteration.newton_limit = 30;
+    model.iteration.margin = 1.0;  // an increment moves the ends of a long strand by more than a radius
+    simulation::Simulator<Model> simulator(strand::bent_strand(parameters, asked.bending), model);
+    output.open(file);
+    example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
+        const strand::BendingState state = strand::measure_bending(simulator, parameters, asked.bending);
+        return {{"angle_deg", state.angle * 180.0 / std::numbers::pi}, {"moment", state.moment}, {"moment_at_plate", state.at_plate}, {"tension", state.tension},
+                {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius}, {"processor_seconds", example::cpu_seconds()}};
+    });
+    simulation::Loading<Model> loading;
+    const double full = angle * std::numbers::pi / 180.0;
+    if (asked.bending.strain != 0.0) {
+        loading.stages.emplace_back();
+        loading.stages.back().name = "drawing";
+    }
+    loading.stages.emplace_back();
+    loading.stages.back().ramps = {{strand::bend, full}};
+    loading.stages.back().increments = asked.increments, loading.stages.back().most_increments = 20 * asked.increments;
+    if (!std::isnan(asked.back)) {
+        loading.stages.push_back(loading.stages.back());
+        loading.stages.back().name = "back", loading.stages.back().ramps = {{strand::bend, asked.back * std::numbers::pi / 180.0}};
+    }
+    output.tell(loading);
+    const simulation::Report report = simulator.run(loading, recorder);
+    const strand::BendingState state = strand::measure_bending(simulator, parameters, asked.bending);
+    example::write_pictures(output, simulator.snapshot(), -90.0, 10.0);
+    const simulation::Audit audit = example::audit(output, simulator, radius);
+    example::write_summary(output, report, audit, radius, {{"wires", static_cast<double>(parameters.wires())}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
+                           {"length_over_radius", parameters.length / radius}, {"angle_deg", state.angle * 180.0 / std::numbers::pi},
+                           {"moment", state.moment}, {"moment_at_plate", state.at_plate},
+                           {"moment_of_loose_wires", strand::loose_stiffness(parameters) * state.angle / parameters.length},
+                           {"moment_of_a_solid", strand::solid_stiffness(parameters) * state.angle / parameters.length},
+                           {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius},
+                           {"lost_in_the_wires", report.energy.lost}, {"dissipated", report.energy.dissipated}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()}});
+    return report.converged && audit.clean();
+}
 
 bool solve(example::SceneReader& file, example::Output& output) {
     Index wires = 7, elements = 0, increments = 30;
@@ -32,6 +93,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
     bool alternate = true;
     std::string anchor = "both_plates", lay = "equal_pitch";
     strand::Bending bending;
+    std::string kind = "elastic";
+    double back = core::unset;
+    material::Wire::Parameters yielding;
     file.require("strand", "wires", wires, example::wires(), "a core and layers of 6, 12, 18, 24, 30");
     file.require("strand", "radius", radius, example::positive(), "length", "of the wires");
     file.require("strand", "lay_angle_deg", lay_angle, example::inside(-80.0, 80.0), "degree",
@@ -45,6 +109,10 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("strand", "elements", elements, example::between(0, 10000),
               "quadratic elements a wire; 0: sixteen a turn, and none longer than seven radii");
     example::read_material(file, "material", material);
+    file.read("material.law", "kind", kind, {"elastic", "wire"}, "of the section of the wires");
+    file.read("material.law", "yield_stress", yielding.yield_stress, example::positive(), "force/length^2", "of a wire");
+    file.read("material.law", "hardening", yielding.hardening, example::not_negative(), "force/length^2",
+              "slope of the yield stress over the plastic strain, kinematic");
     file.read("contact", "friction_coefficient", mu, example::friction(), "1", "of wires on each other");
     file.read("contact", "reversible_displacement_over_radius", reversible, example::above(0.0, 1.0), "1",
               "of friction, before it slides");
@@ -54,8 +122,12 @@ bool solve(example::SceneReader& file, example::Output& output) {
               "which plates hold every wire; elsewhere wires slide through");
     file.read("loading", "strain", bending.strain, example::inside(-0.5, 1.0), "1", "by which the strand is drawn before");
     file.read("loading", "angle_deg", angle, example::inside(-3600.0, 3600.0), "degree", "between the plates at the end");
+    file.read("loading", "back_to_deg", back, example::inside(-3600.0, 3600.0), "degree", "to which it is bent back, if given");
     file.read("loading", "increments", increments, example::increments(), "of the bending");
     file.complete();
+    file.check(kind == "elastic" || !std::isnan(yielding.yield_stress), "material.law", "yield_stress", "given, for kind = \"wire\"");
+    file.check(kind == "wire" || !file.given("material.law", "yield_stress"), "material.law", "yield_stress", "left out, for kind = \"elastic\"");
+    file.check(kind == "wire" || !file.given("material.law", "hardening"), "material.law", "hardening", "left out, for kind = \"elastic\"");
     file.check(lay_angle != 0.0, "strand", "lay_angle_deg", "other than 0: straight wires have no turns");
     file.check(elements != 1, "strand", "elements", "0 or >= 2");
     file.check(angle != 0.0, "loading", "angle_deg", "other than 0: nothing would be bent");
@@ -86,41 +158,11 @@ bool solve(example::SceneReader& file, example::Output& output) {
                                          : "turns",
                           example::unknowns_of(wires, parameters.elements), 6000.0);
 
-    simulation::ModelParameters<Strand> model;
-    model.normal.regularisation_depth = 0.5 * depth * radius;
-    model.friction = {.friction_coefficient = mu, .reversible_displacement = reversible * radius};
-    model.contact.stiffness.allowed_penetration = depth * radius;
-    model.iteration.newton_limit = 30;
-    model.iteration.margin = 1.0;  // an increment moves the ends of a long strand by more than a radius
-    simulation::Simulator<Strand> simulator(strand::bent_strand(parameters, bending), model);
-    output.open(file);
-    example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
-        const strand::BendingState state = strand::measure_bending(simulator, parameters, bending);
-        return {{"angle_deg", state.angle * 180.0 / std::numbers::pi}, {"moment", state.moment}, {"moment_at_plate", state.at_plate}, {"tension", state.tension},
-                {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius}, {"processor_seconds", example::cpu_seconds()}};
-    });
-    simulation::Loading<Strand> loading;
-    const double full = angle * std::numbers::pi / 180.0;
-    if (bending.strain != 0.0) {
-        loading.stages.emplace_back();
-        loading.stages.back().name = "drawing";
-    }
-    loading.stages.emplace_back();
-    loading.stages.back().ramps = {{strand::bend, full}};
-    loading.stages.back().increments = increments, loading.stages.back().most_increments = 20 * increments;
-    output.tell(loading);
-    const simulation::Report report = simulator.run(loading, recorder);
-    const strand::BendingState state = strand::measure_bending(simulator, parameters, bending);
-    example::write_pictures(output, simulator.snapshot(), -90.0, 10.0);
-    const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, {{"wires", static_cast<double>(wires)}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
-                           {"length_over_radius", parameters.length / radius}, {"angle_deg", state.angle * 180.0 / std::numbers::pi},
-                           {"moment", state.moment}, {"moment_at_plate", state.at_plate},
-                           {"moment_of_loose_wires", strand::loose_stiffness(parameters) * full / parameters.length},
-                           {"moment_of_a_solid", strand::solid_stiffness(parameters) * full / parameters.length},
-                           {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius},
-                           {"dissipated", report.energy.dissipated}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()}});
-    return report.converged && audit.clean();
+    const Asked asked{parameters, bending, radius, mu, depth, reversible, angle, back, increments};
+    if (kind == "elastic") return bend<beam::Isotropic>(asked, {}, file, output);
+    beam::With<beam::DirectorBeam<>, material::Wire>::Parameters beam;
+    beam.laws = {yielding};
+    return bend<material::Wire>(asked, {beam}, file, output);
 }
 
 int main(int argc, char** argv) {

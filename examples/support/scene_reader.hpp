@@ -223,8 +223,13 @@ public:
 
 private:
     void refuse_unknown() const {
-        for (const auto& [name, section] : table_) {
-            const std::string title{name.str()};
+        refuse_unknown(table_, "");
+    }
+    /// @param above  the section that a table is in, with a dot
+    void refuse_unknown(const toml::table& table, const std::string& above) const {
+        for (const auto& [name, section] : table) {
+            const std::string title = above + std::string(name.str());
+            if (!above.empty() && !section.is_table()) continue;
             const bool known = std::any_of(entries_.begin(), entries_.end(),
                                            [&, &wanted = title](const Entry& entry) { return entry.section == wanted; });
             if (!known || !section.is_table())
@@ -232,9 +237,14 @@ private:
                                             ", but it must be one of the sections " + joined(sections()));
             for (const auto& [name_in, value] : *section.as_table()) {
                 const std::string key{name_in.str()};
+                if (value.is_table() && is_section(title + "." + key)) continue;
                 if (entry(title, key) == nullptr) refuse(title, clipped(key), value, "one of the keys " + joined(keys(title)));
             }
+            refuse_unknown(*section.as_table(), title + ".");
         }
+    }
+    bool is_section(const std::string& title) const {
+        return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& told) { return told.section == title; });
     }
     void refuse_missing() const {
         if (missing_.empty()) return;
@@ -281,24 +291,35 @@ private:
         fibrant::core::refuse(file_ + ": " + section + "." + key, clipped(text.str()), bound);
     }
     const toml::node* find(const std::string& section, const std::string& key) const {
-        const toml::node* titled = table_.get(section);
-        if (titled == nullptr) return nullptr;
-        if (!titled->is_table())
-            throw std::invalid_argument(file_ + ": " + section + " is a " + (titled->is_array() ? "list" : "value") +
-                                        ", but it must be a section, [" + section + "]");
-        return titled->as_table()->get(key);
+        const toml::table* table = &table_;
+        for (std::size_t from = 0; from <= section.size();) {  // [a.b] is a table in a table
+            const std::size_t dot = std::min(section.find('.', from), section.size());
+            const toml::node* titled = table->get(section.substr(from, dot - from));
+            if (titled == nullptr) return nullptr;
+            if (!titled->is_table())
+                throw std::invalid_argument(file_ + ": " + section.substr(0, dot) + " is a " + (titled->is_array() ? "list" : "value") +
+                                            ", but it must be a section, [" + section.substr(0, dot) + "]");
+            table = titled->as_table(), from = dot + 1;
+        }
+        return table->get(key);
     }
     void replace(const std::string& text) {
-        const std::size_t equals = text.find('='), dot = text.find('.');
+        const std::size_t equals = text.find('='), dot = text.substr(0, equals).rfind('.');
         if (equals == std::string::npos || dot == std::string::npos || dot > equals || dot == 0 || dot + 1 == equals)
             fibrant::core::refuse("--set", clipped(text), "section.key=value");
         const std::string section = trimmed(text.substr(0, dot)), key = trimmed(text.substr(dot + 1, equals - dot - 1));
         const std::string value = trimmed(text.substr(equals + 1));
         if (value.empty()) fibrant::core::refuse("--set", clipped(text), "section.key=value, and the value is missing");
         require_readable(value, "--set " + clipped(section + "." + key));
-        if (table_.get(section) == nullptr) table_.insert(section, toml::table{});
-        if (!table_.get(section)->is_table()) find(section, key);
-        toml::table& table = *table_.get(section)->as_table();
+        find(section, key);  // refuses what is no section
+        toml::table* inner = &table_;
+        for (std::size_t from = 0; from <= section.size();) {
+            const std::size_t end = std::min(section.find('.', from), section.size());
+            const std::string name = section.substr(from, end - from);
+            if (inner->get(name) == nullptr) inner->insert(name, toml::table{});
+            inner = inner->get(name)->as_table(), from = end + 1;
+        }
+        toml::table& table = *inner;
         try {
             const toml::table parsed = toml::parse("value = " + value);
             if (parsed.size() == 1)

@@ -16,6 +16,21 @@ inline void read_material(SceneReader& file, const std::string& section, fibrant
     file.require(section, "poisson_ratio", material.poisson_ratio, poisson_ratio(), "1", "of the material");
 }
 
+/// What fibres are across, by `[section.law]` kind = "transversely_isotropic"; young_modulus and poisson_ratio are those along them then. To
+/// be checked by `check_transverse` once all keys are known.
+inline void read_transverse(SceneReader& file, const std::string& section, std::string& kind, fibrant::scene::TransverseConstants& across) {
+    const std::string law = section + ".law";
+    file.read(law, "kind", kind, {"isotropic", "transversely_isotropic"}, "of the fibres");
+    file.read(law, "transverse_modulus", across.young_modulus, positive(), "force/length^2", "Young's modulus across the fibres");
+    file.read(law, "transverse_poisson_ratio", across.poisson_ratio, inside(-1.0, 1.0), "1", "in the plane of the section");
+    file.read(law, "shear_modulus", across.shear_modulus, positive(), "force/length^2", "between the fibres and their sections");
+}
+inline void check_transverse(const SceneReader& file, const std::string& section, const std::string& kind) {
+    const std::string law = section + ".law";
+    for (const char* key : {"transverse_modulus", "transverse_poisson_ratio", "shear_modulus"})
+        file.check(file.given(law, key) == (kind != "isotropic"), law, key, kind == "isotropic" ? "left out, for kind = \"isotropic\"" : "given, for kind = \"transversely_isotropic\"");
+}
+
 /// Wires of a strand of full layers.
 inline Bound wires() { return {.low = 7, .high = 91, .said = "7, 19, 37, 61 or 91", .values = {7, 19, 37, 61, 91}}; }
 

@@ -24,6 +24,7 @@
 #include <fibrant/contact/passage.hpp>
 #include <fibrant/contact/section_extents.hpp>
 #include <fibrant/contact/section_gap.hpp>
+#include <fibrant/contact/seen_touch.hpp>
 #include <fibrant/contact/side_index.hpp>
 #include <fibrant/contact/sliding_place.hpp>
 #include <fibrant/contact/station_pairs.hpp>

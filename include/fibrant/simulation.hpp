@@ -21,6 +21,7 @@
 #include <fibrant/simulation/run_file.hpp>
 #include <fibrant/simulation/scene_checks.hpp>
 #include <fibrant/simulation/scene_difference.hpp>
+#include <fibrant/simulation/section_laws.hpp>
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 #include <fibrant/simulation/state_file.hpp>

@@ -46,6 +46,8 @@ public:
     using Ties = typename Connections::template Of<B>;
     static constexpr bool has_solid = core::Active<Solid>;
     static_assert(connection::Connection<Ties, B>);
+    /// The force of an element in an iteration depends on the strains that it predicts.
+    static constexpr bool iterated_strains = beam::IteratedStrains<B>;
     static constexpr Index element_unknowns = beam::Mesh<B>::element_unknowns;
 
     Equilibrium(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const B& beam, Contacts& contacts,
@@ -180,11 +182,19 @@ public:
     }
 
     /// Adds the forces of fibres and solids in a state.
-    void add_internal_forces(const Vector& state, Vector& forces) {
+    /// @param iterated  as the iteration has them, whose strains are those of the state once it has converged
+    void add_internal_forces(const Vector& state, Vector& forces, [[maybe_unused]] bool iterated = false) {
         core::parallel_for(mesh_->fibre_count(), [&](Index f) {
-            for (Index e = 0; e < mesh_->fibre(f).elements; ++e)
+            for (Index e = 0; e < mesh_->fibre(f).elements; ++e) {
+                if constexpr (iterated_strains)
+                    if (iterated) {
+                        forces.template segment<element_unknowns>(mesh_->first_unknown(f, e)) +=
+                            beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e), stress(f, e));
+                        continue;
+                    }
                 forces.template segment<element_unknowns>(mesh_->first_unknown(f, e)) +=
                     beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e));
+            }
         }, mesh_->grain());
         if constexpr (has_solid) solid_.add_forces(state, forces);
         terms_.template of<term::Role::structure>([&](const auto& term) { term.add_forces(state, forces); });
@@ -199,7 +209,7 @@ public:
         terms_.template of<term::Role::interaction>(add);
         scene::fold_images(system_.layout(), residual);
         const double contact = norm(residual);
-        add_internal_forces(state, residual);
+        add_internal_forces(state, residual, true);
         terms_.template of<term::Role::aid>(add);
         scene::fold_images(system_.layout(), residual);
         external_.setZero(state.size());

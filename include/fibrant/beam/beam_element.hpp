@@ -103,4 +103,13 @@ concept BeamElement = core::Policy<B> && requires {
     requires TouchedOnCentreline<B> || std::same_as<decltype(B::particle_weights(xi, xi, xi)), Particle<B>>;
 };
 
+/// A beam whose stresses may bend over: in an iteration its points have strains of their own, predicted by the step, around which force
+/// and tangent are those of a linear law (mixed integration points, Magisano, Leonetti, Garcea 2017). The second order of a turn, which
+/// is a stretch that the next iteration takes back, would make them yield else.
+template <class B>
+concept IteratedStrains = BeamElement<B> && requires(const B beam, const typename B::Rest& rest, const ElementVector<B>& current,
+                                                     const typename B::Stresses& iterated) {
+    { beam.internal_force(rest, current, iterated) } -> std::same_as<ElementVector<B>>;
+};
+
 }  // namespace fibrant::beam

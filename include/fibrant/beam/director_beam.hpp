@@ -29,6 +29,7 @@ struct DirectorBeamOptions {
 /// the nodes leave no locking; exactly the six rigid motions have no energy. Keep an element below 90 degrees of turn.
 template <int Nodes = 3, DirectorBeamOptions Options = DirectorBeamOptions{}>
 class DirectorBeam {
+protected:
     using Interpolation = detail::DirectorPoints<Nodes>;
     using Section = detail::NodalSection<Nodes>;
 
@@ -178,7 +179,7 @@ public:
         return node_weights(shape(xi), xi1, xi2);
     }
 
-private:
+protected:
     static constexpr bool nodal = Options.sampling == SectionSampling::nodal;
     using Kernel = DirectorStrains<Options.law, Options.quadratic, !nodal, Options.twist>;
     using Values = typename Interpolation::Values;

@@ -75,6 +75,7 @@ public:
     Rest rest(const scene::CrossSection& section, const scene::ElasticMaterial& material, const ElementVector& y) const {
         section.validate();
         material.validate();
+        material.require_isotropic("KirchhoffCable");
         core::require(section.semi_axis_1 == section.semi_axis_2, "KirchhoffCable.rest: semi_axis_2", section.semi_axis_2,
                       "semi_axis_1: a cable does not know how its section is turned");
         const Vec3 chord = y.segment<3>(6) - y.head<3>();

@@ -194,6 +194,8 @@ public:
     const typename B::Rest& rest(Index f, Index e) const noexcept {
         return rest_[core::at(first_element_[core::at(f)] + e)];
     }
+    std::vector<typename B::Rest>& rests() noexcept { return rest_; }
+    const std::vector<typename B::Rest>& rests() const noexcept { return rest_; }
     /// Number of element e of fibre f in the whole mesh.
     Index element_index(Index f, Index e) const noexcept { return first_element_[core::at(f)] + e; }
     Index node_count(Index f) const noexcept { return fibre(f).elements * (B::nodes - 1) + 1; }

@@ -58,6 +58,7 @@ public:
     Rest rest(const SectionConstants& section, const scene::ElasticMaterial& material, const ElementVector& y) const {
         section.validate();
         material.validate();
+        material.require_isotropic("RigidSectionRod");
         Rest rest{y, (y.segment<3>(6) - y.head<3>()).norm(), Strains::Zero(), Strains::Zero()};
         core::require(std::isfinite(rest.length) && rest.length > 0.0, "RigidSectionRod.rest: length", rest.length, "finite and > 0");
         const double shear = material.shear_modulus(), young = material.young_modulus;
@@ -168,7 +169,7 @@ public:
         return about_normal + leaning > 0.0;
     }
 
-private:
+protected:
     using Slope = Eigen::Matrix<double, 6, 12>;
     using Vec4 = detail::Vec4;
     using Mat4 = detail::Mat4;
@@ -228,13 +229,18 @@ private:
 
     static ElementMatrix tangent(const Rest& rest, const Turned& t, const Slope& B, const Stresses& geometric) noexcept {
         ElementMatrix K = rest.length * B.transpose() * rest.stiffness.asDiagonal() * B;
+        add_geometric(t, geometric, K);
+        return K;
+    }
+    /// The part of the tangent that is made of stresses.
+    static void add_geometric(const Turned& t, const Stresses& geometric, ElementMatrix& K) noexcept {
         if (geometric.string > 0.0) {
             const double speed = t.chord.norm();
             const Vec3 along = t.chord / speed;
             const Mat3 pull = geometric.string / speed * (Mat3::Identity() - along * along.transpose());
             K.block<3, 3>(0, 0) += pull, K.block<3, 3>(6, 6) += pull, K.block<3, 3>(0, 6) -= pull, K.block<3, 3>(6, 0) -= pull;
         }
-        if (geometric.value.isZero(0.0)) return K;
+        if (geometric.value.isZero(0.0)) return;
         const Vec3 n = geometric.value.head<3>(), m = geometric.value.tail<3>();
         const Vec4 &q_1 = t.q_1.value, &q_2 = t.q_2.value;
         // n . R_m^T chord = mean^T N mean / |mean|^2
@@ -264,7 +270,6 @@ private:
         K.block<3, 3>(0, 9) -= chord_2, K.block<3, 3>(9, 0) -= chord_2.transpose();
         K.block<3, 3>(6, 3) += chord_1, K.block<3, 3>(3, 6) += chord_1.transpose();
         K.block<3, 3>(6, 9) += chord_2, K.block<3, 3>(9, 6) += chord_2.transpose();
-        return K;
     }
 
     Parameters parameters_;

@@ -87,6 +87,7 @@ public:
     SectionLaw(const SectionConstants& section, const scene::ElasticMaterial& material, double shear_factor) {
         section.validate();
         material.validate();
+        material.require_isotropic("DirectorBeam");
         core::require_positive("shear_factor", shear_factor);
         const double lame = material.lame(), shear = material.shear_modulus();
         const double bending = Law == ElasticLaw::split ? material.young_modulus : lame + 2.0 * shear;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <string>
+#include <type_traits>
 
 namespace fibrant::contact {
 
@@ -46,6 +47,8 @@ template <class Contacts>
 DepthOverAllowed depth_over_allowed(const Contacts& contacts, const StiffnessAdaptation& adaptation) {
     if constexpr (requires { contacts.normal_law().largest_penetration(); }) {
         return {.value = contacts.misfit() / contacts.normal_law().largest_penetration()};
+    } else if constexpr (law::SeeingNormal<std::decay_t<decltype(contacts.normal_law())>>) {
+        return {};  // what fibres sink is the law's answer
     } else {
         DepthOverAllowed most;
         for (const Zone& zone : contacts.zones()) {

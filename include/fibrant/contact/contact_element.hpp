@@ -28,16 +28,32 @@ struct GapShift<Normal> {
     double value() const noexcept { return shift; }
 };
 
+template <law::SeeingNormal Normal>
+struct GapShift<Normal> {
+    double length = 0.0;  ///< of the line of contact; 0: a crossing, or an end [length]
+    double value() const noexcept { return 0.0; }
+};
+
 /// Memory of friction, for laws that have one; nothing otherwise.
 template <beam::BeamElement B, law::FrictionLaw Friction>
 struct FrictionState {};
+/// How fibres lie where they touch, for laws that see it; nothing otherwise. It stands while normals do.
+template <law::FrictionLaw Friction>
+struct SeenPlace {};
+template <law::SeeingFriction Friction>
+struct SeenPlace<Friction> {
+    Vec3 along_i = Vec3::Zero(), along_j = Vec3::Zero();  ///< unit, in the tangent plane
+    double length = 0.0;                                  ///< of the line of contact; 0: a crossing, or an end [length]
+};
 template <beam::BeamElement B, law::FrictionLaw Friction>
     requires core::Active<Friction>
 struct FrictionState<B, Friction> {
+    static_assert(law::HistoryIsKept<Friction>, "contacts keep `reversible` and `numbers` of a law's history, and nothing else");
     static_assert(!beam::LeverNeeded<B>, "friction on centrelines has no lever: FrictionLever::dropped says that this is meant");
     typename Friction::History history;        ///< of the last accepted state, turned with the fibres
     beam::Particle<B> weights_i{}, weights_j{};  ///< of the pair of particles whose slip is counted
     double bound = -1.0;                       ///< R_N that bounds friction until normals are renewed; < 0: the present one [force]
+    [[no_unique_address]] SeenPlace<Friction> seen;
     Vec3 accepted_offset = Vec3::Zero();  ///< particle j - particle i in the last accepted state, turned since with the pair
 };
 

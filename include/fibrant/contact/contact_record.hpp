@@ -6,6 +6,7 @@
 #include <fibrant/proximity/proximity_search.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -18,11 +19,46 @@ namespace fibrant::contact {
 /// mean of both turns, whichever of them comes first.
 template <law::FrictionLaw Friction>
 struct RecordedFriction {};
+/// Numbers of a law's history, for laws that have some; nothing otherwise.
+template <class History>
+struct RecordedNumbers {
+    static RecordedNumbers of(const History&) noexcept { return {}; }
+    static RecordedNumbers between(const RecordedNumbers&, const RecordedNumbers&, double) noexcept { return {}; }
+    void give(History&) const noexcept {}
+    static void each(auto&, const auto&) noexcept {}
+};
+template <class History>
+    requires(law::history_numbers<History> > 0)
+struct RecordedNumbers<History> {
+    std::array<double, law::history_numbers<History>> value{};
+    static RecordedNumbers of(const History& history) noexcept { return {history.numbers}; }
+    static RecordedNumbers between(const RecordedNumbers& a, const RecordedNumbers& b, double t) noexcept {
+        RecordedNumbers mean;
+        for (std::size_t k = 0; k < mean.value.size(); ++k) mean.value[k] = (1.0 - t) * a.value[k] + t * b.value[k];
+        return mean;
+    }
+    void give(History& history) const noexcept { history.numbers = value; }
+    static void each(auto& self, const auto& see) {
+        for (auto& number : self.value) see(number);
+    }
+};
 template <law::FrictionLaw Friction>
     requires core::Active<Friction>
 struct RecordedFriction<Friction> {
     double along = 0.0, across = 0.0;  ///< [length]
     double sign = 1.0;                 ///< of the second tangent in the direction between both, 1 or -1
+    [[no_unique_address]] RecordedNumbers<typename Friction::History> numbers{};
+
+    /// Of a history. @param plane  that `along` and `across` are of
+    template <class Plane>
+    static RecordedFriction of(const typename Friction::History& history, const Plane& plane, double sign = 1.0) noexcept {
+        return {history.reversible.dot(plane.along), history.reversible.dot(plane.across), sign, RecordedNumbers<typename Friction::History>::of(history)};
+    }
+    template <class Plane>
+    void give(const Plane& plane, typename Friction::History& history) const noexcept {
+        history.reversible = along * plane.along + across * plane.across;
+        numbers.give(history);
+    }
 };
 
 /// Multiplier, for laws that have one; nothing otherwise.
@@ -62,7 +98,10 @@ private:
         see(self.fibre_i), see(self.fibre_j), see(self.u_i), see(self.u_j);
         see(self.normal.x()), see(self.normal.y()), see(self.normal.z());
         if constexpr (law::Augmenting<Normal>) see(self.multiplier.force);
-        if constexpr (core::Active<Friction>) see(self.friction.along), see(self.friction.across), see(self.friction.sign);
+        if constexpr (core::Active<Friction>) {
+            see(self.friction.along), see(self.friction.across), see(self.friction.sign);
+            RecordedNumbers<typename Friction::History>::each(self.friction.numbers, see);
+        }
     }
 };
 
@@ -130,7 +169,8 @@ public:
         if (before && after) {
             const double t = left + right > 0.0 ? left / (left + right) : 0.0;
             return {(1.0 - t) * before->friction.along + t * after->friction.along,
-                    (1.0 - t) * before->friction.across + t * after->friction.across, before->friction.sign};
+                    (1.0 - t) * before->friction.across + t * after->friction.across, before->friction.sign,
+                    RecordedNumbers<typename Friction::History>::between(before->friction.numbers, after->friction.numbers, t)};
         }
         if (before) return before->friction;
         if (after) return after->friction;

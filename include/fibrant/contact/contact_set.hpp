@@ -10,6 +10,7 @@
 #include <fibrant/contact/followed_places.hpp>
 #include <fibrant/contact/meeting_point.hpp>
 #include <fibrant/contact/pair_rules.hpp>
+#include <fibrant/contact/seen_touch.hpp>
 #include <fibrant/contact/side_index.hpp>
 #include <fibrant/contact/station_pairs.hpp>
 #include <fibrant/contact/support.hpp>
@@ -42,7 +43,7 @@ public:
     ContactParameters& parameters() noexcept { return parameters_; }
     const std::vector<Element>& elements() const noexcept { return elements_; }
     const std::vector<ContactResponse>& responses() const noexcept { return responses_; }
-    const std::vector<law::FrictionResponse<typename Friction::History>>& frictions() const noexcept { return frictions_; }
+    const std::vector<law::FrictionAnswer<Friction>>& frictions() const noexcept { return frictions_; }
     const std::vector<Zone>& zones() const noexcept { return zones_; }
     std::vector<Zone>& zones() noexcept { return zones_; }
     const Memory& accepted_memory() const noexcept { return accepted_; }
@@ -112,12 +113,12 @@ public:
             const Zone& zone = zones_[core::at(element.zone)];
             const bool none = start && apart < -2.0 * zone.deepest;
             const double gap = (none ? 0.0 : apart) + element.shift.value();
-            const law::NormalResponse response = normal_.response(gap, zone.stiffness);
+            const law::NormalResponse response = normal_answer(normal_, *mesh_, element, gap, zone.stiffness);
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             if constexpr (core::Active<Friction>) {
                 slip -= slip.dot(element.normal) * element.normal;
                 const double bound = none ? 0.0 : element.friction.bound < 0.0 ? response.reaction : element.friction.bound;
-                frictions_[core::at(k)] = friction_.response(slip, zone.friction_factor * bound, element.friction.history);
+                frictions_[core::at(k)] = friction_answer(friction_, *mesh_, element, slip, zone.friction_factor, bound);
             }
         });
     }
@@ -185,7 +186,7 @@ public:
     Vec3 friction_by_gap(Index k) const noexcept {
         const ContactResponse& response = responses_[core::at(k)];
         if constexpr (core::Active<Friction>)
-            if (follows() && response.reaction > 0.0) return response.slope / response.reaction * frictions_[core::at(k)].force;
+            if (follows() && response.reaction > 0.0) return friction_slope<Friction>(response, frictions_[core::at(k)]);
         return Vec3::Zero();
     }
 
@@ -240,7 +241,7 @@ public:
                 if (response.reaction > 0.0) ++sum.active;
                 if (element.shift.value() > 0.0) ++sum.shifted;
                 sum.greatest_penetration = std::max(sum.greatest_penetration, -element.gap(state));
-                sum.work += normal_.energy(response.gap, stiffness(element));
+                sum.work += normal_energy(normal_, *mesh_, element, response.gap, stiffness(element));
                 sum.reaction_sum += response.reaction;
                 if constexpr (core::Active<Friction>)
                     sum.work += frictions_[core::at(k)].stored, sum.dissipated += frictions_[core::at(k)].dissipated;
@@ -329,6 +330,7 @@ private:
                     made[core::at(b)].push_back(element);
                 }
                 zone.last = core::count(made[core::at(b)]);
+                see_lengths(*mesh_, std::span<Element>(made[core::at(b)]).subspan(core::at(zone.first)));
                 if constexpr (law::Augmenting<Normal>) {
                     const auto first = made[core::at(b)].begin() + zone.first;
                     hand_multipliers(memory, zone.span, std::span<Element>(first, made[core::at(b)].end()));
@@ -348,7 +350,7 @@ private:
     void follow(Index k, const Vector& state) {
         Element& element = elements_[core::at(k)];
         places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
-        find_meeting_point(*mesh_, state, element);
+        find_meeting_point(*mesh_, state, element), see_directions(*mesh_, state, element);
         if constexpr (core::Active<Friction>) {
             element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
             element.friction.accepted_offset = contact::accepted_offset(*mesh_, parameters_.normal, element, state, places_.accepted());
@@ -364,13 +366,14 @@ private:
         element.u_i = pair.u_i, element.u_j = pair.u_j;
         element.crossing = pair.crossing, element.slide = pair.slide, element.end_i = pair.end_i, element.end_j = pair.end_j;
         places_.host(*mesh_, element);
+        see_length(element, pair);
         return element;
     }
 
     /// Normal, particles, gap shift and accepted offset of an element whose stations stand.
     void place_particles(Element& element, const Vector& state, const Vector& accepted, const Vec3& remembered) const {
         element.normal = element_normal(*mesh_, state, element, parameters_.normal, remembered);
-        find_meeting_point(*mesh_, state, element);
+        find_meeting_point(*mesh_, state, element), see_directions(*mesh_, state, element);
         if constexpr (law::GapShifting<Normal>) element.shift.shift = normal_.gap_shift(element.gap(accepted));
         if constexpr (law::Augmenting<Normal>) element.shift.shift = -normal_.penetration(element.shift.multiplier, stiffness(element));
         if constexpr (core::Active<Friction>) {
@@ -387,7 +390,7 @@ private:
         const double range = 1.5 / parameters_.spacing.points_per_element;
         const RecordedFriction<Friction> recorded = accepted_.friction(element, range);
         const TangentPlane plane(heading(*mesh_, element, state, recorded.sign), element.normal);
-        element.friction.history.reversible = recorded.along * plane.along + recorded.across * plane.across;
+        recorded.give(plane, element.friction.history);
     }
 
     std::vector<typename Memory::Record> records(const Vector& state) const {
@@ -404,8 +407,7 @@ private:
                 if (k < core::count(frictions_) && responses_[core::at(k)].reaction > 0.0) {
                     const double sign = sign_of_j(*mesh_, element, state);
                     const TangentPlane plane(heading(*mesh_, element, state, sign), element.normal);
-                    const Vec3& kept = frictions_[core::at(k)].history.reversible;
-                    record.friction = {kept.dot(plane.along), kept.dot(plane.across), sign};
+                    record.friction = RecordedFriction<Friction>::of(frictions_[core::at(k)].history, plane, sign);
                 }
             }
         });
@@ -422,7 +424,7 @@ private:
     std::vector<Zone> zones_, accepted_zones_;
     std::vector<Element> elements_;
     std::vector<ContactResponse> responses_;
-    std::vector<law::FrictionResponse<typename Friction::History>> frictions_;
+    std::vector<law::FrictionAnswer<Friction>> frictions_;
     SideIndex sides_;
     Memory accepted_;
     FollowedPlaces<B> places_;

@@ -5,6 +5,7 @@
 #include <fibrant/contact/contact_tangent.hpp>
 #include <fibrant/contact/normal_direction.hpp>
 #include <fibrant/contact/support.hpp>
+#include <fibrant/contact/seen_touch.hpp>
 #include <fibrant/contact/tool_element.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
 #include <fibrant/core/parallel.hpp>
@@ -46,7 +47,7 @@ public:
     const std::vector<scene::Tool>& tools() const noexcept { return tools_; }
     const std::vector<Element>& elements() const noexcept { return elements_; }
     const std::vector<ContactResponse>& responses() const noexcept { return responses_; }
-    const std::vector<law::FrictionResponse<typename Friction::History>>& frictions() const noexcept { return frictions_; }
+    const std::vector<law::FrictionAnswer<Friction>>& frictions() const noexcept { return frictions_; }
     const scene::ToolPose& pose(Index tool) const noexcept { return pose_[core::at(tool)]; }
     /// Where it was in the last accepted state.
     const scene::ToolPose& accepted_pose(Index tool) const noexcept { return accepted_pose_[core::at(tool)]; }
@@ -91,11 +92,13 @@ public:
                         const Record* record = find(last, key);
                         element.shift.multiplier = record ? record->multiplier : 0.0;
                     }
+                    const bool last = s == 0 || s == stations;  // half of a step, but of closed fibres
+                    see_length(element, (last && !mesh_->fibre(f).closed ? 0.5 : 1.0) * step_ * mesh_->fibre(f).element_length);
                     place_particle(element, state, accepted, normal);
                     if constexpr (core::Active<Friction>) {
                         if (const Record* record = find(accepted_, key)) {
                             const TangentPlane plane(tangent(element, state), element.normal);
-                            element.friction.history.reversible = record->friction.along * plane.along + record->friction.across * plane.across;
+                            record->friction.give(plane, element.friction.history);
                         }
                     }
                     made[core::at(f)].push_back(element);
@@ -147,12 +150,12 @@ public:
                 slip += beam::Mesh<B>::point(state, element.first, element.friction.weights_j) - element.foot - element.friction.accepted_offset;
             follow_support(element, state);
             const double gap = element.gap(state) + element.normal.dot(back) + element.shift.value();
-            const law::NormalResponse response = normal.response(gap, stiffness(element));
+            const law::NormalResponse response = normal_answer(normal, *mesh_, element, gap, stiffness(element));
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             if constexpr (core::Active<Friction>) {
                 slip -= slip.dot(element.normal) * element.normal;
                 const double bound = element.friction.bound < 0.0 ? response.reaction : element.friction.bound;
-                frictions_[core::at(k)] = friction.response(slip, tools_[core::at(element.tool)].friction_factor * bound, element.friction.history);
+                frictions_[core::at(k)] = friction_answer(friction, *mesh_, element, slip, tools_[core::at(element.tool)].friction_factor, bound);
             }
         }, core::light_items);
     }
@@ -231,7 +234,7 @@ public:
             if (response.reaction > 0.0) ++sum.active;
             if (element.shift.value() > 0.0) ++sum.shifted;
             sum.greatest_penetration = std::max(sum.greatest_penetration, -element.gap(state));
-            sum.work += normal.energy(response.gap, stiffness(element));
+            sum.work += normal_energy(normal, *mesh_, element, response.gap, stiffness(element));
             sum.reaction_sum += response.reaction;
             if constexpr (core::Active<Friction>)
                 sum.work += frictions_[core::at(k)].stored, sum.dissipated += frictions_[core::at(k)].dissipated;
@@ -352,6 +355,7 @@ private:
         element.foot = particle - scene::tool_distance(tools_[t], pose.material(particle)).distance * element.normal;
         if constexpr (law::GapShifting<Normal>) element.shift.shift = normal.gap_shift(element.gap(accepted));
         if constexpr (law::Augmenting<Normal>) element.shift.shift = -normal.penetration(element.shift.multiplier, stiffness(element));
+        see_directions(*mesh_, state, element);
         if constexpr (core::Active<Friction>) {
             element.friction.weights_j = element.weights;
             const scene::ToolPose& before = accepted_pose_[t];
@@ -379,8 +383,7 @@ private:
             if constexpr (core::Active<Friction>) {
                 if (!(responses_[k].reaction > 0.0)) continue;
                 const TangentPlane plane(tangent(element, state), element.normal);
-                const Vec3& kept = frictions_[k].history.reversible;
-                list[k].friction = {kept.dot(plane.along), kept.dot(plane.across)};
+                list[k].friction = RecordedFriction<Friction>::of(frictions_[k].history, plane);
             }
         }
         return list;
@@ -394,7 +397,7 @@ private:
     std::vector<Element> elements_;
     std::vector<Index> first_;  // element of each fibre
     std::vector<ContactResponse> responses_;
-    std::vector<law::FrictionResponse<typename Friction::History>> frictions_;
+    std::vector<law::FrictionAnswer<Friction>> frictions_;
     std::vector<Record> accepted_;
     bool starting_ = false;  // fibres stand where the last increment left them
 };

@@ -41,7 +41,10 @@ struct ToolRecord {
     template <class Self, class See>
     static void each(Self& self, const See& see) {
         see(self.fibre), see(self.tool), see(self.station), see(self.multiplier);
-        if constexpr (core::Active<Friction>) see(self.friction.along), see(self.friction.across);
+        if constexpr (core::Active<Friction>) {
+            see(self.friction.along), see(self.friction.across);
+            RecordedNumbers<typename Friction::History>::each(self.friction.numbers, see);
+        }
     }
     friend bool operator<(const ToolRecord& a, const ToolRecord& b) noexcept {
         return std::tie(a.fibre, a.tool, a.station) < std::tie(b.fibre, b.tool, b.station);

@@ -85,6 +85,7 @@ struct StiffnessAdaptation {
 template <law::NormalLaw Normal>
 double adapted_stiffness(StiffnessAdaptation adaptation, const Normal& normal, double stiffness, double reference,
                          double penetration, double factor = 1.0) noexcept {
+    if constexpr (law::SeeingNormal<Normal>) return stiffness;
     adaptation.allowed_penetration *= factor;
     const double adapted = adaptation.adapted(stiffness, reference, penetration, law::regularisation_depth(normal));
     return law::Augmenting<Normal> ? std::max(stiffness, adapted) : adapted;
@@ -101,6 +102,7 @@ double strictly_adapted_stiffness(StiffnessAdaptation adaptation, const Normal& 
 /// Compliance of two opposite line loads on a section, as a stiffness over a length: (pi / 2) E / (1 - nu^2) * length
 /// [force / length]. A penalty far above it gains nothing physically.
 inline double section_stiffness(const scene::ElasticMaterial& material, double length) noexcept {
+    if (material.transverse.given()) return 0.5 * std::numbers::pi * material.section_modulus() * length;
     const double nu = material.poisson_ratio;
     return 0.5 * std::numbers::pi * material.young_modulus / (1.0 - nu * nu) * length;
 }

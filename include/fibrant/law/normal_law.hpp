@@ -14,14 +14,39 @@ struct NormalResponse {
     double slope;     ///< dR_N / dgap <= 0 [force / length]
 };
 
+/// One contact element as a law sees it that is no penalty.
+struct Approach {
+    double gap = 0.0;     ///< < 0 in penetration [length]
+    double length = 0.0;  ///< of the line of contact that the element stands for; 0: a crossing, or an end [length]
+    double reach = 0.0;   ///< sum of both radii; of a tool that of the fibre [length]
+};
+
+namespace detail {
+template <class L>
+struct Asked {
+    using Type = double;
+};
+template <class L>
+    requires requires { typename L::Sees; }
+struct Asked<L> {
+    using Type = typename L::Sees;
+};
+}  // namespace detail
+
 /// Normal reaction as a function of the gap.
 /// Owed beyond the syntax, and checked by tests/law/normal_law_contract.hpp: the reaction is zero once open, never
 /// negative, never falls with penetration, `slope` is its derivative, and -reaction that of `energy`.
 template <class L>
-concept NormalLaw = core::Policy<L> && requires(const L law, double gap, double stiffness) {
+concept NormalLaw = core::Policy<L> && requires(const L law, const typename detail::Asked<L>::Type& gap, double stiffness) {
     { law.response(gap, stiffness) } -> std::same_as<NormalResponse>;
     { law.energy(gap, stiffness) } -> std::same_as<double>;
 };
+
+/// A physical law, `using Sees = Approach`: asked by that instead of the gap, and by no stiffness, for its own is a property, which no
+/// adaptation touches; what a fibre sinks is its answer and no fault. Owed beside what NormalLaw owes: two elements of half the length
+/// answer as one.
+template <class L>
+concept SeeingNormal = NormalLaw<L> && requires { requires std::same_as<typename L::Sees, Approach>; };
 
 /// A normal law that shifts the gap of each contact element by an amount chosen when an increment starts.
 template <class L>

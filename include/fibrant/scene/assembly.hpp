@@ -39,6 +39,8 @@ struct FibreSpecification {
     bool closed = false;
     double twist = 0.0;                       ///< of a closed fibre: by which it is turned along itself before it is closed [radian]
 
+    std::string law_channel{};                ///< that drives the law of its section: heat, shrinkage, growth; empty: none
+
     /// A closed fibre that is straight at rest, as long as its start is.
     bool straightened() const noexcept { return closed && start && !curve && !from.allFinite() && !to.allFinite(); }
     std::string name{};                       ///< what messages call it beside its number; may be left out

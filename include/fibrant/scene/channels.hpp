@@ -19,6 +19,8 @@ public:
     Channels() = default;
     /// @param others  that terms of the equilibrium name
     explicit Channels(const Assembly& assembly, std::vector<std::string> others = {}) : names_{std::move(others)} {
+        for (const FibreSpecification& fibre : assembly.fibres())
+            if (!fibre.law_channel.empty()) names_.push_back(fibre.law_channel);
         for (const Hold& hold : assembly.holds()) names_.push_back(hold.channel);
         for (const DeadForce& force : assembly.forces()) names_.push_back(force.channel);
         for (const LinePressure& load : assembly.pressures()) names_.push_back(load.channel);

@@ -23,6 +23,7 @@ struct Solid {
     /// Jacobians are checked by the part that meshes the solid.
     void validate() const {
         core::require_positive("Solid.material.young_modulus", material.young_modulus);
+        material.require_isotropic("Solid");
         core::require(material.poisson_ratio > -1.0 && material.poisson_ratio < 0.5, "Solid.material.poisson_ratio",
                       material.poisson_ratio, "> -1 and < 0.5");
         core::require_at_least("Solid.cells", core::count(cells), 1);

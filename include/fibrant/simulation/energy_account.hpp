@@ -82,6 +82,9 @@ public:
         if (leap) balance_.released += balance_.error() - error_before;
     }
 
+    /// What the laws of sections have lost in an increment, and what work what drives them has done.
+    void book_laws(double lost, double driven) { balance_.lost += lost, balance_.external += driven; }
+
     /// Bonds have let go since: this is stored now.
     void release(double elastic) {
         balance_.released += balance_.elastic - elastic;

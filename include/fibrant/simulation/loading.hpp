@@ -42,6 +42,7 @@ template <Model M>
 struct Stage {
     std::string name = "loading";
     Index increments = 10;                      ///< that its ramps take when none is cut, >= 1
+    double duration = 0.0;                      ///< of its ramps, for laws with a rate, >= 0; what follows them takes no time [time]
     std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
     GapLimitOf<typename M::Normal> gap_limit{};  ///< of a law that limits the gap [length], as std::optional; scaled down when cut
     bool gap_limit_when_cut = false;            ///< limited in increments that were cut alone: what Newton's method cannot solve at once is softer then
@@ -106,11 +107,15 @@ struct Loading {
         core::require(growth > 1.0, "Loading.growth", growth, "> 1");
         core::require_finite("Loading.growth", growth);
         core::require_at_least("Loading.most_rejected", most_rejected, 0);
+        const bool timed = law::FrictionWithRate<typename M::Friction>;
+        if (timed && stages.empty()) core::refuse("Loading.stages", "none", "at least one that has a duration: the law of friction has a rate");
         for (const Stage<M>& stage : stages) {
+            if (timed) core::require(stage.duration > 0.0, "Stage.duration of stage " + stage.name, stage.duration, "> 0: the law of friction has a rate");
             core::require_at_least("Stage.increments", stage.increments, 1);
             core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);
             core::require_at_least("Stage.enough_increments", stage.enough_increments, 1);
             core::require_not_negative("Stage.damping", stage.damping);
+            core::require_not_negative("Stage.duration", stage.duration);
             core::require(stage.damping_decay > 0.0 && stage.damping_decay <= 1.0, "Stage.damping_decay", stage.damping_decay, "in (0, 1]");
             core::require(stage.damping_calm > 0.0, "Stage.damping_calm", stage.damping_calm, "> 0");
             core::require_not_negative("Stage.damping_share", stage.damping_share);

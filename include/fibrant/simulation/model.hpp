@@ -140,4 +140,12 @@ struct ModelParameters {
     solver::IterationParameters iteration{};
 };
 
+/// The parameters themselves, once what no part checks by itself has passed.
+template <Model M>
+const ModelParameters<M>& checked(const ModelParameters<M>& parameters) {
+    parameters.contact.validate();
+    parameters.iteration.validate();
+    return parameters;
+}
+
 }  // namespace fibrant::simulation

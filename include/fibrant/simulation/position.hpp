@@ -35,6 +35,15 @@ struct Position {
     static constexpr double most_holding = 4096.0;
     static constexpr Index most_mends = 12;  ///< without a success
 
+    /// Progress that the next increment of a stage is to reach.
+    template <Model M>
+    double next(const Stage<M>& stage) const {
+        if (calming.resting) return progress;
+        if (stage.ramps.empty() && !stage.until && stage.duration == 0.0) return 1.0;
+        const double ahead = std::min(1.0, progress + fraction / static_cast<double>(stage.increments));
+        return ahead > 1.0 - 1e-9 ? 1.0 : ahead;
+    }
+
     /// After an attempt that has failed. What stops increments is often one fibre, or two at the edge of a bundle: those that moved
     /// most in the last iteration or pass, if they are few, are held four times as hard, and the increment stays as it is. Else it
     /// is made smaller, and damping of all rises.

@@ -3,6 +3,7 @@
 /// @file A state on a finer mesh: how much of a result is the mesh's, from one and the same settled state.
 
 #include <fibrant/scene/image_vectors.hpp>
+#include <fibrant/simulation/section_laws.hpp>
 #include <fibrant/simulation/stored_state.hpp>
 
 namespace fibrant::simulation {
@@ -45,6 +46,7 @@ StoredState<M> refined(const StoredState<M>& stored, const beam::Mesh<typename M
         }
     }
     scene::copy_to_images(finer.layout(), answer.state);
+    if constexpr (beam::Remembering<B>) answer.laws = SectionLaws<B>::refined(mesh, stored.laws, finer, parts);
     for (auto& record : answer.records) record.u_i *= times, record.u_j *= times;
     for (contact::Zone& zone : answer.zones) {
         proximity::ProximityZone& span = zone.span;

@@ -17,12 +17,13 @@ struct EnergyBalance {
     double contact = 0.0;       ///< stored in penetrations and in reversible slips
     double external = 0.0;      ///< done by loads and prescribed motion
     double dissipated = 0.0;    ///< by sliding, >= 0
+    double lost = 0.0;          ///< by the laws of sections: plastic, viscous, hysteretic, >= 0
     double damped = 0.0;        ///< taken by the damping of stages that have one, >= 0
     double rearranged = 0.0;    ///< put in by changes of contact elements, gap shifts, friction's bound and penalty stiffness
     double released = 0.0;      ///< let go in stages that force an order: an increment starts from an imposed overlap and leaps
-    /// What is missing: external + rearranged - released - dissipated - damped - stored.
+    /// What is missing: external + rearranged - released - dissipated - lost - damped - stored.
     double error() const noexcept {
-        return external + rearranged - released - dissipated - damped - elastic - contact;
+        return external + rearranged - released - dissipated - lost - damped - elastic - contact;
     }
 };
 

@@ -17,7 +17,7 @@
 namespace fibrant::simulation {
 
 /// What a run consists of, by reference: all that was accepted last.
-template <class Contacts, class Equilibrium>
+template <class Contacts, class Equilibrium, class Mesh, class Laws>
 struct RunParts {
     Vector& state;
     std::vector<double>& amplitudes;
@@ -27,17 +27,20 @@ struct RunParts {
     Position& position;
     MeanMotion& motion;
     core::StageClock& clock;
+    Mesh& mesh;
+    Laws& laws;  // of sections
 };
-template <class Contacts, class Equilibrium>
-RunParts(Vector&, std::vector<double>&, EnergyAccount&, Contacts&, Equilibrium&, Position&, MeanMotion&, core::StageClock&)
-    -> RunParts<Contacts, Equilibrium>;
+template <class Contacts, class Equilibrium, class Mesh, class Laws>
+RunParts(Vector&, std::vector<double>&, EnergyAccount&, Contacts&, Equilibrium&, Position&, MeanMotion&, core::StageClock&, Mesh&, Laws&)
+    -> RunParts<Contacts, Equilibrium, Mesh, Laws>;
 
-template <Model M, class Contacts, class Equilibrium>
-void put_run(CheckpointWriter& file, const RunParts<Contacts, Equilibrium>& run, const Report& report) {
+template <Model M, class Contacts, class Equilibrium, class Mesh, class Laws>
+void put_run(CheckpointWriter& file, const RunParts<Contacts, Equilibrium, Mesh, Laws>& run, const Report& report) {
     const auto put = [&](const auto& value) { file.put(value); };
     put(run.state);
     run.energy.each(put);
     put_memory(file, run.contacts.accepted_memory().records(), run.contacts.accepted_zones());
+    put(run.laws.numbers(run.mesh));
     for (const double amplitude : run.amplitudes) put(amplitude);
     std::as_const(run.position).each(put);
     if constexpr (HasTools<M>) run.contacts.tools().each_accepted(put);
@@ -51,8 +54,8 @@ void put_run(CheckpointWriter& file, const RunParts<Contacts, Equilibrium>& run,
 }
 
 /// The part of a checkpoint that has to do with fibres and contacts alone.
-template <class Contacts, class Equilibrium>
-void get_fibres(CheckpointReader& file, const RunParts<Contacts, Equilibrium>& run) {
+template <class Contacts, class Equilibrium, class Mesh, class Laws>
+void get_fibres(CheckpointReader& file, const RunParts<Contacts, Equilibrium, Mesh, Laws>& run) {
     const Index size = run.state.size();
     run.state = get_state(file, size);
     run.energy.each([&]<class Value>(Value& value) {
@@ -63,13 +66,14 @@ void get_fibres(CheckpointReader& file, const RunParts<Contacts, Equilibrium>& r
     std::vector<contact::Zone> zones;
     get_memory(file, records, zones, run.equilibrium.mesh().fibre_count());
     run.contacts.resume(std::move(records), std::move(zones));
+    run.laws.take(run.mesh, get_state(file, run.laws.count(run.mesh)));
 }
 
 /// What follows.
 /// @param stages  of the loading
 /// @param placed  is called once amplitudes and position stand
-template <Model M, class Contacts, class Equilibrium, class Placed>
-void get_rest(CheckpointReader& file, const RunParts<Contacts, Equilibrium>& run, Index stages, Report& report, const Placed& placed) {
+template <Model M, class Contacts, class Equilibrium, class Mesh, class Laws, class Placed>
+void get_rest(CheckpointReader& file, const RunParts<Contacts, Equilibrium, Mesh, Laws>& run, Index stages, Report& report, const Placed& placed) {
     const auto get = [&]<class Value>(Value& value) { value = file.get<Value>(); };
     for (double& amplitude : run.amplitudes) get(amplitude);
     run.position.each(get);

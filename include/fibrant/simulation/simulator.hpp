@@ -7,6 +7,7 @@
 #include <fibrant/simulation/deep_places.hpp>
 #include <fibrant/simulation/run_file.hpp>
 #include <fibrant/simulation/scene_checks.hpp>
+#include <fibrant/simulation/section_laws.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 #include <fibrant/simulation/watching.hpp>
 
@@ -78,7 +79,7 @@ public:
     /// The present state as plain data.
     observe::Snapshot snapshot() const;
 
-    /// Takes over contacts and what they remember from a run of the same fibres, whose state the assembly begins at.
+    /// Takes over what contacts and laws remember from a run of the same fibres, whose state the assembly begins at.
     /// @throws std::invalid_argument if the fibres are not where that run left them
     template <Model Other>
     void go_on_from(const Simulator<Other>& other) {
@@ -86,6 +87,7 @@ public:
         if (before.size() > state_.size() || before != state_.head(before.size()))
             core::refuse("Simulator.state", "another", "that of the run to go on from: use Assembly::begin_at");
         contacts_.resume(other.contacts().accepted_memory().records(), other.contacts().accepted_zones());
+        laws_.go_on_from(mesh_, other.mesh());
         energy_.start(equilibrium_, state_, other.contacts(), before);
     }
 
@@ -93,12 +95,6 @@ private:
     Index first_of(const scene::Station& at, scene::NodeVector vector) const {
         return 3 * mesh_.node_vector(at.fibre, connection::station_node(mesh_, at), static_cast<Index>(vector));
     }
-    static const ModelParameters<M>& checked(const ModelParameters<M>& parameters) {
-        parameters.contact.validate();
-        parameters.iteration.validate();
-        return parameters;
-    }
-
     void move_tools([[maybe_unused]] const std::vector<double>& amplitudes) {
         if constexpr (HasTools<M>) {
             std::vector<double> own;
@@ -112,7 +108,7 @@ private:
         if (stage.friction) contacts_.friction_law() = *stage.friction;
     }
 
-    /// One accepted increment, after as many cuts as it takes; gave_up(attempt) is told of those.
+    /// One accepted increment, after as many cuts as it takes; gave_up(attempt) hears of it.
     template <class GaveUp>
     bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report, const GaveUp& gave_up) {
         const auto start = std::chrono::steady_clock::now();
@@ -126,9 +122,7 @@ private:
                 report.reason = position_.not_ended(stage.name) + deep_;
                 return false;
             }
-            double progress = stage.ramps.empty() && !stage.until ? 1.0 : std::min(1.0, position_.progress + position_.fraction / static_cast<double>(stage.increments));
-            if (progress > 1.0 - 1e-9) progress = 1.0;
-            if (position_.calming.resting) progress = position_.progress;
+            const double progress = laws_.again() ? position_.progress : position_.next(stage);
             if constexpr (law::GapLimiting<typename M::Normal>) {
                 const double limit = position_.limits_gap(stage) ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
                 contacts_.normal_law() = contacts_.normal_law().with_limit(limit);
@@ -144,6 +138,7 @@ private:
             }
             Vector trial = state_;
             move_tools(amplitudes);
+            laws_.drive(mesh_, amplitudes, let_last(contacts_, stage.duration * (progress - position_.progress)));
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping + position_.calming.springs, position_.holding);
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
@@ -155,16 +150,18 @@ private:
             attempt_newton = static_cast<double>(attempt.counts.newton) / static_cast<double>(std::max<Index>(1, attempt.counts.normal_passes));
             if (attempt.converged) {
                 attempt.reason = clock_.time(core::Part::search, [&] { return refusal(mesh_, beam_, passage_, contacts_, state_, trial, stage.forced_orders, touching); });
+                if (attempt.reason.empty()) attempt.reason = laws_.refusal(mesh_, beam_, trial);
                 if (!attempt.reason.empty()) attempt.converged = false, attempt.unsettled.resize(0);  // whoever moved most is not at fault
             }
-            // What nothing foretells would be held back: a first solution tells where it goes.
+            // What nothing foretells would be held back: the first tells.
             if (attempt.converged && stage.damping_carried && stage.damping > 0.0 && !rehearsed && !motion_.foretells(change)) {
                 motion_.learn(mesh_, state_, trial, change);
                 contacts_.restore(), equilibrium_.restore(), rehearsed = true;
                 continue;
             }
             if (attempt.converged) {
-                energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders);
+                energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again());
+                laws_.accept(mesh_, beam_, trial, energy_);
                 increment.energy = energy_.balance();
                 if (stage.damping_carried) motion_.learn(mesh_, state_, trial, change);
                 state_ = trial;
@@ -211,8 +208,9 @@ private:
         // At rest: what holds takes no more force than the balance may miss anyway.
         const bool reached = position_.progress >= 1.0 && !position_.calming.resting && (!stage.until || stage.until(increment));
         const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
-        deep_ = reached && !held ? mend_deep_places(loading, stages, *this, contacts_, radius_, position_) : std::string();
-        position_.stage_over = (reached && !held && deep_.empty()) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments);
+        deep_ = reached && !held && !laws_.again() ? mend_deep_places(loading, stages, *this, contacts_, radius_, position_) : std::string();
+        position_.stage_over =
+            !laws_.again() && ((reached && !held && deep_.empty()) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments));
         position_.adapt_damping(stage, increment, attempt_newton / static_cast<double>(parameters_.iteration.newton_limit));
         contacts_.accept(state_), equilibrium_.accept(state_);
         if constexpr (HasSolid<M>)
@@ -245,7 +243,7 @@ private:
     }
 
     /// All of a run that goes into its checkpoint.
-    auto parts() noexcept { return RunParts{state_, amplitudes_, energy_, contacts_, equilibrium_, position_, motion_, clock_}; }
+    auto parts() noexcept { return RunParts{state_, amplitudes_, energy_, contacts_, equilibrium_, position_, motion_, clock_, mesh_, laws_}; }
     void write_checkpoint(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Report& report) {
         CheckpointWriter file;
         put_identity<M>(file, mesh_, channels_, stages, loading.scene);
@@ -270,6 +268,7 @@ private:
     Equilibrium equilibrium_;
     [[no_unique_address]] Passage passage_;
     typename M::Solver linear_;
+    [[no_unique_address]] SectionLaws<Beam> laws_;
     Vector state_;
     std::vector<double> amplitudes_;
     double radius_ = 0.0;
@@ -291,7 +290,7 @@ Simulator<M>::Simulator(const scene::Assembly& assembly, const ModelParameters<M
       contacts_{assembly, mesh_, parameters.contact, typename M::Proximity(parameters.proximity),
                 typename M::Normal(parameters.normal), typename M::Friction(parameters.friction)},
       equilibrium_{assembly, mesh_, beam_, contacts_, channels_, Solid(parameters.solid), parameters.acts}, passage_{mesh_, parameters.contact.detection},
-      linear_{parameters.solver},
+      linear_{parameters.solver}, laws_{assembly, mesh_, beam_, channels_},
       state_{mesh_.start_state()}, amplitudes_(channels_.names().size(), 0.0) {
     if (mesh_.fibre_count() == 0) core::refuse("assembly.fibres", "none", "at least one fibre");
     if constexpr (HasTools<M>) {
@@ -320,6 +319,7 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
     const auto start = std::chrono::steady_clock::now();
     const std::vector<Stage<M>> stages = stages_of(loading, channels_);
     check_ramps(stages, channels_, amplitudes_);
+    if (laws_.begin(stages, mesh_, beam_, state_)) energy_.start_from_other(equilibrium_, state_);
     require_paths(stages, equilibrium_.motion(), mesh_, channels_, amplitudes_);
     Report report;
     report.reason = unheld(stages, loose_);

@@ -38,6 +38,8 @@ std::uint64_t fibre_identity(const beam::Mesh<B>& mesh) {
         scene.put(fibre.first_vector), scene.put(fibre.group);
         scene.put(fibre.section.semi_axis_1), scene.put(fibre.section.semi_axis_2), scene.put(fibre.section.inertia_factor);
         scene.put(fibre.material.young_modulus), scene.put(fibre.material.poisson_ratio);
+        if (fibre.material.law != 0) scene.put(fibre.material.law);
+        if (const scene::TransverseConstants& t = fibre.material.transverse; t.given()) scene.put(t.young_modulus), scene.put(t.poisson_ratio), scene.put(t.shear_modulus);
     }
     return scene.identity();
 }
@@ -53,6 +55,7 @@ std::uint64_t loading_identity(const std::vector<Stage<M>>& stages) {
     for (const Stage<M>& stage : stages) {
         loading.put(stage.name), loading.put(stage.increments), loading.put(stage.forced_orders);
         loading.put(stage.gap_limit.value_or(-1.0));
+        if (stage.duration > 0.0) loading.put(stage.duration);
         for (const Ramp& ramp : stage.ramps) loading.put(ramp.channel), loading.put(ramp.to), loading.put(ramp.geometric);
     }
     return loading.identity();

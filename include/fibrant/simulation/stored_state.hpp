@@ -19,6 +19,7 @@ struct StoredState {
     Vector state;
     std::vector<Record> records{};
     std::vector<contact::Zone> zones{};
+    Vector laws{};  ///< SectionLaws::numbers: what the laws of sections remember; empty for those that do not
 };
 
 /// @throws std::runtime_error if the file cannot be read or has other fibres
@@ -29,6 +30,7 @@ StoredState<M> read_state(const std::string& path, const beam::Mesh<typename M::
     for (int k = 0; k < 3; ++k) file.get_vector();  // forces of the last increment
     file.get<EnergyBalance>();
     get_memory(file, stored.records, stored.zones, mesh.fibre_count());
+    stored.laws = file.get_vector();
     return stored;
 }
 
@@ -43,6 +45,7 @@ void write_state(const std::string& path, const beam::Mesh<typename M::Beam>& me
     for (int k = 0; k < 3; ++k) file.put(Vector(Vector::Zero(stored.state.size())));
     file.put(EnergyBalance{});
     put_memory(file, stored.records, stored.zones);
+    file.put(stored.laws);
     file.write(path);
 }
 

@@ -117,6 +117,7 @@ public:
         bool mixed = parameters_.mixed;
         Index growing = 0;
         const Forgotten learned{equilibrium.learned()};
+        if constexpr (iterated) equilibrium.reset_stresses(state);
         report.residual = evaluate(state);
         for (Index iteration = 0; iteration < parameters_.newton_limit; ++iteration) {
             equilibrium.prescribed_step(state, prescribed_);
@@ -135,22 +136,22 @@ public:
             const assembly::ResidualFigures before = report.residual;
             before_ = state;
             state += step_;
-            report.residual = evaluate(state);
+            report.residual = arrive(state, mixed);
             // Where a cell of a solid is turned inside out there are no forces.
             for (int cut = 0; cut < with::most_inversion_cuts && !std::isfinite(report.residual.residual) && step_.allFinite(); ++cut) {
                 step_ *= with::inversion_cut, scale *= with::inversion_cut;
                 state = before_ + step_;
-                report.residual = evaluate(state);
+                report.residual = arrive(state, mixed);
             }
-            if (watched) scale *= shorten(scale * slope, state, report.residual);
-            if (mixed) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
+            if (watched) scale *= shorten(scale * slope, state, report.residual, mixed);
+            if (mixed && !iterated) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
             ++report.iterations, ++counts.newton;
             report.step = equilibrium.greatest(step_);
             if (!std::isfinite(report.residual.residual) || !std::isfinite(report.step)) {
                 report.status = NewtonStatus::diverged;
                 return report;
             }
-            if (!mixed) equilibrium.reset_stresses(state);
+            if (!mixed && !iterated) equilibrium.reset_stresses(state);
             const double ratio = before.residual > 0.0 ? report.residual.residual / before.residual : 0.0;
             // A tenth of what the residual may have left is as good as nothing.
             const double enough = with::enough_of_residual * residual_tolerance(tolerance) / std::max(report.residual.relative(), residual_tolerance(tolerance));
@@ -167,7 +168,10 @@ public:
             // The mixed iteration may start with a large residual, so only a lasting growth counts.
             if (iteration >= with::settling && report.residual.residual > worst) ++growing;
             worst = iteration < with::settling ? std::max(worst, report.residual.residual) : worst;
-            if (growing >= with::growing_mixed && mixed) mixed = false, growing = 0, equilibrium.reset_stresses(state);
+            if (growing >= with::growing_mixed && mixed) {
+                mixed = false, growing = 0, equilibrium.reset_stresses(state);
+                if constexpr (iterated) report.residual = evaluate(state);
+            }
             if (growing >= with::growing_plain && !watched) {  // else the energy falls
                 report.status = NewtonStatus::diverged;
                 return report;
@@ -180,6 +184,8 @@ public:
     const Vector& last_step() const noexcept { return step_; }
 
 private:
+    /// Its forces are those of strains that the step predicts.
+    static constexpr bool iterated = requires { requires Equilibrium::iterated_strains; };
     struct Forgotten {  // when the contacts change, at the latest
         contact::LearnedContacts& all;
         ~Forgotten() { all.clear(); }
@@ -194,12 +200,19 @@ private:
                clock_->time(core::Part::assembly, [&] { return equilibrium_->residual(state, residual_); });
     }
 
+    /// After step_ from before_. Forces of laws that bend over are those of the strains of the iteration, which come first.
+    assembly::ResidualFigures arrive(const Vector& state, [[maybe_unused]] bool mixed) {
+        if constexpr (iterated)
+            clock_->time(core::Part::assembly, [&] { mixed ? equilibrium_->predict_stresses(before_, step_) : equilibrium_->reset_stresses(state); });
+        return evaluate(state);
+    }
+
     /// Shortens a step beyond whose end the energy rises steeply: contacts that close or let go within it, one after the other,
     /// would send Newton's method to and fro for ever. With normals and bounds of friction that stand the energy is convex, and the
     /// place where it rises is found between. What contacts were beyond it goes into the next tangent.
     /// @param slope  of the energy along the step, at its start [force * length]
     /// @returns the part of the step that is left
-    double shorten(double slope, Vector& state, assembly::ResidualFigures& figures) {
+    double shorten(double slope, Vector& state, assembly::ResidualFigures& figures, bool mixed) {
         namespace with = newton_numbers;
         double part = 1.0;
         for (int trial = 0; trial < with::most_shortenings && slope < 0.0 && std::isfinite(figures.residual); ++trial) {
@@ -209,7 +222,7 @@ private:
             const double factor = std::clamp(slope / (slope - end), with::least_shortening, with::most_shortening);
             step_ *= factor, part *= factor, slope *= factor;
             state = before_ + step_;
-            figures = evaluate(state);
+            figures = arrive(state, mixed);
         }
         return part;
     }

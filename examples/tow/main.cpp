@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Fibres of a tow, one above the other, are pressed between two plates: carbon is fifteen times as soft across as along, so that sections
+// flatten where isotropic ones would not. Prints the load a unit of length, and that of the closed form.
+//   tow SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
+#include "../support/example.hpp"
+#include "../support/usual_keys.hpp"
+
+#include <fibrant/beam/with_law.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
+#include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/material/elastic.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/simulation/simulator.hpp>
+#include <fibrant/solver/float_block_cholesky.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+using namespace fibrant;
+
+struct Tow {
+    using Beam = beam::With<beam::DirectorBeam<>, material::Elastic>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::RegularisedPenalty;
+    using Friction = law::RegularisedCoulomb;
+    using Solver = solver::FloatBlockCholesky;
+    using Tools = contact::RigidTools;
+};
+
+/// Along z, one above the other; plates below (tool 0) and above (tool 1), which comes down by `depth` on the channel "press".
+scene::Assembly stacked(Index fibres, double radius, double length, Index elements, const scene::ElasticMaterial& material, double depth) {
+    scene::Assembly assembly;
+    for (Index f = 0; f < fibres; ++f) {
+        const double height = 2.0 * radius * static_cast<double>(f);
+        assembly.add({.from = {0, height, 0}, .to = {0, height, length}, .section = scene::circular(radius), .material = material, .elements = elements, .director = Vec3::UnitX()});
+        // Ends stay above each other and do not turn; up and down they go where contacts push them.
+        for (const double end : {0.0, 1.0}) assembly.hold_position({f, end}, Vec3(1, 0, 1).asDiagonal()), assembly.hold_rotation({f, end});
+    }
+    scene::Tool below, above;
+    below.origin = {0, -radius, 0}, below.axis = Vec3::UnitY(), below.channel = "press";
+    above.origin = {0, (2.0 * static_cast<double>(fibres) - 1.0) * radius, 0}, above.axis = -Vec3::UnitY(), above.channel = "press";
+    above.displacement = {0, -depth, 0};
+    assembly.add(below), assembly.add(above);
+    return assembly;
+}
+
+bool solve(example::SceneReader& file, example::Output& output) {
+    Index fibres = 4, elements = 2, increments = 5;
+    double radius = core::unset, length = core::unset, compression = 0.02, mu = 0.2, depth = 1e-3;
+    scene::ElasticMaterial material;
+    std::string kind = "isotropic";
+    file.read("tow", "fibres", fibres, example::between(1, 1000), "one above the other");
+    file.require("tow", "radius", radius, example::positive(), "length", "of a fibre");
+    file.require("tow", "length", length, example::positive(), "length", "of the fibres");
+    file.read("tow", "elements", elements, example::between(1, 10000), "along a fibre");
+    file.require("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2", "of the material, along the fibres");
+    file.require("material", "poisson_ratio", material.poisson_ratio, example::inside(-10.0, 10.0), "1", "contraction across under tension along");
+    example::read_transverse(file, "material", kind, material.transverse);
+    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "of fibres on each other and on the plates");
+    file.read("contact", "allowed_penetration_over_radius", depth, example::depth_over_radius(), "1", "to which the penalty is adapted");
+    file.read("loading", "compression", compression, example::inside(0.0, 0.2), "1", "of the height, at the end");
+    file.read("loading", "increments", increments, example::increments(), "of the pressing");
+    file.complete();
+    example::check_transverse(file, "material", kind);
+    file.names({{"ElasticMaterial.poisson_ratio", "material.poisson_ratio"}});
+    material.validate();
+    example::require_element(file, "tow", elements, length, radius);
+    example::require_room(file, "tow", "fibres", example::unknowns_of(fibres, elements), 6000.0);
+
+    simulation::ModelParameters<Tow> model;
+    model.normal.regularisation_depth = 0.5 * depth * radius;
+    model.friction = {.friction_coefficient = mu, .reversible_displacement = 0.02 * radius};
+    model.contact.stiffness.allowed_penetration = depth * radius;
+    model.contact.stiffness.cap_fraction = 1e3;  // so stiff that what gives way is the sections
+    simulation::Simulator<Tow> simulator(stacked(fibres, radius, length, elements, material, compression * 2.0 * radius * static_cast<double>(fibres)), model);
+    output.open(file);
+    const auto line_load = [&] { return simulator.contacts().tools().reaction(1).force.y() / length; };
+    // q 2 r = A S_22 for opposite line loads on a section that stays an ellipse.
+    const auto closed = [&](double progress) { return 0.5 * std::numbers::pi * material.section_modulus() * radius * compression * progress; };
+    example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
+        const double progress = simulator.amplitude("press");
+        return {{"compression", compression * progress}, {"line_load", line_load()}, {"line_load_of_sections", closed(progress)}};
+    });
+    simulation::Loading<Tow> loading;
+    simulation::Stage<Tow> stage;
+    stage.name = "press", stage.increments = increments, stage.most_increments = 20 * increments, stage.ramps = {{"press", 1.0}};
+    // What nothing touches yet is held by its own section's stiffness, a thousandth of it.
+    stage.damping = 1e-3 * material.section_modulus() * length / static_cast<double>(elements), stage.damping_decay = 0.1;
+    loading.stages = {stage};
+    output.tell(loading);
+    const simulation::Report report = simulator.run(loading, recorder);
+    example::write_pictures(output, simulator.snapshot(), -60.0, 25.0);
+    const simulation::Audit audit = example::audit(output, simulator, radius);
+    example::write_summary(output, report, audit, radius, {{"line_load", line_load()}, {"line_load_of_sections", closed(1.0)}, {"section_modulus", material.section_modulus()}, {"energy_error", report.energy.error()}, {"external_work", report.energy.external}});
+    return report.converged && audit.clean();
+}
+
+int main(int argc, char** argv) {
+    return example::run(argc, argv, "tow", "Presses a stack of fibres that are softer across than along.", solve);
+}
