@@ -148,7 +148,7 @@ TEST_CASE("a textile that was written and read again has the same paths and cros
     std::vector<Vec3> noisy;
     double before = 0.0, after = 0.0;
     for (Index k = 0; k <= 200; ++k)
-        noisy.emplace_back(0.05 * static_cast<double>(k), 0.0025 * ((k * 7919) % 101 / 50.0 - 1.0), 0.0);
+        noisy.emplace_back(0.05 * static_cast<double>(k), 0.0025 * (static_cast<double>((k * 7919) % 101) / 50.0 - 1.0), 0.0);
     const std::vector<Vec3> smooth = smoothed(noisy, 4.0, false);
     for (std::size_t k = 0; k < noisy.size(); ++k) before += noisy[k].y() * noisy[k].y(), after += smooth[k].y() * smooth[k].y();
     CHECK(after < before / 9.0);
