@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file All contact elements of a mesh, through the three loops: detected, turned to new normals, evaluated, accepted.
+/// @file All contact elements of a mesh, through the three loops.
 
 #include <fibrant/contact/contact_detection.hpp>
 #include <fibrant/contact/contact_element.hpp>
@@ -123,7 +123,7 @@ public:
         });
     }
 
-    /// Fibres along each other as they stood in another state, not slid around each other yet; `turn_forth` takes back what it returns.
+    /// Fibres along each other as they stood in another state; `turn_forth` takes back what it returns.
     auto turn_back(const Vector& start) {
         std::vector<std::pair<Vec3, MeetingPoint<B>>> present;
         for (const Element& element : elements_) present.emplace_back(element.normal, element.meeting);
@@ -165,7 +165,7 @@ public:
     /// Crossings whose places and normals are those of the moment.
     FollowedPlaces<B>& places() noexcept { return places_; }
     const FollowedPlaces<B>& places() const noexcept { return places_; }
-    /// Element k is one: its normal force acts on patches, and has a stiffness of its own beside what its particles have.
+    /// Element k is one: its normal force acts on patches, and has a stiffness of its own.
     bool slides(Index k) const noexcept { return elements_[core::at(k)].place >= 0; }
     SlidingStiffness sliding(Index k, bool positive) const {
         const ContactResponse& response = responses_[core::at(k)];
