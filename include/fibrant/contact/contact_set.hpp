@@ -151,7 +151,7 @@ public:
         if constexpr (core::Active<Friction>) return elements_[core::at(k)].friction.bound > 0.0;
         return false;
     }
-    /// Stiffness of element k between its particles, symmetric and positive semidefinite, as its friction bound stands [force / length].
+    /// Stiffness of element k between particles, symmetric and positive semidefinite, as its friction bound stands [force / length].
     Mat3 tangent(Index k) const noexcept {
         const Vec3& normal = elements_[core::at(k)].normal;
         Mat3 sum = -responses_[core::at(k)].slope * normal * normal.transpose();
@@ -182,7 +182,7 @@ public:
 
     /// Friction is bounded by the reactions of the moment.
     bool follows() const noexcept { return core::Active<Friction> && parameters_.friction_bound == FrictionBound::following; }
-    /// What `tangent` leaves out where the bound follows: slope of element k's friction force by its gap [force / length].
+    /// What `tangent` leaves out if the bound follows: slope of element k's friction force by its gap [force / length].
     Vec3 friction_by_gap(Index k) const noexcept {
         const ContactResponse& response = responses_[core::at(k)];
         if constexpr (core::Active<Friction>)
