@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Leaps: an equilibrium ends, and the next one is far.
-#include <contact/contact_model.hpp>
+#include "simulation/scenes.hpp"
 
 #include <doctest/doctest.h>
 
@@ -38,6 +38,7 @@ struct Twisted {
     }
     simulation::Loading<Smooth> loading() const {
         simulation::Loading<Smooth> loading;
+        loading.calmed = true;
         loading.stages.push_back({.name = "turn", .increments = 30, .ramps = {{"turn", 1.0}}, .damping = damping});
         loading.stages.push_back({.name = "slack", .increments = 30, .ramps = {{"slack", 1.0}}, .damping = damping});
         if (damping > 0.0) {

@@ -533,7 +533,7 @@ TEST_CASE("a run that does not converge reports why, with figures, and keeps the
     parameters.iteration.newton_limit = 1;
     Simulator<Smooth> simulator(rod.pushed(5.0), parameters);
     Report report;
-    CHECK_NOTHROW(report = simulator.run({.increments = 2, .calmed = false}));
+    CHECK_NOTHROW(report = simulator.run({.increments = 2}));
     CHECK(!report.converged);
     CHECK(report.increments.empty());
     CHECK(report.rejected_increments == 9);  // fractions 1, 1/2 ... 1/256

@@ -38,6 +38,8 @@ struct Bounded {
     const System& system() const { return own; }
     const Mesh& mesh() const { return fibres; }
     void close_chains(Vector&) const {}
+    void evaluate(const Vector&) const {}
+    double largest_part(const Vector&, double, double part) const { return part; }
     void prescribed_step(const Vector& x, Vector& step) const {
         step = Vector::Zero(x.size());
         if (x.size() > 3) step[3] = 1.0 - x[3];

@@ -87,7 +87,7 @@ struct Loading {
     double smallest_fraction = 1.0 / 256.0;  ///< of an increment, below which the run stops
     double growth = 1.5;                     ///< of the fraction after two increments without a cut
     Index most_rejected = 200;               ///< attempts in a whole run
-    bool calmed = true;                      ///< stages without damping follow leaps by springs that they take away again (`Calming`)
+    bool calmed = false;                     ///< stages without damping follow leaps by springs that they take away again (`Calming`)
     std::string checkpoint{};                ///< file written after accepted increments; empty: none
     double checkpoint_seconds = 0.0;         ///< at least between two of them, but for the end of a stage or of the run, >= 0
     bool resume = false;                     ///< start from that file, if it exists
