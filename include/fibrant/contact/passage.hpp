@@ -70,12 +70,11 @@ struct Swept {
         /// @param from, to        states
         /// @param forced          pairs in a forced order are pushed along its axis
         /// @param tools_moved     tools go from where they were accepted to where they are, instead of standing there
-        /// @param deep            pairs that were apart and are deep in each other count as well: no contact element has seen them meet
         template <class Contacts>
-        std::optional<PassedPair> first(const Vector& from, const Vector& to, const Contacts& contacts, bool forced, bool tools_moved, bool deep = false) const {
+        std::optional<PassedPair> first(const Vector& from, const Vector& to, const Contacts& contacts, bool forced, bool tools_moved) const {
             if (!from.allFinite() || !to.allFinite()) return {};
             const Lines lines(*mesh_, from, to);
-            std::vector<PassedPair> passed = between_fibres(lines, contacts, forced, deep ? deep_share : share);
+            std::vector<PassedPair> passed = between_fibres(lines, contacts, forced);
             if constexpr (requires { contacts.tools(); }) {
                 const std::vector<PassedPair> through = through_tools(lines, contacts.tools(), tools_moved);
                 passed.insert(passed.end(), through.begin(), through.end());
@@ -90,7 +89,6 @@ struct Swept {
 
     private:
         static constexpr double share = 0.5;     // of the distance that two should keep
-        static constexpr double deep_share = 0.75, apart = 0.95;  // of it: deeper than one that is pressed, nearer than one that is not
         static constexpr double meeting = 0.02;  // of the half widths: centrelines meet
         static constexpr double nothing = 1e-3;  // of the half widths: closer than that at the start or the end, and there is no side
         static constexpr double chord_bound = 0.1;  // deviation of the curve from its segments, over the smaller half width
@@ -156,10 +154,10 @@ struct Swept {
         }
 
         template <class Contacts>
-        std::vector<PassedPair> between_fibres(const Lines& lines, const Contacts& contacts, bool forced, double reach) const {
+        std::vector<PassedPair> between_fibres(const Lines& lines, const Contacts& contacts, bool forced) const {
             if (mesh_->fibre_count() < 2 && !self_) return {};
             std::vector<double> margins(lines.segments.size());
-            for (std::size_t k = 0; k < margins.size(); ++k) margins[k] = reach * lines.half[core::at(lines.fibre[k])];
+            for (std::size_t k = 0; k < margins.size(); ++k) margins[k] = share * lines.half[core::at(lines.fibre[k])];
             proximity::MovingTree tree(lines.segments, margins);
             std::vector<std::vector<PassedPair>> found(core::at(tree.make_tasks()));
             const std::vector<std::pair<std::int32_t, std::int32_t>> parting = pairs_that_part(contacts);
@@ -169,12 +167,11 @@ struct Swept {
                 const proximity::MovingSegment &a = lines.segments[core::at(k)], &b = lines.segments[core::at(l)];
                 const double widths = lines.half[core::at(i)] + lines.half[core::at(j)], motion = proximity::relative_motion(a, b);
                 const double before = std::sqrt(proximity::segment_distance(a, b, 0.0).squared);
-                if (before - reach * widths >= motion) return;
+                if (before - share * widths >= motion) return;
                 const double after = std::sqrt(proximity::segment_distance(a, b, 1.0).squared);
                 const double least = std::min({widths, before, after});
                 if (least < nothing * widths) return;
-                const bool sunk = reach > share && before > apart * widths && after < reach * widths;
-                const double near = sunk ? reach * widths : share * least, touching = mesh_->fibre(i).section.radius() + mesh_->fibre(j).section.radius();
+                const double near = share * least, touching = mesh_->fibre(i).section.radius() + mesh_->fibre(j).section.radius();
                 const auto at_ends = [&](double s, double t) { return !lines.inside(k, s, touching) || !lines.inside(l, t, touching); };
                 const proximity::Approach at = proximity::first_approach(a, b, near, std::min(near, meeting * widths), at_ends);
                 if (!at.close) return;

@@ -164,7 +164,7 @@ private:
     void step_back(Vector& state, const Vector& searched, bool forced) {
         if constexpr (core::Active<Passage>) {
             if (!contact_possible_) return;
-            const auto passed = clock_->time(core::Part::search, [&] { return passage_->first(searched, state, *contacts_, forced, false, true); });
+            const auto passed = clock_->time(core::Part::search, [&] { return passage_->first(searched, state, *contacts_, forced, false); });
             if (!passed) return;
             state = searched + passed->touch * (state - searched);
             equilibrium_->reset_stresses(state);
