@@ -126,7 +126,7 @@ struct Position {
     bool sound(Index stages) const {
         const auto finite = [](double value) { return std::isfinite(value) && value >= 0.0; };
         return stage >= 0 && stage <= stages && in_stage >= 0 && accepted >= 0 && finite(progress) && fraction > 0.0 &&
-               fraction <= 1.0 && finite(displacement) && finite(damping) && finite(damping_floor) && finite(calming.springs) && finite(calming.held) && finite(calming.failed) &&
+               fraction <= 1.0 && finite(displacement) && finite(damping) && finite(damping_floor) && calming.sound() && mends >= 0 && mended >= 0.0 &&
                std::all_of(holding.begin(), holding.end(), finite);
     }
 
@@ -152,7 +152,8 @@ private:
     template <class Self, class Body>
     static void each_of(Self& self, const Body& body) {
         body(self.stage), body(self.in_stage), body(self.accepted), body(self.easy);
-        body(self.progress), body(self.fraction), body(self.displacement), body(self.mends), body(self.mended), body(self.calming);
+        body(self.progress), body(self.fraction), body(self.displacement), body(self.mends), body(self.mended);
+        Calming::each_of(self.calming, body);
         body(self.damping), body(self.damping_floor), body(self.stage_over), body(self.following), body(self.tried.first), body(self.tried.second);
         for (auto& amplitude : self.from) body(amplitude);
         for (auto& factor : self.holding) body(factor);

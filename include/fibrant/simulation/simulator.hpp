@@ -199,7 +199,8 @@ private:
         }
         increment.contact = contacts_.figures(state_);
         position_.displacement = increment.displacement;
-        position_.calming.soften_after(increment.unstable, increment.displacement / radius_, Calming::softest(mesh_));
+        if (!position_.calming.active()) position_.calming.none_taken();
+        else position_.calming.soften_after(increment.unstable, increment.displacement / radius_, Calming::softest(mesh_));
         ++position_.accepted, position_.in_stage += position_.calming.resting ? 0 : 1;
         if (increment.cuts == 0 && ++position_.easy >= 2 && position_.fraction < 1.0)
             position_.fraction = std::min(1.0, loading.growth * position_.fraction), position_.easy = 0;

@@ -222,13 +222,15 @@ private:
         return true;
     }
 
-    /// Multiple of the last travel after which a geometric series of passes would end, bounded; 0 if there is none. One that grows or swings to and
-    /// fro has its end behind it (Aitken 1926): a loop that can turn freely about its ends is pushed by each normal that turns with it.
+    /// Multiple of the last travel after which a geometric series of passes would end, bounded; 0 if there is none. One that grows or
+    /// swings to and fro has its end behind it (Aitken 1926): a loop that can turn freely about its ends is pushed by each normal that
+    /// turns with it.
     double extrapolation(const Vector& travel, const Vector& last_travel, double change) const {
         if (travel.size() == 0 || last_travel.size() == 0) return 0.0;
-        const double along = equilibrium_->product(travel, last_travel), last = equilibrium_->product(last_travel, last_travel), ratio = along / last;
-        const bool parallel = along * along > same_way * same_way * last * equilibrium_->product(travel, travel);
-        if (parallel && (ratio > growing || ratio < -swinging)) return std::max(ratio / (1.0 - ratio), -0.25 * radius_ / change);
+        const double along = equilibrium_->product(travel, last_travel), last = equilibrium_->product(last_travel, last_travel);
+        const double ratio = along / last;
+        if ((ratio > growing || ratio < -swinging) && along * along > same_way * same_way * last * equilibrium_->product(travel, travel))
+            return std::max(ratio / (1.0 - ratio), -0.25 * radius_ / change);
         if (!(ratio > 0.4)) return 0.0;
         const double series = ratio < 0.8 ? ratio / (1.0 - ratio) : 4.0;
         return std::min(series, 0.25 * radius_ / change);
