@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Files of curves: written and read again they are the same; what is wrong in them is refused by its place.
+#include <near.hpp>
 #include "../refusal.hpp"
 
 #include <fibrant/exchange/binary_curves.hpp>
@@ -154,8 +155,7 @@ TEST_CASE("surfaces of fibres are closed, look outwards, and hold the volume of 
         const std::size_t n = curve.points.size();
         for (std::size_t k = 0; k + (curve.closed ? 0 : 1) < n; ++k)
             length += (curve.points[(k + 1) % n] - curve.points[k]).norm();
-        CHECK(surface.volume() == doctest::Approx(pi * curve.radius * curve.radius * length)
-                                      .epsilon(curve.closed ? 0.02 : 1e-12));  // chords of a ring of 24
+        CHECK(surface.volume() == test::near(pi * curve.radius * curve.radius * length, curve.closed ? 0.02 : 1e-12));  // chords of a ring of 24
         // Each edge belongs to two triangles that go along it in opposite ways.
         std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
         for (const auto& t : surface.triangles)
@@ -194,7 +194,7 @@ TEST_CASE("voxels hold the volume of fibres to a thousandth at half a radius, an
         CHECK(std::abs(static_cast<double>(fine.orientation[k][0] + fine.orientation[k][1] + fine.orientation[k][2]) - 1.0) <
               1e-6);  // single precision
     }
-    CHECK(sum * std::pow(0.05, 3) == doctest::Approx(fine.volume).epsilon(1e-6));
+    CHECK(sum * std::pow(0.05, 3) == test::near(fine.volume, 1e-6));
     // A ring: tr A = 1, and as much along x as along y.
     FileCurve ring;
     for (Index k = 0; k < 400; ++k)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Loads as terms: their contract, and one closed form each.
+#include <near.hpp>
 #include <term/term_contract.hpp>
 
 #include <fibrant/beam/director_beam.hpp>
@@ -105,13 +106,13 @@ TEST_CASE("a fibre that hangs in a stream lies along weight and drag, and stretc
     const Vec3 q = weight + drag, end = simulator.value(scene::last_end(0)) - simulator.value(scene::first_end(0));
     // Green-Lagrange strains and bending at the support differ from the formula by the square of the strain, 2.5e-3.
     CHECK(end.normalized().cross(q.normalized()).norm() < 1e-3);
-    CHECK(end.norm() - length == doctest::Approx(q.norm() * length * length / (2.0 * stiffness)).epsilon(1e-2));
+    CHECK(end.norm() - length == test::near(q.norm() * length * length / (2.0 * stiffness), 1e-2));
     CHECK((simulator.reaction(scene::first_end(0)) + length * q).norm() < 1e-3 * q.norm() * length);
     // What the weight does while it grows is stored: w^2 L^3 / (6 E A). Strains of 4e-3 are not small to their first order.
     const simulation::EnergyBalance& energy = report.increments[1].energy;
     const double stored = weight.squaredNorm() * length * length * length / (6.0 * stiffness);
-    CHECK(energy.elastic == doctest::Approx(stored).epsilon(1e-2));
-    CHECK(energy.external == doctest::Approx(stored).epsilon(1e-2));
+    CHECK(energy.elastic == test::near(stored, 1e-2));
+    CHECK(energy.external == test::near(stored, 1e-2));
 }
 
 TEST_CASE("loads that nothing carries are refused by name") {

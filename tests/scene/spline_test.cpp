@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Curves through points and beside paths: order of their error, continuity, closure, lengths in closed form.
+#include <near.hpp>
 #include "../refusal.hpp"
 
 #include <fibrant/scene/spline.hpp>
@@ -32,7 +33,7 @@ TEST_CASE(
         const Spline spline(on_circle(n), SplineEnds::repeating);
         double off = 0.0;
         for (Index k = 0; k < 500; ++k) off = std::max(off, std::abs(spline(static_cast<double>(k) / 500.0).norm() - 1.0));
-        if (before > 0.0) CHECK(before / off == doctest::Approx(16.0).epsilon(0.2));
+        if (before > 0.0) CHECK(before / off == test::near(16.0, 0.2));
         before = off;
         CHECK((spline.derivative(0.0) - spline.derivative(1.0)).norm() < 1e-12);
         CHECK((spline.second(0.0) - spline.second(1.0)).norm() < 1e-10);
@@ -73,16 +74,16 @@ TEST_CASE("a spline that repeats with a shift goes on as it began") {
 
 TEST_CASE("the length of a circle is 2 pi R, and of a helix beside a line sqrt(1 + (2 pi a / H)^2) of its own") {
     const Curve circle = [](double t) { return Vec3(std::cos(2.0 * pi * t), std::sin(2.0 * pi * t), 0.0); };
-    CHECK(length_of(circle) == doctest::Approx(2.0 * pi).epsilon(1e-10));
+    CHECK(length_of(circle) == test::near(2.0 * pi, 1e-10));
     const Curve line = [](double t) { return Vec3(0.0, 0.0, 6.0 * t); };
     for (const double a : {0.1, 0.3}) {
         const Curve helix = beside(line, a, 0.0, 3.0, 200, Vec3::UnitX());
-        CHECK(length_of(helix) == doctest::Approx(6.0 * std::hypot(1.0, 2.0 * pi * a * 3.0 / 6.0)).epsilon(1e-5));
+        CHECK(length_of(helix) == test::near(6.0 * std::hypot(1.0, 2.0 * pi * a * 3.0 / 6.0), 1e-5));
         CHECK((helix(0.0) - Vec3(a, 0, 0)).norm() < 1e-12);
     }
     // Sections that do not twist: beside a circle at a distance in its plane lies a circle.
     const Curve outside = beside(circle, 0.2, 0.0, 0.0, 200, Vec3::UnitX(), SplineEnds::repeating);
-    CHECK(length_of(outside) == doctest::Approx(2.0 * pi * 1.2).epsilon(1e-6));
+    CHECK(length_of(outside) == test::near(2.0 * pi * 1.2, 1e-6));
     CHECK((outside(0.0) - outside(1.0)).norm() < 1e-12);
 }
 

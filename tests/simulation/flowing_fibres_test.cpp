@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Laws of sections in whole runs: what a fibre does with them, what it remembers, and that its energy is all there.
-#include "simulation/scenes.hpp"
+#include <near.hpp>
+#include "simulation/lawful.hpp"
 #include <refusal.hpp>
 
 #include <fibrant/beam/with_law.hpp>
@@ -17,25 +18,11 @@ using namespace fibrant;
 
 namespace flowing_fibres_test {
 
+using test::Lawful;
+using test::lawful_parameters;
+using test::missing;
 using test::refusal;
 using test::Rod;
-
-template <class Material>
-struct Lawful {
-    using Beam = beam::With<beam::DirectorBeam<3>, Material>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::Frictionless;
-    using Solver = solver::SparseCholesky;
-};
-template <class M>
-simulation::ModelParameters<M> parameters_of(double radius, std::vector<typename M::Beam::Material::Parameters> laws) {
-    auto parameters = test::tight_parameters<M>(radius);
-    parameters.beam.laws = std::move(laws);
-    return parameters;
-}
-/// The error of the energy balance over the work done.
-double missing(const simulation::Report& report) { return std::abs(report.energy.error()) / std::max(std::abs(report.energy.external), report.energy.elastic); }
 
 TEST_CASE("a wire that is bent beyond yield springs back to what its section keeps, also from a checkpoint and on a finer mesh") {
     using M = Lawful<material::Wire>;
@@ -44,7 +31,7 @@ TEST_CASE("a wire that is bent beyond yield springs back to what its section kee
     const double sy = 7.3, first = sy / (rod.young * rod.radius), kappa = 3.0 * first;
     scene::Assembly turned = rod.clamped();
     turned.hold_rotation(scene::last_end(0), Vec3(0, kappa * rod.length, 0), "turn");
-    const auto parameters = parameters_of<M>(rod.radius, {{.yield_stress = sy}});
+    const auto parameters = lawful_parameters<M>(rod.radius, {{.yield_stress = sy}});
     simulation::Simulator<M> simulator(turned, parameters);
     simulation::Loading<M> loading;
     loading.stages.push_back({.name = "bend", .increments = 5, .ramps = {{"turn", 1.0}}});
@@ -66,14 +53,14 @@ TEST_CASE("a wire that is bent beyond yield springs back to what its section kee
         return std::atan2(-g1.z(), g1.x()) / (kappa * rod.length);
     };
     const double own = left(rod.clamped(), [&](auto& released) { released.start_from(file); });
-    CHECK(own == doctest::Approx(0.465023).epsilon(0.02));
+    CHECK(own == test::near(0.465023, 0.02));
     Rod fine_rod = rod;
     fine_rod.elements = 16;
     simulation::Simulator<M> coarse(rod.clamped(), parameters);
     simulation::Simulator<M> fine(fine_rod.clamped(), parameters);
     const auto refined = simulation::refined(simulation::read_state<M>(file, coarse.mesh()), coarse.mesh(), fine.mesh(), 2);
     simulation::write_state<M>(file, fine.mesh(), refined);
-    CHECK(left(fine_rod.clamped(), [&](auto& released) { released.start_from(file); }) == doctest::Approx(own).epsilon(0.04));  // it sees what the coarse mesh rounds off: (h kappa)^2 of stretch within an element
+    CHECK(left(fine_rod.clamped(), [&](auto& released) { released.start_from(file); }) == test::near(own, 0.04));  // it sees what the coarse mesh rounds off: (h kappa)^2 of stretch within an element
     std::filesystem::remove(file);
 }
 
@@ -83,7 +70,7 @@ TEST_CASE("a fibre that is held relaxes as its material does, and a law with a r
     rod.elements = 4;
     scene::Assembly assembly = rod.clamped();
     assembly.prescribe(scene::last_end(0), Vec3(0.2 * rod.length, 0, -0.05 * rod.length), "pull");
-    simulation::Simulator<M> simulator(assembly, parameters_of<M>(rod.radius, {{.share = {0.3, 0.2}, .time = {1.0, 10.0}}}));
+    simulation::Simulator<M> simulator(assembly, lawful_parameters<M>(rod.radius, {{.share = {0.3, 0.2}, .time = {1.0, 10.0}}}));
     simulation::Loading<M> loading;
     loading.stages.push_back({.name = "pull", .increments = 4, .ramps = {{"pull", 1.0}}});
     CHECK(refusal([&] { simulator.run(loading); }).find("Stage.duration of stage pull = 0") != std::string::npos);
@@ -96,7 +83,7 @@ TEST_CASE("a fibre that is held relaxes as its material does, and a law with a r
     report = simulator.run(loading);
     REQUIRE_MESSAGE(report.converged, report.reason);
     CHECK(report.increments.size() == 2);
-    CHECK(simulator.reaction(scene::last_end(0)).norm() / before == doctest::Approx(0.573590).epsilon(1e-6));
+    CHECK(simulator.reaction(scene::last_end(0)).norm() / before == test::near(0.573590, 1e-6));
     CHECK(std::abs(report.energy.error() - missing_before) < 1e-9 * report.energy.lost);
     CHECK(report.energy.lost > 0.0);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Laws of sections in whole runs: what a fibre does with them, what it remembers, and that its energy is all there.
-#include "simulation/scenes.hpp"
+#include <near.hpp>
+#include "simulation/lawful.hpp"
 #include <refusal.hpp>
 
 #include <fibrant/beam/with_law.hpp>
@@ -15,26 +16,12 @@ using namespace fibrant;
 
 namespace section_laws_test {
 
+using test::Lawful;
+using test::lawful_parameters;
+using test::missing;
 using test::refusal;
 using test::Rod;
 const double pi = std::numbers::pi;
-
-template <class Material>
-struct Lawful {
-    using Beam = beam::With<beam::DirectorBeam<3>, Material>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::Frictionless;
-    using Solver = solver::SparseCholesky;
-};
-template <class M>
-simulation::ModelParameters<M> parameters_of(double radius, std::vector<typename M::Beam::Material::Parameters> laws) {
-    auto parameters = test::tight_parameters<M>(radius);
-    parameters.beam.laws = std::move(laws);
-    return parameters;
-}
-/// The error of the energy balance over the work done.
-double missing(const simulation::Report& report) { return std::abs(report.energy.error()) / std::max(std::abs(report.energy.external), report.energy.elastic); }
 
 using Breaking = Lawful<material::Eigenstrain<material::Brittle>>;
 const material::Brittle::Parameters endless{.strength = 1e30, .modulus = 5.0, .reference_length = 1.0};
@@ -50,7 +37,7 @@ TEST_CASE("curvature, twist, length and width that are set in bend a free fibre 
         scene::Assembly assembly;
         assembly.clamp(scene::first_end(assembly.add(fibre)));
         const double kappa = 2.0 / rod.length;
-        simulation::Simulator<M> simulator(assembly, parameters_of<M>(rod.radius, {{.base = endless, .along = 0.01, .across = -0.004, .curvature_1 = kappa}}));
+        simulation::Simulator<M> simulator(assembly, lawful_parameters<M>(rod.radius, {{.base = endless, .along = 0.01, .across = -0.004, .curvature_1 = kappa}}));
         const simulation::Report report = simulator.run({.increments = 4});
         REQUIRE_MESSAGE(report.converged, report.reason);
         // The clamp holds no stretch of the section, but a circle of the elongated fibre: its curvature is a rotation a unit of rest length.
@@ -71,13 +58,13 @@ TEST_CASE("curvature, twist, length and width that are set in bend a free fibre 
     assembly.add(fibre);
     assembly.clamp(scene::first_end(0)), assembly.clamp(scene::last_end(0));
     const double rise = 0.5 * std::pow(pi * rod.radius / rod.length, 2);  // half of what buckles it
-    simulation::Simulator<M> simulator(assembly, parameters_of<M>(rod.radius, {{.base = endless, .along = rise, .across = rise}}));
+    simulation::Simulator<M> simulator(assembly, lawful_parameters<M>(rod.radius, {{.base = endless, .along = rise, .across = rise}}));
     const simulation::Report report = simulator.run({.increments = 3});
     REQUIRE_MESSAGE(report.converged, report.reason);
     const double EA = rod.young * pi * rod.radius * rod.radius;
-    CHECK(simulator.reaction(scene::last_end(0)).z() / (-EA * (rise + 0.5 * rise * rise)) == doctest::Approx(1.0).epsilon(1e-6));
+    CHECK(simulator.reaction(scene::last_end(0)).z() / (-EA * (rise + 0.5 * rise * rise)) == test::near(1.0, 1e-6));
     CHECK(missing(report) < 1e-9);
-    CHECK(report.energy.elastic / (0.5 * EA * rise * rise * rod.length) == doctest::Approx(1.0).epsilon(1e-3));
+    CHECK(report.energy.elastic / (0.5 * EA * rise * rise * rod.length) == test::near(1.0, 1e-3));
     // A channel for a beam without a law is refused by name.
     CHECK(refusal([&] { simulation::Simulator<test::Smooth>(assembly, test::tight_parameters<test::Smooth>(rod.radius)); }).find("law_channel = heat") != std::string::npos);
 }
@@ -95,7 +82,7 @@ TEST_CASE("fibres break one by one at the weakest of their points, and what they
         assembly.clamp(scene::last_end(k), Vec3(0, 0, 0.02 * rod.length), Vec3::Zero(), Vec3::Zero(), "pull");
     }
     const double EA = rod.young * pi * rod.radius * rod.radius;
-    const auto parameters = parameters_of<M>(rod.radius, {{.base = {.strength = 0.01 * rod.young, .modulus = 5.0, .reference_length = rod.length, .seed = 3}}});
+    const auto parameters = lawful_parameters<M>(rod.radius, {{.base = {.strength = 0.01 * rod.young, .modulus = 5.0, .reference_length = rod.length, .seed = 3}}});
     simulation::Simulator<M> simulator(assembly, parameters);
     // The strengths that the fibres drew, by the same lots.
     std::vector<double> breaks;

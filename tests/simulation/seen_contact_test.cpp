@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Laws of contact that see, in whole runs: lines of contact carry what their length says, however many elements they are cut into.
+#include <near.hpp>
 #include "simulation/scenes.hpp"
 
 #include <fibrant/beam/rigid_section_rod.hpp>
@@ -79,9 +80,9 @@ TEST_CASE("rods side by side carry what a line of their length does, in twice th
             const double line = K * std::pow(sink, m);
             std::printf("%s, %g points: N/N0 %.6f, T %.6f %.6f\n", sideways ? "across" : "along", points, -force.y() / (line * length), force.x(), force.z());
             // Slid by a hundredth of its length the line is shorter by that; slid aside, the normal leans by 0.01, and friction with it.
-            CHECK(-force.y() / (line * length) == doctest::Approx(sideways ? 1.0 : 0.99).epsilon(sideways ? 0.02 : 1e-4));
+            CHECK(-force.y() / (line * length) == test::near(sideways ? 1.0 : 0.99, sideways ? 0.02 : 1e-4));
             const double bound = (sideways ? across : a) * std::pow(line, n) * length;
-            CHECK((sideways ? force.x() : force.z()) / bound == doctest::Approx(sideways ? 1.0 : 0.99).epsilon(sideways ? 0.02 : 1e-3));
+            CHECK((sideways ? force.x() : force.z()) / bound == test::near(sideways ? 1.0 : 0.99, sideways ? 0.02 : 1e-3));
         }
 }
 
@@ -96,12 +97,12 @@ TEST_CASE("a crossing sinks by the power law, and the pair's ellipse turns the f
     REQUIRE_MESSAGE(report.converged, report.reason);
     const Vec3 force = force_on(simulator, upper, 4);
     const double N = 50.0 * std::pow(sink, 1.5);
-    CHECK(-force.y() / N == doctest::Approx(1.0).epsilon(1e-6));
+    CHECK(-force.y() / N == test::near(1.0, 1e-6));
     // M = mean of 0.15^2 and 0.3^2 along and across of both, slid along the first: M t / sqrt(t . M t).
     const double c = std::cos(angle), s = std::sin(angle), p = 0.0225, q = 0.09;
     const double along = 0.5 * (p + p * c * c + q * s * s), mixed = 0.5 * (p - q) * c * s;
-    CHECK(force.z() / (N * std::sqrt(along)) == doctest::Approx(1.0).epsilon(1e-6));
-    CHECK(force.x() / (N * mixed / std::sqrt(along)) == doctest::Approx(1.0).epsilon(1e-6));
+    CHECK(force.z() / (N * std::sqrt(along)) == test::near(1.0, 1e-6));
+    CHECK(force.x() / (N * mixed / std::sqrt(along)) == test::near(1.0, 1e-6));
 }
 
 }  // namespace seen_contact_test

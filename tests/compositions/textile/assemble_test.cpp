@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Scenes of textiles: fibres along paths, orders of yarns of several fibres; audits that see what was exchanged, lost or
 // unlinked.
+#include <near.hpp>
 #include "../../refusal.hpp"
 
 #include <fibrant/compositions/textile/audit.hpp>
@@ -53,7 +54,7 @@ TEST_CASE("fibres of a twisted yarn go round its path: outside ones are as long 
         const double length = scene::length_of(fibre.start), along = (fibre.to - fibre.from).norm();
         const double helix = 8.0 * std::hypot(1.0, 2.0 * pi * pitch * 0.5);
         CHECK(std::min(std::abs(length / 8.0 - 1.0), std::abs(length / helix - 1.0)) < 1e-4);
-        CHECK(along == doctest::Approx(length).epsilon(1e-4));  // straight at rest, of the length that is drawn
+        CHECK(along == test::near(length, 1e-4));  // straight at rest, of the length that is drawn
     }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Generators: crossings counted against closed forms, and who alternates how.
+#include <near.hpp>
 #include "../../refusal.hpp"
 
 #include <fibrant/compositions/textile/braids.hpp>
@@ -68,11 +69,11 @@ TEST_CASE("a tubular braid of n and n carriers has 2 n^2 crossings a turn, in ru
                 CHECK(core::count(word) == 2 * n);
                 CHECK(in_runs_of(word, static_cast<std::size_t>(over)));
             }
-            CHECK(parameters.angle() == doctest::Approx(std::numbers::pi / 4.0).epsilon(1e-12));
+            CHECK(parameters.angle() == test::near(std::numbers::pi / 4.0, 1e-12));
             // The mean of a carrier's slope over a whole turn is that of the helix: heights only go to and fro.
             const Path& path = braid.paths.front();
             const double rise = path.curve(1.0).z() - path.curve(0.0).z();
-            CHECK(std::tan(parameters.angle()) == doctest::Approx(2.0 * std::numbers::pi * radius / rise).epsilon(1e-12));
+            CHECK(std::tan(parameters.angle()) == test::near(2.0 * std::numbers::pi * radius / rise, 1e-12));
             CHECK(refusal([&] { require_holding(braid); }).empty());
         }
     CHECK(refusal([] {
@@ -280,7 +281,7 @@ TEST_CASE("plies lie on helices as long as their angle says, and do not touch") 
     const Textile yarn3 = plied(parameters);
     const double a = parameters.lay_radius(3, r, pitch);
     for (const Path& path : yarn3.paths)
-        CHECK(scene::length_of(path.curve) == doctest::Approx(length * helix_length_ratio(a, pitch)).epsilon(1e-4));
+        CHECK(scene::length_of(path.curve) == test::near(length * helix_length_ratio(a, pitch), 1e-4));
     double least = 1e9;
     for (Index k = 0; k <= 400; ++k)
         for (Index l = 0; l <= 400; ++l)
