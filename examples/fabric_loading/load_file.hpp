@@ -150,7 +150,7 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     programme.rest_share = std::isnan(rest_share) ? load.scene.settle.rest_share : rest_share;
     programme.rest_motion = rest_motion * r, programme.rest_penetration = 2.0 * allowed, programme.largest_displacement = largest * r;
     programme.calm = calm * r;
-    programme.reversible_displacement = std::max(0.02 * r, friction * allowed);
+    programme.reversible_displacement = fibrant::simulation::reversible_displacement(r, friction, allowed);
     // Of a length of fibre, however many nodes it has.
     programme.damping = cloth::node_stiffness(load.scene.fabric, load.scene.settle.tension_strain) / static_cast<double>(load.parts);
     load.settled_fabric = load.scene.fabric, load.scene.fabric.elements *= load.parts, load.scene.fabric.weft_elements *= load.parts;

@@ -14,6 +14,7 @@
 #include <fibrant/simulation/model.hpp>
 #include <fibrant/simulation/near_names.hpp>
 #include <fibrant/simulation/part_overlaps.hpp>
+#include <fibrant/simulation/parting_parameters.hpp>
 #include <fibrant/simulation/position.hpp>
 #include <fibrant/simulation/programme.hpp>
 #include <fibrant/simulation/refined_state.hpp>

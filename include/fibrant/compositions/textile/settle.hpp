@@ -6,6 +6,7 @@
 #include <fibrant/law/limited_gap.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/simulation/parting_parameters.hpp>
 #include <fibrant/simulation/simulator.hpp>
 
 #include <algorithm>
@@ -51,15 +52,9 @@ struct SettleParameters {
 template <simulation::Model M>
 simulation::ModelParameters<M> model_parameters(const Textile& textile, const SettleParameters& settle) {
     settle.validate();
-    const double r = textile.smallest_radius(), allowed = settle.allowed_penetration_over_radius * r;
-    simulation::ModelParameters<M> parameters;
-    parameters.normal.law.regularisation_depth = allowed;
-    parameters.normal.limit = settle.gap_limit_over_radius * r;
-    parameters.contact.stiffness.allowed_penetration = allowed;
-    if constexpr (core::Active<typename M::Friction>) {
-        parameters.friction.friction_coefficient = 0.0;  // until the handover: else the way would be remembered
-        parameters.friction.reversible_displacement = std::max(0.02 * r, settle.friction_coefficient * allowed);
-    }
+    const double r = textile.smallest_radius();
+    auto parameters = simulation::parting_parameters<M>(r, settle.allowed_penetration_over_radius * r, settle.gap_limit_over_radius * r,
+                                                        settle.friction_coefficient);
     parameters.iteration.overshoot = 0.5;
     return parameters;
 }
@@ -121,8 +116,8 @@ simulation::Loading<M> settling(const Textile& textile, const Assembled& assembl
     handover.increments = 1;
     // Without friction places along the yarns would be neutral: crossings slide to and fro.
     if constexpr (core::Active<typename M::Friction>)
-        handover.friction.emplace(typename M::Friction::Parameters{settle.friction_coefficient,
-                                                                   std::max(0.02 * r, settle.friction_coefficient * allowed)});
+        handover.friction.emplace(typename M::Friction::Parameters{
+            settle.friction_coefficient, simulation::reversible_displacement(r, settle.friction_coefficient, allowed)});
     handover.until = simulation::until_settled(motion, 5.0 * soft, share_on_the_way);
     handover.most_increments = settle.rest_increments,
     handover.enough_increments = std::max<Index>(1, settle.rest_increments / 2);

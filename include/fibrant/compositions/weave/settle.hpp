@@ -6,6 +6,7 @@
 #include <fibrant/law/limited_gap.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/simulation/parting_parameters.hpp>
 #include <fibrant/simulation/simulator.hpp>
 
 #include <algorithm>
@@ -48,16 +49,9 @@ inline double parting_tension(const FabricParameters& fabric, double tension_str
 template <simulation::Model M>
 simulation::ModelParameters<M> model_parameters(const FabricParameters& fabric, const SettleParameters& settle) {
     settle.validate();
-    const double r = smallest_radius(fabric), allowed = settle.allowed_penetration_over_radius * r;
-    simulation::ModelParameters<M> parameters;
-    parameters.normal.law.regularisation_depth = allowed;
-    parameters.normal.limit = settle.gap_limit_over_radius * r;
-    parameters.contact.stiffness.allowed_penetration = allowed;
-    if constexpr (core::Active<typename M::Friction>) {
-        parameters.friction.friction_coefficient = 0.0;  // until the handover: else the path would be remembered
-        parameters.friction.reversible_displacement = std::max(0.02 * r, settle.friction_coefficient * allowed);
-    }
-    return parameters;
+    const double r = smallest_radius(fabric);
+    return simulation::parting_parameters<M>(r, settle.allowed_penetration_over_radius * r, settle.gap_limit_over_radius * r,
+                                             settle.friction_coefficient);
 }
 
 /// The stages of settling (Durville, sections 15.3.5 and 15.4.1; durations and tensions are ours).
@@ -89,7 +83,7 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     handover.increments = 1;
     if constexpr (core::Active<typename M::Friction>)
         handover.friction.emplace(typename M::Friction::Parameters{
-            settle.friction_coefficient, std::max(0.02 * r, settle.friction_coefficient * allowed)});
+            settle.friction_coefficient, simulation::reversible_displacement(r, settle.friction_coefficient, allowed)});
     handover.until = simulation::until_settled(motion, 5.0 * soft, share_on_the_way);
     handover.most_increments = settle.rest_increments;
     simulation::Stage<M> release;
