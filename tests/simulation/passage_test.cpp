@@ -165,6 +165,29 @@ TEST_CASE("what passes is named, with its place and its motion, and the attempt 
     CHECK_FALSE(swept.first(unchecked.state(), together, unchecked.contacts(), false, true));
 }
 
+TEST_CASE("a fibre that creeps through another one in many small motions is held up half way into it, unless it was there before") {
+    Crossed scene;
+    scene.gap = 0.0;
+    simulation::Simulator<Unchecked> unchecked(scene.assembly(), test::model_parameters<Unchecked>(r));
+    const contact::Swept::Of<Smooth::Beam> swept(unchecked.mesh(), contact::Detection{});
+    const auto lowered = [&](double by) {  // in touching distances
+        Vector state = unchecked.state();
+        for (Index a = 0; a < unchecked.mesh().node_count(1); ++a) state[3 * unchecked.mesh().node_vector(1, a) + 2] -= 2.0 * r * by;
+        return state;
+    };
+    // Steps of 0.03 come no closer on their way than half of what they leave.
+    for (int step = 0; step < 33; ++step) {
+        const double before = 1.0 - 0.03 * step, after = before - 0.03;
+        CAPTURE(after);
+        const auto passed = swept.first(lowered(1.0 - before), lowered(1.0 - after), unchecked.contacts(), false, true);
+        CHECK(passed.has_value() == (before >= 0.5 && after < 0.5));
+        if (!passed) continue;
+        CHECK(passed->left == doctest::Approx(after).epsilon(1e-9));
+        CHECK(contact::text(*passed).find("of touching apart") != std::string::npos);
+    }
+    CHECK_FALSE(swept.first(lowered(0.55), lowered(0.3), unchecked.contacts(), false, true));  // and out again it may go
+}
+
 TEST_CASE("a fibre that slips off past the end of another one is free to go") {
     // The upper one lies across, 3 radii before the end of the lower one, and is moved off it and down, in one increment.
     scene::Assembly scene;

@@ -23,6 +23,7 @@ struct PassedPair {
     double along = 0.0, along_other = 0.0;  ///< where on the fibres, over their rest lengths, in [0, 1]; 0 for a tool
     Vec3 place = Vec3::Zero();     ///< half way between the two when they are too close; of a tool, on the fibre as it is at the end [length]
     double motion = 0.0;           ///< of one against the other [length]
+    double left = 0.0;             ///< distance of the two at the end over their half widths; 0 for a tool
     double time = 0.0;             ///< when they are too close, in [0, 1]
     /// When the first of all that pass touch, in [0, 1]: up to there the motion is sound.
     double touch = 0.0;
@@ -36,7 +37,8 @@ inline std::string text(const PassedPair& pair) {
                                                               : "fibre " + std::to_string(pair.other) + at(pair.along_other);
     what += ", near (";
     for (int axis = 0; axis < 3; ++axis) what += (axis > 0 ? ", " : "") + core::text(pair.place[axis]);
-    return what + "), in a motion of " + core::text(pair.motion) + " against each other";
+    what += "), in a motion of " + core::text(pair.motion) + " against each other";
+    return pair.tool ? what : what + ", after which they are " + core::text(std::round(1e4 * pair.left) / 1e4) + " of touching apart";
 }
 
 /// No check: for scenes in which nothing can pass through anything. A model says `using Passage = contact::NoPassage;`.
@@ -53,8 +55,9 @@ struct NoPassage : core::Inactive {
 ///
 /// Two that touch stay about as far apart as their surfaces say while they slide and roll on each other; what passes through comes
 /// closer on its way than it is before and after. A pair has passed if its centrelines come closer than half of the least of that:
-/// the smaller half widths of the sections at rest, and the distances of the two segments at the start and at the end. Straight ways
-/// cut corners: one that goes round another one by 120 degrees at once counts as having passed, and is cut.
+/// the smaller half widths of the sections at rest, and the distances of the two segments at the start and at the end. So has a pair
+/// that was apart by more than half of these widths all along, and ends nearer somewhere: no law lets fibres so deep, and what creeps
+/// through in many small motions has to come by there. Straight ways cut corners: one that goes round another one by 120 degrees at once counts as having passed, and is cut.
 /// Where a fibre ends, it may slip off: within a touching distance of its ends only centrelines that meet have passed.
 /// Pairs that a law with a limited gap parts have no side yet, and those in a forced order may go the way it forces them.
 /// Owes nothing to contact elements, and what moves together costs nothing. The number of threads changes no bit.
@@ -147,8 +150,9 @@ struct Swept {
             }
         };
 
-        static std::vector<PassedPair> joined(const std::vector<std::vector<PassedPair>>& parts) {
-            std::vector<PassedPair> all;
+        template <class Item>
+        static std::vector<Item> joined(const std::vector<std::vector<Item>>& parts) {
+            std::vector<Item> all;
             for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
             return all;
         }
@@ -159,8 +163,9 @@ struct Swept {
             std::vector<double> margins(lines.segments.size());
             for (std::size_t k = 0; k < margins.size(); ++k) margins[k] = share * lines.half[core::at(lines.fibre[k])];
             proximity::MovingTree tree(lines.segments, margins);
-            std::vector<std::vector<PassedPair>> found(core::at(tree.make_tasks()));
-            const std::vector<std::pair<std::int32_t, std::int32_t>> parting = pairs_that_part(contacts);
+            std::vector<std::vector<PassedPair>> found(core::at(tree.make_tasks())), sunk(found.size());
+            std::vector<std::vector<Fibres>> deep(found.size());  // pairs that were below half before: nothing holds them apart
+            const std::vector<Fibres> parting = pairs_that_part(contacts);
             tree.visit_pairs([&](Index task, Index k, Index l) {
                 const Index i = lines.of(k), j = lines.of(l);
                 if (i == j && (!self_ || !lines.beyond_arc(k, l))) return;
@@ -170,8 +175,10 @@ struct Swept {
                 if (before - share * widths >= motion) return;
                 const double after = std::sqrt(proximity::segment_distance(a, b, 1.0).squared);
                 const double least = std::min({widths, before, after});
-                if (least < nothing * widths) return;
-                const double near = share * least, touching = mesh_->fibre(i).section.radius() + mesh_->fibre(j).section.radius();
+                if (before < share * widths) deep[core::at(task)].emplace_back(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+                const bool sinks = before >= share * widths && after < share * widths;
+                if (least < nothing * widths && !sinks) return;
+                const double near = share * (sinks ? widths : least), touching = mesh_->fibre(i).section.radius() + mesh_->fibre(j).section.radius();
                 const auto at_ends = [&](double s, double t) { return !lines.inside(k, s, touching) || !lines.inside(l, t, touching); };
                 const proximity::Approach at = proximity::first_approach(a, b, near, std::min(near, meeting * widths), at_ends);
                 if (!at.close) return;
@@ -180,31 +187,43 @@ struct Swept {
                 PassedPair pair;
                 pair.fibre = i, pair.other = j, pair.along = lines.along(k, at.s), pair.along_other = lines.along(l, at.t);
                 pair.place = 0.5 * (a.start_at(at.time) + at.s * a.chord_at(at.time) + b.start_at(at.time) + at.t * b.chord_at(at.time));
-                pair.motion = (motion_b - motion_a).norm(), pair.time = at.time;
+                pair.motion = (motion_b - motion_a).norm(), pair.time = at.time, pair.left = after / widths;
                 pair.touch = proximity::first_approach(a, b, touching, touching, [](double, double) { return false; }).time;
-                found[core::at(task)].push_back(pair);
+                (sinks ? sunk : found)[core::at(task)].push_back(pair);
             });
-            return joined(found);
+            std::vector<PassedPair> passed = joined(found);
+            const std::vector<Fibres> held_by_nothing = once_each(joined(deep));
+            for (const PassedPair& pair : joined(sunk))
+                if (!has(held_by_nothing, pair.fibre, pair.other)) passed.push_back(pair);
+            return passed;
+        }
+
+        using Fibres = std::pair<std::int32_t, std::int32_t>;
+        static std::vector<Fibres> once_each(std::vector<Fibres> pairs) {
+            std::sort(pairs.begin(), pairs.end());
+            pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+            return pairs;
+        }
+        static bool has(const std::vector<Fibres>& pairs, Index i, Index j) {
+            return std::binary_search(pairs.begin(), pairs.end(), Fibres(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)));
         }
 
         /// Pairs of fibres whose gap a law limits.
         template <class Contacts>
-        static std::vector<std::pair<std::int32_t, std::int32_t>> pairs_that_part(const Contacts& contacts) {
-            std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+        static std::vector<Fibres> pairs_that_part(const Contacts& contacts) {
+            std::vector<Fibres> pairs;
             for (const auto& element : contacts.elements())
                 if (element.shift.value() > 0.0) pairs.emplace_back(element.fibre_i, element.fibre_j);
-            std::sort(pairs.begin(), pairs.end());
-            pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-            return pairs;
+            return once_each(std::move(pairs));
         }
 
         /// @param before    distance of the two segments at the start [length]
         /// @param widths    sum of the smaller half widths [length]
         /// @param motion    of j against i [length]
         template <class Contacts>
-        bool may_pass(Index i, Index j, double before, double widths, const Vec3& motion, const std::vector<std::pair<std::int32_t, std::int32_t>>& parting,
+        bool may_pass(Index i, Index j, double before, double widths, const Vec3& motion, const std::vector<Fibres>& parting,
                       const Contacts& contacts, bool forced) const {
-            if (std::binary_search(parting.begin(), parting.end(), std::pair(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)))) return true;
+            if (has(parting, i, j)) return true;
             if constexpr (requires { contacts.normal_law().limit(); })
                 if (std::isfinite(contacts.normal_law().limit()) && before < share * widths) return true;
             const Index order = forced ? contacts.orders().between(i, j) : -1;
