@@ -90,7 +90,7 @@ inline double closest_on_the_way(const std::vector<Vec3>& a, const std::vector<V
 
 /// Runs far scenes of seeds first, first + 1, ...: no accepted increment takes a fibre through another one, whatever the run comes to, and what
 /// stops says why. Prints how many converged, and how close the straight way of any increment came.
-inline void check_passages(std::uint64_t first, std::uint64_t count) {
+inline void check_passages(std::uint64_t first, std::uint64_t count, bool calmed = false) {
     std::uint64_t converged = 0, touching = 0, scenes = 0, passages = 0;
     double closest = 1e300;
     for (std::uint64_t seed = first; seed < first + count; ++seed) {
@@ -100,7 +100,7 @@ inline void check_passages(std::uint64_t first, std::uint64_t count) {
         ++scenes;
         simulation::Simulator<StableModel> simulator(assembly_of(scene), parameters_of<StableModel>(scene));
         simulation::Loading<StableModel> loading;
-        loading.increments = scene.increments, loading.most_rejected = 40;
+        loading.increments = scene.increments, loading.most_rejected = 40, loading.calmed = calmed;
         Ways<StableModel> ways{&simulator};
         ways.see();
         const simulation::Report report = simulator.run(loading, ways);

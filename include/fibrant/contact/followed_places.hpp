@@ -85,14 +85,28 @@ public:
             const PairGeometry there = pair_geometry(mesh, state, i, j, at.u_i, at.u_j);
             return there.centres.norm() - touching;
         };
+        // Where fibres come close again further on, or lie along each other in all of the zone, they touch there too.
+        const auto in_zone = [&](const StationPair& at) {
+            const auto off = [&](Index f, double u, double from) {
+                return mesh.fibre(f).closed ? std::remainder(u - from, static_cast<double>(mesh.fibre(f).elements)) : u - from;
+            };
+            const proximity::ProximityZone& span = zone.span;
+            const double of_i = off(i, at.u_i, span.closest_i), of_j = off(j, at.u_j, span.closest_j);
+            return of_i >= span.a_i - span.closest_i && of_i <= span.b_i - span.closest_i && of_j >= std::min(span.a_j, span.b_j) - span.closest_j &&
+                   of_j <= std::max(span.a_j, span.b_j) - span.closest_j;
+        };
+        const double longest = std::max((zone.span.b_i - zone.span.a_i) * pair.speed_i, std::abs(zone.span.b_j - zone.span.a_j) * pair.speed_j);
+        const int most = std::max(most_beside, static_cast<int>(std::min(longest / (spacing * touching), 1e6)));  // once around closed fibres
         const auto line = [&](const Eigen::Vector2d& way, std::int8_t slide) {
             for (const double side : {-1.0, 1.0}) {
-                double last = gap_at(middle);
-                for (int k = 1; k <= most_beside; ++k) {
+                double last = gap_at(middle), aside = 0.0;  // aside: of the last station, across the way from the middle [length]
+                bool parted = false;
+                for (int k = 1; k <= most; ++k) {
                     StationPair other = middle;
                     other.slide = slide;
-                    const Eigen::Vector2d ideal = side * k * spacing * touching * way;
+                    const Eigen::Vector2d ideal = side * k * spacing * touching * way + aside * Eigen::Vector2d(-way[1], way[0]);
                     other.u_i += ideal[0] / pair.speed_i, other.u_j += ideal[1] / pair.speed_j;
+                    if ((parted || k > most_beside) && !in_zone(other)) break;
                     // One that was there stays.
                     double nearest = 0.5 * spacing * touching;
                     Eigen::Vector2d kept(other.u_i, other.u_j);
@@ -104,9 +118,11 @@ public:
                     other.u_i = kept[0], other.u_j = kept[1];
                     if (!inside(mesh, i, other.u_i) || !inside(mesh, j, other.u_j)) break;
                     follow_along(mesh, state, i, j, slide_of(mesh, zone, slide), other.u_i, other.u_j);
+                    aside = way[0] * (other.u_j - middle.u_j) * pair.speed_j - way[1] * (other.u_i - middle.u_i) * pair.speed_i;
                     const double gap = gap_at(other);
-                    if (gap > clear * touching && gap > last) break;
-                    pairs.push_back(other);
+                    const bool parts = gap > clear * touching && gap > last;
+                    parted = parted || parts;
+                    if (!parts) pairs.push_back(other);
                     last = gap;
                 }
             }
@@ -214,7 +230,7 @@ private:
     static constexpr double flat = 0.4, held = 0.05;
     static constexpr double spacing = 0.35, clear = 0.1;  ///< of stations in a valley, and gap beyond which there are none [touching distance]
     static constexpr double near_valley = 2.0;          ///< of a station that stays, across [touching distance]
-    static constexpr int most_beside = 8;               ///< stations to each side
+    static constexpr int most_beside = 8;  ///< stations to each side that are placed whatever the zone; more of them as far as it goes
     /// Distance over radius of curvature from which two fibres are a loop around each other: cloths have a tenth. Less by the second once they are
     /// followed.
     static constexpr double loop = 0.25, hysteresis = 0.05;
