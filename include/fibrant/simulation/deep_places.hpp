@@ -17,7 +17,8 @@ namespace fibrant::simulation {
 /// @param radius  of the thinnest fibre [length]
 template <Model M, class Contacts>
 double deepest_at_end(const Loading<M>& loading, const Stage<M>& stage, bool last, const Contacts& contacts, const contact::ContactParameters& parameters, double radius) {
-    if (!stage.deepest && !(last && loading.audited)) return core::unset;
+    const bool stated = parameters.stiffness.adapts();  // a penalty that is one number is as deep as it is
+    if (!stage.deepest && !(last && loading.audited && stated)) return core::unset;
     if (!std::isnan(loading.deepest_over_radius)) return loading.deepest_over_radius * radius;
     return stage.deepest ? *stage.deepest : stated_depth(contacts, parameters, radius);
 }
@@ -34,6 +35,8 @@ std::string mend_deep_places(const Loading<M>& loading, const std::vector<Stage<
     if (!(allowed > 0.0)) return {};
     const auto& mesh = simulator.mesh();
     const observe::Snapshot shot = detail::curves_of(mesh, simulator.state());
+    for (const observe::FibreSnapshot& fibre : shot.fibres)
+        if (fibre.director_1.front().isZero(0.0)) return {};  // a beam whose particles lie on its centreline has no surface
     const auto own = contacts.parameters().detection.self_contact ? observe::OwnTurns::counted : observe::OwnTurns::left_out;
     const std::vector<observe::LeastGap> deep = observe::deep_places(shot, proximity::GridSearch{}, allowed, own);
     if (deep.empty()) return {};

@@ -209,7 +209,7 @@ private:
         // At rest: what holds takes no more force than the balance may miss anyway.
         const bool reached = position_.progress >= 1.0 && !position_.calming.resting && (!stage.until || stage.until(increment));
         const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
-        deep_ = reached && !held && !laws_.again() ? mend_deep_places(loading, stages, *this, contacts_, radius_, position_) : std::string();
+        deep_ = touching && reached && !held && !laws_.again() ? mend_deep_places(loading, stages, *this, contacts_, radius_, position_) : std::string();
         position_.stage_over =
             !laws_.again() && ((reached && !held && deep_.empty()) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments));
         position_.adapt_damping(stage, increment, attempt_newton / static_cast<double>(parameters_.iteration.newton_limit));
