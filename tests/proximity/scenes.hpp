@@ -189,6 +189,30 @@ inline std::vector<FibreSet> search_cases() {
         set.add({{1e6, 2e6, -3e6}, {1e6, 2e6, -3e6 + 1}}, 0.05);
         cases.push_back(set);
     }
+    {
+        FibreSet set = random_fibres(15, 30, 10, 0.2, 0.2, 0.6);
+        set.name = "two crowds and some fibres very far apart from each other, at a slant";
+        const FibreSet other = random_fibres(16, 30, 10, 0.2, 0.2, 0.6).turned(Mat3::Identity(), {3e9, -1e3, 2e11});
+        for (std::size_t f = 0; f < other.points.size(); ++f) set.add(other.points[f], other.radius[f]);
+        for (const double far : {1e4, 1e7, 1e12}) set.add({{far, 0.1, 0.2}, {far, 0.1, 1.2}}, 0.05), set.add({{far, 0.15, 0.2}, {far, 0.15, 1.2}}, 0.05);
+        cases.push_back(set.turned(Eigen::AngleAxisd(0.7, Vec3(1, -2, 2).normalized()).toRotationMatrix(), {1, 2, 3}));
+    }
+    {
+        FibreSet set{.name = "a hundred times as thick ones and thin ones, as many of each", .reach = 0.01};
+        std::mt19937 random(17);
+        for (int f = 0; f < 60; ++f) {
+            const Vec3 start = 20.0 * uniform_vector(random);
+            const double r = f % 2 == 0 ? 1.0 : 0.01;
+            set.add(random_fibre(random, 12, 4.0 * r, 0.3, f % 2 == 0 ? start : Vec3(set.points.back()[5] + 0.8 * uniform_vector(random))), r);
+        }
+        cases.push_back(set);
+    }
+    {
+        FibreSet set{.name = "a tow of straight fibres 2,000 radii long, one segment each", .reach = 0.05};
+        for (int f = 0; f < 49; ++f) set.add({{2.02 * (f % 7), 2.02 * (f / 7), 0.0}, {2.02 * (f % 7), 2.02 * (f / 7), 2e3}}, 1.0);
+        set.add({{0, 0, 1e3}, {14, 3, 1e3 + 1}}, 1.0);
+        cases.push_back(set);
+    }
     cases.push_back(random_fibres(14, 300, 10, 0.1, 0.3, 1.0)
                         .turned(Eigen::AngleAxisd(2.0, Vec3(-1, 1, 0.3).normalized()).toRotationMatrix(), {-100, 7, 0.5}));
     return cases;

@@ -144,6 +144,20 @@ TEST_CASE_TEMPLATE("a search finds the published pairs of a random mat of 10,000
     CHECK(checksum(pairs) == 0xbf1345c216ac6e59u);
 }
 
+TEST_CASE("neither a stray fibre nor long straight ones cost the precision and the memory of all") {
+    const FibreSet crowd = test::random_fibres(18, 100, 10, 0.2, 0.2, 1.0);
+    FibreSet stray = crowd;
+    stray.add({{1e9, 1e9, -1e9}, {1e9, 1e9, 1 - 1e9}}, 0.05);
+    const std::vector<Centreline> lines = crowd.centrelines(), with = stray.centrelines();
+    const detail::BoxFrame alone(detail::SegmentTable(lines, crowd.reach)), both(detail::SegmentTable(with, crowd.reach));
+    CHECK(both.slack < 2.0 * alone.slack);  // it was a billion times as much
+    FibreSet tow{.name = "tow", .reach = 0.05};
+    for (int f = 0; f < 400; ++f) tow.add({{2.02 * (f % 20), 2.02 * (f / 20), 0.0}, {2.02 * (f % 20), 2.02 * (f / 20), 3e5}}, 1.0);
+    GridSearch search;
+    CHECK(search.pairs(tow.centrelines(), tow.reach).size() == 2 * 20 * 19);
+    CHECK(search.bytes() < 2000 * 400);  // eight pieces a segment at most
+}
+
 TEST_CASE_TEMPLATE("pairs and zones have the same bits for one thread and for three", Search, EVERY_SEARCH) {
     const FibreSet set = test::random_fibres(21, 150, 15, 0.2, 0.4, 1.0);
     const auto lines = set.centrelines();

@@ -97,17 +97,17 @@ public:
         }
     }
 
+    /// Rows of cells that `overlaps_with` looks through for a box.
+    double rows_of(const Box& box) const noexcept {
+        const CellRange range = around(box);
+        return std::min(static_cast<double>(range.rows()), static_cast<double>(cells()));
+    }
     /// Hands over {of, l} for the places l of boxes that overlap `box`, which may be of any size.
     template <class Sink>
     void overlaps_with(const Box& box, std::int32_t of, Sink& sink) const {
-        std::uint64_t low[3], high[3];
-        std::uint64_t rows = 1;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            low[axis] = cell(box.low[axis] - 0.5 * width_[axis], axis);
-            high[axis] = cell(box.high[axis] + 0.5 * width_[axis], axis);
-            if (axis < 2) rows *= high[axis] - low[axis] + 1;
-        }
-        if (rows > core::at(cells())) {
+        const CellRange range = around(box);
+        const auto& [low, high] = range;
+        if (range.rows() > core::at(cells())) {
             sink.take(columns_.overlaps(box, 0, size(), of, sink.room(size() + BoxColumns::width)));
             return;
         }
@@ -121,6 +121,19 @@ public:
     }
 
 private:
+    struct CellRange {
+        std::array<std::uint64_t, 3> low, high;
+        std::uint64_t rows() const noexcept { return (high[0] - low[0] + 1) * (high[1] - low[1] + 1); }
+    };
+    /// Cells whose boxes may overlap a box.
+    CellRange around(const Box& box) const noexcept {
+        CellRange range{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            range.low[axis] = cell(box.low[axis] - 0.5 * width_[axis], axis);
+            range.high[axis] = cell(box.high[axis] + 0.5 * width_[axis], axis);
+        }
+        return range;
+    }
     void measure(const std::vector<Box>& boxes, std::span<const std::int32_t> members) {
         double high[3];
         for (std::size_t axis = 0; axis < 3; ++axis) {

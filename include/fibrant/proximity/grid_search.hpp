@@ -63,7 +63,7 @@ private:
         const detail::BoxFrame frame(table);
         const std::int32_t n = table.size();
         const double mean = frame.mean_length, thickness = frame.mean_thickness;
-        const double piece = mean > pieces_from * thickness ? piece_length * thickness : 2.0 * std::max(mean, thickness);
+        const double piece = mean > pieces_from * thickness ? std::max(piece_length * thickness, mean / most_pieces) : 2.0 * std::max(mean, thickness);
         cut_ = frame.longest > piece;
         if (!cut_) {
             boxes_.resize(core::at(n));
@@ -72,10 +72,13 @@ private:
         }
         first_.resize(core::at(n) + 1);
         first_[0] = 0;
+        double all = 0.0;
         for (std::int32_t k = 0; k < n; ++k) {
             const detail::SegmentRecord record = table.record(k);
-            const double pieces = std::ceil(std::sqrt(detail::dot(record.chord, record.chord)) / piece);
-            first_[core::at(k) + 1] = first_[core::at(k)] + std::max(1, static_cast<std::int32_t>(pieces));
+            const double pieces = std::max(1.0, std::ceil(std::sqrt(detail::dot(record.chord, record.chord)) / piece));
+            all += pieces;
+            if (all >= detail::SegmentTable::at_most) core::refuse("pieces of all segments", core::text(all), "below 2^31 - 64");
+            first_[core::at(k) + 1] = static_cast<std::int32_t>(all);
         }
         boxes_.resize(core::at(first_.back()));
         owner_.resize(boxes_.size());
@@ -164,17 +167,22 @@ private:
         }
     }
 
-    /// Boxes of a level against those of a finer one.
+    /// Boxes of a level against those of a finer one. The few large ones ask the fine grid, unless they cover so many rows of its cells that
+    /// the many small ones ask the coarse grid sooner: its rows around a small box are nine at most.
     std::size_t search_between(const detail::SegmentTable& table, std::size_t upper, std::size_t lower, std::size_t done) {
         constexpr Index together = 256;
-        const detail::CellGrid& grid = levels_[upper];
+        const double enough = 9.0 * levels_[lower].size();
+        double rows = 0.0;
+        for (std::int32_t k = 0; k < levels_[upper].size() && rows <= enough; ++k) rows += levels_[lower].rows_of(boxes_[core::at(levels_[upper].box(k))]);
+        const std::size_t asking = rows <= enough ? upper : lower, asked = rows <= enough ? lower : upper;
+        const detail::CellGrid& grid = levels_[asking];
         const Index blocks = (grid.size() + together - 1) / together;
         reserve_blocks(done + core::at(blocks));
         core::parallel_for<core::Share::turns>(blocks, [&](Index b) {
-            detail::CandidateSink sink(table, records_.data(), place_owner_[upper].data(), place_owner_[lower].data(),
+            detail::CandidateSink sink(table, records_.data(), place_owner_[asking].data(), place_owner_[asked].data(),
                                        close_[done + core::at(b)]);
             for (auto k = static_cast<std::int32_t>(b * together); k < std::min<Index>(grid.size(), (b + 1) * together); ++k)
-                levels_[lower].overlaps_with(boxes_[core::at(grid.box(k))], k, sink);
+                levels_[asked].overlaps_with(boxes_[core::at(grid.box(k))], k, sink);
             sink.flush();
         });
         return done + core::at(blocks);
@@ -191,7 +199,8 @@ private:
     }
 
     static constexpr std::int32_t cells_together = 256;
-    static constexpr double pieces_from = 32.0, piece_length = 24.0;
+    static constexpr double pieces_from = 32.0, piece_length = 24.0;  // thicknesses: fastest on oblique mats of slender fibres
+    static constexpr double most_pieces = 8.0;  // of a segment of mean length: long straight fibres would else take all memory
 
     bool cut_ = false;                  // some segment has several boxes
     std::vector<std::int32_t> first_;   // first box of each segment

@@ -76,9 +76,9 @@ public:
         return arc_[core::at(j)] - arc_[core::at(i)] - length_[core::at(i)] > centreline(fibre(i)).self_skip;
     }
 
-private:
-    static constexpr std::size_t at_most = 2147483647u - 64u;
+    static constexpr std::size_t at_most = 2147483647u - 64u;  ///< segments
 
+private:
     /// Names are made only once something is wrong: this runs over all vertices at every search.
     void check(std::size_t f) const {
         const Centreline& line = fibres_[f];
