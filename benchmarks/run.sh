@@ -29,7 +29,7 @@ for bench in ${chosen:-search solver scaling micro}; do
   echo "$bench ..."
   case $bench in
     search)
-      $pinned "$programs/benchmark_search_bench" --generate mat 100000 $scenes > "$folder/search.csv"
+      $pinned "$programs/benchmark_search_bench" --mat 100000 $scenes > "$folder/search.csv"
       $pinned "$programs/benchmark_search_bench" --repeats 3 --growth > "$folder/growth.csv"
       ;;
     solver) $pinned "$programs/benchmark_solver_bench" 76 152 $systems > "$folder/solver.csv" ;;

@@ -2,15 +2,7 @@
 // How long does each proximity search take on a scene, does it find exactly the pairs of the exact search, and how does it
 // stand to others and to what cannot be beaten?
 //
-// search_bench [options] SCENE.fpl|SCENE.fpt...      prints CSV, one line a scene and search
-//   --generate mat N   a random mat of N segments as one more scene
-//   --brute            the exact search is brute force, which is quadratic; else GridSearch
-//   --own              without the other libraries but nanoflann
-//   --self             fibres pair with themselves too
-//   --refine N         each segment cut into N
-//   --repeats N        medians of so many, 7
-//   --motion D         instead: 50 calls between which each vertex moves by D radii
-//   --growth           instead: random mats of 1e4 to 1e6 segments, exponents
+// search_bench [options] FILE...      prints CSV, one line a scene and search; `search_bench --help` tells the options
 // Times are of the processor for one thread (set OMP_NUM_THREADS=1 and pin it), else on the wall. Ratios are to nanoflann
 // used directly in the same run and to the floor: the vertices read once and the filter on the wanted pairs. `bytes` are those that a
 // search keeps, without the pairs, over the segments.
@@ -21,6 +13,8 @@
 #include <fibrant/proximity/brute_search.hpp>
 #include <fibrant/proximity/test_point_search.hpp>
 
+#include <CLI/CLI.hpp>
+
 #include <optional>
 #include <utility>
 
@@ -30,16 +24,19 @@ using namespace fibrant::benchmarks;
 namespace {
 
 struct Options {
-    bool brute = false, self = false, own = false;
+    bool brute = false, self = false, own = false, growth = false;
     int repeats = 7, refine = 1;
-    std::optional<double> motion{};
+    std::optional<double> motion{}, reach{};  // radii
+    double radius = core::unset;
+    std::size_t mat = 0;
+    std::vector<std::string> files{};
 };
 
 /// One search of the table.
 struct Row {
     std::string name;
     Method method;
-    bool once = false;
+    bool once = false, ours = false;  // ours: one to choose where nothing is known of the motion
 };
 
 template <class Search>
@@ -51,7 +48,22 @@ Row halved(const std::string& name, Search& search, std::span<const proximity::C
                 call.pairs = search.search(table);
                 call.bytes = search.bytes();
                 return call;
-            }};
+            }, false, true};
+}
+
+/// One line on which search to take, and what of the data says so.
+void advise(const Scene& scene, const std::vector<Row>& rows, const std::vector<Figures>& figures, double pairs_a_segment) {
+    std::size_t best = rows.size();
+    for (std::size_t m = 0; m < rows.size(); ++m)
+        if (rows[m].ours && (best == rows.size() || figures[m].total < figures[best].total)) best = m;
+    const auto [thin, thick] = std::minmax_element(scene.radius.begin(), scene.radius.end());
+    double length = 0.0, width = 0.0;
+    for (std::size_t f = 0; f < scene.points.size(); ++f)
+        for (std::size_t k = 1; k < scene.points[f].size(); ++k) length += (scene.points[f][k] - scene.points[f][k - 1]).norm(), width += 2.0 * scene.radius[f];
+    std::fprintf(stderr, "%s: take %s (%.3g ms); segments are %.3g times as long as thick, radii differ %.3g times, %.3g pairs a segment%s. "
+                 "Where fibres move by less than a tenth of a radius from one search to the next, put VerletSearch around it: --motion\n",
+                 scene.name.c_str(), rows[best].name.c_str(), 1e3 * figures[best].total, length / width, *thick / *thin, pairs_a_segment,
+                 pairs_a_segment > 30.0 ? ": many, coarser segments would do" : "");
 }
 
 void print_table(const Scene& scene, const Options& options) {
@@ -74,7 +86,7 @@ void print_table(const Scene& scene, const Options& options) {
 #endif
     rows.push_back(halved("GridSearch", grid, lines, reach));
     rows.push_back(halved("BvhSearch", tree, lines, reach));
-    rows.push_back({"KdTreeSearch", [&] { return Call{.pairs = kd_tree.pairs(lines, reach)}; }});
+    rows.push_back({"KdTreeSearch", [&] { return Call{.pairs = kd_tree.pairs(lines, reach)}; }, false, true});
     rows.push_back({"TestPointSearch 4 r", [&] { return Call{.pairs = test_points.pairs(lines, reach)}; }});
     verlet.pairs(lines, reach);
     rows.push_back({"VerletSearch listed", [&] { return Call{.pairs = verlet.pairs(lines, reach)}; }});
@@ -86,48 +98,59 @@ void print_table(const Scene& scene, const Options& options) {
     double peer = 0.0;
     const auto print = [&](const std::string& name, const Figures& f) {
         if (peer == 0.0) peer = f.total;
-        std::printf("%s,%s,%.0f,%zu,%016llx,%zu,%zu,%.3f,%.3f,%.3f,%.4f,%.2f,%.0f\n", scene.name.c_str(), name.c_str(), segments, f.pairs.size(),
+        std::printf("%s,%s,%.0f,%zu,%016llx,%zu,%zu,%.3f,%.3f,%.3f,%.3f,%.3f,%.4f,%.2f,%.0f\n", scene.name.c_str(), name.c_str(), segments, f.pairs.size(),
                     static_cast<unsigned long long>(checksum(f.pairs)), lacking(exact, f.pairs), lacking(f.pairs, exact), 1e3 * f.build,
-                    1e3 * f.query, 1e3 * f.total, f.total / peer, f.total / least, static_cast<double>(f.bytes) / segments);
+                    1e3 * f.query, 1e3 * f.total, 1e3 * f.least, 1e3 * f.most, f.total / peer, f.total / least, static_cast<double>(f.bytes) / segments);
         std::fflush(stdout);
     };
-    for (const Row& row : rows) print(row.name, measure(row.once ? 1 : options.repeats, row.method));
-    print("floor", {.total = least, .pairs = exact});
+    std::vector<Turn> turns;
+    for (const Row& row : rows) turns.push_back({row.method, row.once});
     std::vector<proximity::ProximityZone> zones;
-    print("zones from the pairs", measure(options.repeats, [&] {
-              zones = proximity::zones_from_pairs(lines, reach, exact);
-              return Call{.pairs = exact};
-          }));
+    turns.push_back({[&] {
+        zones = proximity::zones_from_pairs(lines, reach, exact);
+        return Call{.pairs = exact};
+    }});
+    const std::vector<Figures> figures = measure_in_turn(options.repeats, turns);
+    for (std::size_t m = 0; m < rows.size(); ++m) print(rows[m].name, figures[m]);
+    print("floor", {.total = least, .least = least, .most = least, .pairs = exact});
+    print("zones from the pairs", figures.back());
+    advise(scene, rows, figures, static_cast<double>(exact.size()) / segments);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
     Options options;
+    std::string kind;
+    CLI::App app{"How long does each proximity search take on your fibres, does it find exactly the pairs of the exact search, and how does it stand to others?"};
+    app.add_option("files", options.files, "centrelines: .csv .vtk .vtp .obj .bcc .inp .tg3, or scenes .fpl .fpt");
+    app.add_option("--reach", options.reach, "pairs closer than touching and this many of the least radii; 0.5, or what a scene says")->check(CLI::Range(0.0, 1e6));
+    app.add_option("--radius", options.radius, "of fibres whose file has none [length]")->check(CLI::PositiveNumber);
+    app.add_option("--mat", options.mat, "a random mat of so many segments as one more scene")->check(CLI::Range(64, 100'000'000));
+    app.add_option("--refine", options.refine, "each segment cut into so many")->check(CLI::Range(1, 1000));
+    app.add_option("--repeats", options.repeats, "calls of each search, in turn with the others")->check(CLI::Range(1, 10000))->capture_default_str();
+    app.add_option("--motion", options.motion, "instead: 50 calls between which each vertex moves by so many radii")->check(CLI::Range(0.0, 1e6));
+    app.add_flag("--brute", options.brute, "the exact search is brute force, which is quadratic; else GridSearch");
+    app.add_flag("--own", options.own, "without the other libraries but nanoflann");
+    app.add_flag("--self", options.self, "fibres pair with themselves too");
+    app.add_flag("--growth", options.growth, "instead: random mats of 1e4 to 1e6 segments, exponents");
+    CLI11_PARSE(app, argc, argv);
+    if (options.growth) {
+        measure_growth(options.repeats);
+        return 0;
+    }
     std::vector<Scene> scenes;
-    for (int a = 1; a < argc; ++a) {
-        const std::string argument = argv[a];
-        const auto next = [&] { return a + 1 < argc ? std::string(argv[++a]) : throw std::invalid_argument(argument + " needs a value"); };
-        if (argument == "--brute") options.brute = true;
-        else if (argument == "--own") options.own = true;
-        else if (argument == "--self") options.self = true;
-        else if (argument == "--repeats") options.repeats = std::max(1, std::stoi(next()));
-        else if (argument == "--refine") options.refine = std::max(1, std::stoi(next()));
-        else if (argument == "--motion") options.motion = std::stod(next());
-        else if (argument == "--generate") {
-            if (next() != "mat") throw std::invalid_argument("--generate mat N");
-            scenes.push_back(random_mat(std::stoul(next())));
-        } else if (argument == "--growth") {
-            measure_growth(options.repeats);
-            return 0;
-        } else {
-            scenes.push_back(read_scene(argument));
-        }
+    for (const std::string& file : options.files) scenes.push_back(read_scene(file, options.radius));
+    if (options.mat > 0) scenes.push_back(random_mat(options.mat));
+    if (scenes.empty()) throw std::invalid_argument("nothing to search: a file, --mat or --growth");
+    for (Scene& scene : scenes) {
+        if (options.reach) scene.margin = *options.reach * *std::min_element(scene.radius.begin(), scene.radius.end());
+        scene.refine(options.refine);
+        proximity::detail::SegmentTable(scene.centrelines(options.self), scene.margin);  // refuses before anything is printed
     }
     if (!options.motion)
-        std::printf("scene,search,segments,pairs,checksum,missed,extra,build_ms,query_ms,total_ms,ratio_to_nanoflann,ratio_to_floor,bytes\n");
-    for (Scene& scene : scenes) {
-        scene.refine(options.refine);
+        std::printf("scene,search,segments,pairs,checksum,missed,extra,build_ms,query_ms,total_ms,least_ms,most_ms,ratio_to_nanoflann,ratio_to_floor,bytes\n");
+    for (const Scene& scene : scenes) {
         if (options.motion) measure_motion(scene, *options.motion, 50, options.self);
         else print_table(scene, options);
     }

@@ -13,7 +13,7 @@
 
 namespace fibrant::benchmarks {
 
-/// Random mats of 1e4 to 1e6 segments. Prints CSV.
+/// Random mats of 1e4 to 1e6 segments, all as dense. Prints CSV.
 inline void measure_growth(int repeats) {
     std::printf("segments,search,pairs,milliseconds,nanoseconds_a_segment\n");
     std::vector<observe::PlotLine> curves{{"nanoflann", {}}, {"GridSearch", {}}, {"BvhSearch", {}}};
@@ -22,11 +22,11 @@ inline void measure_growth(int repeats) {
         const auto lines = scene.centrelines(false);
         proximity::GridSearch grid;
         proximity::BvhSearch tree;
-        const Method methods[] = {[&] { return nanoflann_pairs(lines, scene.margin); },
-                                  [&] { return Call{.pairs = grid.pairs(lines, scene.margin)}; },
-                                  [&] { return Call{.pairs = tree.pairs(lines, scene.margin)}; }};
+        const std::vector<Figures> all = measure_in_turn(repeats, {{[&] { return nanoflann_pairs(lines, scene.margin); }},
+                                                                   {[&] { return Call{.pairs = grid.pairs(lines, scene.margin)}; }},
+                                                                   {[&] { return Call{.pairs = tree.pairs(lines, scene.margin)}; }}});
         for (std::size_t m = 0; m < curves.size(); ++m) {
-            const Figures figures = measure(repeats, methods[m]);
+            const Figures& figures = all[m];
             const auto n = static_cast<double>(scene.segments());
             curves[m].points.emplace_back(n, 1e3 * figures.total);
             std::printf("%zu,%s,%zu,%.3f,%.1f\n", scene.segments(), curves[m].name.c_str(), figures.pairs.size(), 1e3 * figures.total, 1e9 * figures.total / n);

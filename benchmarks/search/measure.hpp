@@ -26,26 +26,41 @@ using Method = std::function<Call()>;
 
 struct Figures {
     double build = 0.0, query = 0.0, total = 0.0;  ///< medians [s]; halves 0 where not known
+    double least = 0.0, most = 0.0;                ///< of the total [s]
     std::size_t bytes = 0;
     Pairs pairs{};  ///< sorted
 };
 
-inline Figures measure(int repeats, const Method& method) {
-    std::vector<double> build, query, total;
-    Figures figures;
-    for (int k = 0; k < repeats; ++k) {
-        const double start = time_now();
-        Call call = method();
-        const double end = time_now();
-        total.push_back(end - start);
-        if (call.built > 0.0) build.push_back(call.built - start), query.push_back(end - call.built);
-        figures.bytes = call.bytes;
-        figures.pairs = std::move(call.pairs);
+/// Calls methods in turn, so that all see the same machine. A method that is called once only has `once` set.
+struct Turn {
+    Method method;
+    bool once = false;
+};
+inline std::vector<Figures> measure_in_turn(int repeats, const std::vector<Turn>& turns) {
+    struct Times {
+        std::vector<double> build{}, query{}, total{};
+    };
+    std::vector<Times> times(turns.size());
+    std::vector<Figures> all(turns.size());
+    for (int k = 0; k < repeats; ++k)
+        for (std::size_t m = 0; m < turns.size(); ++m) {
+            if (turns[m].once && k > 0) continue;
+            const double start = time_now();
+            Call call = turns[m].method();
+            const double end = time_now();
+            times[m].total.push_back(end - start);
+            if (call.built > 0.0) times[m].build.push_back(call.built - start), times[m].query.push_back(end - call.built);
+            all[m].bytes = call.bytes;
+            all[m].pairs = std::move(call.pairs);
+        }
+    for (std::size_t m = 0; m < turns.size(); ++m) {
+        Figures& figures = all[m];
+        std::sort(figures.pairs.begin(), figures.pairs.end());
+        const auto [least, most] = std::minmax_element(times[m].total.begin(), times[m].total.end());
+        figures.least = *least, figures.most = *most, figures.total = median(times[m].total);
+        if (!times[m].build.empty()) figures.build = median(times[m].build), figures.query = median(times[m].query);
     }
-    std::sort(figures.pairs.begin(), figures.pairs.end());
-    figures.total = median(total);
-    if (!build.empty()) figures.build = median(build), figures.query = median(query);
-    return figures;
+    return all;
 }
 
 /// Sum modulo 2^64 of the splitmix64 step of (i << 32) | j.

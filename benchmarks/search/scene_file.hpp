@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Sets of fibres for the search benchmark: scene files of both forms, and a random mat.
+/// @file Sets of fibres for the search benchmark: files of centrelines, scene files of two forms, and a random mat.
 
+#include <fibrant/exchange/files.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <random>
@@ -56,51 +59,78 @@ struct Scene {
 namespace detail {
 
 template <class T>
-void read(std::ifstream& in, T* values, std::size_t n) {
+void read(std::ifstream& in, const std::string& path, T* values, std::size_t n) {
     in.read(reinterpret_cast<char*>(values), static_cast<std::streamsize>(n * sizeof(T)));
-    if (!in) throw std::runtime_error("the scene file ends too early");
+    if (!in) exchange::refuse_file(path, "", "ends too early");
+}
+inline std::string of_fibre(std::uint64_t f) { return "fibre " + std::to_string(f); }
+
+/// Text: "FIBPOL 1" has been read.
+inline void read_text(std::ifstream& in, const std::string& path, Scene& scene) {
+    std::uint64_t fibres = 0, vertices = 0;
+    const auto number = [&](auto& value, const std::string& place) {
+        if (!(in >> value)) exchange::refuse_file(path, place, in.eof() ? "ends too early" : "is no number that can be used");
+    };
+    number(fibres, "fibres"), number(vertices, "vertices"), number(scene.margin, "margin"), number(scene.self_skip, "self_skip");
+    for (std::uint64_t f = 0; f < fibres; ++f) {
+        std::size_t n = 0;
+        number(n, of_fibre(f) + ", vertices"), number(scene.radius.emplace_back(), of_fibre(f) + ", radius");
+        scene.points.emplace_back();
+        for (std::size_t k = 0; k < n; ++k)  // one by one: a wrong number must not take all memory
+            for (double& x : scene.points.back().emplace_back(Vec3::Zero())) number(x, of_fibre(f) + ", vertex " + std::to_string(k));
+    }
+}
+/// Little endian: "FIBPOL01" has been read.
+inline void read_binary(std::ifstream& in, const std::string& path, Scene& scene) {
+    std::uint64_t fibres = 0, vertices = 0;
+    read(in, path, &fibres, 1), read(in, path, &vertices, 1), read(in, path, &scene.margin, 1), read(in, path, &scene.self_skip, 1);
+    const std::uint64_t bytes = std::filesystem::file_size(path);
+    if (fibres > bytes / 8 || vertices > bytes / 24) exchange::refuse_file(path, "", "ends too early for its " + std::to_string(fibres) + " fibres");
+    scene.radius.resize(fibres);
+    if (fibres > 0) read(in, path, scene.radius.data(), fibres);
+    std::vector<std::uint64_t> first(fibres + 1);
+    read(in, path, first.data(), fibres + 1);
+    scene.points.resize(fibres);
+    for (std::size_t f = 0; f < fibres; ++f) {
+        if (first[f + 1] < first[f] || first[f + 1] > vertices) exchange::refuse_file(path, of_fibre(f), "its first vertices do not increase");
+        scene.points[f].resize(first[f + 1] - first[f]);
+        if (!scene.points[f].empty()) read(in, path, scene.points[f].front().data(), 3 * scene.points[f].size());
+    }
 }
 
 }  // namespace detail
 
+/// A scene of any file of centrelines that the toolkit reads (.csv .vtk .vtp .obj .bcc .inp .tg3), or of a scene file.
 /// .fpl, little endian: 8 bytes FIBPOL01; u64 fibres F, vertices V; f64 margin; u64 self_skip; F f64 radii; F + 1 u64 first
 /// vertices; 3 V f64 coordinates. .fpt, text: "FIBPOL 1", "F V margin self_skip", then "n radius" and n lines "x y z" a fibre.
-inline Scene read_scene(const std::string& path) {
+/// @param radius  of files that have none [length]
+/// @throws std::invalid_argument naming file, fibre and vertex
+inline Scene read_scene(const std::string& path, double radius) {
     std::ifstream in(path, std::ios::binary);
-    if (!in) throw std::runtime_error(path + " cannot be read");
-    const std::size_t slash = path.find_last_of('/'), start = slash == std::string::npos ? 0 : slash + 1;
-    Scene scene{.name = path.substr(start, path.find_last_of('.') - start)};
-    std::uint64_t fibres = 0, vertices = 0;
+    if (!in) throw std::invalid_argument(path + ": cannot be read");
+    Scene scene{.name = std::filesystem::path(path).stem().string()};
     std::string magic(8, ' ');
-    detail::read(in, magic.data(), 8);
-    if (magic == "FIBPOL 1") {
-        in >> fibres >> vertices >> scene.margin >> scene.self_skip;
-        for (std::uint64_t f = 0; f < fibres && in; ++f) {
-            std::size_t n = 0;
-            in >> n >> scene.radius.emplace_back();
-            for (Vec3& x : scene.points.emplace_back(n, Vec3::Zero())) in >> x[0] >> x[1] >> x[2];
+    in.read(magic.data(), 8);
+    if (in && magic == "FIBPOL 1") detail::read_text(in, path, scene);
+    else if (in && magic == "FIBPOL01") detail::read_binary(in, path, scene);
+    else {
+        exchange::CleanParameters clean;
+        clean.least_points = 2, clean.largest_turn_deg = 180.0;
+        for (const exchange::FileCurve& curve : exchange::read_curves(path, clean)) {
+            scene.points.push_back(curve.points);
+            if (curve.closed) scene.points.back().push_back(curve.points.front());
+            scene.radius.push_back(std::isnan(curve.radius) ? radius : curve.radius);
+            if (std::isnan(scene.radius.back())) exchange::refuse_file(path, "", "has no radii: --radius");
         }
-        if (!in) throw std::runtime_error(path + " ends too early");
-        return scene;
+        scene.margin = 0.5 * *std::min_element(scene.radius.begin(), scene.radius.end()), scene.self_skip = 3;
     }
-    if (magic != "FIBPOL01") throw std::runtime_error(path + " is no scene file");
-    detail::read(in, &fibres, 1);
-    detail::read(in, &vertices, 1);
-    detail::read(in, &scene.margin, 1);
-    detail::read(in, &scene.self_skip, 1);
-    scene.radius.resize(fibres);
-    detail::read(in, scene.radius.data(), fibres);
-    std::vector<std::uint64_t> first(fibres + 1);
-    detail::read(in, first.data(), fibres + 1);
-    scene.points.resize(fibres);
-    for (std::size_t f = 0; f < fibres; ++f) {
-        scene.points[f].resize(first[f + 1] - first[f]);
-        detail::read(in, scene.points[f].front().data(), 3 * scene.points[f].size());
-    }
+    if (scene.points.empty()) exchange::refuse_file(path, "", "has no fibres");
+    for (std::size_t f = 0; f < scene.points.size(); ++f)
+        if (scene.points[f].size() < 2) exchange::refuse_file(path, detail::of_fibre(f), "has " + std::to_string(scene.points[f].size()) + " vertices, but it needs 2");
     return scene;
 }
 
-/// Random curved fibres of 64 segments of 4 r that fill 10 % of a cube, overlaps allowed; seed 1.
+/// Random curved fibres of 64 segments of 4 r that fill 10 % of a cube, overlaps allowed, and turn back at its walls: as dense in any number; seed 1.
 /// @param segments  about so many
 inline Scene random_mat(std::size_t segments) {
     const double r = 1.0, length = 4.0 * r, curl = 0.12, fraction = 0.1;
@@ -118,7 +148,10 @@ inline Scene random_mat(std::size_t segments) {
         std::vector<Vec3> line{vector(place, random)};
         Vec3 direction = vector(normal, random).normalized();
         for (std::size_t k = 0; k < each; ++k) {
-            line.push_back(line.back() + length * direction);
+            Vec3 next = line.back() + length * direction;
+            for (Index axis = 0; axis < 3; ++axis)
+                if (next[axis] < 0.0 || next[axis] > box) direction[axis] = -direction[axis], next[axis] = line.back()[axis] + length * direction[axis];
+            line.push_back(next);
             direction = (direction + curl * vector(normal, random)).normalized();
         }
         scene.points.push_back(std::move(line));
