@@ -28,18 +28,21 @@
 
 namespace fibrant::benchmarks {
 
-/// nanoflann's static kd-tree over the middles of segments, leaves of 20, every search wide enough for the longest segment.
+/// nanoflann's static kd-tree over the middles of segments, leaves of 20, every search wide enough for the longest segment; what it finds goes to the
+/// filter where the balls around both segments meet, as a careful user would have it.
 inline Call nanoflann_pairs(std::span<const proximity::Centreline> fibres, double reach) {
     using namespace proximity::detail;
     const SegmentTable table(fibres, reach);
     const std::vector<SegmentRecord> records = table.records();
     std::vector<Plain3> middles;
     middles.reserve(records.size());
-    double longest = 0.0;
+    std::vector<double> ball;  // radius around the middle
+    ball.reserve(records.size());
     for (const SegmentRecord& r : records) {
         middles.push_back({r.start.x + 0.5 * r.chord.x, r.start.y + 0.5 * r.chord.y, r.start.z + 0.5 * r.chord.z});
-        longest = std::max(longest, 0.5 * std::sqrt(dot(r.chord, r.chord)) + r.half);
+        ball.push_back((0.5 * std::sqrt(dot(r.chord, r.chord)) + r.half) * (1.0 + 1e-12));
     }
+    const double longest = ball.empty() ? 0.0 : *std::max_element(ball.begin(), ball.end());
     const PointTree tree(middles);
     Call call{.built = time_now()};
     std::vector<std::int32_t> found;
@@ -47,10 +50,15 @@ inline Call nanoflann_pairs(std::span<const proximity::Centreline> fibres, doubl
     for (const SegmentRecord& r : records) {
         found.clear();
         candidates.clear();
-        tree.within(middles[core::at(r.segment)],
-                    (0.5 * std::sqrt(dot(r.chord, r.chord)) + r.half + longest + reach) * (1.0 + 1e-12), found);
-        for (const std::int32_t f : found)
-            if (f > r.segment) candidates.push_back({r.segment, f});
+        const Plain3& middle = middles[core::at(r.segment)];
+        const double own = ball[core::at(r.segment)] + reach * (1.0 + 1e-12);
+        tree.within(middle, own + longest, found);
+        for (const std::int32_t f : found) {
+            if (f <= r.segment) continue;
+            const Plain3 apart = middles[core::at(f)] - middle;
+            const double bound = own + ball[core::at(f)];
+            if (dot(apart, apart) <= bound * bound) candidates.push_back({r.segment, f});
+        }
         keep_close(table, records.data(), candidates, call.pairs);
     }
     return call;
