@@ -10,6 +10,7 @@
 #include "search/growth.hpp"
 #include "search/motion.hpp"
 
+#include <fibrant/proximity/automatic_search.hpp>
 #include <fibrant/proximity/brute_search.hpp>
 #include <fibrant/proximity/test_point_search.hpp>
 
@@ -71,6 +72,7 @@ void print_table(const Scene& scene, const Options& options) {
     const double reach = scene.margin, r = *std::min_element(scene.radius.begin(), scene.radius.end());
     proximity::GridSearch grid;
     proximity::BvhSearch tree;
+    proximity::AutomaticSearch automatic;
     proximity::KdTreeSearch kd_tree;
     proximity::TestPointSearch test_points({.spacing = 4.0 * r});
     proximity::VerletSearch<proximity::GridSearch> verlet({.base = {}, .skin = r});
@@ -86,6 +88,8 @@ void print_table(const Scene& scene, const Options& options) {
 #endif
     rows.push_back(halved("GridSearch", grid, lines, reach));
     rows.push_back(halved("BvhSearch", tree, lines, reach));
+    rows.push_back(halved("AutomaticSearch", automatic, lines, reach));
+    rows.back().ours = false;  // one of the two
     rows.push_back({"KdTreeSearch", [&] { return Call{.pairs = kd_tree.pairs(lines, reach)}; }, false, true});
     rows.push_back({"TestPointSearch 4 r", [&] { return Call{.pairs = test_points.pairs(lines, reach)}; }});
     verlet.pairs(lines, reach);

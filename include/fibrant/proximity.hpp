@@ -2,6 +2,7 @@
 #pragma once
 /// @file All ways to find which fibres are near each other.
 
+#include <fibrant/proximity/automatic_search.hpp>
 #include <fibrant/proximity/box_columns.hpp>
 #include <fibrant/proximity/box_tree.hpp>
 #include <fibrant/proximity/boxes.hpp>

@@ -2,6 +2,7 @@
 #include "search_contract.hpp"
 
 #include <fibrant/core/parallel.hpp>
+#include <fibrant/proximity/automatic_search.hpp>
 #include <fibrant/proximity/bvh_search.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/proximity/kd_tree_search.hpp>
@@ -87,7 +88,7 @@ struct Threads {  // OpenMP's number of threads, put back at the end
 };
 
 #define EVERY_SEARCH \
-    BruteSearch, BvhSearch, GridSearch, KdTreeSearch, TestPointSearch, VerletSearch<GridSearch>, VerletSearch<KdTreeSearch>
+    AutomaticSearch, BruteSearch, BvhSearch, GridSearch, KdTreeSearch, TestPointSearch, VerletSearch<GridSearch>, VerletSearch<KdTreeSearch>
 
 TEST_CASE_TEMPLATE("a search finds the close pairs and zones that brute force finds, and no other", Search, EVERY_SEARCH) {
     static const std::vector<FibreSet> sets = test::search_cases();
@@ -142,6 +143,23 @@ TEST_CASE_TEMPLATE("a search finds the published pairs of a random mat of 10,000
     const auto pairs = search.pairs(set.centrelines(), set.reach);
     CHECK(pairs.size() == 11587);  // count and checksum published with the scene
     CHECK(checksum(pairs) == 0xbf1345c216ac6e59u);
+}
+
+TEST_CASE("the automatic search takes the tree for mixtures of sizes and straight tows, and the grid for what else there is") {
+    AutomaticSearch search;
+    const auto tree = [&](const FibreSet& set) { return search.pairs(set.centrelines(), set.reach), search.takes_tree(); };
+    const FibreSet crowd = test::random_fibres(18, 100, 10, 0.2, 0.2, 1.0);
+    CHECK_FALSE(tree(crowd));
+    FibreSet mixed = crowd, few = crowd;
+    for (std::size_t f = 0; f < 100; f += 2) mixed.radius[f] = 1.0;
+    few.radius[0] = few.radius[1] = 1.0;
+    CHECK(tree(mixed));
+    CHECK_FALSE(tree(few));
+    FibreSet tow{.name = "tow", .reach = 0.05}, mat = tow;
+    std::mt19937 random(3);
+    for (int f = 0; f < 40; ++f) tow.add({{2.02 * f, 0.0, 0.0}, {2.02 * f, 0.0, 1e3}}, 1.0), mat.add({Vec3::Zero(), Vec3(1e3 * test::uniform_vector(random))}, 1.0);
+    CHECK(tree(tow));
+    CHECK_FALSE(tree(mat));
 }
 
 TEST_CASE("neither a stray fibre nor long straight ones cost the precision and the memory of all") {

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file A search that looks at the fibres and takes the grid or the tree.
+
+#include <fibrant/proximity/bvh_search.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+
+#include <algorithm>
+
+namespace fibrant::proximity {
+
+/// `BvhSearch` where many segments are much thicker than many others, and where they are long and lie along each other; else `GridSearch`.
+/// It looks at the data at each call; both give the same pairs in the same order.
+class AutomaticSearch {
+public:
+    using Parameters = core::NoParameters;
+    explicit AutomaticSearch(const Parameters& = {}) {}
+
+    std::vector<SegmentPair> pairs(std::span<const Centreline> fibres, double reach) {
+        const detail::SegmentTable table(fibres, reach);
+        build(table);
+        return search(table);
+    }
+    std::vector<ProximityZone> find(std::span<const Centreline> fibres, double reach) { return zones_from_pairs(fibres, reach, pairs(fibres, reach)); }
+
+    /// @name The two halves of `pairs`, to be timed apart. The table must be the same.
+    /// @{
+    void build(const detail::SegmentTable& table) {
+        tree_taken_ = wants_tree(table);
+        tree_taken_ ? tree_.build(table) : grid_.build(table);
+    }
+    std::vector<SegmentPair> search(const detail::SegmentTable& table) { return tree_taken_ ? tree_.search(table) : grid_.search(table); }
+    /// @}
+
+    bool takes_tree() const noexcept { return tree_taken_; }  ///< at the last call
+    /// Memory that is kept, without the pairs [byte].
+    std::size_t bytes() const noexcept { return tree_.bytes() + grid_.bytes(); }
+
+private:
+    // From these on the tree was faster, in mixtures of two sizes by half as many each and in straight tows (`benchmark_search_bench`).
+    static constexpr double unequal = 5.0;   // thickness of two segments over each other
+    static constexpr double several = 0.05;  // of all segments: fewer of one size stand in a grid of their own at no cost
+    static constexpr double slender = 32.0;  // mean length over thickness
+    static constexpr double aligned = 0.9;   // of the sum of lengths along one direction
+
+    static bool wants_tree(const detail::SegmentTable& table) {
+        std::vector<std::pair<double, double>> thickness;  // and number of segments, of each fibre
+        double length = 0.0, wide = 0.0, all = 0.0;
+        Mat3 directions = Mat3::Zero();
+        for (std::int32_t f = 0; f < table.fibres(); ++f) {
+            const Centreline& line = table.centreline(f);
+            const auto segments = static_cast<double>(line.points.size() - 1);
+            const double thick = 2.0 * line.radius + table.reach();
+            thickness.emplace_back(thick, segments);
+            // Ends say enough of fibres that are slender and straight, and too little of others, which are not asked for.
+            const Vec3 chord = line.points.back() - line.points.front();
+            const double span = chord.norm();
+            if (span > 0.0) core::add_outer(chord, chord / span, directions);
+            length += span, wide += segments * thick, all += segments;
+        }
+        if (all == 0.0) return false;
+        if (length > slender * wide) {
+            const core::SymmetricEigen<3> principal(directions);
+            if (principal.values()[2] > aligned * principal.values().sum()) return true;
+        }
+        std::sort(thickness.begin(), thickness.end());
+        const auto quantile = [&](double share) {
+            double sum = 0.0;
+            for (const auto& [thick, segments] : thickness)
+                if ((sum += segments) >= share * all) return thick;
+            return thickness.back().first;
+        };
+        return quantile(1.0 - several) > unequal * quantile(several);
+    }
+
+    bool tree_taken_ = false;
+    GridSearch grid_;
+    BvhSearch tree_;
+};
+static_assert(ProximitySearch<AutomaticSearch>);
+
+}  // namespace fibrant::proximity
