@@ -3,7 +3,6 @@
 
 namespace fibrant::simulation {
 template class Simulator<test::Smooth>;
-template class Simulator<test::Rough>;
 template class Simulator<test::Pressing>;
 template class Simulator<test::RoughPressing>;
 }  // namespace fibrant::simulation

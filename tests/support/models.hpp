@@ -11,9 +11,15 @@
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
+#ifdef FIBRANT_TEST_MODELS
+#include <fibrant/compiled/rough_fibres.hpp>
+#endif
 
 namespace fibrant::test {
 
+#ifdef FIBRANT_TEST_MODELS
+using Rough = compiled::RoughFibres;
+#else
 struct Rough {
     using Beam = beam::DirectorBeam<3>;
     using Proximity = proximity::GridSearch;
@@ -21,6 +27,7 @@ struct Rough {
     using Friction = law::RegularisedCoulomb;
     using Solver = solver::SparseCholesky;
 };
+#endif
 struct Smooth : Rough {
     using Friction = law::Frictionless;
 };
@@ -37,7 +44,6 @@ static_assert(simulation::Model<RoughPressing> && simulation::Model<Smooth> && s
 #ifdef FIBRANT_TEST_MODELS
 namespace fibrant::simulation {
 extern template class Simulator<test::Smooth>;
-extern template class Simulator<test::Rough>;
 extern template class Simulator<test::Pressing>;
 extern template class Simulator<test::RoughPressing>;
 }  // namespace fibrant::simulation
