@@ -275,7 +275,8 @@ fibrant::simulation::Audit audit(const Output& output, const Simulator& simulato
 
 /// summary.json: what every run says, and what `figures` adds.
 /// @param begin  what stands before it
-inline void write_summary(const Output& output, const fibrant::simulation::Report& report, const fibrant::simulation::Audit& audit, double radius,
+/// @returns what it wrote
+inline observe::JsonObject write_summary(const Output& output, const fibrant::simulation::Report& report, const fibrant::simulation::Audit& audit, double radius,
                           const std::vector<std::pair<std::string, double>>& figures, observe::JsonObject begin = {}) {
     observe::JsonObject& json = begin;
     json.add("converged", report.converged).add("audit_clean", audit.clean()).add("reason", report.reason);
@@ -299,6 +300,7 @@ inline void write_summary(const Output& output, const fibrant::simulation::Repor
         .add("version", FIBRANT_VERSION);
     observe::write_file(output.folder / "summary.json", json.text() + "\n");
     if (!output.quiet) std::printf("%s\n", json.text().c_str());
+    return json;
 }
 
 }  // namespace example
