@@ -96,34 +96,34 @@ bool solve(example::SceneReader& file, example::Output& output) {
     std::string kind = "elastic";
     double back = core::unset;
     material::Wire::Parameters yielding;
-    file.require("strand", "wires", wires, example::wires(), "a core and layers of 6, 12, 18, 24, 30");
-    file.require("strand", "radius", radius, example::positive(), "length", "of the wires");
+    file.require("strand", "wires", wires, example::wires(), "number of wires: a core and layers of 6, 12, 18, 24, 30");
+    file.require("strand", "radius", radius, example::positive(), "length", "radius of the wires");
     file.require("strand", "lay_angle_deg", lay_angle, example::inside(-80.0, 80.0), "degree",
-                 "of the outer wires to the axis, positive is right-handed");
+                 "angle of the outer wires to the axis; positive is right-handed");
     file.read("strand", "lay", lay, {"equal_pitch", "equal_angle"},
               "all layers go round once on the same length, or at the same angle");
     file.read("strand", "alternate", alternate, "every other layer has the other hand");
     file.read("strand", "turns", turns, example::between(0.05, 100.0), "1",
-              "of the outer layer: the length of the strand, unless `length` says it");
-    file.read("strand", "length", length, example::not_negative(), "length", "of the strand; 0: as `turns` says");
+              "turns of the outer layer, which give the length of the strand unless `length` says it");
+    file.read("strand", "length", length, example::not_negative(), "length", "length of the strand; 0: as `turns` says");
     file.read("strand", "elements", elements, example::between(0, 10000),
-              "quadratic elements a wire; 0: sixteen a turn, and none longer than seven radii");
+              "elements along a wire; 0: sixteen a turn, and none longer than seven radii");
     example::read_material(file, "material", material);
-    file.read("material.law", "kind", kind, {"elastic", "wire"}, "of the section of the wires");
-    file.read("material.law", "yield_stress", yielding.yield_stress, example::positive(), "force/length^2", "of a wire");
+    file.read("material.law", "kind", kind, {"elastic", "wire"}, "how the wires behave");
+    file.read("material.law", "yield_stress", yielding.yield_stress, example::positive(), "force/length^2", "stress at which a wire yields");
     file.read("material.law", "hardening", yielding.hardening, example::not_negative(), "force/length^2",
               "slope of the yield stress over the plastic strain, kinematic");
-    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "of wires on each other");
+    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "coefficient of friction");
     file.read("contact", "reversible_displacement_over_radius", reversible, example::above(0.0, 1.0), "1",
-              "of friction, before it slides");
+              "slip up to which friction is elastic, over the radius");
     file.read("contact", "allowed_penetration_over_radius", depth, example::depth_over_radius(), "1",
-              "to which the penalty is adapted");
+              "how deep a contact may be, over the radius");
     file.read("loading", "anchor", anchor, {"both_plates", "near_plate"},
               "which plates hold every wire; elsewhere wires slide through");
-    file.read("loading", "strain", bending.strain, example::inside(-0.5, 1.0), "1", "by which the strand is drawn before");
-    file.read("loading", "angle_deg", angle, example::inside(-3600.0, 3600.0), "degree", "between the plates at the end");
-    file.read("loading", "back_to_deg", back, example::inside(-3600.0, 3600.0), "degree", "to which it is bent back, if given");
-    file.read("loading", "increments", increments, example::increments(), "of the bending");
+    file.read("loading", "strain", bending.strain, example::inside(-0.5, 1.0), "1", "strain by which the strand is drawn before it is bent");
+    file.read("loading", "angle_deg", angle, example::inside(-3600.0, 3600.0), "degree", "angle between the plates at the end");
+    file.read("loading", "back_to_deg", back, example::inside(-3600.0, 3600.0), "degree", "angle to which it is bent back; left out: not at all");
+    file.read("loading", "increments", increments, example::increments(), "increments of the bending");
     file.complete();
     file.check(kind == "elastic" || !std::isnan(yielding.yield_stress), "material.law", "yield_stress", "given, for kind = \"wire\"");
     file.check(kind == "wire" || !file.given("material.law", "yield_stress"), "material.law", "yield_stress", "left out, for kind = \"elastic\"");

@@ -219,8 +219,8 @@ inline std::string report_page(const std::filesystem::path& folder, const Report
     for (const std::string& key : page.foremost)
         if (const std::string value = detail::value_of(page.summary, key); !value.empty()) text += row(key, value);
     text += "</table></div></div>\n<h2>Over the increments</h2>\n<div class=\"plots\">\n";
-    text += detail::plot(table, "What is out of balance", "power of ten of the residual", {"residual"}, true);
-    text += detail::plot(table, "Deepest contact", "penetration / radius", {"greatest_penetration_over_radius"});
+    text += detail::plot(table, "What is out of balance; stages on the way may be loose", "power of ten of the residual", {"residual"}, true);
+    text += detail::plot(table, "Deepest contact", "power of ten of depth / radius", {"greatest_penetration_over_radius"}, true);
     text += detail::plot(table, "Iterations", "of Newton's method", {"newton_iterations"});
     text += detail::plot(table, "Part of the forces that damping holds", "power of ten", {"damping_share"}, true);
     text += detail::plot(table, "Energies", "energy", {"external_work", "elastic_energy", "contact_energy", "dissipated", "damped", "energy_error"});

@@ -19,8 +19,10 @@ inline constexpr const char* report_viewer = R"script(
     const level = k => Math.round(Math.min(255, parseInt(colour.substr(k, 2), 16) * share));
     return 'rgb(' + level(1) + ',' + level(3) + ',' + level(5) + ')';
   }
-  const tones = data.fibres.map(f => [0.80, 0.88, 0.96, 1.04, 1.12].map(share => shade(f.c, share)));
-  const edges = data.fibres.map(f => shade(f.c, 0.35));
+  const tones = data.fibres.map(f => [0.86, 0.91, 0.96, 1.01, 1.06].map(share => shade(f.c, share)));
+  const edges = data.fibres.map(f => shade(f.c, 0.35)), lights = data.fibres.map(f => shade(f.c, 1.22));
+
+  const closed = data.fibres.map(f => [0, 1, 2].every(n => f.p[n] === f.p[f.p.length - 3 + n]));
 
   function draw() {
     asked = false;
@@ -29,7 +31,7 @@ inline constexpr const char* report_viewer = R"script(
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
     const ca = Math.cos(azimuth), sa = Math.sin(azimuth), ce = Math.cos(elevation), se = Math.sin(elevation);
-    const scale = zoom * 0.9 * Math.min(width, 1.5 * height) / (1000 * data.across);
+    const scale = zoom * 1.05 * Math.min(width, 1.5 * height) / (1000 * data.across);
     const right = [ca, sa, 0], up = [-sa * se, ca * se, ce], near = [sa * ce, -ca * ce, se];  // to the eye
     const along = (v, p, k) => v[0] * p[k] + v[1] * p[k + 1] + v[2] * p[k + 2];
     const limit = data.low[axis] + cut * (data.high[axis] - data.low[axis]), pieces = [];
@@ -47,25 +49,34 @@ inline constexpr const char* report_viewer = R"script(
       let a = [x + scale * along(right, p, k), y - scale * along(up, p, k)];
       let b = [x + scale * along(right, p, k + 3), y - scale * along(up, p, k + 3)];
       const from = p[k + axis], to = p[k + 3 + axis];
+      let first = k === 0 && !closed[number], last = k + 6 >= p.length && !closed[number];  // where a face shows
       if (from > limit || to > limit) {  // cut within the piece
         const t = (limit - from) / (to - from), c = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
-        if (from > limit) a = c; else b = c;
+        if (from > limit) a = c, first = true; else b = c, last = true;
       }
       const dx = p[k + 3] - p[k], dy = p[k + 4] - p[k + 1], dz = p[k + 5] - p[k + 2];
       const light = Math.abs(0.3 * dx - 0.5 * dy + 0.8 * dz) / (Math.hypot(dx, dy, dz) || 1);  // across the light is bright
-      const line = function (style, w, extra) {
+      const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
+      context.lineCap = 'butt';
+      const line = function (style, w, over) {  // over: pixels beyond each end, so that pieces join
+        const t = over / length;
         context.strokeStyle = style, context.lineWidth = w;
         context.beginPath();
-        context.moveTo(a[0] - extra * (b[0] - a[0]), a[1] - extra * (b[1] - a[1]));
-        context.lineTo(b[0] + extra * (b[0] - a[0]), b[1] + extra * (b[1] - a[1]));
+        context.moveTo(a[0] - t * (b[0] - a[0]), a[1] - t * (b[1] - a[1]));
+        context.lineTo(b[0] + t * (b[0] - a[0]), b[1] + t * (b[1] - a[1]));
         context.stroke();
       };
-      context.lineCap = 'butt';
-      line(edges[number], Math.max(wide, 0.8), 0.02);
-      context.lineCap = 'round';
-      if (wide > 2) {
-        line(tones[number][Math.min(4, Math.floor(5 * (1 - light)))], wide - Math.min(1.2, 0.25 * wide), 0);
-        if (wide > 7) context.globalAlpha = 0.25, line('#fff', 0.3 * wide, 0), context.globalAlpha = 1;
+      const colour = tones[number][Math.min(4, Math.floor(5 * (1 - light)))];
+      line(edges[number], Math.max(wide, 0.8), 0);
+      if (wide > 2) line(colour, wide - Math.min(1.6, 0.3 * wide), 1);
+      if (wide > 6) line(lights[number], 0.25 * wide, 1);
+      const facing = (near[0] * dx + near[1] * dy + near[2] * dz) / (Math.hypot(dx, dy, dz) || 1);
+      for (const [there, sign, at] of [[first, -1, a], [last, 1, b]]) {
+        if (!there || sign * facing <= 0 || wide < 2) continue;
+        context.beginPath();
+        context.ellipse(at[0], at[1], 0.5 * wide * Math.abs(facing), 0.5 * wide, Math.atan2(b[1] - a[1], b[0] - a[0]), 0, 2 * Math.PI);
+        context.fillStyle = lights[number], context.fill();
+        context.strokeStyle = edges[number], context.lineWidth = Math.min(0.8, 0.15 * wide), context.stroke();
       }
     }
     context.fillStyle = '#444', context.font = '13px sans-serif';

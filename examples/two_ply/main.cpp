@@ -31,14 +31,14 @@ bool solve(example::SceneReader& file, example::Output& output) {
     two_ply::TwoPlyParameters parameters;
     double turns = core::unset, mu = 0.0;
     Index per_turn = 12;
-    file.require("rods", "radius", parameters.radius, example::positive(), "length", "of a rod");
-    file.require("rods", "length", parameters.length, example::positive(), "length", "of a rod");
-    file.read("rods", "elements", parameters.elements, example::between(2, 10000), "quadratic elements a rod");
+    file.require("rods", "radius", parameters.radius, example::positive(), "length", "radius of a rod");
+    file.require("rods", "length", parameters.length, example::positive(), "length", "length of a rod");
+    file.read("rods", "elements", parameters.elements, example::between(2, 10000), "elements along a rod");
     example::read_material(file, "material", parameters.material);
-    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "of the rods on each other");
-    file.require("loading", "force", parameters.force, example::not_negative(), "force", "that pulls both rods together");
-    file.require("loading", "turns", turns, example::between(-1000.0, 1000.0), "1", "of one end against the other");
-    file.read("loading", "increments_per_turn", per_turn, example::between(1, 1000), "of the turning");
+    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "coefficient of friction");
+    file.require("loading", "force", parameters.force, example::not_negative(), "force", "force that pulls both rods together");
+    file.require("loading", "turns", turns, example::between(-1000.0, 1000.0), "1", "turns of one end against the other");
+    file.read("loading", "increments_per_turn", per_turn, example::between(1, 1000), "increments for each turn");
     file.complete();
     file.check(turns != 0.0, "loading", "turns", "other than 0: nothing would be wound");
     file.check(parameters.length >= 4.0 * parameters.radius, "rods", "length",
