@@ -3,6 +3,7 @@
 // rest.
 //   dense_mat SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
@@ -112,7 +113,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
         plot.lines.push_back(write_levels(table, parameters.seed, record.levels()));
         if (!plot.lines.back().points.empty()) observe::write_file(output.folder / "pressure.svg", observe::log_log_svg(plot));
         example::write_pictures(own, simulator.snapshot(), -60.0, 25.0);
-        example::write_summary(own, report, audit, 1.0, {{"exponent", observe::fitted_order(plot.lines.back().points)}});
+        const observe::JsonObject summary = example::write_summary(own, report, audit, 1.0, {{"exponent", observe::fitted_order(plot.lines.back().points)}});
+        example::write_report(own, "dense_mat", summary, simulator.snapshot());
     }
     return converged;
 }

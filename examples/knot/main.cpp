@@ -2,6 +2,7 @@
 // A knot is tied in a straight rod, comes to rest and is drawn tight; prints the pull beside that of loose knots.
 //   knot SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
@@ -94,8 +95,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const knot::KnotState state = knot::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -90.0, 60.0);
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, {{"force", state.force}, {"force_of_loose_knots", loose(state)}, {"shortening", state.shortening},
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"force", state.force}, {"force_of_loose_knots", loose(state)}, {"shortening", state.shortening},
                            {"radius_over_loop_radius", 2.0 * std::numbers::pi * radius / state.shortening}, {"imbalance", state.imbalance}});
+    example::write_report(output, "knot", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 

@@ -2,6 +2,7 @@
 // Random fibres in a box are compacted by a plate; prints pressure and contacts by volume fraction, beside those of theory.
 //   mat SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
@@ -101,8 +102,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const mat::MatState state = mat::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 25.0);
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, {{"volume_fraction", state.volume_fraction}, {"pressure", state.pressure}, {"lower_pressure", state.lower_pressure},
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"volume_fraction", state.volume_fraction}, {"pressure", state.pressure}, {"lower_pressure", state.lower_pressure},
                            {"contacts_per_fibre", state.contacts_per_fibre}, {"contacts_without_bulk", state.contacts_without_bulk}});
+    example::write_report(output, "mat", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 

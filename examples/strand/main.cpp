@@ -3,6 +3,7 @@
 // force and torque.
 //   strand SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
@@ -65,7 +66,8 @@ bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters&
                                      {"force_over_metal_stiffness_and_strain", state.force / (parameters.metal_stiffness() * given.strain)}});
     figures.insert(figures.end(), {{"external_work", report.energy.external}, {"dissipated", report.energy.dissipated}, {"energy_error", report.energy.error()}});
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, figures);
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, figures);
+    example::write_report(output, "strand", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 

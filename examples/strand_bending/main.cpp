@@ -3,6 +3,7 @@
 // wires may yield: [material.law] kind = "wire".
 //   strand_bending SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/with_law.hpp>
@@ -76,13 +77,14 @@ bool bend(const Asked& asked, const std::vector<typename beam::With<beam::Direct
     const strand::BendingState state = strand::measure_bending(simulator, parameters, asked.bending);
     example::write_pictures(output, simulator.snapshot(), -90.0, 10.0);
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, {{"wires", static_cast<double>(parameters.wires())}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"wires", static_cast<double>(parameters.wires())}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
                            {"length_over_radius", parameters.length / radius}, {"angle_deg", state.angle * 180.0 / std::numbers::pi},
                            {"moment", state.moment}, {"moment_at_plate", state.at_plate},
                            {"moment_of_loose_wires", strand::loose_stiffness(parameters) * state.angle / parameters.length},
                            {"moment_of_a_solid", strand::solid_stiffness(parameters) * state.angle / parameters.length},
                            {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius},
                            {"lost_in_the_wires", report.energy.lost}, {"dissipated", report.energy.dissipated}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()}});
+    example::write_report(output, "strand_bending", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 

@@ -239,5 +239,16 @@ inline std::string report_page(const std::filesystem::path& folder, const Report
 inline void write_report(const std::filesystem::path& folder, const ReportPage& page, const observe::Snapshot& snapshot) {
     observe::write_file(folder / "report.html", report_page(folder, page, snapshot));
 }
+/// The same with what the summary says before the counts of iterations shown first.
+template <class Output>
+void write_report(const Output& output, const char* program, const observe::JsonObject& summary, const observe::Snapshot& snapshot) {
+    ReportPage page{program, output.unit, summary, {}, {}};
+    for (const auto& [key, value] : summary.members()) {
+        if (key == "increments") break;
+        if (key != "reason" && value.find_first_of("{[") == std::string::npos) page.foremost.push_back(key);
+    }
+    page.foremost.push_back("wall_seconds");
+    write_report(output.folder, page, snapshot);
+}
 
 }  // namespace example

@@ -3,6 +3,7 @@
 // flatten where isotropic ones would not. Prints the load a unit of length, and that of the closed form.
 //   tow SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/with_law.hpp>
@@ -93,7 +94,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const simulation::Report report = simulator.run(loading, recorder);
     example::write_pictures(output, simulator.snapshot(), -60.0, 25.0);
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, {{"line_load", line_load()}, {"line_load_of_sections", closed(1.0)}, {"section_modulus", material.section_modulus()}, {"energy_error", report.energy.error()}, {"external_work", report.energy.external}});
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"line_load", line_load()}, {"line_load_of_sections", closed(1.0)}, {"section_modulus", material.section_modulus()}, {"energy_error", report.energy.error()}, {"external_work", report.energy.external}});
+    example::write_report(output, "tow", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 

@@ -2,6 +2,7 @@
 // Two straight rods side by side are pulled and wound around each other; prints the torque beside that of Kirchhoff's helices.
 //   two_ply SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
@@ -80,9 +81,10 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const two_ply::TwoPlyState state = two_ply::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 15.0, std::pair{Index{2}, 0.5 * parameters.length});
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, {{"torque", state.torque}, {"torque_of_helices", theory(state).torque},
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"torque", state.torque}, {"torque_of_helices", theory(state).torque},
                            {"helix_angle_deg", state.helix_angle * 180.0 / std::numbers::pi}, {"line_load", state.line_load},
                            {"line_load_of_helices", theory(state).line_load}});
+    example::write_report(output, "two_ply", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 
