@@ -130,6 +130,14 @@ refuses 'README.md#me: there is no such heading' sh "$checks/links.sh" project
 printf '<!-- from code.cpp -->\n```\none\nthree\n```\n' | page
 refuses 'docs/page.md:2: the code is not that of code.cpp' sh "$checks/links.sh" project
 
+# Messages that are explained are said by something.
+mkdir -p project/docs/how-to project/include project/examples
+echo 'const char* said = "the run has stopped" + at;' > project/include/one.hpp
+echo '### `the run has stopped ... here`' > project/docs/how-to/messages.md
+passes sh "$checks/messages.sh" project
+echo '### `the run has ended at ...`' > project/docs/how-to/messages.md
+refuses 'explains "the run has ended at", which nothing says' sh "$checks/messages.sh" project
+
 # Programs that take all, that say nothing of use, and that leave a folder behind.
 echo '[knot]' > knot.toml
 program() {
