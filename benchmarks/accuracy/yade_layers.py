@@ -15,7 +15,7 @@ radius, length, pitch, young, density = 0.0201, 1.2, 0.12, 7300.0, 1.0
 
 O.engines = [
     ForceResetter(),
-    # Pairs within a layer are left out. Elements should be longer than a diameter all the same: docs/accuracy.md.
+    # Pairs within a layer are left out. Elements should be longer than a diameter all the same: docs/evidence/accuracy.md.
     InsertionSortCollider([Bo1_GridConnection_Aabb()], verletDist=0.5 * radius, avoidSelfInteractionMask=6),
     InteractionLoop(
         [Ig2_GridNode_GridNode_GridNodeGeom6D(), Ig2_GridConnection_GridConnection_GridCoGridCoGeom()],

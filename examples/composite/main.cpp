@@ -78,7 +78,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     composite::write_curve(output, end);
     composite::write_pictures(output, simulator.snapshot(), fabric);
     const simulation::Audit audit = example::audit(output, simulator, cloth::smallest_radius(fabric));
-    composite::write_summary(output, simulator, report, audit, end, cloth::smallest_radius(fabric));
+    const observe::JsonObject summary = composite::write_summary(output, simulator, report, audit, end, cloth::smallest_radius(fabric));
+    example::write_report(output, "composite", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 

@@ -3,7 +3,7 @@
 /// @file What a run of a composite writes beside the table of increments: curve, pictures, summary.
 
 #include "../support/example.hpp"
-#include "../support/table.hpp"
+#include "../support/report_page.hpp"
 #include "../weave/output.hpp"
 
 #include <fibrant/compositions/composite/composite.hpp>
@@ -94,13 +94,13 @@ inline void write_pictures(const example::Output& output, const observe::Snapsho
 
 /// summary.json
 template <class Simulator>
-void write_summary(const example::Output& output, const Simulator& simulator, const fibrant::simulation::Report& report,
-                   const fibrant::simulation::Audit& audit, const CurvePoint& point, double radius) {
+observe::JsonObject write_summary(const example::Output& output, const Simulator& simulator, const fibrant::simulation::Report& report,
+                                  const fibrant::simulation::Audit& audit, const CurvePoint& point, double radius) {
     const auto& solid = simulator.equilibrium().solid();
     const auto start = std::find_if(report.increments.begin(), report.increments.end(), [](const auto& increment) { return increment.stage == "load"; });
     const fibrant::simulation::EnergyBalance none, &before = start == report.increments.begin() || report.increments.empty() ? none : (start - 1)->energy;
     const auto number = [](auto value) { return static_cast<double>(value); };
-    example::write_summary(output, report, audit, radius, {{"fibres", number(simulator.mesh().fibre_count())},
+    return example::write_summary(output, report, audit, radius, {{"fibres", number(simulator.mesh().fibre_count())},
                            {"unknowns", number(simulator.state().size())}, {"solid_unknowns", number(3 * solid.nodes())},
                            {"cells", number(solid.cells())}, {"bonds", number(solid.bonds().size())}, {point.x_name, point.x}, {point.y_name, point.y},
                            {"search_seconds", report.seconds[0]}, {"contact_seconds", report.seconds[1]}, {"assembly_seconds", report.seconds[2]},

@@ -33,46 +33,46 @@ inline Scene read_scene(example::SceneReader& file) {
     bool clip = true;
     const auto keys = [&] {
         file.require("matrix", "young_modulus", matrix.material.young_modulus, example::positive(), "force/length^2",
-                     "of the matrix");
-        file.require("matrix", "poisson_ratio", matrix.material.poisson_ratio, example::poisson_ratio(), "1", "of the matrix");
-        file.require("matrix", "cover", matrix.cover, example::positive(), "length", "of matrix beyond the outermost fibre");
-        file.require("matrix", "cells_along", matrix.cells_along, example::between(1, 2000), "along the warp");
+                     "Young's modulus of the matrix");
+        file.require("matrix", "poisson_ratio", matrix.material.poisson_ratio, example::poisson_ratio(), "1", "Poisson's ratio of the matrix");
+        file.require("matrix", "cover", matrix.cover, example::positive(), "length", "thickness of matrix beyond the outermost fibre");
+        file.require("matrix", "cells_along", matrix.cells_along, example::between(1, 2000), "cells along the warp");
         matrix.cells_across = matrix.cells_along;
         file.read("matrix", "cells_across", matrix.cells_across, example::between(1, 2000),
-                  "along the weft; as cells_along if left out");
+                  "cells along the weft; left out: cells_along");
         file.read("matrix", "through", matrix.through, example::between(1, 100), "cells through each layer");
         file.read("matrix", "grading", matrix.grading, example::between(0.01, 100.0), "1",
                   "height of the outermost cell over that of the innermost");
-        file.read("matrix", "smoothing", matrix.smoothing, example::between(0, 1000), "passes over the inner faces");
+        file.read("matrix", "smoothing", matrix.smoothing, example::between(0, 1000), "smoothing passes over the inner faces");
         file.read("matrix", "penetration_depth_over_radius", matrix.penetration_depth_over_radius, example::between(0.0, 1e3),
-                  "1", "of the inner faces below the fibres' surface");
+                  "1", "how far the inner faces reach below the surface of the fibres, over the radius");
         file.read("matrix", "clearance_over_radius", matrix.clearance_over_radius, example::above(0.0, 1e3), "1",
-                  "between the inner faces");
+                  "least distance of the inner faces, over the radius");
         file.read("matrix", "least_thickness_over_cover", matrix.least_thickness_over_cover, example::above(0.0, 1.0), "1",
-                  "of a layer");
+                  "least thickness of a layer, over the cover");
         file.read("matrix", "bonding_factor", matrix.bonding_factor, example::above(0.0, 1e9), "1",
-                  "on the stiffness of the bonds");
+                  "factor on the stiffness of bonds of centrelines");
         file.read("matrix", "section_factor", matrix.section_factor, example::between(0.0, 1e9), "1",
-                  "on that of bonds of sections; 0: none");
+                  "factor on the stiffness of bonds of sections; 0: none");
         file.read("matrix", "lower_fibres", matrix.lower_fibres,
-                  "fibres' modulus is lowered by that of the matrix, which fills their place too");
-        file.read("matrix", "sides", sides, {"both", "upper", "lower"}, "of the fabric on which there is matrix");
-        file.read("matrix", "clip", clip, "inner faces that would cross are clipped; otherwise the scene is refused");
+                  "lower the fibres' modulus by that of the matrix, which fills their place too");
+        file.read("matrix", "sides", sides, {"both", "upper", "lower"}, "sides of the fabric on which there is matrix");
+        file.read("matrix", "clip", clip, "clip inner faces that would cross; false: refuse the scene");
         file.read("load", "case", kind, {"tension", "shear", "bending", "twisting"},
                   "what the two edges across the warp do to each other");
-        file.read("load", "strain", load.strain, example::inside(-0.9, 10.0), "1", "of tension, or angle of shear");
+        file.read("load", "strain", load.strain, example::inside(-0.9, 10.0), "1", "strain in tension, or angle of shear");
         file.read("load", "angle_deg", load.angle_deg, example::between(-180.0, 180.0), "degree",
-                  "between the edges in bending and twisting");
-        file.read("load", "increments", load.increments, example::increments(), "of the load");
-        file.read("load", "looseness", load.looseness, example::looseness(), "1", "on the tolerances of passes");
+                  "angle between the edges in bending and twisting");
+        file.read("load", "increments", load.increments, example::increments(), "increments of the load");
+        file.read("load", "looseness", load.looseness, example::looseness(), "1", "factor on the tolerances of passes");
         file.read("load", "rest_damping", load.rest_damping, example::between(0.0, 1e6), "1",
-                  "of springs to last places until the fabric is at rest between the layers");
+                  "damping until the fabric is at rest between the layers");
         file.read("load", "rest_share", load.rest_share, example::inside(0.0, 1.0), "1",
-                  "of the forces that they may hold there");
-        file.read("load", "damping", load.damping, example::between(0.0, 1e6), "1", "of the same springs under load");
+                  "part of the forces that damping may hold there");
+        file.read("load", "damping", load.damping, example::between(0.0, 1e6), "1", "damping under load");
         file.read("load", "patches_across", load.patches_across, example::between(0, 10000),
-                  "of a layer's face, whose means the edges take along; 0: as many as warp tows");
-        file.read("load", "one_by_one", load.one_by_one, "edges take along every fibre end, and not the mean of each tow's");
+                  "patches of a layer's edge face, whose means the edge moves; 0: as many as warp tows");
+        file.read("load", "one_by_one", load.one_by_one, "edges move every fibre end; false: the mean of each tow");
         file.read("load", "driven", load.driven, "edges follow rigid motions node by node");
         file.read("load", "settled", scene.settled, example::any_text(),
                   "checkpoint of the weave's settled state; empty: settled.bin in the folder of results");

@@ -3,6 +3,7 @@
 // rest.
 //   dense_mat SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
@@ -46,29 +47,29 @@ bool solve(example::SceneReader& file, example::Output& output) {
     mat::LevelParameters levels;
     double fraction = core::unset;
     Index seed = 1, seeds = 1;
-    file.require("mat", "length", parameters.length, example::between(2.0, 1e5), "radius", "of a fibre");
-    file.require("mat", "width", parameters.width, example::between(3.0, 1e5), "radius", "of the box along x and y");
-    file.require("mat", "fibres", parameters.fibres, example::between(1, 1000000), "lengths of a fibre in the box");
-    file.require("mat", "volume_fraction", fraction, example::inside(0.0, 0.9), "1", "of fibres in the box, to begin with");
+    file.require("mat", "length", parameters.length, example::between(2.0, 1e5), "radius", "length of a fibre");
+    file.require("mat", "width", parameters.width, example::between(3.0, 1e5), "radius", "width of the box along x and y");
+    file.require("mat", "fibres", parameters.fibres, example::between(1, 1000000), "how many lengths of a fibre are in the box");
+    file.require("mat", "volume_fraction", fraction, example::inside(0.0, 0.9), "1", "volume fraction of fibres in the box at the start");
     file.read("mat", "tilt_deg", parameters.tilt_deg, example::between(0.0, 90.0), "degree",
-              "greatest angle to the plane; 90: all directions");
-    file.read("mat", "elements", parameters.elements, example::between(1, 10000), "a length of fibre");
-    file.read("mat", "seed", seed, example::between(0, 1e15), "of the random numbers");
+              "greatest angle of a fibre to the plane; 90: all directions");
+    file.read("mat", "elements", parameters.elements, example::between(1, 10000), "elements along a length of fibre");
+    file.read("mat", "seed", seed, example::between(0, 1e15), "seed of the random numbers");
     file.read("mat", "seeds", seeds, example::between(1, 1000),
-              "so many mats, one after the other; each then has a folder of its own");
+              "number of mats, one after the other; more than one: each has a folder of its own");
     file.read("contact", "friction_coefficient", levels.friction_coefficient, example::friction(), "1",
-              "of fibres on each other, once they are parted");
+              "coefficient of friction, once fibres have parted");
     file.read("contact", "allowed_penetration_over_radius", levels.allowed_penetration, example::depth_over_radius(), "1",
-              "to which the penalty is adapted");
+              "how deep a contact may be, over the radius");
     file.read("contact", "softest_over_section", levels.softest, example::above(0.0, 1.0), "1",
-              "least stiffness of a contact, of that of a section");
+              "least stiffness of a contact, over that of a section");
     file.require("levels", "last", levels.last, example::inside(0.0, 0.9), "1", "volume fraction that no level exceeds");
-    file.read("levels", "ratio", levels.ratio, {.low = 1.001, .high = 10.0}, "1", "of the volume fractions of two levels");
-    file.read("levels", "step", levels.step, example::between(1e-4, 1e3), "radius", "of the plate in an increment");
+    file.read("levels", "ratio", levels.ratio, {.low = 1.001, .high = 10.0}, "1", "volume fraction of a level over that of the one before");
+    file.read("levels", "step", levels.step, example::between(1e-4, 1e3), "radius", "motion of the plate in an increment");
     file.read("levels", "damping", levels.damping, example::above(0.0, 1e6), "1",
-              "springs to where the mat's mean motion takes a fibre, over what bends a tenth of it");
+              "stiffness of the damping, over what bends a tenth of a fibre; it moves on with the mean motion of the mat");
     file.read("levels", "rest_share", levels.rest_share, example::inside(0.0, 1.0), "1",
-              "at rest, springs hold no more than this of the forces,");
+              "a level is at rest when damping holds less than this part of the forces,");
     file.read("levels", "rest_increments", levels.rest_increments, example::between(1, 100000),
               "or so many increments have gone by");
     file.complete();
@@ -112,7 +113,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
         plot.lines.push_back(write_levels(table, parameters.seed, record.levels()));
         if (!plot.lines.back().points.empty()) observe::write_file(output.folder / "pressure.svg", observe::log_log_svg(plot));
         example::write_pictures(own, simulator.snapshot(), -60.0, 25.0);
-        example::write_summary(own, report, audit, 1.0, {{"exponent", observe::fitted_order(plot.lines.back().points)}});
+        const observe::JsonObject summary = example::write_summary(own, report, audit, 1.0, {{"exponent", observe::fitted_order(plot.lines.back().points)}});
+        example::write_report(own, "dense_mat", summary, simulator.snapshot());
     }
     return converged;
 }

@@ -57,16 +57,16 @@ inline fibrant::simulation::ProgrammeStage read_stage(SceneReader& file, const s
     fibrant::simulation::ProgrammeStage stage;
     stage.name = name;
     std::vector<std::string> ramps;
-    file.require(name, "increments", stage.increments, example::between(1, 100000), "of each ramp");
-    file.read(name, "ramps", ramps, "texts \"channel = value\": where they go");
-    file.read(name, "cycles", stage.cycles, example::between(0, 10000), "times there and back again; 0: there, and no further");
-    file.read(name, "back", stage.back, example::between(-1e6, 1e6), "1", "where each cycle ends");
-    file.read(name, "rest", stage.rest, "goes on until forces balance, after its ramps");
+    file.require(name, "increments", stage.increments, example::between(1, 100000), "increments of each ramp");
+    file.read(name, "ramps", ramps, "what is driven, as texts \"channel = value\"");
+    file.read(name, "cycles", stage.cycles, example::between(0, 10000), "how many times there and back; 0: there only");
+    file.read(name, "back", stage.back, example::between(-1e6, 1e6), "1", "value at which each cycle ends");
+    file.read(name, "rest", stage.rest, "after its ramps, go on until the fabric is at rest");
     file.read(name, "damping", stage.damping, example::between(0.0, 1e6), "1",
-              "springs to last places, over the stiffness that the tension of settling gave a node");
-    file.read(name, "looseness", stage.looseness, example::looseness(), "1", "on the tolerances of passes");
+              "stiffness of the damping, over that which the tension of settling gave a node");
+    file.read(name, "looseness", stage.looseness, example::looseness(), "1", "factor on the tolerances of passes");
     double coefficient = fibrant::core::unset;
-    if (file.read(name, "friction_coefficient", coefficient, example::friction(), "1", "from here on; left out: as before"))
+    if (file.read(name, "friction_coefficient", coefficient, example::friction(), "1", "coefficient of friction from this stage on; left out: as before"))
         stage.friction = coefficient;
     for (const std::string& text : ramps) stage.ramps.push_back(read_ramp(file, name, text));
     return stage;
@@ -77,29 +77,29 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     LoadFile load;
     std::string scene;
     std::vector<std::string> set, stages;
-    file.require("settled", "scene", scene, example::any_text(), "the scene that was settled, from the folder of this file");
-    file.read("settled", "set", set, "values that were replaced then");
-    file.require("settled", "checkpoint", load.checkpoint, example::any_text(), "what it left, from the working folder");
+    file.require("settled", "scene", scene, example::any_text(), "scene that was settled, from the folder of this file");
+    file.read("settled", "set", set, "values that were given by --set then");
+    file.require("settled", "checkpoint", load.checkpoint, example::any_text(), "checkpoint that it left, from the working folder");
     for (const char* key : {"scene", "set", "checkpoint"}) file.is_a_place("settled", key);
-    file.read("settled", "parts", load.parts, example::between(1, 8), "that each element is cut into");
+    file.read("settled", "parts", load.parts, example::between(1, 8), "how many parts each element is cut into");
     file.require("loading", "case", load.name, cloth::load_case_names(), "what is done to the fabric");
     std::string ends = cloth::tow_ends_names().front();
     file.read("loading", "tow_ends", ends, cloth::tow_ends_names(), "what tow ends do along their edge");
-    file.require("loading", "stages", stages, "a section for each, in this order");
+    file.require("loading", "stages", stages, "names of the stages, in order; each has a section");
     auto& programme = load.programme;
     double friction = fibrant::core::unset, rest_motion = fibrant::core::unset, rest_share = fibrant::core::unset, largest = 1.0,
            calm = 0.15;
-    file.read("loading", "halvings", programme.halvings, example::between(0, 16), "of all increments of ramps");
+    file.read("loading", "halvings", programme.halvings, example::between(0, 16), "how many times all increments of ramps are halved");
     file.read("loading", "friction_coefficient", friction, example::friction(), "1",
-              "from the first stage on; as the settled scene has it if left out");
+              "coefficient of friction from the first stage on; left out: as in the settled scene");
     file.read("loading", "rest_motion_over_radius", rest_motion, example::above(0.0, 10.0), "1",
-              "as the settled scene has it if left out");
-    file.read("loading", "rest_share", rest_share, example::above(0.0, 0.01), "1", "as the settled scene has it if left out");
-    file.read("loading", "largest_displacement_over_radius", largest, example::above(0.0, 1e6), "1", "of an increment");
+              "as settle.rest_motion_over_radius; left out: as in the settled scene");
+    file.read("loading", "rest_share", rest_share, example::above(0.0, 0.01), "1", "as settle.rest_share; left out: as in the settled scene");
+    file.read("loading", "largest_displacement_over_radius", largest, example::above(0.0, 1e6), "1", "an increment in which a fibre moves further is given up, over the radius");
     file.read("loading", "calm_over_radius", calm, example::above(0.0, 1e6), "1",
-              "greatest displacement of an increment after which damping falls");
+              "damping falls after an increment in which nothing moved further, over the radius");
     file.read("contact", "points_per_element", load.points_per_element, example::between(0, 100),
-              "contact points; 0: as in settling");
+              "contact points along an element; 0: as in settling");
     auto& iteration = load.scene.iteration;
     std::string solver = load.scene.linear_solver;
     fibrant::solver::IterationParameters told;
@@ -107,7 +107,7 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     told.overshoot = 0.5;
     weave::read_iteration(file, solver, told);
     file.read("solver", "overshoot", told.overshoot, {.low = 0.0, .high = 1e6, .above = true, .endless = true}, "1",
-              "a step at whose end the energy rises by more than this part of the slope at which it fell is cut");
+              "Newton's step is cut where the energy rises at its end by more than this part of the slope at which it fell");
     if (file.describes()) read_stage(file, "STAGE");
     const std::vector<std::string> known{"settled", "loading", "contact", "solver",   "output",
                                          "fabric",  "warp",    "weft",    "material", "settle"};

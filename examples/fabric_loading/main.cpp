@@ -89,7 +89,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"crimp_before", before.warp}, {"crimp_after", after.warp}, {"dissipated", report.energy.dissipated}, {"damped", report.energy.damped}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()}})
         figures.emplace_back(name, value);
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, figures);
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, figures);
+    example::write_report(output, "fabric_loading", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 

@@ -3,7 +3,7 @@
 /// @file What a load case writes: its curve, the fabric before and after, contact statistics and histograms.
 
 #include "../support/example.hpp"
-#include "../support/table.hpp"
+#include "../support/report_page.hpp"
 #include "../weave/output.hpp"
 
 #include <fibrant/compositions/weave/fibre_figures.hpp>

@@ -2,6 +2,7 @@
 // A knot is tied in a straight rod, comes to rest and is drawn tight; prints the pull beside that of loose knots.
 //   knot SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
@@ -29,17 +30,17 @@ bool solve(example::SceneReader& file, example::Output& output) {
     knot::KnotParameters parameters;
     Index crossings = 3, increments = 20;
     double drawn = 0.0, mu = 0.0;
-    file.require("knot", "radius", parameters.radius, example::positive(), "length", "of the rod");
-    file.require("knot", "loop_radius", parameters.loop_radius, example::positive(), "length", "that the knot is tied with");
-    file.require("knot", "tail", parameters.tail, example::positive(), "length", "on each side");
+    file.require("knot", "radius", parameters.radius, example::positive(), "length", "radius of the rod");
+    file.require("knot", "loop_radius", parameters.loop_radius, example::positive(), "length", "radius of the loop in which the knot is tied");
+    file.require("knot", "tail", parameters.tail, example::positive(), "length", "length of the rod beyond the knot, on each side");
     file.read("knot", "crossings", crossings,
               {.low = 3, .high = 15, .said = "an odd number from 3 to 15", .values = {3, 5, 7, 9, 11, 13, 15}},
-              "of the braid: 3 overhand, 5 double overhand");
-    file.read("knot", "elements", parameters.elements, example::between(16, 100000), "quadratic elements");
+              "crossings of the knot: 3 overhand, 5 double overhand");
+    file.read("knot", "elements", parameters.elements, example::between(16, 100000), "elements along the rod");
     example::read_material(file, "material", parameters.material);
-    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "of the rod on itself");
-    file.read("loading", "draw", drawn, example::not_negative(), "length", "by which one end is drawn out");
-    file.read("loading", "increments", increments, example::increments(), "of the drawing");
+    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "coefficient of friction of the rod on itself");
+    file.read("loading", "draw", drawn, example::not_negative(), "length", "length by which one end is drawn out");
+    file.read("loading", "increments", increments, example::increments(), "increments of the drawing");
     file.complete();
     file.check(parameters.loop_radius > 20.0 * parameters.radius, "knot", "loop_radius",
                "> 20 knot.radius = " + core::text(20.0 * parameters.radius));
@@ -94,8 +95,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const knot::KnotState state = knot::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -90.0, 60.0);
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, {{"force", state.force}, {"force_of_loose_knots", loose(state)}, {"shortening", state.shortening},
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"force", state.force}, {"force_of_loose_knots", loose(state)}, {"shortening", state.shortening},
                            {"radius_over_loop_radius", 2.0 * std::numbers::pi * radius / state.shortening}, {"imbalance", state.imbalance}});
+    example::write_report(output, "knot", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 

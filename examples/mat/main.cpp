@@ -2,6 +2,7 @@
 // Random fibres in a box are compacted by a plate; prints pressure and contacts by volume fraction, beside those of theory.
 //   mat SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
@@ -30,28 +31,28 @@ bool solve(example::SceneReader& file, example::Output& output) {
     mat::MatParameters parameters;
     mat::PressParameters press;
     Index seed = 1;
-    file.require("mat", "radius", parameters.radius, example::positive(), "length", "of a fibre");
-    file.require("mat", "length", parameters.length, example::positive(), "length", "of a fibre");
-    file.require("mat", "width", parameters.width, example::positive(), "length", "of the box along x and y");
-    file.require("mat", "height", parameters.height, example::positive(), "length", "of the box");
-    file.require("mat", "fibres", parameters.fibres, example::between(1, 1000000), "in the box");
+    file.require("mat", "radius", parameters.radius, example::positive(), "length", "radius of a fibre");
+    file.require("mat", "length", parameters.length, example::positive(), "length", "length of a fibre");
+    file.require("mat", "width", parameters.width, example::positive(), "length", "width of the box along x and y");
+    file.require("mat", "height", parameters.height, example::positive(), "length", "height of the box at the start");
+    file.require("mat", "fibres", parameters.fibres, example::between(1, 1000000), "fibres in the box");
     file.read("mat", "bend_deg", parameters.bend_deg, example::between(0.0, 180.0), "degree",
-              "by which fibres turn from end to end, at rest");
+              "angle by which fibres at rest turn from end to end");
     file.read("mat", "tilt_deg", parameters.tilt_deg, example::between(0.0, 90.0), "degree",
-              "greatest angle to the plane; 90: all directions");
-    file.read("mat", "elements", parameters.elements, example::between(1, 10000), "quadratic elements a fibre");
-    file.read("mat", "seed", seed, example::between(0, 1e15), "of the random numbers");
+              "greatest angle of a fibre to the plane; 90: all directions");
+    file.read("mat", "elements", parameters.elements, example::between(1, 10000), "elements along a fibre");
+    file.read("mat", "seed", seed, example::between(0, 1e15), "seed of the random numbers");
     example::read_material(file, "material", parameters.material);
-    file.read("contact", "friction_coefficient", press.friction_coefficient, example::friction(), "1", "of fibres on each other");
+    file.read("contact", "friction_coefficient", press.friction_coefficient, example::friction(), "1", "coefficient of friction");
     file.read("contact", "allowed_penetration_over_radius", press.allowed_penetration, example::depth_over_radius(), "1",
-              "to which the penalty is adapted");
-    file.require("loading", "height", press.height, example::positive(), "length", "to which the mat is compacted");
-    file.read("loading", "increments", press.increments, example::increments(), "of the way");
+              "how deep a contact may be, over the radius");
+    file.require("loading", "height", press.height, example::positive(), "length", "height to which the mat is compacted");
+    file.read("loading", "increments", press.increments, example::increments(), "increments of the pressing");
     file.read("loading", "damping", press.damping, example::above(0.0, 1e6), "1",
-              "springs to where fibres were, over what bends a tenth of a fibre");
-    file.read("loading", "looseness", press.looseness, example::looseness(), "1", "on the tolerances of passes");
+              "stiffness of the damping, over what bends a tenth of a fibre");
+    file.read("loading", "looseness", press.looseness, example::looseness(), "1", "factor on the tolerances of passes");
     file.read("solver", "overshoot", press.overshoot, {.low = 0.0, .high = 1e6, .above = true, .endless = true}, "1",
-              "of the energy's slope, at which a step of Newton's method is cut");
+              "Newton's step is cut where the energy rises at its end by more than this part of the slope at which it fell");
     file.complete();
     file.check(2.0 * parameters.radius < parameters.width, "mat", "width",
                "> 2 mat.radius = " + core::text(2.0 * parameters.radius));
@@ -101,8 +102,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const mat::MatState state = mat::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 25.0);
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, {{"volume_fraction", state.volume_fraction}, {"pressure", state.pressure}, {"lower_pressure", state.lower_pressure},
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"volume_fraction", state.volume_fraction}, {"pressure", state.pressure}, {"lower_pressure", state.lower_pressure},
                            {"contacts_per_fibre", state.contacts_per_fibre}, {"contacts_without_bulk", state.contacts_without_bulk}});
+    example::write_report(output, "mat", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 

@@ -3,6 +3,7 @@
 // force and torque.
 //   strand SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
@@ -65,7 +66,8 @@ bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters&
                                      {"force_over_metal_stiffness_and_strain", state.force / (parameters.metal_stiffness() * given.strain)}});
     figures.insert(figures.end(), {{"external_work", report.energy.external}, {"dissipated", report.energy.dissipated}, {"energy_error", report.energy.error()}});
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, figures);
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, figures);
+    example::write_report(output, "strand", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 
@@ -74,36 +76,36 @@ bool solve(example::SceneReader& file, example::Output& output) {
     Index wires = 7;
     double core_radius = 0.0, rope_lay = 0.0, apart = 0.0, overlap = 0.0;
     bool alternate = true;
-    file.require("strand", "wires", wires, example::wires(), "of a strand: a core and layers of 6, 12, 18, 24, 30");
-    file.require("strand", "radius", given.radius, example::positive(), "length", "of the wires");
+    file.require("strand", "wires", wires, example::wires(), "number of wires: a core and layers of 6, 12, 18, 24, 30");
+    file.require("strand", "radius", given.radius, example::positive(), "length", "radius of the wires");
     file.require("strand", "lay_angle_deg", given.lay, example::inside(-80.0, 80.0), "degree",
-                 "of the wires to the axis, positive is right-handed");
-    file.require("strand", "length", given.length, example::positive(), "length", "along the axis");
+                 "angle of the wires to the axis; positive is right-handed");
+    file.require("strand", "length", given.length, example::positive(), "length", "length along the axis");
     file.read("strand", "alternate", alternate, "every other layer has the other hand");
     file.read("strand", "core_radius", core_radius, example::not_negative(), "length",
-              "of the wire in the middle; 0: as thin as leaves the others room");
-    file.read("strand", "elements", given.elements, example::between(2, 10000), "quadratic elements a wire");
+              "radius of the wire in the middle; 0: as thin as leaves the others room");
+    file.read("strand", "elements", given.elements, example::between(2, 10000), "elements along a wire");
     file.read("rope", "lay_angle_deg", rope_lay, example::between(-45.0, 45.0), "degree",
-              "of the strands to the axis; 0: one strand");
-    file.read("rope", "apart_over_radius", apart, example::between(0.0, 1.0), "1", "between neighbouring strands");
+              "angle of the strands to the axis; 0: one strand");
+    file.read("rope", "apart_over_radius", apart, example::between(0.0, 1.0), "1", "distance between neighbouring strands, over the radius");
     file.read("rope", "overlap_over_radius", overlap, example::between(0.0, 0.5), "1",
-              "by which wires may be in each other at the start");
+              "how deep wires may be in each other at the start, over the radius");
     example::read_material(file, "material", given.material);
-    file.read("contact", "friction_coefficient", given.mu, example::friction(), "1", "of wires on each other");
+    file.read("contact", "friction_coefficient", given.mu, example::friction(), "1", "coefficient of friction");
     file.read("contact", "reversible_displacement_over_radius", given.reversible, example::above(0.0, 1.0), "1",
-              "of friction, before it slides");
+              "slip up to which friction is elastic, over the radius");
     file.read("contact", "largest_penetration_over_radius", given.sinking, example::depth_over_radius(), "1",
-              "that multipliers leave");
+              "penetration that multipliers leave, over the radius");
     file.read("contact", "allowed_penetration_over_radius", given.allowed, example::depth_over_radius(), "1",
-              "to which the penalty is adapted");
+              "how deep a contact may be, over the radius");
     file.read("contact", "regularisation_over_allowed", given.depth, example::above(0.0, 1.0), "1",
-              "over which the penalty sets in");
+              "depth up to which the penalty is quadratic, over the allowed penetration");
     file.read("contact", "tolerance_over_radius", given.tolerance, example::above(0.0, 0.1), "1",
               "of contact passes; a tenth of it of normals, a hundredth of Newton's steps");
-    file.read("loading", "strain", given.strain, example::inside(-0.5, 1.0), "1", "by which the strand is drawn");
+    file.read("loading", "strain", given.strain, example::inside(-0.5, 1.0), "1", "strain at the end");
     file.read("loading", "rotation", given.rotation, example::any_number(), "radian/length",
-              "positive tightens a right-handed lay");
-    file.read("loading", "increments", given.increments, example::increments(), "of the loading");
+              "turn at the end; positive tightens a right-handed lay");
+    file.read("loading", "increments", given.increments, example::increments(), "increments of the load");
     file.complete();
     const bool roped = rope_lay != 0.0;
     if (roped && wires != 7) file.refuse("strand", "wires", "7 in a rope");

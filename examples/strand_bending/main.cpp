@@ -3,6 +3,7 @@
 // wires may yield: [material.law] kind = "wire".
 //   strand_bending SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/with_law.hpp>
@@ -76,13 +77,14 @@ bool bend(const Asked& asked, const std::vector<typename beam::With<beam::Direct
     const strand::BendingState state = strand::measure_bending(simulator, parameters, asked.bending);
     example::write_pictures(output, simulator.snapshot(), -90.0, 10.0);
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, {{"wires", static_cast<double>(parameters.wires())}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"wires", static_cast<double>(parameters.wires())}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
                            {"length_over_radius", parameters.length / radius}, {"angle_deg", state.angle * 180.0 / std::numbers::pi},
                            {"moment", state.moment}, {"moment_at_plate", state.at_plate},
                            {"moment_of_loose_wires", strand::loose_stiffness(parameters) * state.angle / parameters.length},
                            {"moment_of_a_solid", strand::solid_stiffness(parameters) * state.angle / parameters.length},
                            {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius},
                            {"lost_in_the_wires", report.energy.lost}, {"dissipated", report.energy.dissipated}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()}});
+    example::write_report(output, "strand_bending", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 
@@ -96,34 +98,34 @@ bool solve(example::SceneReader& file, example::Output& output) {
     std::string kind = "elastic";
     double back = core::unset;
     material::Wire::Parameters yielding;
-    file.require("strand", "wires", wires, example::wires(), "a core and layers of 6, 12, 18, 24, 30");
-    file.require("strand", "radius", radius, example::positive(), "length", "of the wires");
+    file.require("strand", "wires", wires, example::wires(), "number of wires: a core and layers of 6, 12, 18, 24, 30");
+    file.require("strand", "radius", radius, example::positive(), "length", "radius of the wires");
     file.require("strand", "lay_angle_deg", lay_angle, example::inside(-80.0, 80.0), "degree",
-                 "of the outer wires to the axis, positive is right-handed");
+                 "angle of the outer wires to the axis; positive is right-handed");
     file.read("strand", "lay", lay, {"equal_pitch", "equal_angle"},
               "all layers go round once on the same length, or at the same angle");
     file.read("strand", "alternate", alternate, "every other layer has the other hand");
     file.read("strand", "turns", turns, example::between(0.05, 100.0), "1",
-              "of the outer layer: the length of the strand, unless `length` says it");
-    file.read("strand", "length", length, example::not_negative(), "length", "of the strand; 0: as `turns` says");
+              "turns of the outer layer, which give the length of the strand unless `length` says it");
+    file.read("strand", "length", length, example::not_negative(), "length", "length of the strand; 0: as `turns` says");
     file.read("strand", "elements", elements, example::between(0, 10000),
-              "quadratic elements a wire; 0: sixteen a turn, and none longer than seven radii");
+              "elements along a wire; 0: sixteen a turn, and none longer than seven radii");
     example::read_material(file, "material", material);
-    file.read("material.law", "kind", kind, {"elastic", "wire"}, "of the section of the wires");
-    file.read("material.law", "yield_stress", yielding.yield_stress, example::positive(), "force/length^2", "of a wire");
+    file.read("material.law", "kind", kind, {"elastic", "wire"}, "how the wires behave");
+    file.read("material.law", "yield_stress", yielding.yield_stress, example::positive(), "force/length^2", "stress at which a wire yields");
     file.read("material.law", "hardening", yielding.hardening, example::not_negative(), "force/length^2",
               "slope of the yield stress over the plastic strain, kinematic");
-    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "of wires on each other");
+    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "coefficient of friction");
     file.read("contact", "reversible_displacement_over_radius", reversible, example::above(0.0, 1.0), "1",
-              "of friction, before it slides");
+              "slip up to which friction is elastic, over the radius");
     file.read("contact", "allowed_penetration_over_radius", depth, example::depth_over_radius(), "1",
-              "to which the penalty is adapted");
+              "how deep a contact may be, over the radius");
     file.read("loading", "anchor", anchor, {"both_plates", "near_plate"},
               "which plates hold every wire; elsewhere wires slide through");
-    file.read("loading", "strain", bending.strain, example::inside(-0.5, 1.0), "1", "by which the strand is drawn before");
-    file.read("loading", "angle_deg", angle, example::inside(-3600.0, 3600.0), "degree", "between the plates at the end");
-    file.read("loading", "back_to_deg", back, example::inside(-3600.0, 3600.0), "degree", "to which it is bent back, if given");
-    file.read("loading", "increments", increments, example::increments(), "of the bending");
+    file.read("loading", "strain", bending.strain, example::inside(-0.5, 1.0), "1", "strain by which the strand is drawn before it is bent");
+    file.read("loading", "angle_deg", angle, example::inside(-3600.0, 3600.0), "degree", "angle between the plates at the end");
+    file.read("loading", "back_to_deg", back, example::inside(-3600.0, 3600.0), "degree", "angle to which it is bent back; left out: not at all");
+    file.read("loading", "increments", increments, example::increments(), "increments of the bending");
     file.complete();
     file.check(kind == "elastic" || !std::isnan(yielding.yield_stress), "material.law", "yield_stress", "given, for kind = \"wire\"");
     file.check(kind == "wire" || !file.given("material.law", "yield_stress"), "material.law", "yield_stress", "left out, for kind = \"elastic\"");

@@ -160,14 +160,14 @@ int run(int argc, char** argv, const char* name, const char* description, const 
     try {
         if (!keys) require_folder(folder);
         SceneReader reader = keys ? SceneReader::of_keys() : SceneReader(scene, set);
-        reader.read("output", "paraview", output.paraview, "files for ParaView after each increment");
-        reader.read("output", "pictures", output.pictures, "pictures of the end");
-        reader.read("output", "unit", output.unit, any_text(), "of lengths, in pictures");
+        reader.read("output", "paraview", output.paraview, "write files for ParaView");
+        reader.read("output", "pictures", output.pictures, "write pictures of the end");
+        reader.read("output", "unit", output.unit, any_text(), "name of the unit of length, for pictures");
         reader.read("output", "deepest_over_radius", output.deepest_over_radius, above(0.0, 2.0), "1",
-                    "how deep fibres may be in each other at the end over the radius of the thinnest; left out: as deep as "
-                    "contact allows, and what its points may leave unseen");
+                    "how deep fibres may be in each other at the end, anywhere, over the radius; left out: as deep as contact "
+                    "may be, and what its points may leave unseen");
         Index wanted = 0;
-        reader.read("solver", "threads", wanted, between(0, 100000), "0: as many as the machine has; --threads goes first");
+        reader.read("solver", "threads", wanted, between(0, 100000), "number of threads; 0: as many as the machine has; --threads goes first");
         output.folder = folder, output.scene = scene;
         int count = threads_of(threads, "--threads");
         if (app.count("--threads") == 0) count = threads_of(std::to_string(wanted), scene + ": solver.threads");
@@ -278,7 +278,8 @@ fibrant::simulation::Audit audit(const Output& output, const Simulator& simulato
 
 /// summary.json: what every run says, and what `figures` adds.
 /// @param begin  what stands before it
-inline void write_summary(const Output& output, const fibrant::simulation::Report& report, const fibrant::simulation::Audit& audit, double radius,
+/// @returns what it wrote
+inline observe::JsonObject write_summary(const Output& output, const fibrant::simulation::Report& report, const fibrant::simulation::Audit& audit, double radius,
                           const std::vector<std::pair<std::string, double>>& figures, observe::JsonObject begin = {}) {
     observe::JsonObject& json = begin;
     json.add("converged", report.converged).add("audit_clean", audit.clean()).add("reason", report.reason);
@@ -302,6 +303,7 @@ inline void write_summary(const Output& output, const fibrant::simulation::Repor
         .add("version", FIBRANT_VERSION);
     observe::write_file(output.folder / "summary.json", json.text() + "\n");
     if (!output.quiet) std::printf("%s\n", json.text().c_str());
+    return json;
 }
 
 }  // namespace example

@@ -25,6 +25,8 @@ public:
             if (auto row = cells(line); row.size() == names_.size()) rows_.push_back(std::move(row));
     }
     const std::vector<std::string>& names() const noexcept { return names_; }
+    std::size_t rows() const noexcept { return rows_.size(); }
+    const std::string& cell(std::size_t row, std::size_t column) const { return rows_.at(row).at(column); }
     /// Place of a column; names().size() if there is none.
     std::size_t column(std::string_view name) const {
         return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());

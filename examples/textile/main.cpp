@@ -2,6 +2,7 @@
 // Settles a textile of any kind, braid, weave, knit, rope, net or mail, from the paths of its yarns, and audits what came of it.
 //   textile SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
 
@@ -44,9 +45,15 @@ bool solve(example::SceneReader& file, example::Output& output) {
         scene.textile, assembled, textile::cloth::lines_of(drawn), textile::cloth::lines_of(settled));
     textile::tell(scene.textile, topology);
     textile::write_tables(output.folder, scene.textile, assembled, settled);
-    textile::write_pictures(output, scene.textile, assembled, settled);
-    textile::write_summary(output, report, audit, topology, scene.textile, assembled, drawn, settled,
-                           simulator.mesh().layout().unknowns());
+    const observe::Snapshot coloured = textile::by_family(scene.textile, assembled, settled);
+    textile::write_pictures(output, scene.textile, coloured);
+    const observe::JsonObject summary = textile::write_summary(output, report, audit, topology, scene.textile, assembled, drawn, settled,
+                                                               simulator.mesh().layout().unknowns());
+    example::write_report(output.folder, {"textile", output.unit, summary, {},
+                                          {"textile", "converged", "audit_clean", "topology_clean", "yarns", "fibres", "crossings",
+                                           "right_crossings", "greatest_move_over_radius", "least_gap_over_radius",
+                                           "greatest_penetration_over_radius", "wall_seconds"}},
+                          coloured);
     return report.converged && audit.clean() && topology.clean();
 }
 

@@ -75,13 +75,16 @@ inline void write_tables(const std::filesystem::path& folder, const cloth::Texti
                        {"axis_z", crossing.axis.z()}});
 }
 
-/// view.svg and top.svg, a colour a yarn of one fibre, a family of others.
-inline void write_pictures(const example::Output& output, const cloth::Textile& textile, const cloth::Assembled& assembled,
-                           const observe::Snapshot& settled) {
+/// The same with families of yarns in the place of groups, for their colours.
+inline observe::Snapshot by_family(const cloth::Textile& textile, const cloth::Assembled& assembled, observe::Snapshot settled) {
+    for (std::size_t f = 0; f < settled.fibres.size(); ++f)
+        settled.fibres[f].group = textile.paths[fibrant::core::at(assembled.path_of[f])].family;
+    return settled;
+}
+
+/// view.svg and top.svg, a colour a family of yarns.
+inline void write_pictures(const example::Output& output, const cloth::Textile& textile, const observe::Snapshot& coloured) {
     if (!output.pictures) return;
-    observe::Snapshot coloured = settled;
-    for (std::size_t f = 0; f < coloured.fibres.size(); ++f)
-        coloured.fibres[f].group = textile.paths[fibrant::core::at(assembled.path_of[f])].family;
     observe::ViewParameters view;
     view.unit = output.unit, view.pieces = 60000;
     if (textile.view.radial) view.elevation = 15.0;
@@ -90,10 +93,11 @@ inline void write_pictures(const example::Output& output, const cloth::Textile& 
     observe::write_file(output.folder / "top.svg", observe::svg_view(coloured, view));
 }
 
-inline void write_summary(const example::Output& output, const fibrant::simulation::Report& report,
-                          const fibrant::simulation::Audit& audit, const cloth::TopologyAudit& topology,
-                          const cloth::Textile& textile, const cloth::Assembled& assembled, const observe::Snapshot& drawn,
-                          const observe::Snapshot& settled, Index unknowns) {
+/// @returns what it wrote
+inline observe::JsonObject write_summary(const example::Output& output, const fibrant::simulation::Report& report,
+                                         const fibrant::simulation::Audit& audit, const cloth::TopologyAudit& topology,
+                                         const cloth::Textile& textile, const cloth::Assembled& assembled, const observe::Snapshot& drawn,
+                                         const observe::Snapshot& settled, Index unknowns) {
     const double radius = textile.smallest_radius();
     const std::vector<cloth::YarnFigures> figures = cloth::yarn_figures(textile, assembled, settled);
     std::vector<Index> families;
@@ -126,7 +130,7 @@ inline void write_summary(const example::Output& output, const fibrant::simulati
         .add("links_changed", topology.links_changed)
         .add("greatest_linking_change", topology.greatest_linking_change);
     json.add("families", list);
-    example::write_summary(output, report, audit, radius, {}, json);
+    return example::write_summary(output, report, audit, radius, {}, json);
 }
 
 }  // namespace textile

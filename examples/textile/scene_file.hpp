@@ -44,23 +44,23 @@ namespace detail {
 inline void read_type(SceneReader& file, const std::string& section, bool required, cloth::YarnType& type) {
     const auto length = example::positive();
     if (required)
-        file.require(section, "radius", type.radius, length, "length", "of a fibre");
+        file.require(section, "radius", type.radius, length, "length", "radius of a fibre");
     else
-        file.read(section, "radius", type.radius, length, "length", "of a fibre; left out: as the yarn");
-    file.read(section, "fibres", type.fibres, example::between(1, 10000), "a yarn");
+        file.read(section, "radius", type.radius, length, "length", "radius of a fibre; left out: as in [yarn]");
+    file.read(section, "fibres", type.fibres, example::between(1, 10000), "fibres in a yarn");
     file.read(section, "inertia_factor", type.inertia_factor, example::between(1e-9, 1e3), "1",
-              "on second moments, for a fibre that stands for several");
+              "factor on the bending stiffness, below 1 for a soft thread");
     file.read(section, "aspect", type.aspect, example::between(1.0, 20.0), "1",
               "width over thickness of a yarn of several fibres");
     file.read(section, "packing_gap", type.packing_gap, example::between(0.0, 1.0), "1",
-              "free distance of its fibres over their diameter");
+              "free distance between fibres of a yarn at the start, over their diameter");
     file.read(section, "twist", type.twist, example::any_number(), "turn/length",
-              "of its fibres about its path, > 0 right-handed");
+              "twist of the fibres of a yarn; positive is right-handed");
 }
 
 inline void read_height(SceneReader& file, const std::string& section, double& height) {
     file.read(section, "height_over_radius", height, example::above(0.0, 10.0), "1",
-              "of yarns at crossings out of the middle surface, over their half width; below 1 they overlap at the start");
+              "height of yarns at crossings above the middle surface, over their half width; below 1 they start in each other");
 }
 
 /// Reads the section of the generator; all of them where there is no file.
@@ -73,24 +73,24 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
     if (wanted("flat_braid")) {
         cloth::FlatBraid braid;
         braid.type = yarn;
-        file.require("flat_braid", "yarns", braid.yarns, example::between(3, 1000), "of the braid");
-        file.require("flat_braid", "half_width", braid.half_width, positive, "length", "from the middle to an edge");
-        file.require("flat_braid", "period", braid.period, positive, "length", "of a yarn, to and fro");
-        file.read("flat_braid", "periods", braid.periods, example::above(0.0, 1e4), "1", "in all");
-        file.read("flat_braid", "over", braid.over, example::between(1, 2), "yarns in turn that one passes above");
+        file.require("flat_braid", "yarns", braid.yarns, example::between(3, 1000), "number of yarns");
+        file.require("flat_braid", "half_width", braid.half_width, positive, "length", "distance from the middle to an edge");
+        file.require("flat_braid", "period", braid.period, positive, "length", "length in which a yarn goes to the other edge and back");
+        file.read("flat_braid", "periods", braid.periods, example::above(0.0, 1e4), "1", "number of periods");
+        file.read("flat_braid", "over", braid.over, example::between(1, 2), "how many yarns in turn a yarn passes above");
         read_height(file, "flat_braid", braid.height_over_radius);
         if (!all) file.complete(), made = cloth::flat_braid(braid);
     }
     if (wanted("tubular_braid")) {
         cloth::TubularBraid braid;
         braid.type = yarn;
-        file.require("tubular_braid", "carriers", braid.carriers, example::between(2, 1000), "each way");
-        file.require("tubular_braid", "radius", braid.radius, positive, "length", "of the middle surface");
-        file.require("tubular_braid", "pitch", braid.pitch, positive, "length", "of a full turn along the axis");
-        file.read("tubular_braid", "turns", braid.turns, example::above(0.0, 1e4), "1", "in all");
+        file.require("tubular_braid", "carriers", braid.carriers, example::between(2, 1000), "number of yarns each way round");
+        file.require("tubular_braid", "radius", braid.radius, positive, "length", "radius of the tube, to the middle of the yarns");
+        file.require("tubular_braid", "pitch", braid.pitch, positive, "length", "length of a full turn along the axis");
+        file.read("tubular_braid", "turns", braid.turns, example::above(0.0, 1e4), "1", "number of turns");
         file.read("tubular_braid", "over", braid.over, example::between(1, 100),
-                  "carriers in turn that one passes outside: 1 for 1x1, 2 for 2x2");
-        file.read("tubular_braid", "axials", braid.axials, "straight yarns along the axis, one a carrier of one way");
+                  "how many yarns in turn a yarn passes outside: 1 for 1x1, 2 for 2x2");
+        file.read("tubular_braid", "axials", braid.axials, "add straight yarns along the axis, one for each yarn of one way");
         read_height(file, "tubular_braid", braid.height_over_radius);
         if (!all) file.complete(), made = cloth::tubular_braid(braid);
     }
@@ -99,20 +99,20 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         std::vector<std::string> rows, lifts;
         std::vector<std::string> kinds;
         plan.warp = plan.weft = yarn, plan.binder = binder;
-        file.read("levels", "levels", rows, "a text of digits a warp, a digit a column: wefts of the column below the warp");
+        file.read("levels", "levels", rows, "one text for each warp, a digit for each column: how many wefts of the column lie below the warp");
         file.read(
             "levels", "lifts", lifts,
-            "or a text of 0 and 1 a warp, a digit a pick: 1 where it is up; picks by columns, in each from the lowest layer up");
-        file.read("levels", "kinds", kinds, "a text a warp, warp or binder; left out: all warp");
+            "in place of levels: one text for each warp, a digit for each pick: 1 where the warp is up; picks go column by column, from the lowest layer up");
+        file.read("levels", "kinds", kinds, "one text for each warp, warp or binder; left out: all warp");
         file.is_one_of_several_ways("levels", "levels"), file.is_one_of_several_ways("levels", "lifts");
-        file.read("levels", "layers", plan.layers, example::between(1, 9), "of wefts");
-        file.read("levels", "columns", plan.columns, example::between(0, 10000), "of wefts; 0: as many as are drawn");
-        file.require("levels", "column_spacing", plan.column_spacing, positive, "length", "of wefts along the warps");
-        file.require("levels", "warp_spacing", plan.warp_spacing, positive, "length", "of neighbouring warps");
+        file.read("levels", "layers", plan.layers, example::between(1, 9), "number of layers of wefts");
+        file.read("levels", "columns", plan.columns, example::between(0, 10000), "number of columns of wefts; 0: as many as are drawn");
+        file.require("levels", "column_spacing", plan.column_spacing, positive, "length", "distance of neighbouring columns of wefts");
+        file.require("levels", "warp_spacing", plan.warp_spacing, positive, "length", "distance of neighbouring warps");
         file.read("levels", "layer_spacing", plan.layer_spacing, example::not_negative(), "length",
-                  "of wefts of a column; 0: yarns just do not touch");
+                  "distance of wefts in a column; 0: yarns just do not touch");
         file.read("levels", "overhang", plan.overhang, example::not_negative(), "length",
-                  "beyond the outermost crossings; 0: a spacing");
+                  "length of a yarn beyond its outermost crossings; 0: one spacing");
         if (!all) {
             file.complete();
             if (rows.empty() == lifts.empty()) file.refuse("levels", "levels", "given, or levels.lifts, and not both");
@@ -139,80 +139,80 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
     if (wanted("leno")) {
         cloth::LenoWeave weave;
         weave.type = yarn;
-        file.require("leno", "pairs", weave.pairs, example::between(1, 1000), "of a ground and a doup end");
-        file.require("leno", "picks", weave.picks, example::between(2, 10000), "");
-        file.require("leno", "pick_spacing", weave.pick_spacing, positive, "length", "");
-        file.require("leno", "pair_spacing", weave.pair_spacing, positive, "length", "");
-        file.require("leno", "aside", weave.aside, positive, "length", "of the doup from its ground end at a pick");
+        file.require("leno", "pairs", weave.pairs, example::between(1, 1000), "number of pairs of a ground and a doup end");
+        file.require("leno", "picks", weave.picks, example::between(2, 10000), "number of wefts");
+        file.require("leno", "pick_spacing", weave.pick_spacing, positive, "length", "distance of neighbouring wefts");
+        file.require("leno", "pair_spacing", weave.pair_spacing, positive, "length", "distance of neighbouring pairs");
+        file.require("leno", "aside", weave.aside, positive, "length", "distance of the doup end from its ground end at a weft");
         if (!all) file.complete(), made = cloth::leno(weave);
     }
     if (wanted("triaxial_weave")) {
         cloth::TriaxialWeave weave;
         weave.type = yarn;
-        file.require("triaxial_weave", "spacing", weave.spacing, positive, "length", "of a family, across it");
-        file.require("triaxial_weave", "radius", weave.radius, positive, "length", "of the sample");
+        file.require("triaxial_weave", "spacing", weave.spacing, positive, "length", "distance of neighbouring yarns of a family");
+        file.require("triaxial_weave", "radius", weave.radius, positive, "length", "radius of the round sample");
         read_height(file, "triaxial_weave", weave.height_over_radius);
         if (!all) file.complete(), made = cloth::triaxial_weave(weave);
     }
     if (wanted("weft_knit")) {
         cloth::WeftKnit knit;
         knit.type = yarn;
-        file.read("weft_knit", "stitches", knit.stitches, "a text a course, f (face) or r (reverse) a wale; repeated both ways");
-        file.require("weft_knit", "courses", knit.courses, example::between(1, 1000), "");
-        file.require("weft_knit", "wales", knit.wales, example::between(1, 1000), "");
-        file.require("weft_knit", "wale_spacing", knit.wale_spacing, positive, "length", "");
-        file.require("weft_knit", "course_spacing", knit.course_spacing, positive, "length", "");
+        file.read("weft_knit", "stitches", knit.stitches, "one text for each course, a letter for each wale: f (face) or r (reverse); repeated both ways");
+        file.require("weft_knit", "courses", knit.courses, example::between(1, 1000), "number of courses");
+        file.require("weft_knit", "wales", knit.wales, example::between(1, 1000), "number of wales");
+        file.require("weft_knit", "wale_spacing", knit.wale_spacing, positive, "length", "distance of neighbouring wales");
+        file.require("weft_knit", "course_spacing", knit.course_spacing, positive, "length", "distance of neighbouring courses");
         file.require("weft_knit", "loop_height", knit.loop_height, positive, "length", "half of a loop's height in the plane");
         file.read("weft_knit", "bulge", knit.bulge, positive, "length",
-                  "by which a loop is wider than its neck on each side; left out: a fifth of wale_spacing");
+                  "how much a loop is wider than its neck, on each side; left out: a fifth of wale_spacing");
         read_height(file, "weft_knit", knit.height_over_radius);
         if (!all) file.complete(), made = cloth::weft_knit(knit);
     }
     if (wanted("tricot")) {
         cloth::Tricot knit;
         knit.type = yarn;
-        file.require("tricot", "needles", knit.needles, example::between(2, 1000), "");
-        file.require("tricot", "courses", knit.courses, example::between(2, 1000), "");
-        file.require("tricot", "needle_spacing", knit.needle_spacing, positive, "length", "");
-        file.require("tricot", "course_spacing", knit.course_spacing, positive, "length", "");
-        file.require("tricot", "loop_height", knit.loop_height, positive, "length", "of a loop above its feet");
+        file.require("tricot", "needles", knit.needles, example::between(2, 1000), "number of needles");
+        file.require("tricot", "courses", knit.courses, example::between(2, 1000), "number of courses");
+        file.require("tricot", "needle_spacing", knit.needle_spacing, positive, "length", "distance of neighbouring needles");
+        file.require("tricot", "course_spacing", knit.course_spacing, positive, "length", "distance of neighbouring courses");
+        file.require("tricot", "loop_height", knit.loop_height, positive, "length", "height of a loop above its feet");
         read_height(file, "tricot", knit.height_over_radius);
         if (!all) file.complete(), made = cloth::tricot(knit);
     }
     if (wanted("plied")) {
         cloth::Plied rope;
         rope.type = yarn;
-        file.require("plied", "plies", rope.plies, example::between(2, 6), "around each other");
-        file.require("plied", "pitch", rope.pitch, positive, "length", "of the plies");
+        file.require("plied", "plies", rope.plies, example::between(2, 6), "number of plies");
+        file.require("plied", "pitch", rope.pitch, positive, "length", "length of a full turn of the plies");
         file.read("plied", "strands", rope.strands, example::between(1, 6),
-                  "of so many plies each, around each other; 1: one stage");
+                  "number of strands of so many plies each; 1: a yarn of plies alone");
         file.read("plied", "strand_pitch", rope.strand_pitch, positive, "length",
-                  "of the strands, against the hand of the plies");
-        file.require("plied", "length", rope.length, positive, "length", "along the axis");
-        file.read("plied", "slack", rope.slack, example::between(0.0, 1.0), "1", "distance of neighbours over their thickness");
+                  "length of a full turn of the strands, which turn against the plies");
+        file.require("plied", "length", rope.length, positive, "length", "length along the axis");
+        file.read("plied", "slack", rope.slack, example::between(0.0, 1.0), "1", "free distance of neighbours, over their thickness");
         if (!all) file.complete(), made = cloth::plied(rope);
     }
     if (wanted("chain_mail")) {
         cloth::ChainMail mail;
         mail.type = yarn;
-        file.require("chain_mail", "rows", mail.rows, example::between(2, 100), "");
-        file.require("chain_mail", "columns", mail.columns, example::between(2, 100), "rings of a row");
-        file.require("chain_mail", "ring_radius", mail.ring_radius, positive, "length", "of the middle line of a ring");
-        file.read("chain_mail", "pitch", mail.pitch, positive, "length", "of rings in a row; left out: 2.6 ring radii");
-        file.read("chain_mail", "row_pitch", mail.row_pitch, positive, "length", "of rows; left out: 0.9 ring radii");
+        file.require("chain_mail", "rows", mail.rows, example::between(2, 100), "number of rows");
+        file.require("chain_mail", "columns", mail.columns, example::between(2, 100), "number of rings in a row");
+        file.require("chain_mail", "ring_radius", mail.ring_radius, positive, "length", "radius of a ring, to the middle of its wire");
+        file.read("chain_mail", "pitch", mail.pitch, positive, "length", "distance of rings in a row; left out: 2.6 ring radii");
+        file.read("chain_mail", "row_pitch", mail.row_pitch, positive, "length", "distance of rows; left out: 0.9 ring radii");
         file.read("chain_mail", "tilt_deg", mail.tilt_deg, example::above(0.0, 80.0), "degree",
-                  "of rings, one way and the other by rows");
+                  "tilt of rings, one way and the other in turn");
         if (!all) file.complete(), made = cloth::chain_mail(mail);
     }
     if (wanted("net")) {
         cloth::Net net;
         net.type = yarn;
-        file.require("net", "yarns", net.yarns, example::between(2, 1000), "");
-        file.require("net", "spacing", net.spacing, positive, "length", "of yarns");
-        file.require("net", "period", net.period, positive, "length", "of a yarn");
-        file.read("net", "periods", net.periods, example::above(0.0, 1e4), "1", "in all");
+        file.require("net", "yarns", net.yarns, example::between(2, 1000), "number of yarns");
+        file.require("net", "spacing", net.spacing, positive, "length", "distance of neighbouring yarns");
+        file.require("net", "period", net.period, positive, "length", "length of a period of a yarn");
+        file.read("net", "periods", net.periods, example::above(0.0, 1e4), "1", "number of periods");
         file.read("net", "overlap", net.overlap, example::not_negative(), "length",
-                  "by which yarns reach beyond their neighbour's turns; 0: four half widths");
+                  "how far yarns reach beyond the turns of their neighbours; 0: four half widths");
         read_height(file, "net", net.height_over_radius);
         if (!all) file.complete(), made = cloth::net(net);
     }
@@ -221,14 +221,14 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         double smooth = 0.0;
         fibrant::exchange::CleanParameters clean;
         file.require("file", "path", path, example::any_text(),
-                     "of the centrelines, from the folder of the scene: .csv, .vtk, .vtp, .obj, .bcc, .inp or .tg3");
-        file.read("file", "scale", clean.scale, positive, "1", "on all lengths of the file");
+                     "file of centrelines, from the folder of the scene: .csv, .vtk, .vtp, .obj, .bcc, .inp or .tg3");
+        file.read("file", "scale", clean.scale, positive, "1", "factor on all lengths of the file");
         file.read("file", "smooth", smooth, example::between(0.0, 100.0), "1",
-                  "width of a Gaussian along the points that smooths them, in points; 0: as they are");
+                  "width of the smoothing along a fibre, in points; 0: none");
         file.read("file", "largest_turn_deg", clean.largest_turn_deg, example::above(0.0, 180.0), "degree",
-                  "between neighbouring chords; more is refused");
+                  "largest turn from one point to the next; more is refused");
         file.read("file", "crossings", seen, {"plane", "tube", "none"},
-                  "are as seen along z, from the z axis outwards, or not looked for: linking integrals are compared then");
+                  "who is above is seen along z (plane), from the z axis outwards (tube), or not looked for (none): then links are compared");
         if (!all) {
             file.complete();
             const std::filesystem::path whole = std::filesystem::path(file.file()).parent_path() / path;
@@ -264,7 +264,7 @@ inline Scene read_scene(SceneReader& file) {
     double tension = 0.0;
     bool straight = true;
     file.require("textile", "generator", scene.generator, generators,
-                 "of the yarns' paths, or a file of them; its section has its numbers");
+                 "what is made; the section of this name has its numbers");
     detail::read_type(file, "yarn", true, yarn);
     example::read_material(file, "yarn", yarn.material);
     cloth::YarnType binder = yarn;
@@ -274,38 +274,38 @@ inline Scene read_scene(SceneReader& file) {
         detail::read_type(file, "binder", false, binder);
     }
     file.read("yarn", "element_over_radius", scene.fineness.element_over_radius, example::between(0.1, 100.0), "1",
-              "greatest length of an element over the radius");
+              "greatest length of an element, over the radius");
     file.read("ends", "kind", ends, {"held", "pulled", "free"},
-              "of open yarns: held in place, the last one pulled along itself, or free");
+              "how ends of open yarns are: held in place, the last one pulled along itself, or free");
     file.read("ends", "tension_strain", tension, example::between(0.0, 0.2), "1",
-              "pull of a fibre over its E A, of ends that are pulled");
+              "pull at ends that are pulled, over E A of a fibre");
     const bool rest_given = file.read(
         "ends", "straight_at_rest", straight,
-        "fibres are straight where nothing acts; else they are at rest as they are drawn. Left out: as the generator has it");
+        "fibres are straight when nothing acts on them; false: they are at rest as drawn. Left out: as the generator has it");
     cloth::SettleParameters& settle = scene.settle;
-    file.read("contact", "friction_coefficient", settle.friction_coefficient, example::friction(), "1", "once yarns have parted");
+    file.read("contact", "friction_coefficient", settle.friction_coefficient, example::friction(), "1", "coefficient of friction, once yarns have parted");
     file.read("contact", "allowed_penetration_over_radius", settle.allowed_penetration_over_radius, example::depth_over_radius(),
-              "1", "at rest");
+              "1", "how deep a contact may be at the end, over the radius");
     file.read("settle", "gap_limit_over_radius", settle.gap_limit_over_radius, example::above(0.0, 1.0), "1",
-              "deepest penetration that is shown to the contact law");
-    file.read("settle", "tension_increments", settle.tension_increments, example::increments(), "in which the tension is raised");
+              "how far fibres that start in each other part in an increment, over the radius");
+    file.read("settle", "tension_increments", settle.tension_increments, example::increments(), "increments in which the tension is raised");
     file.read("settle", "separation_increments", settle.separation_increments, example::increments(),
-              "at most, until no yarns overlap");
+              "most increments until no yarns overlap");
     file.read("settle", "rest_increments", settle.rest_increments, example::increments(),
-              "at most, until nothing moves any more by");
+              "most increments of each stage that waits for rest");
     file.read("settle", "rest_motion_over_radius", settle.rest_motion_over_radius, example::above(0.0, 10.0), "1",
-              "greatest motion of an increment at rest, or");
+              "yarns are at rest when they move by less than this in an increment, over the radius; or");
     file.read("settle", "rest_share", settle.rest_share, example::above(0.0, 0.01), "1",
-              "of the forces is all that damping holds");
+              "when damping holds less than this part of the forces");
     file.read("settle", "softness", settle.softness, example::between(1.0, 20.0), "1",
               "penetration allowed on the way, over that at rest");
-    file.read("settle", "looseness", settle.looseness, example::looseness(), "1", "on the tolerances of passes before rest");
+    file.read("settle", "looseness", settle.looseness, example::looseness(), "1", "factor on the tolerances of passes on the way to rest");
     file.read("settle", "damping", settle.damping, example::between(1e-6, 1e6), "1",
-              "over what follows from tension, bending and the distance of crossings");
+              "factor on the damping that follows from tension, bending and the distance of crossings");
     file.read(
         "solver", "linear_solver", scene.linear_solver,
         {"automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"},
-        "strategy of linear systems");
+        "how linear systems are solved");
     if (scene.generator.empty() && !file.describes()) {
         for (const std::string& name : generators)  // nobody has asked for its section yet
             if (file.has_section(name))

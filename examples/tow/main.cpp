@@ -3,6 +3,7 @@
 // flatten where isotropic ones would not. Prints the load a unit of length, and that of the closed form.
 //   tow SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/with_law.hpp>
@@ -51,17 +52,17 @@ bool solve(example::SceneReader& file, example::Output& output) {
     double radius = core::unset, length = core::unset, compression = 0.02, mu = 0.2, depth = 1e-3;
     scene::ElasticMaterial material;
     std::string kind = "isotropic";
-    file.read("tow", "fibres", fibres, example::between(1, 1000), "one above the other");
-    file.require("tow", "radius", radius, example::positive(), "length", "of a fibre");
-    file.require("tow", "length", length, example::positive(), "length", "of the fibres");
-    file.read("tow", "elements", elements, example::between(1, 10000), "along a fibre");
-    file.require("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2", "of the material, along the fibres");
+    file.read("tow", "fibres", fibres, example::between(1, 1000), "fibres, one above the other");
+    file.require("tow", "radius", radius, example::positive(), "length", "radius of a fibre");
+    file.require("tow", "length", length, example::positive(), "length", "length of the fibres");
+    file.read("tow", "elements", elements, example::between(1, 10000), "elements along a fibre");
+    file.require("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2", "Young's modulus along the fibres");
     file.require("material", "poisson_ratio", material.poisson_ratio, example::inside(-10.0, 10.0), "1", "contraction across under tension along");
     example::read_transverse(file, "material", kind, material.transverse);
-    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "of fibres on each other and on the plates");
-    file.read("contact", "allowed_penetration_over_radius", depth, example::depth_over_radius(), "1", "to which the penalty is adapted");
-    file.read("loading", "compression", compression, example::inside(0.0, 0.2), "1", "of the height, at the end");
-    file.read("loading", "increments", increments, example::increments(), "of the pressing");
+    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "coefficient of friction of fibres on each other and on the plates");
+    file.read("contact", "allowed_penetration_over_radius", depth, example::depth_over_radius(), "1", "how deep a contact may be, over the radius");
+    file.read("loading", "compression", compression, example::inside(0.0, 0.2), "1", "compression at the end, over the height at the start");
+    file.read("loading", "increments", increments, example::increments(), "increments of the pressing");
     file.complete();
     example::check_transverse(file, "material", kind);
     file.names({{"ElasticMaterial.poisson_ratio", "material.poisson_ratio"}});
@@ -93,7 +94,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const simulation::Report report = simulator.run(loading, recorder);
     example::write_pictures(output, simulator.snapshot(), -60.0, 25.0);
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, {{"line_load", line_load()}, {"line_load_of_sections", closed(1.0)}, {"section_modulus", material.section_modulus()}, {"energy_error", report.energy.error()}, {"external_work", report.energy.external}});
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"line_load", line_load()}, {"line_load_of_sections", closed(1.0)}, {"section_modulus", material.section_modulus()}, {"energy_error", report.energy.error()}, {"external_work", report.energy.external}});
+    example::write_report(output, "tow", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 

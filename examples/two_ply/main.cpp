@@ -2,6 +2,7 @@
 // Two straight rods side by side are pulled and wound around each other; prints the torque beside that of Kirchhoff's helices.
 //   two_ply SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
@@ -31,14 +32,14 @@ bool solve(example::SceneReader& file, example::Output& output) {
     two_ply::TwoPlyParameters parameters;
     double turns = core::unset, mu = 0.0;
     Index per_turn = 12;
-    file.require("rods", "radius", parameters.radius, example::positive(), "length", "of a rod");
-    file.require("rods", "length", parameters.length, example::positive(), "length", "of a rod");
-    file.read("rods", "elements", parameters.elements, example::between(2, 10000), "quadratic elements a rod");
+    file.require("rods", "radius", parameters.radius, example::positive(), "length", "radius of a rod");
+    file.require("rods", "length", parameters.length, example::positive(), "length", "length of a rod");
+    file.read("rods", "elements", parameters.elements, example::between(2, 10000), "elements along a rod");
     example::read_material(file, "material", parameters.material);
-    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "of the rods on each other");
-    file.require("loading", "force", parameters.force, example::not_negative(), "force", "that pulls both rods together");
-    file.require("loading", "turns", turns, example::between(-1000.0, 1000.0), "1", "of one end against the other");
-    file.read("loading", "increments_per_turn", per_turn, example::between(1, 1000), "of the turning");
+    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "coefficient of friction");
+    file.require("loading", "force", parameters.force, example::not_negative(), "force", "force that pulls both rods together");
+    file.require("loading", "turns", turns, example::between(-1000.0, 1000.0), "1", "turns of one end against the other");
+    file.read("loading", "increments_per_turn", per_turn, example::between(1, 1000), "increments for each turn");
     file.complete();
     file.check(turns != 0.0, "loading", "turns", "other than 0: nothing would be wound");
     file.check(parameters.length >= 4.0 * parameters.radius, "rods", "length",
@@ -80,9 +81,10 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const two_ply::TwoPlyState state = two_ply::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 15.0, std::pair{Index{2}, 0.5 * parameters.length});
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    example::write_summary(output, report, audit, radius, {{"torque", state.torque}, {"torque_of_helices", theory(state).torque},
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"torque", state.torque}, {"torque_of_helices", theory(state).torque},
                            {"helix_angle_deg", state.helix_angle * 180.0 / std::numbers::pi}, {"line_load", state.line_load},
                            {"line_load_of_helices", theory(state).line_load}});
+    example::write_report(output, "two_ply", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 

@@ -2,6 +2,7 @@
 // The initial state of a woven fabric at the scale of its fibres, found from flat, interpenetrating tows.
 //   weave SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
 
@@ -65,7 +66,10 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     if (scene.pictures) weave::write_pictures(folder, snapshot, scene.fabric, scene.unit);
     summary.cpu_seconds = example::cpu_seconds();
     summary.peak_memory_bytes = example::peak_memory_bytes();
-    weave::write_summary(folder, summary);
+    example::write_report(folder, {"weave", scene.unit, weave::write_summary(folder, summary), weave::cloth::fabric_palette(scene.fabric),
+                                   {"converged", "audit_clean", "fibres", "crimp_warp", "crimp_weft", "thickness", "least_gap_over_radius",
+                                    "greatest_penetration_over_radius", "wrong_crossings", "energy_error_over_work", "wall_seconds"}},
+                          snapshot);
     if (!output.quiet) weave::print(summary, folder.string());
     else if (!summary.converged) std::fprintf(stderr, "weave: not settled: %s\n", summary.reason.c_str());
     else if (!summary.clean) std::fprintf(stderr, "weave: the audit is not clean: %td crossings against the pattern, %td missing, least gap %.4f radii\n",

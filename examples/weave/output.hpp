@@ -196,7 +196,8 @@ inline void fill(Summary& summary, const fibrant::simulation::Report& report, co
     summary.crimp_weft = crimp.weft;
 }
 
-inline void write_summary(const std::filesystem::path& folder, const Summary& summary) {
+/// @returns what it wrote
+inline observe::JsonObject write_summary(const std::filesystem::path& folder, const Summary& summary) {
     observe::JsonObject seconds;
     for (std::size_t part = 0; part < fibrant::core::part_count; ++part)
         seconds.add(fibrant::core::part_names[part], summary.seconds_by_stage[part]);
@@ -235,6 +236,7 @@ inline void write_summary(const std::filesystem::path& folder, const Summary& su
         .add("threads", summary.threads)
         .add("version", FIBRANT_VERSION);
     observe::write_file(folder / "summary.json", json.text() + "\n");
+    return json;
 }
 
 /// The result in a few lines.
@@ -252,7 +254,7 @@ inline void print(const Summary& summary, const std::string& folder) {
                 summary.greatest_penetration_over_radius, summary.least_gap_over_radius, summary.least_gap_fibre_i,
                 summary.least_gap_fibre_j, summary.least_gap_place.x(), summary.least_gap_place.y(),
                 summary.least_gap_place.z(), summary.energy_error_over_work);
-    std::printf("  results    %s (view.svg, top.svg, slice_*.svg, summary.json, paraview/fibres.pvd)\n", folder.c_str());
+    std::printf("  results    %s (report.html, view.svg, slice_*.svg, summary.json, paraview/fibres.pvd)\n", folder.c_str());
 }
 
 }  // namespace weave

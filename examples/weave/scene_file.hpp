@@ -46,31 +46,31 @@ namespace detail {
 /// A tow's keys. Macro-fibres are given by their radius and inertia factor, or by the real fibres that they stand for.
 inline void read_tow(SceneReader& file, const std::string& section, bool required, cloth::TowParameters& tow) {
     if (required)
-        file.require(section, "fibres", tow.fibres, example::between(1, 10000), "a tow, macro-fibres or real ones");
+        file.require(section, "fibres", tow.fibres, example::between(1, 10000), "computed fibres in a tow");
     else
         file.read(section, "fibres", tow.fibres, example::between(1, 10000),
-                  "a tow, macro-fibres or real ones; left out: as the warp");
+                  "computed fibres in a tow; left out: as in the warp");
     const bool radius = file.read(section, "radius", tow.fibre_radius, example::positive(), "length",
-                                  "of a fibre, or real_fibres and real_diameter");
+                                  "radius of a computed fibre; or give real_fibres and real_diameter");
     const bool factor = file.read(section, "inertia_factor", tow.inertia_factor, example::between(1e-9, 1e3), "1",
-                                  "on second moments, for a fibre that stands for several");
+                                  "factor on the bending stiffness, below 1 for a fibre that stands for several");
     double real_fibres = fibrant::core::unset, real_diameter = fibrant::core::unset;
     const bool count = file.read(section, "real_fibres", real_fibres, example::between(1.0, 1e9), "1",
-                                 "real fibres of a tow, in the place of which the fibres stand");
-    const bool diameter = file.read(section, "real_diameter", real_diameter, example::positive(), "length", "of a real fibre");
+                                 "real fibres in a tow, for which the computed ones stand");
+    const bool diameter = file.read(section, "real_diameter", real_diameter, example::positive(), "length", "diameter of a real fibre");
     for (const char* key : {"radius", "inertia_factor", "real_fibres", "real_diameter"})
         file.is_one_of_several_ways(section, key);
     file.read(section, "aspect", tow.aspect, example::between(1.0, 20.0), "1", "width over thickness of the flat tow");
     file.read(section, "packing_gap", tow.packing_gap, example::between(0.0, 1.0), "1",
-              "free distance between neighbouring fibres over their diameter");
+              "free distance between neighbouring fibres at the start, over their diameter");
     file.read(section, "young_modulus", tow.material.young_modulus, example::positive(), "force/length^2",
-              "as [material] if left out");
-    file.read(section, "poisson_ratio", tow.material.poisson_ratio, example::poisson_ratio(), "1", "as [material] if left out");
+              "Young's modulus of these fibres; left out: that of [material]");
+    file.read(section, "poisson_ratio", tow.material.poisson_ratio, example::poisson_ratio(), "1", "Poisson's ratio of these fibres; left out: that of [material]");
     if (file.describes()) return;
     if (!count && !diameter) {
         if (required && !radius)
             file.require(section, "radius", tow.fibre_radius, example::positive(), "length",
-                         "of a fibre, or real_fibres and real_diameter");
+                         "radius of a computed fibre; or give real_fibres and real_diameter");
         return;
     }
     if (radius || factor)
@@ -93,18 +93,18 @@ inline void read_iteration(SceneReader& file, std::string& linear_solver, fibran
     file.read(
         "solver", "linear_solver", linear_solver,
         {"automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"},
-        "strategy of linear systems");
-    file.read("solver", "step_tolerance", iteration.step_tolerance, example::above(0.0, 1.0), "1", "of Newton's steps");
+        "how linear systems are solved");
+    file.read("solver", "step_tolerance", iteration.step_tolerance, example::above(0.0, 1.0), "1", "largest last step of Newton's method, over the radius");
     file.read("solver", "residual_tolerance", iteration.residual_tolerance, example::above(0.0, 1.0), "1",
-              "of the balance of forces");
-    file.read("solver", "contact_tolerance", iteration.contact_tolerance, example::above(0.0, 1.0), "1", "of contact passes");
-    file.read("solver", "linear_tolerance", iteration.linear_tolerance, example::above(0.0, 0.01), "1", "of linear systems");
+              "largest forces out of balance, over the greatest force");
+    file.read("solver", "contact_tolerance", iteration.contact_tolerance, example::above(0.0, 1.0), "1", "largest motion of the last contact pass, over the radius");
+    file.read("solver", "linear_tolerance", iteration.linear_tolerance, example::above(0.0, 0.01), "1", "largest error of a linear system, over its right-hand side");
     file.read("solver", "newton_limit", iteration.newton_limit, example::between(1, 10000),
-              "iterations of Newton's method, at most");
-    file.read("solver", "normal_limit", iteration.normal_limit, example::between(1, 10000), "passes with new normals, at most");
+              "most iterations of Newton's method");
+    file.read("solver", "normal_limit", iteration.normal_limit, example::between(1, 10000), "most passes with new normals");
     file.read("solver", "contact_limit", iteration.contact_limit, example::between(1, 10000),
-              "passes with new contacts, at most");
-    file.read("solver", "mixed", iteration.mixed, "single precision where it is enough");
+              "most passes with new contacts");
+    file.read("solver", "mixed", iteration.mixed, "use single precision where it is enough");
 }
 
 /// Reads and checks what a file says of a fabric, before any work.
@@ -131,24 +131,24 @@ Scene read_fabric(SceneReader& file, const More& more) {
     std::string name = "plain";
     std::vector<std::string> rows;
     if (file.is_list("fabric", "pattern"))
-        file.read("fabric", "pattern", rows, "which tow is above, a text a warp tow");
+        file.read("fabric", "pattern", rows, "one text for each warp tow: 1 where it lies above the weft tow, 0 where below");
     else
         file.require("fabric", "pattern", name, example::any_text(),
-                     "plain, twill22, twill31, satin5, satin8, or a list with a text a warp tow");
-    file.require("fabric", "warp_tows", fabric.warp_tows, example::between(1, 1000), "tows along x");
-    file.require("fabric", "weft_tows", fabric.weft_tows, example::between(1, 1000), "tows along y");
+                     "plain, twill22, twill31, satin5, satin8, or a list with one text for each warp tow: 1 where it lies above the weft tow, 0 where below");
+    file.require("fabric", "warp_tows", fabric.warp_tows, example::between(1, 1000), "number of tows along x");
+    file.require("fabric", "weft_tows", fabric.weft_tows, example::between(1, 1000), "number of tows along y");
     file.require("fabric", "warp_spacing", fabric.warp_spacing, example::positive(), "length",
-                 "between the middles of neighbouring warp tows");
+                 "distance between the middles of neighbouring warp tows");
     fabric.weft_spacing = fabric.warp_spacing;
     file.read("fabric", "weft_spacing", fabric.weft_spacing, example::positive(), "length",
-              "the same of weft tows; as warp_spacing if left out");
+              "the same for weft tows; left out: warp_spacing");
     file.require("fabric", "overhang", fabric.overhang, example::positive(), "length",
-                 "free length of a fibre beyond its outermost crossings");
-    file.require("fabric", "elements", fabric.elements, example::between(1, 100000), "quadratic elements a fibre");
-    file.read("fabric", "weft_elements", fabric.weft_elements, example::between(0, 100000), "of a weft fibre; 0: as many as of a warp fibre");
+                 "length of a tow beyond its outermost crossings, at each end");
+    file.require("fabric", "elements", fabric.elements, example::between(1, 100000), "elements along a fibre");
+    file.read("fabric", "weft_elements", fabric.weft_elements, example::between(0, 100000), "elements along a weft fibre; 0: as many as along a warp fibre");
     scene::ElasticMaterial material;
-    file.read("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2", "of the fibres");
-    file.read("material", "poisson_ratio", material.poisson_ratio, example::poisson_ratio(), "1", "of the fibres");
+    file.read("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2", "Young's modulus of the fibres");
+    file.read("material", "poisson_ratio", material.poisson_ratio, example::poisson_ratio(), "1", "Poisson's ratio of the fibres");
     fabric.warp.material = material;
     detail::read_tow(file, "warp", true, fabric.warp);
     fabric.weft = fabric.warp;
@@ -158,37 +158,37 @@ Scene read_fabric(SceneReader& file, const More& more) {
 
     cloth::SettleParameters& settle = scene.settle;
     file.read("settle", "tension_strain", settle.tension_strain, example::above(0.0, 0.2), "1",
-              "tension of a tow over its E A while tows part");
+              "tension of a tow while tows part, over its E A");
     file.read("settle", "final_tension_factor", settle.final_tension_factor, example::above(0.0, 1.0), "1",
-              "tension at the end over that");
-    file.read("settle", "tension_increments", settle.tension_increments, example::increments(), "in which the tension is raised");
+              "tension at the end, over that while tows part");
+    file.read("settle", "tension_increments", settle.tension_increments, example::increments(), "increments in which the tension is raised");
     file.read("settle", "gap_limit_over_radius", settle.gap_limit_over_radius, example::above(0.0, 10.0), "1",
-              "deepest penetration that is shown to the contact law");
+              "how far fibres that start in each other part in an increment, over the radius");
     file.read("settle", "separation_increments", settle.separation_increments, example::increments(),
-              "at most, until no tows overlap");
+              "most increments until no tows overlap");
     file.read("settle", "release_increments", settle.release_increments, example::increments(),
-              "in which the tension is lowered");
+              "increments in which the tension is lowered");
     file.read("settle", "rest_increments", settle.rest_increments, example::increments(),
-              "at most, before and after, until nothing moves any more by");
+              "most increments of each stage that waits for rest");
     file.read("settle", "softness", settle.softness, example::between(1.0, 20.0), "1",
-              "penetration allowed until the fabric comes to rest, over that at rest");
-    file.read("settle", "looseness", settle.looseness, example::looseness(), "1", "on the tolerances of passes before rest");
+              "penetration allowed on the way, over that at rest");
+    file.read("settle", "looseness", settle.looseness, example::looseness(), "1", "factor on the tolerances of passes on the way to rest");
     file.read("settle", "rest_motion_over_radius", settle.rest_motion_over_radius, example::above(0.0, 10.0), "1",
-              "greatest motion of an increment at rest, or");
+              "the fabric is at rest when it moves by less than this in an increment, over the radius; or");
     file.read("settle", "rest_share", settle.rest_share, example::above(0.0, 0.01), "1",
-              "of the forces is all that damping holds");
+              "when damping holds less than this part of the forces");
     // Contacts that close and let go in turns send Newton's method to and fro: most of the attempts that a large weave gave up.
     scene.iteration.overshoot = 0.5;
     file.read("settle", "overshoot", scene.iteration.overshoot, {.low = 0.0, .high = 1e6, .above = true, .endless = true}, "1",
-              "a step at whose end the energy rises by more than this part of the slope at which it fell is cut");
+              "Newton's step is cut where the energy rises at its end by more than this part of the slope at which it fell");
     file.read("contact", "friction_coefficient", settle.friction_coefficient, example::friction(), "1",
-              "once tows have parted; 0 leaves friction out");
+              "coefficient of friction, once tows have parted; 0: none");
     file.read("contact", "allowed_penetration_over_radius", settle.allowed_penetration_over_radius, example::depth_over_radius(),
-              "1", "to which the penalty is adapted");
+              "1", "how deep a contact may be at the end, over the radius");
     read_iteration(file, scene.linear_solver, scene.iteration);
     file.read("solver", "threads", scene.threads, example::between(0, 100000), "0: as many as the machine has");
     file.read("output", "paraview", scene.paraview, "files for ParaView");
-    file.read("output", "paraview_every", scene.paraview_every, example::increments(), "increments between two files");
+    file.read("output", "paraview_every", scene.paraview_every, example::increments(), "one file for ParaView each so many increments");
     file.read("output", "pictures", scene.pictures, "a view and slices along each tow");
     file.read("output", "unit", scene.unit, example::any_text(), "of lengths, in pictures");
     more();

@@ -13,6 +13,11 @@ cp -R "$source/tests/checks/downstream" "$place/project"
 case $way in
   install)
     cmake --install "$build" --prefix "$place/prefix" > "$place/install.log" || { cat "$place/install.log"; exit 1; }
+    if command -v pkg-config > /dev/null; then  # the other way to find what was installed
+      flags=$(PKG_CONFIG_PATH="$place/prefix/share/pkgconfig" pkg-config --cflags-only-I fibrant) || { echo "no fibrant.pc"; exit 1; }
+      folder=${flags%% *}
+      [ -f "${folder#-I}/fibrant/fibrant.hpp" ] || { echo "fibrant.pc says $flags, where there is no fibrant/fibrant.hpp"; exit 1; }
+    fi
     set -- -DCMAKE_PREFIX_PATH="$place/prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
     ;;
   subdirectory)

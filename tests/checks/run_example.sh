@@ -12,7 +12,7 @@ fail() {
   exit 1
 }
 "$program" "$scene" --output "$out" --quiet || fail "did not converge"
-for file in summary.json increments.csv view.svg paraview/fibres.pvd paraview/contacts.pvd; do
+for file in summary.json increments.csv view.svg report.html paraview/fibres.pvd paraview/contacts.pvd; do
   [ -s "$out/$file" ] || fail "there is no $file"
 done
 for key in converged increments newton_iterations contact_elements greatest_penetration_over_radius wall_seconds version; do

@@ -114,6 +114,30 @@ refuses 'lines, but at most 20' "$checks/ill_formed.sh" long.cpp "$@"
 printf '// expect: the reason\nstatic_assert(false, "the reason");\n' > named.cpp
 passes "$checks/ill_formed.sh" named.cpp "$@"
 
+# Pages: links and headings that are there, and code as it stands in its file.
+mkdir -p project/docs
+page() {
+  cat > project/docs/page.md
+}
+printf 'one\ntwo\nthree\n' > project/code.cpp
+echo '# Read me' > project/README.md
+printf '# A page: `b`\n[up](../README.md) [there](#a-page-b) [and](../README.md#read-me) `[no](link)`\n<!-- from code.cpp -->\n```\ntwo\nthree\n```\n' | page
+passes sh "$checks/links.sh" project
+echo '[gone](gone.md)' | page
+refuses 'docs/page.md:1: gone.md leads nowhere' sh "$checks/links.sh" project
+echo '[no heading](../README.md#me)' | page
+refuses 'README.md#me: there is no such heading' sh "$checks/links.sh" project
+printf '<!-- from code.cpp -->\n```\none\nthree\n```\n' | page
+refuses 'docs/page.md:2: the code is not that of code.cpp' sh "$checks/links.sh" project
+
+# Messages that are explained are said by something.
+mkdir -p project/docs/how-to project/include project/examples
+echo 'const char* said = "the run has stopped" + at;' > project/include/one.hpp
+echo '### `the run has stopped ... here`' > project/docs/how-to/messages.md
+passes sh "$checks/messages.sh" project
+echo '### `the run has ended at ...`' > project/docs/how-to/messages.md
+refuses 'explains "the run has ended at", which nothing says' sh "$checks/messages.sh" project
+
 # Programs that take all, that say nothing of use, and that leave a folder behind.
 echo '[knot]' > knot.toml
 program() {

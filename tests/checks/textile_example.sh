@@ -16,12 +16,15 @@ for name in braid_flat braid_tube interlock knit_plain tricot net chain_mail fro
     case $text in *"needs pugixml"*) continue ;; esac  # built without it
     fail "$name did not settle: $text"
   }
-  for file in summary.json increments.csv yarns.csv centrelines.csv fibres.glb view.svg; do
+  for file in summary.json increments.csv yarns.csv centrelines.csv fibres.glb view.svg report.html; do
     [ -s "$out/$name/$file" ] || fail "$name: there is no $file"
   done
   for key in converged audit_clean topology_clean; do
     grep -q "\"$key\": true" "$out/$name/summary.json" || fail "$name: summary.json does not say that it is $key"
   done
+done
+for name in $(sed -n 's/^  "\([a-z_]*\)":.*/\1/p' "$out/tricot/summary.json") $(head -1 "$out/tricot/increments.csv" | tr ',' ' '); do
+  grep -q "\`$name\`" "$(dirname "$0")/../../docs/reference/files.md" || fail "docs/reference/files.md has no $name"
 done
 refused() {
   text=$("$program" "$scenes/$1.toml" --output "$out/refused" --set "$2" 2>&1)

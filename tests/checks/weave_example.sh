@@ -27,6 +27,16 @@ for key in converged fibres nodes dofs contact_elements increments rejected_incr
   grep -q "\"$key\"" "$out/whole/summary.json" || fail "summary.json has no $key"
 done
 
+# The page of results has all of them, and a run is on one page.
+documented() {
+  for name in $(sed -n 's/^  "\([a-z_]*\)":.*/\1/p' "$1/summary.json") $(head -1 "$1/increments.csv" | tr ',' ' '); do
+    grep -q "\`$name\`" "$(dirname "$0")/../../docs/reference/files.md" || fail "docs/reference/files.md has no $name"
+  done
+}
+documented "$out/whole"
+grep -q 'The result is good' "$out/whole/report.html" || fail "report.html does not say that the result is good"
+grep -q '<script src\|<link\|url(' "$out/whole/report.html" && fail "report.html needs other files"
+
 "$weave" "$scene" --output "$out/parts" $small --set settle.separation_increments=6
 [ $? -eq 1 ] || fail "a run that was stopped early did not say so"
 grep -q '"converged": false' "$out/parts/summary.json" || fail "summary.json of a run that was stopped says nothing of it"

@@ -80,6 +80,9 @@ public:
         return put(key, values.empty() ? "[]" : "[" + list + "\n]");
     }
 
+    /// Keys with their values as text, in the order in which they were added.
+    const std::vector<std::pair<std::string, std::string>>& members() const noexcept { return members_; }
+
     /// Indented by two blanks a level, without a line end after the last brace.
     std::string text() const {
         std::string answer = "{";

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file report.html: a run as one page that needs no network: whether it is good, what to be warned of, a view of the fibres, figures
+/// and curves.
+
+#include "figure_meanings.hpp"
+#include "report_viewer.hpp"
+#include "table.hpp"
+
+#include <fibrant/observe/json.hpp>
+#include <fibrant/observe/snapshot.hpp>
+#include <fibrant/observe/svg_curves.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace example {
+
+namespace observe = fibrant::observe;
+
+/// What a page is made of, beside the files increments.csv and parameters.toml of its folder.
+struct ReportPage {
+    std::string program, unit;         ///< unit of lengths
+    observe::JsonObject summary;       ///< as in summary.json
+    observe::Palette palette;
+    std::vector<std::string> foremost;  ///< keys of the summary that are shown first
+};
+
+namespace detail {
+
+/// Value of a key of a summary, as it is written there; empty if there is none.
+inline std::string value_of(const observe::JsonObject& summary, std::string_view key) {
+    for (const auto& [name, value] : summary.members())
+        if (name == key) return value;
+    return {};
+}
+inline double number_of(const observe::JsonObject& summary, std::string_view key) {
+    const std::string text = value_of(summary, key);
+    return text.empty() || text == "null" ? fibrant::core::unset : std::strtod(text.c_str(), nullptr);
+}
+inline std::string short_number(double value, const char* format = "%.4g") {
+    char text[40];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+/// A value for a reader: numbers with four digits, texts without quotes.
+inline std::string shown(const std::string& value) {
+    if (value == "true") return "yes";
+    if (value == "false") return "no";
+    if (value == "null") return "-";
+    if (!value.empty() && value[0] == '"') return observe::xml_escaped(value.substr(1, value.size() - 2));
+    if (value.find_first_of("{[") != std::string::npos) return "<pre>" + observe::xml_escaped(value) + "</pre>";
+    if (value.find_first_of(".e") == std::string::npos) return value;
+    return short_number(std::strtod(value.c_str(), nullptr));
+}
+
+/// What a reader has to know before the figures are used: what is seen, and what it means.
+struct Warning {
+    std::string seen, means;
+    bool grave = false;  ///< the result is not to be used
+};
+
+/// Of the last row of a table; unset if there is none.
+inline double last_of(const Table& table, std::string_view name) {
+    const std::size_t column = table.column(name);
+    return table.rows() == 0 || column == table.names().size() ? fibrant::core::unset
+                                                               : std::strtod(table.cell(table.rows() - 1, column).c_str(), nullptr);
+}
+
+inline std::vector<Warning> warnings(const observe::JsonObject& summary, const Table& table) {
+    constexpr double unseen = 0.005;       // radii between contact points and the true gap: what `ContactSpacing.largest_unseen` is by default
+    constexpr double energy_share = 0.01;  // of what was turned over, beyond which the balance is told
+    constexpr double damping_share = 0.01;  // of the forces, beyond which a curve shows it
+    constexpr double cut_share = 0.2;       // of the increments, beyond which cuts cost more than increments
+    std::vector<Warning> list;
+    const auto number = [&](const char* key) { return number_of(summary, key); };
+    const auto is_false = [&](const char* key) { return value_of(summary, key) == "false"; };
+    if (is_false("converged"))
+        list.push_back({"The run stopped: " + shown(value_of(summary, "reason")),
+                        "Forces do not balance in the state that is shown. The how-to page \"When it says ...\" has cause and remedy.", true});
+    const double gap = number("least_gap_over_radius"), depth = number("greatest_penetration_over_radius");
+    const double wrong = number("wrong_crossings"), missing = number("missing_crossings");
+    if (is_false("audit_clean") && wrong + missing > 0.0)
+        list.push_back({short_number(wrong) + " crossings are against the pattern, " + short_number(missing) + " are missing.",
+                        "Fibres went to the wrong side. Take a smaller gap limit, less tension, or more elements.", true});
+    else if (is_false("audit_clean"))
+        list.push_back({"Two fibres are " + short_number(-gap) + " radii deep in each other.",
+                        "This is more than allowed. Take more elements, or say by output.deepest_over_radius that you accept it.", true});
+    if (is_false("topology_clean"))
+        list.push_back({"Yarns do not lie above and below each other as the textile says.",
+                        "Yarns went through each other. Start with yarns that overlap less, or with more elements.", true});
+    if (-gap > std::max(0.0, depth) + unseen && !is_false("audit_clean"))
+        list.push_back({"The true gap, " + short_number(gap) + " radii, is deeper than contact points say, " + short_number(depth) + ".",
+                        "Between contact points the mesh is coarse: fibres bend or flatten within an element. Compare with more elements."});
+    if (const double missed = number("energy_error_over_work"); std::abs(missed) > energy_share)
+        list.push_back({"The energy balance misses " + short_number(100.0 * missed, "%.2g") + " % of what was turned over.",
+                        "Friction slid far in single increments, or fibres leapt. Compare with more increments before you use energies."});
+    if (const double held = last_of(table, "damping_share"); held > damping_share)
+        list.push_back({"Damping holds " + short_number(100.0 * held, "%.2g") + " % of the forces at the end.",
+                        "The state has not come to rest. Forces and shape are those of fibres that are still held by springs."});
+    if (const double cut = number("rejected_increments") / number("increments"); cut > cut_share)
+        list.push_back({short_number(number("rejected_increments")) + " attempts at increments were given up.",
+                        "The result is not worse for it, but the run was slow. More increments or more damping may be faster."});
+    return list;
+}
+
+/// Coordinates of fibres in thousandths of the greatest extent, about the middle.
+inline std::string fibres_json(const observe::Snapshot& snapshot, const ReportPage& page) {
+    constexpr std::size_t most_points = 60000;  // a browser turns as many smoothly
+    fibrant::Vec3 low = fibrant::Vec3::Constant(1e300), high = -low;
+    std::size_t points = 0;
+    for (const observe::FibreSnapshot& fibre : snapshot.fibres)
+        for (const fibrant::Vec3& x : fibre.position) low = low.cwiseMin(x), high = high.cwiseMax(x), ++points;
+    if (points == 0) return {};
+    const fibrant::Vec3 middle = 0.5 * (low + high), extent = high - low;
+    const double size = std::max(extent.maxCoeff(), 1e-300), scale = 1000.0 / size;
+    const std::size_t step = points / most_points + 1;
+    const auto three = [&](const fibrant::Vec3& x, int digits) {
+        std::string text;
+        for (int axis = 0; axis < 3; ++axis) text += (axis > 0 ? "," : "") + observe::rounded(scale * (x[axis] - middle[axis]), digits);
+        return text;
+    };
+    std::string text = "{\"unit\":" + observe::json_quoted(observe::xml_escaped(page.unit)) + ",\"size\":" + observe::shortest(size) +
+                       ",\"across\":" + observe::rounded(extent.norm() / size, 3) + ",\"low\":[" + three(low, 1) + "],\"high\":[" +
+                       three(high, 1) + "],\n\"fibres\":[";
+    for (std::size_t f = 0; f < snapshot.fibres.size(); ++f) {
+        const observe::FibreSnapshot& fibre = snapshot.fibres[f];
+        text += std::string(f > 0 ? "," : "") + "\n{\"c\":\"" + page.palette.of(static_cast<fibrant::Index>(f), fibre.group).text() +
+                "\",\"r\":" + observe::rounded(scale * fibre.section.radius(), 2) + ",\"p\":[";
+        for (std::size_t k = 0; k < fibre.position.size(); k += step) text += (k > 0 ? "," : "") + three(fibre.position[k], 1);
+        if ((fibre.position.size() - 1) % step != 0) text += "," + three(fibre.position.back(), 1);
+        text += "]}";
+    }
+    return text + "]}";
+}
+
+/// A plot of columns over the increments; empty where no column is there.
+inline std::string plot(const Table& table, const std::string& title, const std::string& label, const std::vector<std::string>& names,
+                        bool powers = false) {
+    observe::CurvePlot curves{title, "increment", label, {}, false, 520.0, 300.0};
+    for (const std::string& name : names) {
+        observe::PlotLine line = table.line(name, table.column("increment"), table.column(name));
+        if (powers) {
+            std::erase_if(line.points, [](const auto& point) { return !(point.second > 0.0); });
+            for (auto& point : line.points) point.second = std::log10(point.second);
+        }
+        std::replace(line.name.begin(), line.name.end(), '_', ' ');
+        if (line.points.size() > 1) curves.lines.push_back(std::move(line));
+    }
+    return curves.lines.empty() ? std::string() : "<figure>" + observe::curves_svg(curves) + "</figure>\n";
+}
+
+/// Which increments each stage took: a row a stage.
+inline std::string stages(const Table& table) {
+    const std::size_t stage = table.column("stage"), iterations = table.column("newton_iterations"), seconds = table.column("seconds");
+    if (table.rows() == 0 || std::max({stage, iterations, seconds}) == table.names().size()) return {};
+    std::string text = "<table><tr><th>stage</th><th>increments</th><th>Newton iterations</th><th>seconds</th></tr>\n";
+    for (std::size_t from = 0, to = 0; from < table.rows(); from = to) {
+        double newton = 0.0, taken = 0.0;
+        for (to = from; to < table.rows() && table.cell(to, stage) == table.cell(from, stage); ++to)
+            newton += std::strtod(table.cell(to, iterations).c_str(), nullptr), taken += std::strtod(table.cell(to, seconds).c_str(), nullptr);
+        text += "<tr><td>" + observe::xml_escaped(table.cell(from, stage)) + "</td><td>" + table.cell(from, 0) + " to " + table.cell(to - 1, 0) +
+                "</td><td>" + short_number(newton) + "</td><td>" + short_number(taken, "%.3g") + "</td></tr>\n";
+    }
+    return text + "</table>\n";
+}
+
+inline constexpr const char* report_style = R"style(
+body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#f4f5f7;margin:0}
+main{max-width:1120px;margin:0 auto;padding:16px 20px 60px}
+h1{font-size:26px;margin:12px 0 8px}h2{font-size:19px;margin:28px 0 8px}
+.said{padding:12px 16px;border-radius:8px;border-left:6px solid;background:#fff;margin:10px 0}
+.good{border-color:#2e8b57}.bad{border-color:#c0392b}.doubt{border-color:#d9902f}.said b{display:block}
+.two{display:grid;grid-template-columns:minmax(0,3fr) minmax(260px,2fr);gap:16px;align-items:start}
+.card{background:#fff;border-radius:8px;padding:12px;box-shadow:0 1px 3px #0002}
+canvas{width:100%;height:480px;touch-action:none;cursor:grab;display:block}
+.bar{display:flex;flex-wrap:wrap;gap:8px;align-items:center;font-size:14px}
+button,select{font:inherit;padding:2px 10px;border:1px solid #bbb;border-radius:6px;background:#fafafa;cursor:pointer}
+table{border-collapse:collapse;width:100%;font-size:14px;background:#fff}
+td,th{text-align:left;padding:4px 8px;border-bottom:1px solid #e5e5e5;vertical-align:top}
+td.n{font-variant-numeric:tabular-nums;white-space:nowrap}td small{color:#666}
+.plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(420px,1fr));gap:16px}
+figure{margin:0;background:#fff;border-radius:8px;padding:8px;box-shadow:0 1px 3px #0002}figure svg{width:100%;height:auto}
+pre{font-size:13px;overflow:auto;margin:0}details{margin:10px 0}summary{cursor:pointer}
+@media(max-width:820px){.two,.plots{grid-template-columns:minmax(0,1fr)}}
+)style";
+
+}  // namespace detail
+
+/// The page as text.
+/// @param folder  of the run, whose increments.csv and parameters.toml are shown where they are there
+inline std::string report_page(const std::filesystem::path& folder, const ReportPage& page, const observe::Snapshot& snapshot) {
+    const Table table(folder / "increments.csv");
+    const std::vector<detail::Warning> list = detail::warnings(page.summary, table);
+    const bool good = std::none_of(list.begin(), list.end(), [](const auto& warning) { return warning.grave; });
+    const std::string name = observe::xml_escaped(page.program + ": " + folder.filename().string());
+    std::string text = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + name +
+                       "</title>\n<meta name=\"viewport\" content=\"width=device-width\">\n<style>" + detail::report_style + "</style>\n</head>\n<body><main>\n<h1>" + name + "</h1>\n";
+    text += good ? "<p class=\"said good\"><b>The result is good.</b>Forces balance, and the audit found nothing that is not allowed.</p>\n"
+                 : "<p class=\"said bad\"><b>Do not use this result.</b>What is wrong is said below.</p>\n";
+    for (const detail::Warning& warning : list)
+        text += std::string("<p class=\"said ") + (warning.grave ? "bad" : "doubt") + "\"><b>" + warning.seen + "</b>" + warning.means + "</p>\n";
+
+    const auto row = [&](const std::string& key, const std::string& value) {
+        return "<tr><td>" + std::string(key) + "<br><small>" + observe::xml_escaped(meaning_of(key)) + "</small></td><td class=\"n\">" + detail::shown(value) + "</td></tr>\n";
+    };
+    text += "<div class=\"two\"><div class=\"card\">\n<canvas id=\"view\"></canvas>\n<div class=\"bar\">";
+    for (const char* view : {"oblique", "front", "side", "top"}) text += std::string("<button data-view=\"") + view + "\">" + view + "</button>";
+    text += "<label>cut across <select id=\"axis\"><option value=\"0\">x</option><option value=\"1\">y</option><option value=\"2\">z</option></select></label>"
+            "<input id=\"cut\" type=\"range\" min=\"0\" max=\"1000\" value=\"1000\"><small>drag: turn; shift and drag: move; wheel: zoom</small></div></div>\n";
+    text += "<div class=\"card\"><table>\n";
+    for (const std::string& key : page.foremost)
+        if (const std::string value = detail::value_of(page.summary, key); !value.empty()) text += row(key, value);
+    text += "</table></div></div>\n<h2>Over the increments</h2>\n<div class=\"plots\">\n";
+    text += detail::plot(table, "What is out of balance; stages on the way may be loose", "power of ten of the residual", {"residual"}, true);
+    text += detail::plot(table, "Deepest contact", "power of ten of depth / radius", {"greatest_penetration_over_radius"}, true);
+    text += detail::plot(table, "Iterations", "of Newton's method", {"newton_iterations"});
+    text += detail::plot(table, "Part of the forces that damping holds", "power of ten", {"damping_share"}, true);
+    text += detail::plot(table, "Energies", "energy", {"external_work", "elastic_energy", "contact_energy", "dissipated", "damped", "energy_error"});
+    text += detail::plot(table, "Contacts", "number", {"active_contacts"});
+    text += "</div>\n<h2>Stages</h2>\n" + detail::stages(table);
+    text += "<details><summary>All figures of the run</summary><table>\n";
+    for (const auto& [key, value] : page.summary.members()) text += row(key, value);
+    text += "</table></details>\n";
+    if (std::filesystem::exists(folder / "parameters.toml"))
+        text += "<details><summary>The scene, with all values</summary><pre>" + observe::xml_escaped(observe::read_file(folder / "parameters.toml")) + "</pre></details>\n";
+    text += "</main>\n<script type=\"application/json\" id=\"fibres\">" + detail::fibres_json(snapshot, page) + "</script>\n<script>" + report_viewer + "</script>\n</body>\n</html>\n";
+    return text;
+}
+
+/// Writes report.html into the folder of a run.
+inline void write_report(const std::filesystem::path& folder, const ReportPage& page, const observe::Snapshot& snapshot) {
+    observe::write_file(folder / "report.html", report_page(folder, page, snapshot));
+}
+/// The same with what the summary says before the counts of iterations shown first.
+template <class Output>
+void write_report(const Output& output, const char* program, const observe::JsonObject& summary, const observe::Snapshot& snapshot) {
+    ReportPage page{program, output.unit, summary, {}, {}};
+    for (const auto& [key, value] : summary.members()) {
+        if (key == "increments") break;
+        if (key != "reason" && value.find_first_of("{[") == std::string::npos) page.foremost.push_back(key);
+    }
+    page.foremost.push_back("wall_seconds");
+    write_report(output.folder, page, snapshot);
+}
+
+}  // namespace example
