@@ -15,6 +15,8 @@
 
 #include <support/threads.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <array>
@@ -303,7 +305,7 @@ TEST_CASE("where an increment started, pairs far deeper than their zone was exer
     const auto contacts = settled(slid);
     const Seen whole = seen(contacts, slid), deeper = seen(contacts, moved(scene.mesh, slid, 1, {0, 0, -0.05 * r})), part = seen(contacts, moved(scene.mesh, slid, 1, {0, 0, -0.15 * r}));
     CHECK(std::abs(whole.on[1].x()) > 0.05 * whole.on[1].norm());  // friction: half of 0.3
-    CHECK(deeper.on[1].z() / whole.on[1].z() == doctest::Approx(1.5).epsilon(0.05));  // the penalty's regularised foot
+    CHECK(deeper.on[1].z() / whole.on[1].z() == test::near(1.5, 0.05));  // the penalty's regularised foot
     CHECK(part.on[1] == Vec3(Vec3::Zero()));
     CHECK(whole.on[2].norm() > 0.0);
     CHECK(part.on[2] == whole.on[2]);
@@ -382,8 +384,8 @@ TEST_CASE("a rule for a pair of groups changes the friction and the penetration 
         contacts.evaluate(slid);
         REQUIRE(contacts.elements().size() == 2);
         const auto ratio = [&](Index k) { return contacts.frictions()[core::at(k)].force.norm() / contacts.responses()[core::at(k)].reaction; };
-        CHECK(ratio(0) == doctest::Approx(ruled ? 0.15 : 0.3));
-        CHECK(ratio(1) == doctest::Approx(0.3));
+        CHECK(ratio(0) == test::near(ruled ? 0.15 : 0.3, 1e-12));
+        CHECK(ratio(1) == test::near(0.3, 1e-12));
         const double before = contacts.zones()[0].stiffness;
         CHECK(before == contacts.zones()[1].stiffness);
         // 0.1 r deep where 0.05 r is allowed: the stiffness rises, and for 0.2 r it falls, as the adaptation says.
@@ -394,7 +396,7 @@ TEST_CASE("a rule for a pair of groups changes the friction and the penetration 
         for (const Index k : {0, 1}) {
             const double depth = -contacts.responses()[core::at(k)].gap;
             CHECK(contacts.zones()[core::at(k)].stiffness ==
-                  doctest::Approx((k == 0 ? own : all).adapted(before, contacts.zones()[core::at(k)].reference, depth, 0.005 * r)));
+                  test::near((k == 0 ? own : all).adapted(before, contacts.zones()[core::at(k)].reference, depth, 0.005 * r), 1e-12));
         }
         CHECK((contacts.zones()[0].stiffness == contacts.zones()[1].stiffness) == !ruled);
     }
@@ -549,7 +551,7 @@ TEST_CASE("contacts remember their side when elements are made anew after fibres
             if (element.fibre_i != 0) continue;
             ++seen;
             CHECK((element.normal - (element.fibre_j == 1 ? 1.0 : -1.0) * Vec3::UnitZ()).norm() < 1e-12);
-            CHECK(element.gap(passed) == doctest::Approx(-2.3 * r).epsilon(1e-12));
+            CHECK(element.gap(passed) == test::near(-2.3 * r, 1e-12));
         }
         CHECK(seen > 10);
     }
@@ -564,9 +566,9 @@ TEST_CASE("accepting a state brings the stiffness of its zones to the target of 
     REQUIRE(contacts.zones().size() == 1);
     const double before = contacts.zones()[0].stiffness;
     contacts.accept(rest);  // the penetration is 0.1 r, twice the allowed one: over (0.6 * 0.05) it asks for more than three times
-    CHECK(contacts.zones()[0].stiffness == doctest::Approx(3.0 * before).epsilon(1e-12));
+    CHECK(contacts.zones()[0].stiffness == test::near(3.0 * before, 1e-12));
     contacts.detect(rest, rest, 0.5 * r, false);
-    CHECK(contacts.zones()[0].stiffness == doctest::Approx(3.0 * before).epsilon(1e-12));
+    CHECK(contacts.zones()[0].stiffness == test::near(3.0 * before, 1e-12));
 }
 
 using Centred = beam::OnCentreline<Beam>;
