@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rigid bodies that hold fibre ends on the average, and periodic cells, against closed forms of cantilevers and bars.
 #include <fibrant/beam/director_beam.hpp>
+#include <fibrant/compositions/weave/periodic.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
@@ -308,6 +309,37 @@ TEST_CASE("a periodic fibre stretches under a mean stress as a bar, and carries 
         const Vec3 g = simulator.value(scene::last_end(f), scene::NodeVector::director_1) - simulator.value(scene::first_end(f), scene::NodeVector::director_1);
         CHECK(g.norm() < 1e-10);
     }
+}
+
+TEST_CASE("a cell that is stretched and sheared holds the force of its bar along the bar, component by component") {
+    Mat3 gradient;
+    gradient << 0.01, 0.02, -0.03, 0.04, -0.015, 0.05, 0.06, -0.07, 0.025;  // no two alike
+    scene::Assembly assembly;
+    const Vec3 along = Vec3(1, 2, 3).normalized(), period = length * along, now = period + gradient * period;
+    const Index f = assembly.add({.from = {0, 0, 0}, .to = period, .section = scene::circular(radius), .material = {young, 0.3}, .elements = 4, .director = Vec3::UnitX()});
+    assembly.hold_position({f, 0.5});
+    assembly.hold_axial_rotation({f, 0.5});
+    scene::PeriodicCell cell;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) cell.component(i, j) = scene::Coordinate::held_at(gradient(i, j), "strain");
+    assembly.add(cell);
+    assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), period, 0});
+    simulation::Simulator<Tied> simulator(assembly, parameters());
+    const simulation::Report report = simulator.run({.increments = 2});
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    const double stretch = now.norm() / length, force = young * area() * 0.5 * (stretch * stretch - 1.0) * stretch;
+    const Mat3 expected = force * now.normalized() * period.transpose();  // nominal: force now, area at the start
+    const Mat3 seams = simulator.equilibrium().ties().cell_force(0), inside = compositions::weave::virial(simulator);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            CAPTURE(i);
+            CAPTURE(j);
+            CHECK(simulator.equilibrium().ties().motion().gradient(0)(i, j) == test::near(gradient(i, j), 1e-12));
+            CHECK(seams(i, j) == test::near(expected(i, j), 1e-7));
+            CHECK(inside(i, j) == test::near(expected(i, j), 1e-7));
+        }
+    CHECK((simulator.value(scene::last_end(f)) - simulator.value(scene::first_end(f)) - now).norm() < 1e-12);
 }
 
 TEST_CASE("a scene that starts from the state of another one ties the means that it finds there") {

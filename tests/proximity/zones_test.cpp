@@ -111,6 +111,21 @@ TEST_CASE("fibres that meet twice make two zones") {
     CHECK(zones[0].b_i < zones[1].a_i);
 }
 
+TEST_CASE("pairs that touch in the plane of their segment numbers, corners included, are one zone") {
+    // Lines on the grid of segment numbers: two straight fibres at many angles and finenesses, of which each has one zone, whichever way they run.
+    for (const double angle : {2.0, 20.0, 45.0, 70.0, 90.0, 110.0, 135.0, 160.0, 178.0})
+        for (const int segments : {7, 20, 61}) {
+            CAPTURE(angle);
+            CAPTURE(segments);
+            FibreSet set{.name = "crossing", .reach = 0.01};
+            const double a = angle * std::numbers::pi / 180.0;
+            const Vec3 way(2.0 * std::cos(a), 2.0 * std::sin(a), 0.0), up(0, 0, 0.2);
+            set.add(straight({-2, 0, 0}, {2, 0, 0}, 20), 0.1);
+            set.add(straight(up - way, up + way, segments), 0.1);
+            CHECK(zones_of(set).size() == 1);
+        }
+}
+
 TEST_CASE("every close pair has its closest points in a zone of its two fibres, and every zone has a pair") {
     for (const FibreSet& set : test::search_cases()) {
         CAPTURE(set.name);
