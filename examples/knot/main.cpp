@@ -37,7 +37,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
               "of the braid: 3 overhand, 5 double overhand");
     file.read("knot", "elements", parameters.elements, example::between(16, 100000), "quadratic elements");
     example::read_material(file, "material", parameters.material);
-    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "of the rod on itself");
+    example::read_friction(file, mu, "of the rod on itself");
     file.read("loading", "draw", drawn, example::not_negative(), "length", "by which one end is drawn out");
     file.read("loading", "increments", increments, example::increments(), "of the drawing");
     file.complete();

@@ -25,6 +25,7 @@ public:
             if (auto row = cells(line); row.size() == names_.size()) rows_.push_back(std::move(row));
     }
     const std::vector<std::string>& names() const noexcept { return names_; }
+    const std::vector<std::vector<std::string>>& rows() const noexcept { return rows_; }
     /// Place of a column; names().size() if there is none.
     std::size_t column(std::string_view name) const {
         return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());

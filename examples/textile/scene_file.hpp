@@ -283,9 +283,8 @@ inline Scene read_scene(SceneReader& file) {
         "ends", "straight_at_rest", straight,
         "fibres are straight where nothing acts; else they are at rest as they are drawn. Left out: as the generator has it");
     cloth::SettleParameters& settle = scene.settle;
-    file.read("contact", "friction_coefficient", settle.friction_coefficient, example::friction(), "1", "once yarns have parted");
-    file.read("contact", "allowed_penetration_over_radius", settle.allowed_penetration_over_radius, example::depth_over_radius(),
-              "1", "at rest");
+    example::read_friction(file, settle.friction_coefficient, "once yarns have parted");
+    example::read_allowed_penetration(file, settle.allowed_penetration_over_radius, "at rest");
     file.read("settle", "gap_limit_over_radius", settle.gap_limit_over_radius, example::above(0.0, 1.0), "1",
               "deepest penetration that is shown to the contact law");
     file.read("settle", "tension_increments", settle.tension_increments, example::increments(), "in which the tension is raised");

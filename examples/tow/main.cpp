@@ -58,8 +58,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.require("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2", "of the material, along the fibres");
     file.require("material", "poisson_ratio", material.poisson_ratio, example::inside(-10.0, 10.0), "1", "contraction across under tension along");
     example::read_transverse(file, "material", kind, material.transverse);
-    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "of fibres on each other and on the plates");
-    file.read("contact", "allowed_penetration_over_radius", depth, example::depth_over_radius(), "1", "to which the penalty is adapted");
+    example::read_friction(file, mu, "of fibres on each other and on the plates");
+    example::read_allowed_penetration(file, depth);
     file.read("loading", "compression", compression, example::inside(0.0, 0.2), "1", "of the height, at the end");
     file.read("loading", "increments", increments, example::increments(), "of the pressing");
     file.complete();

@@ -295,8 +295,8 @@ TEST_CASE("what stuck friction remembers turns with the fibres, and files show w
     contacts.detect(turned, turned, 0.5 * r, false);
     const Vector after = forces(contacts, turned);
     CHECK((after - (turn * Eigen::Map<const Eigen::Matrix3Xd>(before.data(), 3, before.size() / 3)).reshaped()).norm() < 1e-9 * before.norm());
-    // A third of it is friction: 0.3 of the reactions of one side, of which the other takes some away.
-    CHECK(on_fibre(scene.mesh, before, 0).head<2>().norm() > 0.05 * on_fibre(scene.mesh, before, 1).z());
+    // Of friction there is something: 0.3 of the reactions, for 0.58 of the reversible displacement.
+    CHECK(on_fibre(scene.mesh, before, 0).head<2>().norm() > 0.05 * std::abs(on_fibre(scene.mesh, before, 1).z()));
 
     const observe::Snapshot shot = simulation::snapshot_of(scene.mesh, contacts, turned);
     const std::string touching = observe::contact_data(shot).text(), fibres = observe::fibre_data(shot).text();

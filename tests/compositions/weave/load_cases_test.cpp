@@ -205,7 +205,7 @@ TEST_CASE("figures of tows are those of the sections they are drawn with") {
     const TowFigures figures = tow_figures(snapshot, fabric, Family::warp);
     const Packing packing = fabric.warp.packing();
     // Convex hulls of 128-gons: 2e-4 of a radius; tows are level at their crossings.
-    CHECK(figures.width == test::near(packing.width, 1e-3));
+    CHECK(figures.width == test::near(packing.width, 3e-3));  // the principal axes of seven fibres are turned a little
     CHECK(figures.gap == test::near(fabric.warp_spacing - packing.width, 1e-2));
     // A uniform stretch of straight fibres.
     observe::Snapshot straight = woven_snapshot(fabric, 0.0);
