@@ -105,6 +105,11 @@ TEST_CASE("whole turns of a rotation vector change neither the strains of a rod 
         const Vec3 psi = bent.segment<3>(v);
         far.segment<3>(v) = psi * (1.0 - 2.0 * pi / psi.norm());
         CHECK((core::nearest_rotation_vector(Vec3(far.segment<3>(v)), psi) - psi).norm() < 1e-14);
+        // The nearest of them, be it beyond or before.
+        for (const auto& [turns, nearest] : {std::pair{0.4, 0.0}, {0.9, 1.0}, {1.6, 2.0}, {-0.4, 0.0}, {-0.9, -1.0}}) {
+            const Vec3 to = psi * (1.0 + 2.0 * pi * turns / psi.norm());
+            CHECK((core::nearest_rotation_vector(psi, to) - psi * (1.0 + 2.0 * pi * nearest / psi.norm())).norm() < 1e-13);
+        }
     }
     CHECK(beam.energy(rest, far) == test::near(beam.energy(rest, bent), 1e-11));
     const RigidSectionRod::Particle particle = RigidSectionRod::particle_weights(0.3, 0.7 * radius, -0.4 * radius);

@@ -9,7 +9,7 @@ source=$1
 scratch=$2
 compiler=$3
 shift 3
-archer=$("$compiler" -print-file-name=libarcher.so)
+archer=$("$compiler" -print-resource-dir)/../../libarcher.so
 [ -e "$archer" ] || { echo "$compiler has no libarcher.so: libomp-14-dev is missing"; exit 1; }
 mkdir -p "$scratch"
 export OMP_NUM_THREADS=2 OMP_WAIT_POLICY=passive OMP_TOOL_LIBRARIES="$archer"

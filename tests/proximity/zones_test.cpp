@@ -111,19 +111,20 @@ TEST_CASE("fibres that meet twice make two zones") {
     CHECK(zones[0].b_i < zones[1].a_i);
 }
 
-TEST_CASE("pairs that touch in the plane of their segment numbers, corners included, are one zone") {
-    // Lines on the grid of segment numbers: two straight fibres at many angles and finenesses, of which each has one zone, whichever way they run.
-    for (const double angle : {2.0, 20.0, 45.0, 70.0, 90.0, 110.0, 135.0, 160.0, 178.0})
-        for (const int segments : {7, 20, 61}) {
-            CAPTURE(angle);
-            CAPTURE(segments);
-            FibreSet set{.name = "crossing", .reach = 0.01};
-            const double a = angle * std::numbers::pi / 180.0;
-            const Vec3 way(2.0 * std::cos(a), 2.0 * std::sin(a), 0.0), up(0, 0, 0.2);
-            set.add(straight({-2, 0, 0}, {2, 0, 0}, 20), 0.1);
-            set.add(straight(up - way, up + way, segments), 0.1);
-            CHECK(zones_of(set).size() == 1);
-        }
+TEST_CASE("pairs that touch by a corner alone in the plane of their segment numbers are one zone, whichever way fibres run") {
+    // Two zigzags, one over the other, that cross in the middles of their segments: where one has its node the other's is too far.
+    std::vector<Vec3> below, above;
+    for (int k = 0; k <= 12; ++k) {
+        const double aside = k % 2 == 0 ? 0.1 : -0.1;
+        below.push_back({1.0 * k, aside, 0.0}), above.push_back({1.0 * k, -aside, 0.2});
+    }
+    for (const bool against : {false, true}) {
+        FibreSet set{.name = "zigzag", .reach = 0.02};
+        set.add(below, 0.1), set.add(above, 0.1);
+        CHECK(BruteSearch{}.pairs(set.centrelines(), set.reach).size() == 12);
+        CHECK(zones_of(set).size() == 1);
+        if (!against) std::ranges::reverse(above);
+    }
 }
 
 TEST_CASE("every close pair has its closest points in a zone of its two fibres, and every zone has a pair") {
