@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // A dense mat of random fibres is pressed from level to level, of one seed or of several; prints pressure and contacts of each at
 // rest.
-//   dense_mat SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--overwrite] [--quiet]
+//   dense_mat SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
 #include "../support/report_page.hpp"
+#include "../support/table.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
@@ -30,13 +31,22 @@ struct Mat {
     using Tools = contact::RigidTools;
 };
 
-/// A row a level. @returns its pressures over volume fractions, of levels at rest
-observe::PlotLine write_levels(observe::CsvWriter& table, std::uint64_t seed, const std::vector<mat::LevelState>& levels) {
+/// A row a level: the last increment of each in the table of increments, which a run that was resumed has whole.
+/// @returns its pressures over volume fractions, of levels at rest
+observe::PlotLine write_levels(observe::CsvWriter& table, std::uint64_t seed, const example::Table& increments) {
     observe::PlotLine line{"seed " + std::to_string(seed), {}};
-    for (const mat::LevelState& level : levels) {
-        table.row({{"seed", seed}, {"volume_fraction", level.mat.volume_fraction}, {"pressure_over_modulus", level.mat.pressure}, {"lower_pressure_over_modulus", level.mat.lower_pressure},
-                   {"contacts_per_fibre", level.mat.contacts_per_fibre}, {"contacts_without_bulk", level.mat.contacts_without_bulk}, {"sine", level.mat.sine},
-                   {"elastic_energy", level.mat.elastic_energy}, {"springs", level.springs}, {"at_rest", level.at_rest()}});
+    const std::size_t stage = increments.column("stage");
+    for (std::size_t k = 0; k < increments.rows(); ++k) {
+        if (increments.cell(k, stage) != "level" || (k + 1 < increments.rows() && increments.cell(k + 1, stage) == "level")) continue;
+        const auto figure = [&](const char* name) { return std::stod(increments.cell(k, increments.column(name))); };
+        const mat::LevelState level{{.volume_fraction = figure("volume_fraction"), .pressure = figure("pressure_over_modulus"),
+                                     .lower_pressure = figure("lower_pressure_over_modulus")}, figure("damping_share")};
+        std::vector<observe::Column> columns{{"seed", seed}};
+        for (const char* name : {"volume_fraction", "pressure_over_modulus", "lower_pressure_over_modulus", "contacts_per_fibre",
+                                 "contacts_without_bulk", "sine", "elastic_energy"})
+            columns.push_back({name, figure(name)});
+        columns.push_back({"springs", level.springs}), columns.push_back({"at_rest", level.at_rest()});
+        table.row(columns);
         if (level.at_rest()) line.points.emplace_back(level.mat.volume_fraction, level.mat.pressure);
     }
     return line;
@@ -51,16 +61,12 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.require("mat", "width", parameters.width, example::between(3.0, 1e5), "radius", "width of the box along x and y");
     file.require("mat", "fibres", parameters.fibres, example::between(1, 1000000), "how many lengths of a fibre are in the box");
     file.require("mat", "volume_fraction", fraction, example::inside(0.0, 0.9), "1", "volume fraction of fibres in the box at the start");
-    file.read("mat", "tilt_deg", parameters.tilt_deg, example::between(0.0, 90.0), "degree",
-              "greatest angle of a fibre to the plane; 90: all directions");
-    file.read("mat", "elements", parameters.elements, example::between(1, 10000), "elements along a length of fibre");
-    file.read("mat", "seed", seed, example::between(0, 1e15), "seed of the random numbers");
+    example::read_random_fibres(file, parameters.tilt_deg, parameters.elements, "elements along a length of fibre");
+    example::read_seed(file, seed);
     file.read("mat", "seeds", seeds, example::between(1, 1000),
               "number of mats, one after the other; more than one: each has a folder of its own");
-    file.read("contact", "friction_coefficient", levels.friction_coefficient, example::friction(), "1",
-              "coefficient of friction, once fibres have parted");
-    file.read("contact", "allowed_penetration_over_radius", levels.allowed_penetration, example::depth_over_radius(), "1",
-              "how deep a contact may be, over the radius");
+    example::read_friction(file, levels.friction_coefficient, "coefficient of friction of fibres on each other, once they are parted");
+    example::read_allowed_penetration(file, levels.allowed_penetration);
     file.read("contact", "softest_over_section", levels.softest, example::above(0.0, 1.0), "1",
               "least stiffness of a contact, over that of a section");
     file.require("levels", "last", levels.last, example::inside(0.0, 0.9), "1", "volume fraction that no level exceeds");
@@ -89,6 +95,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.names({{"MatParameters.height", "mat.volume_fraction is too large: the height of the box"},
                 {"MatParameters.", "mat."},
                 {"LevelParameters.", "levels."}});
+    const auto folder_of = [&](Index k) { return seeds > 1 ? output.folder / ("seed_" + std::to_string(seed + k)) : output.folder; };
+    for (Index k = 0; seeds > 1 && k < seeds; ++k) output.parts.push_back(folder_of(k));
     output.open(file);
 
     observe::CsvWriter table(output.folder / "levels.csv");
@@ -97,20 +105,23 @@ bool solve(example::SceneReader& file, example::Output& output) {
     for (Index k = 0; k < seeds && !example::stopped(); ++k) {
         parameters.seed = static_cast<std::uint64_t>(seed + k);
         example::Output own = output;
-        if (seeds > 1) own.folder /= "seed_" + std::to_string(seed + k), std::filesystem::create_directories(own.folder);
+        own.folder = folder_of(k);
+        std::filesystem::create_directories(own.folder);
         simulation::Simulator<Mat> simulator(mat::boxed_mat(parameters, mat::random_fibres(parameters)), mat::model_parameters<Mat>(parameters, levels));
         example::Recorder recorder(own, 1.0, [&]() -> std::vector<observe::Column> {
             const mat::MatState state = mat::measure(simulator, parameters);
             return {{"volume_fraction", state.volume_fraction}, {"pressure_over_modulus", state.pressure}, {"lower_pressure_over_modulus", state.lower_pressure},
-                    {"contacts_per_fibre", state.contacts_per_fibre}, {"contacts_without_bulk", state.contacts_without_bulk}, {"elastic_energy", state.elastic_energy}};
+                    {"contacts_per_fibre", state.contacts_per_fibre}, {"contacts_without_bulk", state.contacts_without_bulk}, {"elastic_energy", state.elastic_energy},
+                    {"sine", state.sine}};
         });
-        mat::LevelRecord<Mat> record(simulator, parameters);
         simulation::Loading<Mat> loading = mat::pressing_by_levels<Mat>(parameters, levels);
+        loading.checkpoint = own.checkpoint(), loading.resume = own.resume;
+        loading.scene = own.told, loading.other_scene = own.other_scene;
         loading.stop = example::stopped;
-        const simulation::Report report = simulator.run(loading, recorder, record);
+        const simulation::Report report = simulator.run(loading, recorder);
         const simulation::Audit audit = example::audit(own, simulator, 1.0);
         converged = converged && report.converged && audit.clean();
-        plot.lines.push_back(write_levels(table, parameters.seed, record.levels()));
+        plot.lines.push_back(write_levels(table, parameters.seed, example::Table(own.folder / "increments.csv")));
         if (!plot.lines.back().points.empty()) observe::write_file(output.folder / "pressure.svg", observe::log_log_svg(plot));
         example::write_pictures(own, simulator.snapshot(), -60.0, 25.0);
         const observe::JsonObject summary = example::write_summary(own, report, audit, 1.0, {{"exponent", observe::fitted_order(plot.lines.back().points)}});
@@ -120,5 +131,5 @@ bool solve(example::SceneReader& file, example::Output& output) {
 }
 
 int main(int argc, char** argv) {
-    return example::run(argc, argv, "dense_mat", "Presses a dense mat of random fibres from level to level.", solve, false);
+    return example::run(argc, argv, "dense_mat", "Presses a dense mat of random fibres from level to level.", solve);
 }

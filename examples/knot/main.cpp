@@ -38,7 +38,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
               "crossings of the knot: 3 overhand, 5 double overhand");
     file.read("knot", "elements", parameters.elements, example::between(16, 100000), "elements along the rod");
     example::read_material(file, "material", parameters.material);
-    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "coefficient of friction of the rod on itself");
+    example::read_friction(file, mu, "coefficient of friction of the rod on itself");
     file.read("loading", "draw", drawn, example::not_negative(), "length", "length by which one end is drawn out");
     file.read("loading", "increments", increments, example::increments(), "increments of the drawing");
     file.complete();

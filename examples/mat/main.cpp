@@ -37,15 +37,12 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.require("mat", "height", parameters.height, example::positive(), "length", "height of the box at the start");
     file.require("mat", "fibres", parameters.fibres, example::between(1, 1000000), "fibres in the box");
     file.read("mat", "bend_deg", parameters.bend_deg, example::between(0.0, 180.0), "degree",
-              "angle by which fibres at rest turn from end to end");
-    file.read("mat", "tilt_deg", parameters.tilt_deg, example::between(0.0, 90.0), "degree",
-              "greatest angle of a fibre to the plane; 90: all directions");
-    file.read("mat", "elements", parameters.elements, example::between(1, 10000), "elements along a fibre");
-    file.read("mat", "seed", seed, example::between(0, 1e15), "seed of the random numbers");
+              "by which fibres turn from end to end, at rest");
+    example::read_random_fibres(file, parameters.tilt_deg, parameters.elements, "elements along a fibre");
+    example::read_seed(file, seed);
     example::read_material(file, "material", parameters.material);
-    file.read("contact", "friction_coefficient", press.friction_coefficient, example::friction(), "1", "coefficient of friction");
-    file.read("contact", "allowed_penetration_over_radius", press.allowed_penetration, example::depth_over_radius(), "1",
-              "how deep a contact may be, over the radius");
+    example::read_friction(file, press.friction_coefficient, "coefficient of friction of fibres on each other");
+    example::read_allowed_penetration(file, press.allowed_penetration);
     file.require("loading", "height", press.height, example::positive(), "length", "height to which the mat is compacted");
     file.read("loading", "increments", press.increments, example::increments(), "increments of the pressing");
     file.read("loading", "damping", press.damping, example::above(0.0, 1e6), "1",

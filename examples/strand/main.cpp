@@ -76,10 +76,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     Index wires = 7;
     double core_radius = 0.0, rope_lay = 0.0, apart = 0.0, overlap = 0.0;
     bool alternate = true;
-    file.require("strand", "wires", wires, example::wires(), "number of wires: a core and layers of 6, 12, 18, 24, 30");
-    file.require("strand", "radius", given.radius, example::positive(), "length", "radius of the wires");
-    file.require("strand", "lay_angle_deg", given.lay, example::inside(-80.0, 80.0), "degree",
-                 "angle of the wires to the axis; positive is right-handed");
+    example::read_wires(file, wires, given.radius, given.lay, "angle of the wires to the axis; positive is right-handed");
     file.require("strand", "length", given.length, example::positive(), "length", "length along the axis");
     file.read("strand", "alternate", alternate, "every other layer has the other hand");
     file.read("strand", "core_radius", core_radius, example::not_negative(), "length",
@@ -91,13 +88,11 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("rope", "overlap_over_radius", overlap, example::between(0.0, 0.5), "1",
               "how deep wires may be in each other at the start, over the radius");
     example::read_material(file, "material", given.material);
-    file.read("contact", "friction_coefficient", given.mu, example::friction(), "1", "coefficient of friction");
-    file.read("contact", "reversible_displacement_over_radius", given.reversible, example::above(0.0, 1.0), "1",
-              "slip up to which friction is elastic, over the radius");
+    example::read_friction(file, given.mu, "coefficient of friction of wires on each other");
+    example::read_reversible_displacement(file, given.reversible);
     file.read("contact", "largest_penetration_over_radius", given.sinking, example::depth_over_radius(), "1",
               "penetration that multipliers leave, over the radius");
-    file.read("contact", "allowed_penetration_over_radius", given.allowed, example::depth_over_radius(), "1",
-              "how deep a contact may be, over the radius");
+    example::read_allowed_penetration(file, given.allowed);
     file.read("contact", "regularisation_over_allowed", given.depth, example::above(0.0, 1.0), "1",
               "depth up to which the penalty is quadratic, over the allowed penetration");
     file.read("contact", "tolerance_over_radius", given.tolerance, example::above(0.0, 0.1), "1",

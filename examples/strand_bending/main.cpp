@@ -98,10 +98,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     std::string kind = "elastic";
     double back = core::unset;
     material::Wire::Parameters yielding;
-    file.require("strand", "wires", wires, example::wires(), "number of wires: a core and layers of 6, 12, 18, 24, 30");
-    file.require("strand", "radius", radius, example::positive(), "length", "radius of the wires");
-    file.require("strand", "lay_angle_deg", lay_angle, example::inside(-80.0, 80.0), "degree",
-                 "angle of the outer wires to the axis; positive is right-handed");
+    example::read_wires(file, wires, radius, lay_angle, "angle of the outer wires to the axis; positive is right-handed");
     file.read("strand", "lay", lay, {"equal_pitch", "equal_angle"},
               "all layers go round once on the same length, or at the same angle");
     file.read("strand", "alternate", alternate, "every other layer has the other hand");
@@ -115,11 +112,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("material.law", "yield_stress", yielding.yield_stress, example::positive(), "force/length^2", "stress at which a wire yields");
     file.read("material.law", "hardening", yielding.hardening, example::not_negative(), "force/length^2",
               "slope of the yield stress over the plastic strain, kinematic");
-    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "coefficient of friction");
-    file.read("contact", "reversible_displacement_over_radius", reversible, example::above(0.0, 1.0), "1",
-              "slip up to which friction is elastic, over the radius");
-    file.read("contact", "allowed_penetration_over_radius", depth, example::depth_over_radius(), "1",
-              "how deep a contact may be, over the radius");
+    example::read_friction(file, mu, "coefficient of friction of wires on each other");
+    example::read_reversible_displacement(file, reversible);
+    example::read_allowed_penetration(file, depth);
     file.read("loading", "anchor", anchor, {"both_plates", "near_plate"},
               "which plates hold every wire; elsewhere wires slide through");
     file.read("loading", "strain", bending.strain, example::inside(-0.5, 1.0), "1", "strain by which the strand is drawn before it is bent");

@@ -57,6 +57,7 @@ struct Output {
     /// what contact points may leave unseen.
     double deepest_over_radius = fibrant::core::unset;
     std::string told;                             ///< what the scene is, line by line: kept in checkpoints
+    std::vector<std::filesystem::path> parts{};   ///< folders in it that have checkpoints of their own
     std::shared_ptr<const ResultsFolder> locked;  ///< the folder, from `open` on
 
     /// Takes the folder, once the scene is known to be sound, and writes parameters.toml. Results of an earlier run that are
@@ -67,7 +68,8 @@ struct Output {
         told = file.scene() + more;
         locked = std::make_shared<const ResultsFolder>(folder);
         const std::string found = earlier_results(folder), name = "--output " + folder.string();
-        const bool goes_on = std::filesystem::exists(checkpoint()) || std::filesystem::exists(folder / "settled.bin");
+        const bool goes_on = std::filesystem::exists(checkpoint()) || std::filesystem::exists(folder / "settled.bin") ||
+                             std::any_of(parts.begin(), parts.end(), [](const auto& part) { return std::filesystem::exists(part / "checkpoint.bin"); });
         if (!found.empty() && !resume && !overwrite)
             throw std::invalid_argument(name + ": holds results of an earlier run (" + found +
                                         "): " + (goes_on ? "--resume goes on from its last increment, " : "") +
@@ -80,8 +82,10 @@ struct Output {
         }
         if (resume && std::filesystem::exists(checkpoint()) && !other_scene) require_scene_of(checkpoint(), told, "--resume");
         if (overwrite)  // what is left of an earlier run would be taken for this one's where it is stopped
-            for (const char* left : {"checkpoint.bin", "settled.bin", "summary.json", "increments.csv", "levels.csv"})
+            for (const char* left : {"checkpoint.bin", "settled.bin", "summary.json", "increments.csv", "levels.csv"}) {
                 std::filesystem::remove(folder / left);
+                for (const std::filesystem::path& part : parts) std::filesystem::remove(part / left);
+            }
         observe::write_file(folder / "parameters.toml", file.echo());
     }
     /// Refuses a run whose input is what it would write over.

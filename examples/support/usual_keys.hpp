@@ -31,7 +31,33 @@ inline void check_transverse(const SceneReader& file, const std::string& section
         file.check(file.given(law, key) == (kind != "isotropic"), law, key, kind == "isotropic" ? "left out, for kind = \"isotropic\"" : "given, for kind = \"transversely_isotropic\"");
 }
 
+/// Friction of fibres. @param which  and when, as a user is told
+inline void read_friction(SceneReader& file, double& coefficient, const char* which) {
+    file.read("contact", "friction_coefficient", coefficient, friction(), "1", which);
+}
+/// Displacement over the radius that friction takes before it slides.
+inline void read_reversible_displacement(SceneReader& file, double& over_radius) {
+    file.read("contact", "reversible_displacement_over_radius", over_radius, above(0.0, 1.0), "1", "slip up to which friction is elastic, over the radius");
+}
+/// How deep fibres may be in each other over their radius.
+inline void read_allowed_penetration(SceneReader& file, double& over_radius, const char* which = "how deep a contact may be, over the radius") {
+    file.read("contact", "allowed_penetration_over_radius", over_radius, depth_over_radius(), "1", which);
+}
+
 /// Wires of a strand of full layers.
 inline Bound wires() { return {.low = 7, .high = 91, .said = "7, 19, 37, 61 or 91", .values = {7, 19, 37, 61, 91}}; }
+/// What a strand is of; all must be given. @param of  the wires whose angle it is
+inline void read_wires(SceneReader& file, Index& count, double& radius, double& lay_angle_deg, const char* of) {
+    file.require("strand", "wires", count, wires(), "number of wires: a core and layers of 6, 12, 18, 24, 30");
+    file.require("strand", "radius", radius, positive(), "length", "radius of the wires");
+    file.require("strand", "lay_angle_deg", lay_angle_deg, inside(-80.0, 80.0), "degree", of);
+}
+
+/// Directions of random fibres, and how finely each is divided.
+inline void read_random_fibres(SceneReader& file, double& tilt_deg, Index& elements, const char* of) {
+    file.read("mat", "tilt_deg", tilt_deg, between(0.0, 90.0), "degree", "greatest angle of a fibre to the plane; 90: all directions");
+    file.read("mat", "elements", elements, between(1, 10000), of);
+}
+inline void read_seed(SceneReader& file, Index& seed) { file.read("mat", "seed", seed, between(0, 1e15), "seed of the random numbers"); }
 
 }  // namespace example

@@ -283,9 +283,8 @@ inline Scene read_scene(SceneReader& file) {
         "ends", "straight_at_rest", straight,
         "fibres are straight when nothing acts on them; false: they are at rest as drawn. Left out: as the generator has it");
     cloth::SettleParameters& settle = scene.settle;
-    file.read("contact", "friction_coefficient", settle.friction_coefficient, example::friction(), "1", "coefficient of friction, once yarns have parted");
-    file.read("contact", "allowed_penetration_over_radius", settle.allowed_penetration_over_radius, example::depth_over_radius(),
-              "1", "how deep a contact may be at the end, over the radius");
+    example::read_friction(file, settle.friction_coefficient, "coefficient of friction, once yarns have parted");
+    example::read_allowed_penetration(file, settle.allowed_penetration_over_radius, "how deep a contact may be at the end, over the radius");
     file.read("settle", "gap_limit_over_radius", settle.gap_limit_over_radius, example::above(0.0, 1.0), "1",
               "how far fibres that start in each other part in an increment, over the radius");
     file.read("settle", "tension_increments", settle.tension_increments, example::increments(), "increments in which the tension is raised");

@@ -59,8 +59,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.require("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2", "Young's modulus along the fibres");
     file.require("material", "poisson_ratio", material.poisson_ratio, example::inside(-10.0, 10.0), "1", "contraction across under tension along");
     example::read_transverse(file, "material", kind, material.transverse);
-    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "coefficient of friction of fibres on each other and on the plates");
-    file.read("contact", "allowed_penetration_over_radius", depth, example::depth_over_radius(), "1", "how deep a contact may be, over the radius");
+    example::read_friction(file, mu, "coefficient of friction of fibres on each other and on the plates");
+    example::read_allowed_penetration(file, depth);
     file.read("loading", "compression", compression, example::inside(0.0, 0.2), "1", "compression at the end, over the height at the start");
     file.read("loading", "increments", increments, example::increments(), "increments of the pressing");
     file.complete();

@@ -36,7 +36,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.require("rods", "length", parameters.length, example::positive(), "length", "length of a rod");
     file.read("rods", "elements", parameters.elements, example::between(2, 10000), "elements along a rod");
     example::read_material(file, "material", parameters.material);
-    file.read("contact", "friction_coefficient", mu, example::friction(), "1", "coefficient of friction");
+    example::read_friction(file, mu, "coefficient of friction of the rods on each other");
     file.require("loading", "force", parameters.force, example::not_negative(), "force", "force that pulls both rods together");
     file.require("loading", "turns", turns, example::between(-1000.0, 1000.0), "1", "turns of one end against the other");
     file.read("loading", "increments_per_turn", per_turn, example::between(1, 1000), "increments for each turn");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The Kirchhoff cable and the rod of rigid sections: the contract, and what their energies are in simple states.
 #include <beam/beam_element_contract.hpp>
+#include <near.hpp>
 #include <refusal.hpp>
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
@@ -86,11 +87,11 @@ TEST_CASE("a rod has the energy of its strains in any helix, however long the el
         // The two sections turn as the helix does; the mean section sees the chord, which an arc is angle^2 / 24 longer than.
         const auto s = beam.stresses(rest, bent).value;
         CHECK(0.5 * length * s.tail<3>().dot(Vec3(s[3] / stiffness[0], s[4] / stiffness[1], s[5] / stiffness[2])) ==
-              doctest::Approx(expected).epsilon(1e-13));
+              test::near(expected, 1e-13));
         CHECK(s.head<3>().norm() <= 7300.0 * area * angle * angle / 24.0);
     }
     const auto pulled = element<RigidSectionRod>(turned_frame(0.0, Vec3::Zero()), turned_frame(length, Vec3::Zero(), 1.01));
-    CHECK(beam.energy(rest, pulled) == doctest::Approx(0.5 * 7300.0 * area * 1e-4 * length).epsilon(1e-12));
+    CHECK(beam.energy(rest, pulled) == test::near(0.5 * 7300.0 * area * 1e-4 * length, 1e-12));
 }
 
 TEST_CASE("whole turns of a rotation vector change neither the strains of a rod nor its particles") {
@@ -104,8 +105,13 @@ TEST_CASE("whole turns of a rotation vector change neither the strains of a rod 
         const Vec3 psi = bent.segment<3>(v);
         far.segment<3>(v) = psi * (1.0 - 2.0 * pi / psi.norm());
         CHECK((core::nearest_rotation_vector(Vec3(far.segment<3>(v)), psi) - psi).norm() < 1e-14);
+        // The nearest of them, be it beyond or before.
+        for (const auto& [turns, nearest] : {std::pair{0.4, 0.0}, {0.9, 1.0}, {1.6, 2.0}, {-0.4, 0.0}, {-0.9, -1.0}}) {
+            const Vec3 to = psi * (1.0 + 2.0 * pi * turns / psi.norm());
+            CHECK((core::nearest_rotation_vector(psi, to) - psi * (1.0 + 2.0 * pi * nearest / psi.norm())).norm() < 1e-13);
+        }
     }
-    CHECK(beam.energy(rest, far) == doctest::Approx(beam.energy(rest, bent)).epsilon(1e-11));
+    CHECK(beam.energy(rest, far) == test::near(beam.energy(rest, bent), 1e-11));
     const RigidSectionRod::Particle particle = RigidSectionRod::particle_weights(0.3, 0.7 * radius, -0.4 * radius);
     CHECK((particle.place(far) - particle.place(bent)).norm() < 1e-14);
 }
@@ -127,13 +133,13 @@ TEST_CASE("a cable bends by its curvature and stretches by its length") {
     const KirchhoffCable beam;
     const auto rest = beam.rest(section, material, straight);
     const auto pulled = element<KirchhoffCable>(turned_frame(0.0, Vec3::Zero()), turned_frame(length, Vec3::Zero()));
-    CHECK(beam.energy(rest, 1.01 * pulled) == doctest::Approx(0.5 * 7300.0 * area * 1e-4 * length).epsilon(1e-12));
+    CHECK(beam.energy(rest, 1.01 * pulled) == test::near(0.5 * 7300.0 * area * 1e-4 * length, 1e-12));
     for (const double angle : {0.05, 0.1}) {
         // Hermite's curve differs from the arc by a relative angle^2 / 100 or so in curvature
         const Vec3 curvature = Vec3(0.6, -0.8, 0.0) * angle / length;
         const auto bent = element<KirchhoffCable>(turned_frame(0.0, curvature), turned_frame(length, curvature), any_turn);
         const double expected = 0.5 * 7300.0 * inertia * angle * angle / length;
-        CHECK(beam.energy(rest, bent) == doctest::Approx(expected).epsilon(angle * angle / 10.0));
+        CHECK(beam.energy(rest, bent) == test::near(expected, angle * angle / 10.0));
     }
 }
 

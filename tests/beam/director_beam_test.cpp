@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <near.hpp>
+
 #include <beam/beam_element_contract.hpp>
 #include <beam/elements.hpp>
 
@@ -72,7 +74,7 @@ TEST_CASE_TEMPLATE("a stretched fibre with a free section obeys the uniaxial law
         expected[unknowns<B> - 7] = EA * axial * stretch;
         // Round-off 1e-16 EA, times the ratio lame/E and a few operations.
         CHECK((beam.internal_force(rest, y) - expected).cwiseAbs().maxCoeff() < 1e-14 * EA);
-        CHECK(beam.energy(rest, y) == doctest::Approx(0.5 * EA * axial * axial * length).epsilon(1e-12));
+        CHECK(beam.energy(rest, y) == test::near(0.5 * EA * axial * axial * length, 1e-12));
     }
 }
 
@@ -86,14 +88,14 @@ TEST_CASE_TEMPLATE("bending and twist meet the stiffness of the rod", B, FIBRANT
     const double factor =
         B::options.law == ElasticLaw::split ? 1.0 : (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
     CHECK(resistance<B>(round, at_rest, bending) ==
-          doctest::Approx(factor * young * pi * std::pow(a, 4) / 4.0 * length).epsilon(1e-12));
+          test::near(factor * young * pi * std::pow(a, 4) / 4.0 * length, 1e-12));
     CHECK(resistance<B>(ellipse, at_rest, bending) ==
-          doctest::Approx(factor * young * pi * std::pow(a, 3) * b / 4.0 * length).epsilon(1e-12));
+          test::near(factor * young * pi * std::pow(a, 3) * b / 4.0 * length, 1e-12));
     CHECK(resistance<B>(round, at_rest, twist) ==
-          doctest::Approx(G * pi * std::pow(a, 4) / 2.0 * length).epsilon(1e-12));
+          test::near(G * pi * std::pow(a, 4) / 2.0 * length, 1e-12));
     // St Venant's torsion constant of an ellipse: pi a^3 b^3/(a^2 + b^2).
     CHECK(resistance<B>(ellipse, at_rest, twist) ==
-          doctest::Approx(G * pi * std::pow(a * b, 3) / (a * a + b * b) * length).epsilon(1e-12));
+          test::near(G * pi * std::pow(a * b, 3) / (a * a + b * b) * length, 1e-12));
 }
 
 TEST_CASE_TEMPLATE("a macro-fibre keeps its area and is softer in bending and twist alone", B, DirectorBeam<2>,
@@ -102,9 +104,9 @@ TEST_CASE_TEMPLATE("a macro-fibre keeps its area and is softer in bending and tw
     const typename B::Rest solid = B{}.rest(scene::circular(radius), material, at_rest);
     const typename B::Rest macro = B{}.rest(scene::circular(radius, 0.2), material, at_rest);
     CHECK(resistance<B>(macro, at_rest, bending) ==
-          doctest::Approx(0.2 * resistance<B>(solid, at_rest, bending)).epsilon(1e-12));
+          test::near(0.2 * resistance<B>(solid, at_rest, bending), 1e-12));
     CHECK(resistance<B>(macro, at_rest, twist) ==
-          doctest::Approx(0.2 * resistance<B>(solid, at_rest, twist)).epsilon(1e-12));
+          test::near(0.2 * resistance<B>(solid, at_rest, twist), 1e-12));
     const auto stretch = [](double s) {
         NodeMotion d;
         d << 0, 0, s, 0, 0, 0, 0, 0, 0;
@@ -160,11 +162,11 @@ TEST_CASE("a fibre turned inside out is noticed") {
     const DirectorBeam<3> beam;
     const auto at_rest = straight_element<DirectorBeam<3>>(length);
     const auto rest = beam.rest(scene::circular(radius), material, at_rest);
-    CHECK(rest.length() == doctest::Approx(length).epsilon(1e-14));
-    CHECK(beam.least_volume_ratio(rest, at_rest) == doctest::Approx(1.0).epsilon(1e-14));
+    CHECK(rest.length() == test::near(length, 1e-14));
+    CHECK(beam.least_volume_ratio(rest, at_rest) == test::near(1.0, 1e-14));
     auto y = at_rest;
     for (int I = 0; I < 3; ++I) y.segment<3>(9 * I + 3) *= -0.5;
-    CHECK(beam.least_volume_ratio(rest, y) == doctest::Approx(-0.5).epsilon(1e-14));
+    CHECK(beam.least_volume_ratio(rest, y) == test::near(-0.5, 1e-14));
 }
 
 TEST_CASE("degenerate elements and wrong parameters are refused by name") {

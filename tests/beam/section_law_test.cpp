@@ -3,6 +3,8 @@
 #include <fibrant/core/types.hpp>
 
 #include <beam/beam_element_contract.hpp>
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <numbers>
@@ -55,11 +57,11 @@ TEST_CASE("the full law is the three-dimensional law integrated over the section
         // The law takes the mean of E_33, to which the element adds that of the quadratic part.
         std::array<double, 15> of_law = e;
         of_law[strain::e33] += complete.mean_1() * e[strain::q11] + complete.mean_2() * e[strain::q22];
-        CHECK(complete.energy(of_law) == doctest::Approx(integrated(e, a, b)).epsilon(1e-12));
+        CHECK(complete.energy(of_law) == test::near(integrated(e, a, b), 1e-12));
         for (std::size_t c = 12; c < 15; ++c) e[c] = 0.0;
         std::array<double, 12> linear;
         std::copy_n(e.begin(), 12, linear.begin());
-        CHECK(plain.energy(linear) == doctest::Approx(integrated(e, a, b)).epsilon(1e-12));
+        CHECK(plain.energy(linear) == test::near(integrated(e, a, b), 1e-12));
     }
 }
 
@@ -72,7 +74,7 @@ TEST_CASE("the split law bends with E, for any Poisson ratio, and is the full la
         const double factor = (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
         CHECK(split.diagonal(strain::b1) == 0.3);
         CHECK(split.diagonal(strain::b2) == 0.4);
-        CHECK(full.diagonal(strain::b1) == doctest::Approx(0.3 * factor).epsilon(1e-14));
+        CHECK(full.diagonal(strain::b1) == test::near(0.3 * factor, 1e-14));
         for (const int c : {0, 1, 2, 3, 4, 5, 8, 9, 10, 11}) CHECK(split.diagonal(c) == full.diagonal(c));
     }
 }
@@ -81,16 +83,16 @@ TEST_CASE("the shear factor multiplies transverse shear, the torsion factor mult
     const SectionConstants plane{2.0, 0.3, 0.1}, warping{2.0, 0.3, 0.1, 0.75};
     using Law = SectionLaw<ElasticLaw::split, QuadraticStrain::none>;
     const Law a(plane, material, 1.0), b(warping, material, 0.8);
-    CHECK(b.diagonal(strain::e13) == doctest::Approx(0.8 * a.diagonal(strain::e13)).epsilon(1e-15));
-    CHECK(b.diagonal(strain::e23) == doctest::Approx(0.8 * a.diagonal(strain::e23)).epsilon(1e-15));
+    CHECK(b.diagonal(strain::e13) == test::near(0.8 * a.diagonal(strain::e13), 1e-15));
+    CHECK(b.diagonal(strain::e23) == test::near(0.8 * a.diagonal(strain::e23), 1e-15));
     Law::Strains twist{};
     twist[strain::c12] = -1.0;
     twist[strain::c21] = 1.0;
-    CHECK(a.energy(twist) == doctest::Approx(0.5 * material.shear_modulus() * 0.4).epsilon(1e-14));
-    CHECK(b.energy(twist) == doctest::Approx(0.75 * a.energy(twist)).epsilon(1e-14));
+    CHECK(a.energy(twist) == test::near(0.5 * material.shear_modulus() * 0.4, 1e-14));
+    CHECK(b.energy(twist) == test::near(0.75 * a.energy(twist), 1e-14));
     Law::Strains even{};  // the symmetric part is left alone
     even[strain::c12] = even[strain::c21] = 1.0;
-    CHECK(b.energy(even) == doctest::Approx(a.energy(even)).epsilon(1e-14));
+    CHECK(b.energy(even) == test::near(a.energy(even), 1e-14));
 }
 
 TEST_CASE("no strain is free of energy, however flat the section") {

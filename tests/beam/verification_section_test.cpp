@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Uniform states of a fibre whose section strains. Reference: the algebra of the St Venant-Kirchhoff law.
+#include <near.hpp>
+
 #include <beam/round_rod.hpp>
 
 using namespace fibrant;
@@ -34,8 +36,8 @@ Stretches uniform_state(const RoundRod& rod, double force, double line_load, boo
     const int k = n / 2;
     const double axis = (mesh.position(k + 1) - mesh.position(k)).norm() / (rod.length / n);
     for (int node = 0; node <= n; ++node) {  // the state is uniform
-        CHECK(mesh.director(node, 1).norm() == doctest::Approx(mesh.director(k, 1).norm()).epsilon(1e-11));
-        CHECK(mesh.director(node, 2).norm() == doctest::Approx(mesh.director(k, 2).norm()).epsilon(1e-11));
+        CHECK(mesh.director(node, 1).norm() == test::near(mesh.director(k, 1).norm(), 1e-11));
+        CHECK(mesh.director(node, 2).norm() == test::near(mesh.director(k, 2).norm(), 1e-11));
     }
     return {mesh.director(k, 1).norm(), mesh.director(k, 2).norm(), axis};
 }
@@ -47,9 +49,9 @@ RoundRod short_fibre() {
 }
 /// The printed digits of the reference.
 void check(const Stretches& s, const Stretches& expected) {
-    CHECK(s.along_1 == doctest::Approx(expected.along_1).epsilon(1e-12));
-    CHECK(s.along_2 == doctest::Approx(expected.along_2).epsilon(1e-12));
-    CHECK(s.axis == doctest::Approx(expected.axis).epsilon(1e-12));
+    CHECK(s.along_1 == test::near(expected.along_1, 1e-12));
+    CHECK(s.along_2 == test::near(expected.along_2, 1e-12));
+    CHECK(s.axis == test::near(expected.axis, 1e-12));
 }
 
 TEST_CASE_TEMPLATE("a pulled or pressed fibre strains as the law says", Beam, beam::DirectorBeam<2>,
@@ -76,7 +78,7 @@ TEST_CASE("a pinch at small load strains the section by -2 q/(pi r E*)") {
     const Stretches s = uniform_state(rod, 0, line_load, true);
     const double e11 = 0.5 * (s.along_1 * s.along_1 - 1.0);
     // 1e-6 of strain: the law is linear to as much, and 16 digits leave 1e-10.
-    CHECK(e11 == doctest::Approx(-2.0 * line_load / (std::numbers::pi * rod.radius * plain)).epsilon(1e-5));
+    CHECK(e11 == test::near(-2.0 * line_load / (std::numbers::pi * rod.radius * plain), 1e-5));
 }
 
 }  // namespace verification_section_test

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Small loads on a straight rod: the stiffnesses of a rod in bending with shear, stretching and twist.
+#include <near.hpp>
+
 #include <beam/round_rod.hpp>
 
 using namespace fibrant;
@@ -52,7 +54,7 @@ TEST_CASE("two nodes an element converge to the same deflection with the square 
     const RoundRod rod;
     // Shear at one point makes the element bend as two rigid halves: short of 1/(4 n^2) of the deflection.
     for (const int n : {4, 16, 64}) {
-        CHECK(deflection<Two>(rod, n) / timoshenko(rod) == doctest::Approx(1.0 - 0.25 / (n * n)).epsilon(1e-4 / n));
+        CHECK(deflection<Two>(rod, n) / timoshenko(rod) == test::near(1.0 - 0.25 / (n * n), 1e-4 / n));
     }
 }
 
@@ -69,7 +71,7 @@ TEST_CASE("a fibre stretches with EA and Poisson's contraction is free") {
         const double error = extension / (strain * rod.length) - 1.0;
         std::printf("stretching, %s clamp: %.1e\n", rigid ? "whole" : "rotation", error);
         CHECK(std::abs(error) < (rigid ? 0.7 * rod.radius / rod.length : 1e-6));
-        CHECK(mesh.director(16, 1)[0] - 1.0 == doctest::Approx(-rod.poisson * strain).epsilon(1e-5));
+        CHECK(mesh.director(16, 1)[0] - 1.0 == test::near(-rod.poisson * strain, 1e-5));
     }
 }
 
@@ -81,7 +83,7 @@ TEST_CASE("a fibre twists with GJ") {
     mesh.body_moment(16) = Vec3(0, 0, angle * rod.GJ() / rod.length);
     REQUIRE(mesh.solve(1e-12).converged);
     const Vec3 g1 = mesh.director(16, 1);
-    CHECK(std::atan2(g1[1], g1[0]) == doctest::Approx(angle).epsilon(1e-6));
+    CHECK(std::atan2(g1[1], g1[0]) == test::near(angle, 1e-6));
 }
 
 }  // namespace verification_small_loads_test

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # What can be seen in the text of the headers: licence, guard and purpose first; short enough to be read in one sitting;
-# no printing outside observe/; a third party's header (nanoflann, a solver library) included in one place.
+# no printing outside observe/; a third party's header (nanoflann, a solver library) included in one place. In the tests beside
+# them numbers are compared by test::near: doctest's own Approx adds 1 to what it allows, and small numbers pass with any sign.
 # usage: house_rules.sh INCLUDE_FOLDER
 set -eu
 cd "$1"
@@ -23,4 +24,10 @@ for name in $(find fibrant -name '*.hpp' | sort | xargs sed -nE 's/^[[:space:]]*
   grep -E '\.h|Support$' | grep -v '^fibrant/' | sort | uniq -d); do
   complain "<$name> is included by more than one header: $(grep -rl --include='*.hpp' "<$name>" fibrant | sort | tr '\n' ' ')"
 done
+
+if [ -d ../tests ]; then
+  for file in $(grep -rlw --include='*.hpp' --include='*.cpp' 'Approx' ../tests | grep -v '^../tests/near.hpp$' | sort); do
+    complain "${file#../}: numbers are compared by test::near of tests/near.hpp, not by Approx"
+  done
+fi
 exit $failed

@@ -97,6 +97,14 @@ echo '#include <nanoflann.hpp>' | header fibrant/proximity/twice.hpp
 refuses 'nanoflann.hpp> is included by more than one header' "$checks/house_rules.sh" include
 
 fresh
+mkdir tests
+echo 'CHECK(x == test::near(y, 1e-12)), CHECK(a.isApprox(b))' > tests/sound_test.cpp
+passes "$checks/house_rules.sh" include
+echo 'CHECK(x == doctest::Approx(y).epsilon(1e-12))' > tests/swallowing_test.cpp
+refuses 'tests/swallowing_test.cpp: numbers are compared by test::near' "$checks/house_rules.sh" include
+rm -r tests
+
+fresh
 echo 'inline std::vector<int> none() { return {}; }' | header fibrant/core/dependent.hpp
 refuses 'core/dependent.hpp does not compile alone' "$checks/headers_alone.sh" include "$@"
 fresh

@@ -7,6 +7,8 @@
 #include <fibrant/connection/bonded_solid.hpp>
 #include <fibrant/solver/solid_pcg.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
@@ -162,7 +164,7 @@ TEST_CASE("a fibre's bonds are those of its nodes in cells, and their stiffness 
     }
     // 2 pi G / ln(h / 2r) a length of 2 and half an end node's share of the element before: cells 0.1 x 0.2 x 0.2.
     const double per_length = 2.0 * std::numbers::pi * 40.0 / std::log(std::cbrt(0.1 * 0.2 * 0.2) / 0.02);
-    CHECK(sum == doctest::Approx(per_length * (2.0 + 0.2 / 6.0)).epsilon(1e-12));
+    CHECK(sum == test::near(per_length * (2.0 + 0.2 / 6.0), 1e-12));
     // Half of the block away: half of the bonds, and never beyond it.
     scene::Solid half = block(cuts(0, 1, 10), cuts(-0.5, 0.5, 5), cuts(-0.5, 0.5, 5), {100.0, 0.25});
     scene::Assembly partly;
@@ -191,7 +193,7 @@ TEST_CASE("a fibre that turns about itself in a block is held by bonds of its se
     // shear of the section hold a turn 16 (1 - nu) / (3 (3 - 4 nu)) = 2 times as stiffly, over the matrix's part 1 - V of a cell.
     const double cylinder = 4.0 * std::numbers::pi * shear * radius * radius * 2.0, matrix = 1.0 - std::numbers::pi * radius * radius / (0.2 * 0.2);
     CHECK(stiffness(0.0) <= 1e-9 * cylinder);  // energies of the fibre's section strains in 1e-16 E
-    CHECK(stiffness(1.0) == doctest::Approx(2.0 * cylinder / matrix).epsilon(1e-3));
+    CHECK(stiffness(1.0) == test::near(2.0 * cylinder / matrix, 1e-3));
 }
 
 /// Force that draws a fibre by `pull` out of a block that holds still, of a fibre of the length 1 that ends inside.
@@ -360,7 +362,7 @@ TEST_CASE("a bundle of fibres in a matrix is as stiff along them as the rule of 
         const Moduli centres = moduli({fraction, ratio});
         MESSAGE("fraction " << fraction << ", centres bonded: along " << centres.along << ", across " << centres.across << ", shear " << centres.shear << "; Reuss " << bound.reuss);
         // The meshes overlap, so that the matrix fills the fibres' place too.
-        CHECK(centres.along == doctest::Approx(fraction * ratio + 1.0).epsilon(1e-4));
+        CHECK(centres.along == test::near(fraction * ratio + 1.0, 1e-4));
         // Bonds hold centrelines, so that sections do not stiffen the matrix across them.
         CHECK(centres.across >= 1.0 - 1e-6);
         CHECK(centres.shear >= 1.0 - 1e-6);
@@ -373,7 +375,7 @@ TEST_CASE("a bundle of fibres in a matrix is as stiff along them as the rule of 
                                     << fraction * stiff + 1.0 - fraction << ", across " << found.across << " of " << own.low_e << " to " << own.high_e << ", shear "
                                     << found.shear << " of " << own.low_g << " to " << own.high_g << ", along " << found.shear_along << " of " << own.low_along
                                     << " to " << own.high_along << ", Reuss " << own.reuss);
-                CHECK(found.along == doctest::Approx(fraction * stiff + 1.0 - fraction).epsilon(0.01));
+                CHECK(found.along == test::near(fraction * stiff + 1.0 - fraction, 0.01));
                 CHECK(found.across < own.high_e);
                 CHECK(found.shear < own.high_g);
                 // Where every cell holds as much fibre; cells smaller than that are stiff in some places and bare in others.

@@ -5,6 +5,8 @@
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <numbers>
@@ -67,8 +69,8 @@ TEST_CASE("holds of one vector in any directions leave a projector of what is fr
     CHECK(Scene::projector(scene.held[0].free, 1));
     CHECK((scene.held[0].free * Vec3::UnitZ() - Vec3::UnitZ()).norm() < rounding);
     const Vec3& target = scene.target[0];
-    CHECK(target.x() == doctest::Approx(3.0 + 0.15));
-    CHECK(Vec3(1, 1, 0).dot(target) == doctest::Approx(Vec3(1, 1, 0).dot(Vec3(3.0 - 0.1, 0.2, 0))));
+    CHECK(target.x() == test::near(3.0 + 0.15, 1e-12));
+    CHECK(Vec3(1, 1, 0).dot(target) == test::near(Vec3(1, 1, 0).dot(Vec3(3.0 - 0.1, 0.2, 0)), 1e-12));
     CHECK(std::abs(target.z()) < rounding);  // free: no part of the target
 }
 
@@ -150,9 +152,9 @@ TEST_CASE("what a slanting hold leaves of a whole one goes where the whole one a
     scene.evaluate(1.0);
     const Vec3 moved = scene.target[0] - Vec3(3, 0, 0);
     CHECK(Scene::projector(scene.held[0].free, 0));
-    CHECK(moved.dot(along) == doctest::Approx(0.7).epsilon(rounding));
+    CHECK(moved.dot(along) == test::near(0.7, rounding));
     CHECK(std::abs(moved.dot(across)) < rounding);
-    CHECK(moved.z() == doctest::Approx(0.2).epsilon(rounding));
+    CHECK(moved.z() == test::near(0.2, rounding));
 }
 
 TEST_CASE("random holds give projectors, and targets that lie in the held directions") {

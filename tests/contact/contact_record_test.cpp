@@ -7,6 +7,8 @@
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -47,8 +49,8 @@ TEST_CASE("friction that is linear along a contact is carried over exactly to ne
         for (int n = 0; n < 50; ++n) {
             const double u = place(generator);
             const auto read = memory.friction(0, 2, u, opposite(u), 0.75);
-            CHECK(read.along == doctest::Approx(field(u)).epsilon(1e-13));
-            CHECK(read.across == doctest::Approx(2.0 * field(u)).epsilon(1e-13));
+            CHECK(read.along == test::near(field(u), 1e-13));
+            CHECK(read.across == test::near(2.0 * field(u), 1e-13));
         }
     }
 }
@@ -76,7 +78,7 @@ TEST_CASE("what is carried over does not depend on which fibre comes first") {
     memory.assign(list), other.assign(turned);
     for (double u = -0.2; u < 4.0; u += 0.13) {
         const double v = 6.0 - 0.9 * u;
-        CHECK(memory.friction(0, 1, u, v, 0.75).along == doctest::Approx(other.friction(0, 1, v, u, 0.75).along).epsilon(1e-12));
+        CHECK(memory.friction(0, 1, u, v, 0.75).along == test::near(other.friction(0, 1, v, u, 0.75).along, 1e-12));
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include <fibrant/contact/intermediate_geometry.hpp>
 
+#include <near.hpp>
 #include <refusal.hpp>
 
 #include <doctest/doctest.h>
@@ -70,8 +71,8 @@ TEST_CASE("the closest points of crossing curves are those that dense sampling f
 TEST_CASE("the closest points of lines that pass through each other are where they meet") {
     const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 8), straight_fibre({-0.1, -1, 0}, {0.4, 1, 0}, r, 8)});
     const StationPair pair = contact::closest_points(mesh, mesh.rest_state(), 0, 1, 2.0, 6.0);
-    CHECK(pair.u_i == doctest::Approx(4.6).epsilon(1e-12));  // x = 0.15
-    CHECK(pair.u_j == doctest::Approx(4.0).epsilon(1e-12));
+    CHECK(pair.u_i == test::near(4.6, 1e-12));  // x = 0.15
+    CHECK(pair.u_j == test::near(4.0, 1e-12));
 }
 
 TEST_CASE("tangents of contact are continuous, and those of the centreline where that has no kink") {
@@ -120,7 +121,7 @@ TEST_CASE("closest points stay on the fibres") {
     // The second fibre ends before it reaches the plane of the first: its end is the closest point.
     const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 8), straight_fibre({0.3, 1, 0.03}, {0.3, 0.01, 0.03}, r, 6)});
     const StationPair pair = contact::closest_points(mesh, mesh.rest_state(), 0, 1, 4.0, 3.0);
-    CHECK(pair.u_i == doctest::Approx(5.2).epsilon(1e-12));
+    CHECK(pair.u_i == test::near(5.2, 1e-12));
     CHECK(pair.u_j == 6.0);
 }
 
@@ -176,9 +177,9 @@ TEST_CASE("fibres that bend towards each other cross only from the angle at whic
         CHECK(angle(mesh) < critical + off);
     }
     // Straight ones, one that is bent away as much as the other follows it, and both bent away: the angle between the tangents.
-    CHECK(angle(bent(40.0, 0.0, 0.0)) == doctest::Approx(40.0).epsilon(1e-9));
-    CHECK(angle(bent(40.0, -kappa, -kappa)) == doctest::Approx(40.0).epsilon(1e-6));  // the tangents are those of elements
-    CHECK(angle(bent(90.0, kappa, kappa)) == doctest::Approx(std::asin(std::sqrt(1.0 - std::pow(std::sin(critical * std::numbers::pi / 180.0), 2))) * 180.0 / std::numbers::pi).epsilon(1e-3));
+    CHECK(angle(bent(40.0, 0.0, 0.0)) == test::near(40.0, 1e-9));
+    CHECK(angle(bent(40.0, -kappa, -kappa)) == test::near(40.0, 1e-6));  // the tangents are those of elements
+    CHECK(angle(bent(90.0, kappa, kappa)) == test::near(std::asin(std::sqrt(1.0 - std::pow(std::sin(critical * std::numbers::pi / 180.0), 2))) * 180.0 / std::numbers::pi, 1e-3));
 }
 
 TEST_CASE("fibres that run side by side and splay where they end do not cross, however great the angle there is") {
@@ -194,8 +195,8 @@ TEST_CASE("fibres that run side by side and splay where they end do not cross, h
         ending.closest_i = ending.closest_j = 80;
         return contact::crossing_angle_deg(mesh, mesh.rest_state(), ending);
     };
-    CHECK(angle_of(79.0) == doctest::Approx(45.0).epsilon(0.02));  // of the ends alone; an element is 1.25 radii long
-    CHECK(angle_of(0.0) == doctest::Approx(std::asin(1.5 / 99.6) * 180.0 / std::numbers::pi).epsilon(1e-2));  // 1.5 radii apart over 99.6
+    CHECK(angle_of(79.0) == test::near(45.0, 0.02));  // of the ends alone; an element is 1.25 radii long
+    CHECK(angle_of(0.0) == test::near(std::asin(1.5 / 99.6) * 180.0 / std::numbers::pi, 1e-2));  // 1.5 radii apart over 99.6
 }
 
 TEST_CASE("a straight crossing is one from its angle, however long its zone, and an arc around another fibre from that of its second variation") {
@@ -204,13 +205,13 @@ TEST_CASE("a straight crossing is one from its angle, however long its zone, and
             const Vec3 half = 0.5 * length * r * Vec3(std::cos(angle * std::numbers::pi / 180.0), std::sin(angle * std::numbers::pi / 180.0), 0);
             const Mesh mesh = mesh_of({straight_fibre({-0.5 * length * r, 0, 0}, {0.5 * length * r, 0, 0}, r, 10),
                                        straight_fibre(Vec3(0, 0, 2.0 * r) - half, Vec3(0, 0, 2.0 * r) + half, r, 10)});
-            CHECK(contact::crossing_angle_deg(mesh, mesh.rest_state(), zone_of(0, 10, 0, 10)) == doctest::Approx(angle).epsilon(1e-6));
+            CHECK(contact::crossing_angle_deg(mesh, mesh.rest_state(), zone_of(0, 10, 0, 10)) == test::near(angle, 1e-6));
         }
     // A quarter of a circle of 4 radii, whose middle is 2 radii above the other one: the distance grows with half of the second variation
     // of straight lines, and over the whole arc as fast.
     const auto arc = [](double t) { return Vec3(0, 4.0 * r * std::sin((t - 0.5) * std::numbers::pi), 4.0 * r * std::cos((t - 0.5) * std::numbers::pi)); };
     const Mesh mesh = mesh_of({straight_fibre({-r, 0, 2.0 * r}, {r, 0, 2.0 * r}, r, 10), curved_fibre(arc, r, 40)});
-    CHECK(contact::crossing_angle_deg(mesh, mesh.rest_state(), zone_of(0, 10, 0, 40)) == doctest::Approx(45.0).epsilon(0.01));
+    CHECK(contact::crossing_angle_deg(mesh, mesh.rest_state(), zone_of(0, 10, 0, 40)) == test::near(45.0, 0.01));
 }
 
 }  // namespace intermediate_geometry_test

@@ -3,6 +3,8 @@
 
 #include <fibrant/contact/particle.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -35,8 +37,8 @@ double reach(const scene::CrossSection& section, const Vec3& g_1, const Vec3& g_
 TEST_CASE("a round section touches where the normal leaves it") {
     const scene::CrossSection section = scene::circular(0.02);
     const Particle particle = support_particle(section, Vec3::UnitX(), Vec3::UnitY(), Vec3(0.6, -0.8, 0.0), false);
-    CHECK(particle.xi_1 == doctest::Approx(0.012).epsilon(1e-14));
-    CHECK(particle.xi_2 == doctest::Approx(-0.016).epsilon(1e-14));
+    CHECK(particle.xi_1 == test::near(0.012, 1e-14));
+    CHECK(particle.xi_2 == test::near(-0.016, 1e-14));
     CHECK(particle.cap == 0.0);
 }
 
@@ -49,7 +51,7 @@ TEST_CASE("the particle lies on the contour, and none lies further along the nor
         const Vec3 direction = test::normal_vector(generator).normalized();
         const Particle particle = support_particle(section, g_1, g_2, direction, false);
         if (particle.cap > 0.0) continue;
-        CHECK(std::hypot(particle.xi_1 / 0.03, particle.xi_2 / 0.01) == doctest::Approx(1.0).epsilon(1e-14));
+        CHECK(std::hypot(particle.xi_1 / 0.03, particle.xi_2 / 0.01) == test::near(1.0, 1e-14));
         const double most = furthest(section, g_1, g_2, direction, 2000), found = reach(section, g_1, g_2, direction);
         CHECK(found >= most * (1.0 - 1e-14));
         CHECK(found - most <= 5e-6 * found);  // 1 - cos(pi / 2000) = 1.2e-6 is what sampling misses

@@ -3,6 +3,8 @@
 
 #include <fibrant/contact/station_pairs.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -47,10 +49,10 @@ TEST_CASE("near-parallel fibres are paired across their mean line, at equal dist
         CHECK_FALSE(pair.end_j);
         const Vec3 x_i = mesh.position(mesh.rest_state(), 0, pair.u_i), x_j = mesh.position(mesh.rest_state(), 1, pair.u_j);
         CHECK(std::abs((x_j - x_i).dot(mean)) < 1e-12);
-        if (last != 0.0) CHECK(pair.u_i - last == doctest::Approx(0.5).epsilon(1e-9));
+        if (last != 0.0) CHECK(pair.u_i - last == test::near(0.5, 1e-9));
         last = pair.u_i, length += pair.length;
     }
-    CHECK(length == doctest::Approx(6.5 * 0.2).epsilon(1e-12));
+    CHECK(length == test::near(6.5 * 0.2, 1e-12));
     const std::vector<StationPair> shorter = pairs_of(mesh, zone_of(2.3, 7.6, 2.3, 7.6), false);
     REQUIRE(shorter.size() == 11);
     for (std::size_t k = 0; k < shorter.size(); ++k) CHECK(std::abs(shorter[k].u_i - pairs[k + 1].u_i) < 1e-9);
@@ -134,8 +136,8 @@ TEST_CASE("a short zone has one pair, and a crossing exactly one at the closest 
     const std::vector<StationPair> pairs = pairs_of(crossing, zone_of(4, 7, 3, 6), true);
     REQUIRE(pairs.size() == 1);
     CHECK(pairs[0].crossing);
-    CHECK(pairs[0].u_i == doctest::Approx(5.5).epsilon(1e-12));
-    CHECK(pairs[0].u_j == doctest::Approx(5.0).epsilon(1e-12));
+    CHECK(pairs[0].u_i == test::near(5.5, 1e-12));
+    CHECK(pairs[0].u_j == test::near(5.0, 1e-12));
     CHECK_FALSE(pairs[0].end_i);
     CHECK_FALSE(pairs[0].end_j);
 }
@@ -150,7 +152,7 @@ TEST_CASE("a zone that reaches beyond a fibre's end has one pair in its last sec
         CHECK_FALSE(pair.end_i);
         if (pair.u_j > 0.0) continue;
         ++ends;
-        CHECK(pair.u_i == doctest::Approx(5.25).epsilon(1e-12));
+        CHECK(pair.u_i == test::near(5.25, 1e-12));
     }
     CHECK(ends == 1);
 }
@@ -235,7 +237,7 @@ TEST_CASE("a section that is thicker than those beside it is seen wherever it li
                 double seen = 0.0, there = 0.0;
                 for (const StationPair& pair : pairs) seen = std::max(seen, extent(0, pair.u_i) + extent(1, pair.u_j) - 2.0 * r);
                 for (int k = 0; k <= 8000; ++k) there = std::max(there, extent(0, 1.0 + 0.001 * k) + extent(1, 2.0 - 5.0 * along + 0.001 * k) - 2.0 * r);
-                CHECK(there == doctest::Approx(swell * r).epsilon(1e-3));  // a sample is at most 0.0005 elements from the swelling
+                CHECK(there == test::near(swell * r, 1e-3));  // a sample is at most 0.0005 elements from the swelling
                 CHECK(seen > there - spacing.largest_unseen * r);
                 most = std::max(most, static_cast<int>(pairs.size())), least = std::min(least, static_cast<int>(pairs.size()));
             }
@@ -265,7 +267,7 @@ TEST_CASE("where one fibre ends before the other, the pair is in the last sectio
     for (const bool last : {false, true}) {
         const StationPair& pair = last ? pairs.back() : pairs.front();
         CHECK(pair.u_j == (last ? 9.0 : 0.0));
-        CHECK(pair.u_i == doctest::Approx(last ? 9.75 : 0.3).epsilon(1e-12));
+        CHECK(pair.u_i == test::near(last ? 9.75 : 0.3, 1e-12));
         CHECK_FALSE(pair.end_j);
     }
     CHECK(std::count_if(pairs.begin(), pairs.end(), [](const StationPair& pair) { return pair.length == 0.0; }) == 2);

@@ -3,6 +3,7 @@
 #include <fibrant/law/linear_penalty.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 
+#include <near.hpp>
 #include <refusal.hpp>
 
 #include <doctest/doctest.h>
@@ -47,8 +48,8 @@ TEST_CASE("under a given force the stiffness of a zone settles where the penetra
             k = adaptation.adapted(k, reference, penetration(regularised, k, force), 0.1 * allowed);
             k_linear = adaptation.adapted(k_linear, reference, penetration(linear, k_linear, force), 0.0);
         }
-        CHECK(penetration(regularised, k, force) / allowed == doctest::Approx(adaptation.target_fraction).epsilon(1e-6));
-        CHECK(penetration(linear, k_linear, force) / allowed == doctest::Approx(adaptation.target_fraction).epsilon(1e-6));
+        CHECK(penetration(regularised, k, force) / allowed == test::near(adaptation.target_fraction, 1e-6));
+        CHECK(penetration(linear, k_linear, force) / allowed == test::near(adaptation.target_fraction, 1e-6));
     }
 }
 
@@ -56,15 +57,15 @@ TEST_CASE("one adaptation within reach is exact beyond the quadratic start of th
     const law::RegularisedPenalty law({.regularisation_depth = 0.1 * allowed});
     const double k = adaptation.adapted(20.0, reference, allowed, 0.1 * allowed);
     // the same force: 20 (1 - 0.05) = k (target - 0.05), in allowed penetrations
-    CHECK(k == doctest::Approx(20.0 * 0.95 / (adaptation.target_fraction - 0.05)).epsilon(1e-14));
-    CHECK(law.response(-adaptation.target_fraction * allowed, k).reaction == doctest::Approx(law.response(-allowed, 20.0).reaction).epsilon(1e-12));
+    CHECK(k == test::near(20.0 * 0.95 / (adaptation.target_fraction - 0.05), 1e-14));
+    CHECK(law.response(-adaptation.target_fraction * allowed, k).reaction == test::near(law.response(-allowed, 20.0).reaction, 1e-12));
 }
 
 TEST_CASE("the stiffness changes by at most the largest factor and stays between floor and cap") {
-    CHECK(adaptation.adapted(20.0, reference, 1e3 * allowed, 0.0) == doctest::Approx(60.0));
-    CHECK(adaptation.adapted(20.0, reference, 1e-3 * allowed, 0.0) == doctest::Approx(20.0 / 3.0));
-    CHECK(adaptation.adapted(900.0, reference, 1e3 * allowed, 0.0) == doctest::Approx(1000.0));
-    CHECK(adaptation.adapted(0.2, reference, 1e-3 * allowed, 0.0) == doctest::Approx(0.1));
+    CHECK(adaptation.adapted(20.0, reference, 1e3 * allowed, 0.0) == test::near(60.0, 1e-12));
+    CHECK(adaptation.adapted(20.0, reference, 1e-3 * allowed, 0.0) == test::near(20.0 / 3.0, 1e-12));
+    CHECK(adaptation.adapted(900.0, reference, 1e3 * allowed, 0.0) == test::near(1000.0, 1e-12));
+    CHECK(adaptation.adapted(0.2, reference, 1e-3 * allowed, 0.0) == test::near(0.1, 1e-12));
     CHECK(adaptation.adapted(20.0, reference, 0.0, 0.0) == 20.0);
     CHECK(adaptation.adapted(20.0, reference, -1.0, 0.0) == 20.0);
 }
@@ -74,7 +75,7 @@ TEST_CASE("the reference stiffness is that of a section between two opposite lin
     const scene::ElasticMaterial material{7300.0, 0.3};
     const double p = 0.7, h = 0.11, r = 0.02, plane = 7300.0 / (1.0 - 0.09);
     const double strain = 2.0 * p / (std::numbers::pi * r * plane);
-    CHECK(contact::section_stiffness(material, h) == doctest::Approx(p * h / (r * strain)).epsilon(1e-14));
+    CHECK(contact::section_stiffness(material, h) == test::near(p * h / (r * strain), 1e-14));
 }
 
 TEST_CASE("a zone takes over from the zone of the same pair that it overlaps most") {

@@ -3,6 +3,8 @@
 
 #include <fibrant/core/parallel.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -86,7 +88,7 @@ TEST_CASE("a sum has the same bits for one thread and for several") {
         const double several = total(threads);
         CHECK(std::memcmp(&one, &several, sizeof one) == 0);
     }
-    CHECK(one == doctest::Approx(v.sum()).epsilon(1e-12));
+    CHECK(one == test::near(v.sum(), 1e-12));
 }
 
 TEST_CASE("a dot product has the same bits for one thread and for several, and its value is right") {
@@ -94,7 +96,7 @@ TEST_CASE("a dot product has the same bits for one thread and for several, and i
     const double one = test::with_threads(1, [&] { return core::dot(a, b); });
     const double two = test::with_threads(2, [&] { return core::dot(a, b); });
     CHECK(std::memcmp(&one, &two, sizeof one) == 0);
-    CHECK(one == doctest::Approx(a.dot(b)).epsilon(1e-12));  // all terms are positive: no cancellation
+    CHECK(one == test::near(a.dot(b), 1e-12));  // all terms are positive: no cancellation
 }
 
 TEST_CASE("a sum over nothing is its zero") {

@@ -113,7 +113,7 @@ TEST_CASE("friction along and across a fibre: resistance, side force, and a bloc
     for (int k = 0; k < 4; ++k) {
         const Vec3 force = sliding(law, 0.0, angle[k] * degree);
         CHECK(force.x() == test::near(along[k], 1e-5));
-        CHECK(force.y() == doctest::Approx(side[k]).epsilon(1e-5).scale(0.1));
+        CHECK(std::abs(force.y() - side[k]) < 1e-6);  // the digits of the table
     }
     // An incline of the drive phi to the fibre, steepened until the block slides: the force that holds it leaves the ellipse.
     const double phi[] = {0, 15, 30, 45, 60, 75, 90}, alpha[] = {11.309932, 11.597313, 12.510125, 14.196947, 16.823825, 20.052189, 21.801409};

@@ -3,6 +3,7 @@
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/smooth_coulomb.hpp>
 
+#include <near.hpp>
 #include <refusal.hpp>
 
 #include <Eigen/Geometry>
@@ -78,10 +79,10 @@ TEST_CASE("a slip beyond the reversible displacement slides at the Coulomb bound
     const Vec3 slip{6.0 * range, 8.0 * range, 0.0};  // ten times the range
     const Response answer = coulomb.response(slip, reaction, {});
     CHECK(answer.sliding);
-    CHECK(answer.force.norm() == doctest::Approx(bound).epsilon(1e-14));
+    CHECK(answer.force.norm() == test::near(bound, 1e-14));
     CHECK((answer.force - bound * Vec3(0.6, 0.8, 0.0)).norm() <= 1e-14 * bound);
     CHECK((answer.history.reversible - range * Vec3(0.6, 0.8, 0.0)).norm() <= 1e-14 * range);
-    CHECK(answer.dissipated == doctest::Approx(bound * 9.0 * range).epsilon(1e-14));
+    CHECK(answer.dissipated == test::near(bound * 9.0 * range, 1e-14));
 }
 
 TEST_CASE("the force is continuous where sticking turns into sliding") {
@@ -99,21 +100,21 @@ TEST_CASE("a reversal first unloads the spring, crosses zero and slides the othe
     CHECK(unloaded.force.norm() <= 1e-15 * bound);
     const Response pulled = coulomb.response({-1.5 * range, 0.0, 0.0}, reaction, history);
     CHECK(!pulled.sliding);
-    CHECK(pulled.force.x() == doctest::Approx(-0.5 * bound).epsilon(1e-14));
+    CHECK(pulled.force.x() == test::near(-0.5 * bound, 1e-14));
     const Response slid = coulomb.response({-3.0 * range, 0.0, 0.0}, reaction, history);
     CHECK(slid.sliding);
-    CHECK(slid.force.x() == doctest::Approx(-bound).epsilon(1e-14));
-    CHECK(slid.dissipated == doctest::Approx(bound * range).epsilon(1e-13));  // 3 - 2 ranges slid
+    CHECK(slid.force.x() == test::near(-bound, 1e-14));
+    CHECK(slid.dissipated == test::near(bound * range, 1e-13));  // 3 - 2 ranges slid
 }
 
 TEST_CASE("a turn of the slip turns the force towards it within the range of memory") {
     const History history{.reversible = {range, 0.0, 0.0}};
     const Response answer = coulomb.response({0.0, range, 0.0}, reaction, history);
     CHECK(answer.sliding);
-    CHECK(answer.force.x() == doctest::Approx(bound / std::sqrt(2.0)).epsilon(1e-14));
-    CHECK(answer.force.y() == doctest::Approx(bound / std::sqrt(2.0)).epsilon(1e-14));
+    CHECK(answer.force.x() == test::near(bound / std::sqrt(2.0), 1e-14));
+    CHECK(answer.force.y() == test::near(bound / std::sqrt(2.0), 1e-14));
     const Response later = coulomb.response({0.0, 100.0 * range, 0.0}, reaction, answer.history);
-    CHECK(later.force.y() == doctest::Approx(bound).epsilon(1e-4));  // 1 - (1/100)^2 / 2 of it
+    CHECK(later.force.y() == test::near(bound, 1e-4));  // 1 - (1/100)^2 / 2 of it
 }
 
 TEST_CASE("without a reaction there is neither force nor stiffness nor loss, and the memory goes on") {
@@ -122,7 +123,7 @@ TEST_CASE("without a reaction there is neither force nor stiffness nor loss, and
         CHECK(answer.force == Vec3::Zero());
         CHECK(answer.tangent == Mat3::Zero());
         CHECK(answer.dissipated == 0.0);
-        CHECK(answer.history.reversible.x() == doctest::Approx(std::min(length, range)).epsilon(1e-15));
+        CHECK(answer.history.reversible.x() == test::near(std::min(length, range), 1e-15));
     }
     const Response none = coulomb.response(Vec3::Zero(), reaction, {});
     CHECK(none.force == Vec3::Zero());
@@ -196,11 +197,11 @@ TEST_CASE("a cycle of slip dissipates the area of its hysteresis loop") {
     const int steps = 20;
     const double dissipated = follow(twice, steps).dissipated - follow(once, steps).dissipated;
     const double work = follow(twice, steps).work - follow(once, steps).work;
-    CHECK(dissipated == doctest::Approx(area).epsilon(1e-12));
-    CHECK(work == doctest::Approx(area).epsilon(1e-12));
+    CHECK(dissipated == test::near(area, 1e-12));
+    CHECK(work == test::near(area, 1e-12));
     // The loss does not depend on the number of increments, down to one for each way.
     const double coarse = follow(twice, 1).dissipated - follow(once, 1).dissipated;
-    CHECK(coarse == doctest::Approx(area).epsilon(1e-12));
+    CHECK(coarse == test::near(area, 1e-12));
 }
 
 TEST_CASE("a cycle within the reversible displacement loses nothing") {
@@ -269,9 +270,9 @@ TEST_CASE("smooth friction owes what regularised friction owes, and its stiffnes
         CHECK(answer.dissipated + stored(answer.history.reversible.norm()) <=
               answer.force.dot(slip) + stored(history.reversible.norm()) + 1e-12 * bound * range);
     }
-    CHECK(smooth.response(Vec3(range, 0, 0), reaction, {}).force.x() == doctest::Approx(bound));
-    CHECK(smooth.response(Vec3(1e-6 * range, 0, 0), reaction, {}).force.x() == doctest::Approx(2e-6 * bound));
-    CHECK(smooth.response(Vec3(5.0 * range, 0, 0), reaction, {}).dissipated == doctest::Approx(4.0 * range * bound));
+    CHECK(smooth.response(Vec3(range, 0, 0), reaction, {}).force.x() == test::near(bound, 1e-12));
+    CHECK(smooth.response(Vec3(1e-6 * range, 0, 0), reaction, {}).force.x() == test::near(2e-6 * bound, 1e-6));  // but for x / 2 of it
+    CHECK(smooth.response(Vec3(5.0 * range, 0, 0), reaction, {}).dissipated == test::near(4.0 * range * bound, 1e-12));
     CHECK(smooth.response(Vec3(0.9 * range, 0, 0), reaction, {}).dissipated == 0.0);
     CHECK(smooth.response(Vec3(range, 0, 0), 0.0, {}).force == Vec3::Zero());
     CHECK(test::refusal([] { law::SmoothCoulomb{{.friction_coefficient = -1.0, .reversible_displacement = 1.0}}; }) ==
@@ -291,7 +292,7 @@ TEST_CASE_TEMPLATE("what friction does not dissipate of the work along its slip,
             dissipated += answer.dissipated, force = answer.force.x(), history = answer.history;
         }
         const double stored = friction.response(Vec3::Zero(), reaction, history).stored;
-        CHECK(work == doctest::Approx(dissipated + stored).epsilon(1e-6));
+        CHECK(work == test::near(dissipated + stored, 1e-6));
         CHECK(stored > 0.0);
     }
     CHECK(friction.response({3.0 * range, 0.0, 0.0}, 0.0, {}).stored == 0.0);

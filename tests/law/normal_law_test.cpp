@@ -5,6 +5,7 @@
 #include <fibrant/law/regularised_penalty.hpp>
 
 #include <law/normal_law_contract.hpp>
+#include <near.hpp>
 #include <refusal.hpp>
 
 #include <limits>
@@ -49,11 +50,11 @@ TEST_CASE("the regularised penalty is continuous with its slope at the threshold
     const law::NormalResponse at = law.response(-depth, stiffness);
     const law::NormalResponse before = law.response(std::nextafter(-depth, 0.0), stiffness);
     // Neighbouring numbers: only round-off may part them.
-    CHECK(at.reaction == doctest::Approx(before.reaction).epsilon(1e-14));
-    CHECK(at.slope == doctest::Approx(before.slope).epsilon(1e-14));
-    CHECK(at.reaction == doctest::Approx(0.5 * stiffness * depth).epsilon(1e-14));
+    CHECK(at.reaction == test::near(before.reaction, 1e-14));
+    CHECK(at.slope == test::near(before.slope, 1e-14));
+    CHECK(at.reaction == test::near(0.5 * stiffness * depth, 1e-14));
     CHECK(law.energy(-depth, stiffness) ==
-          doctest::Approx(law.energy(std::nextafter(-depth, 0.0), stiffness)).epsilon(1e-14));
+          test::near(law.energy(std::nextafter(-depth, 0.0), stiffness), 1e-14));
 }
 
 TEST_CASE("a law tells the depth that its quadratic start loses, and the linear one loses none") {
@@ -116,7 +117,7 @@ TEST_CASE("a law that can be inverted tells the penetration of every reaction") 
     const auto check = [](const auto& law) {
         for (const double gap : test::gaps_around(1e-3)) {
             if (gap >= 0.0) continue;
-            CHECK(law.penetration(law.response(gap, 50.0).reaction, 50.0) == doctest::Approx(-gap).epsilon(1e-12));
+            CHECK(law.penetration(law.response(gap, 50.0).reaction, 50.0) == test::near(-gap, 1e-12));
         }
         CHECK(law.penetration(0.0, 50.0) == 0.0);
     };

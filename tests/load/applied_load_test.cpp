@@ -2,6 +2,8 @@
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/load/applied_load.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 using namespace fibrant;
@@ -80,7 +82,7 @@ TEST_CASE("a force at a material point off the axis is a force on the position a
     const Vector force = scene.forces(1.0, rest);
     const Vector step = Vector::LinSpaced(rest.size(), 0.3, -0.8);
     const Vec3 particle = step.segment<3>(last) + r * step.segment<3>(last + 3);
-    CHECK(force.dot(step) == doctest::Approx(Q.dot(particle)).epsilon(1e-14));
+    CHECK(force.dot(step) == test::near(Q.dot(particle), 1e-14));
 }
 
 TEST_CASE("a moment does the work of a moment in a rotation, whatever the length of its director") {

@@ -187,6 +187,18 @@ TEST_CASE("a wire bends, twists and springs back beyond yield as its section say
         const auto now = law.response(section, e, {}, {});
         const double T = now.stress[strain::c21] - now.stress[strain::c12], Ty = std::numbers::pi * r * r * r * sy / std::sqrt(3.0) / 2.0;
         CHECK(T / Ty == test::near(torque, 0.02));  // three rings
+        // In torsion and in shear hardening is a third of that, beside G.
+        const double h = 250.0, share = h / 3.0 / (G + h / 3.0);
+        const material::Wire hard({.yield_stress = sy, .hardening = h}), elastic({.yield_stress = 1e9 * sy});
+        const auto twisted = [&](const material::Wire& one) {
+            const auto stress = one.response(section, e, {}, {}).stress;
+            return stress[strain::c21] - stress[strain::c12];
+        };
+        CHECK(twisted(hard) == test::near(share * twisted(elastic) + (1.0 - share) * T, 1e-12));
+        for (const int c : {strain::e13, strain::e23}) {
+            const auto sheared = [&](const material::Wire& one) { return alone(one, section, c, times * first_twist * r, {}).stress[core::at(c)]; };
+            CHECK(sheared(hard) == test::near(share * sheared(elastic) + (1.0 - share) * sheared(law), 1e-12));
+        }
     }
     // A closed cycle in stretch and bending: work of a fine path is what is stored and lost; return mapping is of first order.
     double error[2];

@@ -3,6 +3,8 @@
 
 #include <fibrant/observe/svg_plot.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -23,7 +25,7 @@ TEST_CASE("the fitted order of a power law is its power, whatever its factor") {
         std::vector<std::pair<double, double>> points;
         for (const double x : {1.0, 3.0, 10.0, 70.0}) points.emplace_back(x, 0.3 * std::pow(x, order));
         points.emplace_back(5.0, 0.0);  // an error that is exactly nothing is not on the line
-        CHECK(observe::fitted_order(points) == doctest::Approx(order).epsilon(1e-12));
+        CHECK(observe::fitted_order(points) == test::near(order, 1e-12));
     }
     CHECK(std::isnan(observe::fitted_order({{1.0, 2.0}})));
     CHECK(std::isnan(observe::fitted_order({{1.0, 2.0}, {1.0, 3.0}})));

@@ -5,6 +5,8 @@
 #include <fibrant/observe/svg_slice.hpp>
 #include <fibrant/observe/svg_view.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -45,7 +47,7 @@ TEST_CASE("a fibre cut square shows its circle, one cut at an angle an ellipse l
     const auto square = slice_shapes(only(straight_fibre({-1, 2, 3}, {1, 2, 3}, 4, 0.1, 0)), 0, 0.25);
     REQUIRE(square.size() == 1);
     CHECK_FALSE(square[0].along);
-    CHECK(area(square[0].outline) == doctest::Approx(std::numbers::pi * 0.01 * polygon_share).epsilon(1e-12));
+    CHECK(area(square[0].outline) == test::near(std::numbers::pi * 0.01 * polygon_share, 1e-12));
     Eigen::Vector2d middle = Eigen::Vector2d::Zero();
     for (const auto& corner : square[0].outline) middle += corner / 32.0;
     CHECK((middle - Eigen::Vector2d{2, 3}).norm() < 1e-12);
@@ -53,7 +55,7 @@ TEST_CASE("a fibre cut square shows its circle, one cut at an angle an ellipse l
     const auto slanted = slice_shapes(only(straight_fibre({-1, -1, 0}, {1, 1, 0}, 4, 0.1, 0)), 0, 0.0);
     REQUIRE(slanted.size() == 1);
     const double ellipse = std::numbers::pi * 0.01 * std::numbers::sqrt2;
-    CHECK(area(slanted[0].outline) == doctest::Approx(ellipse * polygon_share).epsilon(1e-12));
+    CHECK(area(slanted[0].outline) == test::near(ellipse * polygon_share, 1e-12));
 }
 
 TEST_CASE("a fibre that runs in the plane shows a strip as wide as the chord at its distance") {
@@ -61,7 +63,7 @@ TEST_CASE("a fibre that runs in the plane shows a strip as wide as the chord at 
     const auto strip = slice_shapes(snapshot, 0, 0.0);
     REQUIRE(strip.size() == 1);
     CHECK(strip[0].along);
-    CHECK(area(strip[0].outline) == doctest::Approx(2.0 * 2.0 * 0.08));  // length 2, half chord sqrt(0.1^2 - 0.06^2)
+    CHECK(area(strip[0].outline) == test::near(2.0 * 2.0 * 0.08, 1e-12));  // length 2, half chord sqrt(0.1^2 - 0.06^2)
     CHECK(slice_shapes(snapshot, 0, -0.05).empty());                     // 0.11 away
 }
 
@@ -71,7 +73,7 @@ TEST_CASE("a fibre that leaves the plane slowly shows the tip of a cut cylinder"
     const auto strip = slice_shapes(only(straight_fibre({-0.3, -3, 0}, {0.3, 3, 0}, 121, 0.1, 0)), 0, 0.0);
     REQUIRE(strip.size() == 1);
     // The strip is sampled at 0.006 of length 2, and its tips lose less than one sample each.
-    CHECK(area(strip[0].outline) == doctest::Approx(std::numbers::pi * 0.1 * 0.1 / sine).epsilon(2e-3));
+    CHECK(area(strip[0].outline) == test::near(std::numbers::pi * 0.1 * 0.1 / sine, 2e-3));
 }
 
 TEST_CASE("a slice names its plane, draws its scale, and says where nothing is cut") {

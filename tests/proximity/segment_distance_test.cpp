@@ -3,6 +3,8 @@
 
 #include <fibrant/proximity/segment_distance.hpp>
 
+#include <near.hpp>
+
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
@@ -40,20 +42,20 @@ long double true_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec
 
 TEST_CASE("crossing segments are closest inside, parallel ones all along, and distant ones at their ends") {
     const SegmentDistance crossing = segment_distance({-1, 0, 0}, {4, 0, 0}, {0, -1, 0.5}, {0, 2, 0});
-    CHECK(crossing.squared == doctest::Approx(0.25));
-    CHECK(crossing.s == doctest::Approx(0.25));
-    CHECK(crossing.t == doctest::Approx(0.5));
-    CHECK(segment_distance({0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {-4, 0, 0}).squared == doctest::Approx(1.0));
+    CHECK(crossing.squared == test::near(0.25, 1e-12));
+    CHECK(crossing.s == test::near(0.25, 1e-12));
+    CHECK(crossing.t == test::near(0.5, 1e-12));
+    CHECK(segment_distance({0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {-4, 0, 0}).squared == test::near(1.0, 1e-12));
     const SegmentDistance ends = segment_distance({0, 0, 0}, {1, 0, 0}, {3, 0, 1}, {1, 2, 5});
-    CHECK(ends.squared == doctest::Approx(5.0));
+    CHECK(ends.squared == test::near(5.0, 1e-12));
     CHECK(ends.s == 1.0);
     CHECK(ends.t == 0.0);
 }
 
 TEST_CASE("segments without length are points") {
-    CHECK(segment_distance({0, 0, 2}, {0, 0, 0}, {-1, 0, 0}, {2, 0, 0}).squared == doctest::Approx(4.0));
-    CHECK(segment_distance({-1, 0, 0}, {2, 0, 0}, {0, 0, 2}, {0, 0, 0}).squared == doctest::Approx(4.0));
-    CHECK(segment_distance({1, 2, 3}, {0, 0, 0}, {1, 2, 5}, {0, 0, 0}).squared == doctest::Approx(4.0));
+    CHECK(segment_distance({0, 0, 2}, {0, 0, 0}, {-1, 0, 0}, {2, 0, 0}).squared == test::near(4.0, 1e-12));
+    CHECK(segment_distance({-1, 0, 0}, {2, 0, 0}, {0, 0, 2}, {0, 0, 0}).squared == test::near(4.0, 1e-12));
+    CHECK(segment_distance({1, 2, 3}, {0, 0, 0}, {1, 2, 5}, {0, 0, 0}).squared == test::near(4.0, 1e-12));
     CHECK(segment_distance({1, 2, 3}, {0, 0, 0}, {1, 2, 3}, {0, 0, 0}).squared == 0.0);
 }
 
@@ -91,7 +93,7 @@ TEST_CASE("the branch-free form for whole vectors gives the same distance") {
         const Vec3 a = test::uniform_vector(random), u = test::uniform_vector(random), b = test::uniform_vector(random), v = test::uniform_vector(random);
         using proximity::detail::plain;
         const double least = proximity::detail::least_squared(plain(a) - plain(b), plain(u), plain(v));
-        CHECK(least == doctest::Approx(segment_distance(a, u, b, v).squared).epsilon(1e-13));  // but for fused operations
+        CHECK(least == test::near(segment_distance(a, u, b, v).squared, 1e-13));  // but for fused operations
     }
 }
 

@@ -4,6 +4,8 @@
 #include <fibrant/proximity/brute_search.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 using namespace fibrant;
@@ -30,9 +32,9 @@ TEST_CASE("two fibres that cross make one zone, which ends where their axes part
         const auto zones = zones_of(set);
         REQUIRE(zones.size() == 1);
         const ProximityZone& zone = zones[0];
-        CHECK(zone.distance == doctest::Approx(0.2));
-        CHECK(2.0 * zone.closest_i / segments - 1.0 == doctest::Approx(0.3));
-        CHECK(2.0 * zone.closest_j / 5 - 1.0 == doctest::Approx(0.0));
+        CHECK(zone.distance == test::near(0.2, 1e-12));
+        CHECK(2.0 * zone.closest_i / segments - 1.0 == test::near(0.3, 1e-12));
+        CHECK(std::abs(2.0 * zone.closest_j / 5 - 1.0) < 1e-15);
         // Points of the first axis within 0.3 of the second, which is 0.2 above: known from outside, to 1/1024 segment.
         const double half = std::sqrt(0.3 * 0.3 - 0.2 * 0.2), known = 2.0 / segments / 1024.0;
         const double a = 2.0 * zone.a_i / segments - 1.0, b = 2.0 * zone.b_i / segments - 1.0;
@@ -50,17 +52,17 @@ TEST_CASE("fibres side by side make one zone whose ends face each other, whichev
     const auto along = zones_of(set);
     REQUIRE(along.size() == 1);
     // The second begins over the middle of the first: faced from 1 - sqrt(0.21^2 - 0.2^2) on.
-    CHECK(along[0].a_i == doctest::Approx(10.0 - 0.640312 / 1.0).epsilon(0.001));
+    CHECK(along[0].a_i == test::near(10.0 - 0.640312 / 1.0, 0.001));
     CHECK(along[0].b_i == 20.0);
     CHECK(along[0].a_j == 0.0);
-    CHECK(along[0].b_j == doctest::Approx(10.0 + 0.640312).epsilon(0.001));
+    CHECK(along[0].b_j == test::near(10.0 + 0.640312, 0.001));
     std::ranges::reverse(set.points[1]);
     const auto against = zones_of(set);
     REQUIRE(against.size() == 1);
     CHECK(against[0].a_i == along[0].a_i);
     CHECK(against[0].b_i == along[0].b_i);
     CHECK(against[0].a_j == 30.0);
-    CHECK(against[0].b_j == doctest::Approx(30.0 - along[0].b_j).epsilon(1e-3));
+    CHECK(against[0].b_j == test::near(30.0 - along[0].b_j, 1e-3));
     CHECK(against[0].b_j < against[0].a_j);
 }
 
@@ -77,8 +79,8 @@ TEST_CASE("a fibre that turns back along another makes one zone for each way") {
     CHECK((zones[0].a_j < zones[0].b_j) != (zones[1].a_j < zones[1].b_j));
     for (const auto& zone : zones) {
         CHECK(zone.a_i == 0.0);
-        CHECK(zone.b_i == doctest::Approx(20.0).epsilon(0.1));
-        CHECK(std::min(zone.a_j, zone.b_j) == doctest::Approx(zone.a_j < zone.b_j ? 0.0 : 20.5).epsilon(0.05));
+        CHECK(zone.b_i == test::near(20.0, 0.1));
+        CHECK(std::min(zone.a_j, zone.b_j) == test::near(zone.a_j < zone.b_j ? 0.0 : 20.5, 0.05));
     }
 }
 
@@ -103,10 +105,26 @@ TEST_CASE("fibres that meet twice make two zones") {
     set.add(wave, 0.1);
     const auto zones = zones_of(set);
     REQUIRE(zones.size() == 2);
-    CHECK(zones[0].closest_j == doctest::Approx(20.0));
-    CHECK(zones[1].closest_j == doctest::Approx(60.0));
-    CHECK(zones[0].distance == doctest::Approx(0.2));
+    CHECK(zones[0].closest_j == test::near(20.0, 1e-12));
+    CHECK(zones[1].closest_j == test::near(60.0, 1e-12));
+    CHECK(zones[0].distance == test::near(0.2, 1e-12));
     CHECK(zones[0].b_i < zones[1].a_i);
+}
+
+TEST_CASE("pairs that touch by a corner alone in the plane of their segment numbers are one zone, whichever way fibres run") {
+    // Two zigzags, one over the other, that cross in the middles of their segments: where one has its node the other's is too far.
+    std::vector<Vec3> below, above;
+    for (int k = 0; k <= 12; ++k) {
+        const double aside = k % 2 == 0 ? 0.1 : -0.1;
+        below.push_back({1.0 * k, aside, 0.0}), above.push_back({1.0 * k, -aside, 0.2});
+    }
+    for (const bool against : {false, true}) {
+        FibreSet set{.name = "zigzag", .reach = 0.02};
+        set.add(below, 0.1), set.add(above, 0.1);
+        CHECK(BruteSearch{}.pairs(set.centrelines(), set.reach).size() == 12);
+        CHECK(zones_of(set).size() == 1);
+        if (!against) std::ranges::reverse(above);
+    }
 }
 
 TEST_CASE("every close pair has its closest points in a zone of its two fibres, and every zone has a pair") {

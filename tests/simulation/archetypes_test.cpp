@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The least type of each contract, which has nothing that the contract does not ask for: generic code compiles and runs
 // with it, so it uses nothing more either.
+#include <near.hpp>
 #include <refusal.hpp>
 #include <support/synthetic_system.hpp>
 
@@ -179,9 +180,9 @@ TEST_CASE("the least model stretches two bars by the closed form") {
     REQUIRE(report.converged);
     CHECK(observer.increments == 2);
     CHECK(report.contact.elements > 0);
-    CHECK(simulator.value(scene::last_end(lower)).x() == doctest::Approx(2.0 * stretch).epsilon(1e-8));
-    CHECK(simulator.value(scene::last_end(upper)).x() == doctest::Approx(2.0 * stretch).epsilon(1e-8));
-    CHECK(simulator.reaction(scene::first_end(lower)).x() == doctest::Approx(-force).epsilon(1e-8));
+    CHECK(simulator.value(scene::last_end(lower)).x() == test::near(2.0 * stretch, 1e-8));
+    CHECK(simulator.value(scene::last_end(upper)).x() == test::near(2.0 * stretch, 1e-8));
+    CHECK(simulator.reaction(scene::first_end(lower)).x() == test::near(-force, 1e-8));
 }
 
 TEST_CASE_TEMPLATE("other solvers work with the least beam, search and laws", M, WithDirect, WithBlocks) {

@@ -4,6 +4,8 @@
 
 #include <fibrant/contact/contacts_with_tools.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -97,7 +99,7 @@ TEST_CASE("without the check the same fibre ends behind the other one, converged
     CHECK(run<Unchecked>(scene, report, failures) > 0.9);
     CHECK(report.converged);
     scene.gap = 3.0, scene.approach = 7.0;
-    CHECK(run<Unchecked>(scene, report, failures) == doctest::Approx(-1.0).epsilon(1e-6));
+    CHECK(run<Unchecked>(scene, report, failures) == test::near(-1.0, 1e-6));
     CHECK(report.converged);
     CHECK(report.contact.active == 0);
 }
@@ -149,7 +151,7 @@ TEST_CASE("what passes is named, with its place and its motion, and the attempt 
     CHECK(passed->time > 3.9 / 9.0);  // a radius apart, or a little more
     CHECK(passed->time < 4.0 / 9.0 + 1e-9);
     CHECK(std::abs(passed->touch - 3.0 / 9.0) < 0.01);
-    CHECK(passed->motion == doctest::Approx(9 * r).epsilon(1e-12));
+    CHECK(passed->motion == test::near(9 * r, 1e-12));
     CHECK(std::abs(passed->place.x() + 0.5 * r) < 0.05 * r);
     const std::string words = contact::text(*passed);
     CHECK(words.find("fibre 0 at 0.") != std::string::npos);
@@ -231,7 +233,7 @@ TEST_CASE("a fibre does not pass through itself") {
             REQUIRE(least < 0.1 * r);
             return there;
         };
-        REQUIRE(height() == doctest::Approx(lift).epsilon(1e-6));
+        REQUIRE(height() == test::near(lift, 1e-6));
         Failures failures;
         const simulation::Report report = simulator.run({.increments = 1}, failures);
         CAPTURE(report.reason);
@@ -265,7 +267,7 @@ TEST_CASE("a tool that is too fast for a fibre is refused by name, and a slower 
             }
             if (increments > 1) REQUIRE(report.converged);
             if (increments == 1) CHECK(failures.name("fibre 0 at 0.5 of its length changes sides with tool 0"));
-            if (report.converged) CHECK(z == doctest::Approx(-10.5 * r).epsilon(2e-2));
+            if (report.converged) CHECK(z == test::near(-10.5 * r, 2e-2));
             CHECK(z < 0.5 * r);
         }
     }

@@ -123,7 +123,7 @@ TEST_CASE("fibres break one by one at the weakest of their points, and what they
     double force = 0.0;
     for (Index f = 0; f < count; ++f) force += simulator.reaction(scene::last_end(f)).z();
     const double whole = EA * 0.0202 * 1.02;  // (s^2 - 1)/2 s
-    CHECK(force / EA == doctest::Approx(static_cast<double>(count - breaking) * whole / EA).epsilon(1e-3).scale(0.02));  // of one fibre
+    CHECK(std::abs(force - static_cast<double>(count - breaking) * whole) < 1e-3 * whole);  // of one fibre
     CHECK(missing(report) < 1e-3);
 }
 

@@ -3,6 +3,8 @@
 #include "refusal.hpp"
 #include "simulation/scenes.hpp"
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 using namespace fibrant;
@@ -52,31 +54,31 @@ TEST_CASE("a ramp goes by equal steps or by equal factors, and a channel without
     const std::vector<double> expected_side{0, 0, 0, 0, -1.0 / 3.0, -2.0 / 3.0, -1.0, -1.0};
     REQUIRE(load.values.size() == 8);
     for (std::size_t k = 0; k < 8; ++k) {
-        CHECK(load.values[k] == doctest::Approx(expected_load[k]).epsilon(1e-12));
-        CHECK(side.values[k] == doctest::Approx(expected_side[k]).epsilon(1e-12));
+        CHECK(load.values[k] == test::near(expected_load[k], 1e-12));
+        CHECK(side.values[k] == test::near(expected_side[k], 1e-12));
         CHECK(report.increments[k].stage == (k < 4 ? "up" : k < 7 ? "down" : "off"));
         CHECK(report.increments[k].number == static_cast<Index>(k) + 1);
     }
     CHECK(report.increments[1].stage_progress == 0.5);
-    CHECK(report.increments[1].progress == doctest::Approx(2.0 / 8.0).epsilon(1e-15));  // of 4 + 3 + 1 increments
-    CHECK(report.increments[4].progress == doctest::Approx(5.0 / 8.0).epsilon(1e-15));
+    CHECK(report.increments[1].progress == test::near(2.0 / 8.0, 1e-15));  // of 4 + 3 + 1 increments
+    CHECK(report.increments[4].progress == test::near(5.0 / 8.0, 1e-15));
     CHECK(report.increments.back().progress == 1.0);
     // Elastic, and nothing remembers: what is left is the side load's small deflection P L^3 / 3 EI.
     const Vec3 tip = simulator.value(scene::last_end(0));
     CHECK(std::abs(tip.x()) < 1e-5 * rod.length);
-    CHECK(tip.y() == doctest::Approx(-1e-5 * std::pow(rod.length, 3) / (3.0 * rod.bending_stiffness())).epsilon(1e-2));
+    CHECK(tip.y() == test::near(-1e-5 * std::pow(rod.length, 3) / (3.0 * rod.bending_stiffness()), 1e-2));
 }
 
 TEST_CASE("a stage that goes on until it is at rest counts as the mean of those whose increments are known") {
     std::vector<Stage<Smooth>> stages(3);
     stages[0].increments = 4, stages[1].increments = 1, stages[2].increments = 100;
     stages[1].until = simulation::until_settled(1.0, 1.0);
-    CHECK(simulation::part_done(stages, 0, 1.0) == doctest::Approx(4.0 / 156.0).epsilon(1e-15));
-    CHECK(simulation::part_done(stages, 1, 1.0) == doctest::Approx(56.0 / 156.0).epsilon(1e-15));
-    CHECK(simulation::part_done(stages, 2, 0.5) == doctest::Approx(106.0 / 156.0).epsilon(1e-15));
+    CHECK(simulation::part_done(stages, 0, 1.0) == test::near(4.0 / 156.0, 1e-15));
+    CHECK(simulation::part_done(stages, 1, 1.0) == test::near(56.0 / 156.0, 1e-15));
+    CHECK(simulation::part_done(stages, 2, 0.5) == test::near(106.0 / 156.0, 1e-15));
     CHECK(simulation::part_done(stages, 2, 1.0) == 1.0);
     for (Stage<Smooth>& stage : stages) stage.until = simulation::until_settled(1.0, 1.0);
-    CHECK(simulation::part_done(stages, 1, 0.5) == doctest::Approx(0.5).epsilon(1e-15));  // nothing is known: all alike
+    CHECK(simulation::part_done(stages, 1, 0.5) == test::near(0.5, 1e-15));  // nothing is known: all alike
 }
 
 TEST_CASE("without stages all channels go to 1 together") {
@@ -179,7 +181,7 @@ TEST_CASE("damping that is carried along does not hold back what is driven stead
     const double whole = 1e-4 * stiffness * step * static_cast<double>(2 * rod.elements + 1);
     for (std::size_t k = 0; k < 8; ++k) {
         const double sign = k < 4 ? 1.0 : -1.0;
-        CHECK(drags[0].forces[k] == doctest::Approx(sign * whole).epsilon(5e-3));
+        CHECK(drags[0].forces[k] == test::near(sign * whole, 5e-3));
         CHECK(std::abs(drags[1].forces[k]) < 5e-3 * whole);  // nor the first, of which nothing was known: it is solved twice
     }
     // The other channel bends the fibre; of that, (3 L s^2 - s^3) / 2 L^3 of the tip's motion, a square of s leaves less than a thirtieth.
@@ -208,7 +210,7 @@ TEST_CASE("damping that is carried along holds what moves otherwise than its gro
     }
     for (std::size_t k = 0; k < 3; ++k) {
         CHECK(records[0].increments[k].damping > 0.02);
-        CHECK(records[1].increments[k].damping == doctest::Approx(records[0].increments[k].damping).epsilon(1e-3));
+        CHECK(records[1].increments[k].damping == test::near(records[0].increments[k].damping, 1e-3));
     }
 }
 
@@ -394,7 +396,7 @@ TEST_CASE("what is driven further than the last increment moved is found by the 
     REQUIRE(report.converged);
     CHECK(report.rejected_increments == 0);
     for (std::size_t k = 1; k < report.increments.size(); ++k) {
-        CHECK(report.increments[k].displacement == doctest::Approx(2.0 * crossing.radius).epsilon(1e-2));
+        CHECK(report.increments[k].displacement == test::near(2.0 * crossing.radius, 1e-2));
         CHECK(report.increments[k].counts.contact_passes <= 2);  // one that moves them, one that finds nothing else to do
     }
 }

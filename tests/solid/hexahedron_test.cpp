@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <fibrant/solid/hexahedron.hpp>
 
+#include <near.hpp>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
@@ -93,7 +95,7 @@ TEST_CASE_TEMPLATE("a rigid motion leaves the energy, and turns the forces with 
     const double energy = element.energy(rest, material, now);
     CHECK(element.energy(rest, material, rigid) <= 1e-26 * material.young_modulus);
     CHECK(element.force(rest, material, rigid).norm() <= 1e-11 * material.young_modulus);  // the digits of 4 lengths
-    CHECK(element.energy(rest, material, turned) == doctest::Approx(energy).epsilon(1e-12));
+    CHECK(element.energy(rest, material, turned) == test::near(energy, 1e-12));
     const CellVector force = element.force(rest, material, now), after = element.force(rest, material, turned);
     for (int k = 0; k < 8; ++k) CHECK((turn * force.segment<3>(3 * k) - after.segment<3>(3 * k)).norm() <= 1e-11 * force.norm());
 }
@@ -198,13 +200,13 @@ TEST_CASE("a plate bends as plate theory says with one enhanced element through 
         MESSAGE("elements through the thickness " << through << ": enhanced " << enhanced << ", plain "
                                                   << plate_deflection<Plain>(10, through, 10.0, 0.2));
         // Under an end force the error of elements whose curvature is constant is 1/(4 n^2) of the deflection: 0.0025 for n = 10.
-        CHECK(enhanced == doctest::Approx(1.0 - 0.0025).epsilon(5e-4));
+        CHECK(enhanced == test::near(1.0 - 0.0025, 5e-4));
     }
     CHECK(plate_deflection<Plain>(10, 1, 10.0, 0.2) < 0.12);
     CHECK(plate_deflection<Plain>(10, 4, 10.0, 0.2) < 0.12);  // more of them through the thickness do not help
     // Finer along the plate the error falls as 1/n^2.
     const double coarse = 1.0 - plate_deflection<Enhanced>(5, 1, 10.0, 0.2), fine = 1.0 - plate_deflection<Enhanced>(20, 1, 10.0, 0.2);
-    CHECK(coarse / fine == doctest::Approx(16.0).epsilon(0.1));
+    CHECK(coarse / fine == test::near(16.0, 0.1));
     // Trapezoids in the plane of the plate are a limit of the modes: bent, such thin cells shear. Grids that are regular in plan
     // have none.
     const double trapezoids = plate_deflection<Enhanced>(10, 1, 10.0, 0.2, 0.1);

@@ -4,6 +4,8 @@
 #include <stability/random_scenes.hpp>
 #include <stability/sweeps.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cstdio>
@@ -30,7 +32,7 @@ TEST_CASE("crossed fibres of any slenderness from 10 to 1e5 obey beam theory") {
         const double ratio = force_over_theory(scene, result);
         std::printf("%g,%.6f,%ld,%ld,%ld\n", slenderness, ratio, static_cast<long>(result.report.contact.active), iterations(result), rejected(result));
         // At L/r = 10 elements are half a radius long and the section gives way under the load.
-        CHECK(ratio == doctest::Approx(1.0).epsilon(slenderness < 50.0 ? 0.1 : 5e-3));
+        CHECK(ratio == test::near(1.0, slenderness < 50.0 ? 0.1 : 5e-3));
     }
 }
 
@@ -43,8 +45,8 @@ TEST_CASE("a fibre on another one up to a million times as stiff gives way alone
         CAPTURE(result.report.reason);
         REQUIRE(result.report.converged);
         std::printf("%g,%.6f,%ld,%ld\n", ratio, force_over_theory(scene, result), iterations(result), rejected(result));
-        CHECK(force_over_theory(scene, result) == doctest::Approx(1.0).epsilon(5e-3));
-        CHECK(result.support[1].z() == doctest::Approx(-result.support[0].z()).epsilon(1e-6));
+        CHECK(force_over_theory(scene, result) == test::near(1.0, 5e-3));
+        CHECK(result.support[1].z() == test::near(-result.support[0].z(), 1e-6));
     }
 }
 
@@ -80,8 +82,8 @@ TEST_CASE("what friction has done does not depend on how finely it was followed"
     }
     // The coarsest mesh, with elements of three diameters, is its own error away from the others.
     for (std::size_t k = 1; k < forces.size(); ++k) {
-        CHECK(forces[k] == doctest::Approx(forces.back()).epsilon(0.03));
-        CHECK(losses[k] == doctest::Approx(losses.back()).epsilon(0.1));
+        CHECK(forces[k] == test::near(forces.back(), 0.03));
+        CHECK(losses[k] == test::near(losses.back(), 0.1));
     }
 }
 

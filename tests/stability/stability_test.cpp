@@ -5,6 +5,8 @@
 #include <stability/random_scenes.hpp>
 #include <stability/sweeps.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
@@ -183,7 +185,7 @@ TEST_CASE("slack fibres under a load they cannot carry yet find their shape, or 
     CHECK(deepest(scene, result) < 0.05);
     double arc = 0.0;
     for (std::size_t k = 1; k < result.centreline[1].size(); ++k) arc += (result.centreline[1][k] - result.centreline[1][k - 1]).norm();
-    CHECK(arc == doctest::Approx(1.0).epsilon(2e-3));  // it bends rather than being squeezed by a tenth
+    CHECK(arc == test::near(1.0, 2e-3));  // it bends rather than being squeezed by a tenth
 }
 
 /// A fibre pressed down across another one, then the lower one dragged to and fro.
@@ -252,7 +254,7 @@ TEST_CASE("a fibre that goes there and back with friction closes its loop, and n
         const Cycle fine = second_cycle(allowed, 160, 400);
         CHECK(std::abs(fine.error) < missing);
         CHECK(fine.loop < 1e-8);
-        CHECK(fine.dissipated == doctest::Approx(fine.work).epsilon(3e-5));  // the rest went with renewed contact elements
+        CHECK(fine.dissipated == test::near(fine.work, 3e-5));  // the rest went with renewed contact elements
     }
 }
 

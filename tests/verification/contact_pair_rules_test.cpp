@@ -2,6 +2,8 @@
 // A fibre drawn through three pairs of others with three coefficients of friction, by rules for pairs of groups: what the supports hold is Coulomb's law, pair by pair.
 #include <contact/contact_model.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <array>
@@ -76,7 +78,7 @@ TEST_CASE("a fibre drawn through pairs of others is held back by the friction th
                 if (zone.span.fibre_i == fibre || zone.span.fibre_j == fibre) deepest = std::max(deepest, -simulator.contacts().responses()[k].gap);
         }
         std::printf("%s: %.3f of the allowed penetration\n", place.name, deepest / allowed);
-        CHECK(deepest / (place.penetration * allowed) == doctest::Approx(0.45).epsilon(0.02));  // what stiffness is adapted to (StiffnessAdaptation.target_fraction)
+        CHECK(deepest / (place.penetration * allowed) == test::near(0.45, 0.02));  // what stiffness is adapted to (StiffnessAdaptation.target_fraction)
     }
 }
 

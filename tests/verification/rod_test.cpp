@@ -10,6 +10,8 @@
 #include <fibrant/solver/fibre_block_pcg.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 using namespace fibrant;
@@ -62,8 +64,8 @@ TEST_CASE("an end that is turned by a whole turn and more closes the rod to a ci
         const Vec3 tip = solved.simulator.value(scene::last_end(0)), circle = Vec3(1.0 - std::cos(angle), 0.0, std::sin(angle)) / curvature;
         CHECK((tip - circle).norm() < 4e-3 / curvature);  // chords: 14 degrees, (14 degrees)^2 / 24 = 2.5e-3 of the distance
         CHECK(solved.simulator.value(scene::last_end(0), scene::NodeVector::director_1).norm() < pi * (1.0 + 1e-12));
-        CHECK(solved.report.energy.elastic == doctest::Approx(0.5 * rod.bending() * curvature * curvature * rod.length).epsilon(1e-9));
-        CHECK(solved.report.energy.external == doctest::Approx(solved.report.energy.elastic).epsilon(1e-6));  // of a constant rate
+        CHECK(solved.report.energy.elastic == test::near(0.5 * rod.bending() * curvature * curvature * rod.length, 1e-9));
+        CHECK(solved.report.energy.external == test::near(solved.report.energy.elastic, 1e-6));  // of a constant rate
     }
 }
 
@@ -98,8 +100,8 @@ TEST_CASE("a stretched rod between clamps has no membrane locking") {
 
 TEST_CASE("a column of rods buckles and bends as the elastica does") {
     const Eigen::Vector2d column = test::buckled_column<Model>(0.10177219073636, 64);  // postbuckling_clamped_clamped_w0.1
-    CHECK(column[0] == doctest::Approx(0.0023142991053129).epsilon(2e-3));
-    CHECK(std::abs(column[1]) == doctest::Approx(0.402).epsilon(1e-3));
+    CHECK(column[0] == test::near(0.0023142991053129, 2e-3));
+    CHECK(std::abs(column[1]) == test::near(0.402, 1e-3));
 }
 
 TEST_CASE("rods with a placed and turned end stand in space as the reference does") {
@@ -154,9 +156,9 @@ TEST_CASE("a rod that is twisted by three turns counts them") {
     test::Solved<Model> solved(assembly);
     REQUIRE(solved.run({{"twist", 1.0}}, 12));
     const double twist = 6.0 * pi / 2.01, stiffness = 2.0 * test::ReferenceRod::bending() / 2.6;
-    CHECK(solved.report.energy.elastic == doctest::Approx(0.5 * stiffness * twist * twist * 2.01).epsilon(1e-8));
+    CHECK(solved.report.energy.elastic == test::near(0.5 * stiffness * twist * twist * 2.01, 1e-8));
     // The work of the clamp is that energy: the trapezium of 12 increments is exact for a linear torque.
-    CHECK(solved.report.energy.external == doctest::Approx(solved.report.energy.elastic).epsilon(1e-6));
+    CHECK(solved.report.energy.external == test::near(solved.report.energy.elastic, 1e-6));
 }
 
 TEST_CASE("two crossed rods push each other apart as the rods of the reference do") {
@@ -193,7 +195,7 @@ TEST_CASE("a rod drawn half a turn around a rigid cylinder is held back as the r
     test::Solved<Model> solved(assembly, parameters);
     REQUIRE(solved.run({{"ends", 1.0}}, 30));
     const auto tensions = [&] { return std::pair(solved.simulator.reaction(scene::first_end(0)), solved.simulator.reaction(scene::last_end(0))); };
-    CHECK(tensions().second.norm() / tensions().first.norm() == doctest::Approx(1.0).epsilon(1e-3));
+    CHECK(tensions().second.norm() / tensions().first.norm() == test::near(1.0, 1e-3));
     simulation::Stage<Model> draw;
     draw.increments = 24, draw.ramps = {{"ends", 2.0}};
     draw.friction.emplace(law::RegularisedCoulomb::Parameters{mu, 0.02 * r});
@@ -206,7 +208,7 @@ TEST_CASE("a rod drawn half a turn around a rigid cylinder is held back as the r
     const double turned = test::turned_angle(slack, taut), ratio = taut.norm() / slack.norm();
     const double expected = test::capstan_ratio({r, R, test::ReferenceRod::bending(), mu}, slack.norm(), turned);
     std::printf("capstan: ratio %.5f, %.5f expected over %.2f degrees\n", ratio, expected, turned * 180.0 / pi);
-    CHECK(ratio == doctest::Approx(expected).epsilon(5e-3));  // points come on and go off the guide one by one
+    CHECK(ratio == test::near(expected, 5e-3));  // points come on and go off the guide one by one
 }
 
 TEST_CASE("every strategy solves the tangent of touching rods, whose points have no scalar weights") {

@@ -8,6 +8,8 @@
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/float_block_cholesky.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -49,10 +51,16 @@ TEST_CASE("a mat that is pressed carries more and more, feels both plates alike,
     const mat::MatState& middle = *std::find_if(states.begin(), states.end(), [&](const mat::MatState& state) { return state.volume_fraction > 0.6 * end.volume_fraction; });
     std::printf("mat: %zu increments, fraction %.3f, pressure %.3e and %.3e of the modulus, %.2f contacts a fibre (%.2f without bulk)\n", states.size(), end.volume_fraction,
                 end.pressure / 7300.0, end.lower_pressure / 7300.0, end.contacts_per_fibre, end.contacts_without_bulk);
-    CHECK(end.volume_fraction == doctest::Approx(24.0 * std::numbers::pi * r * r * 0.5 / (0.62 * 0.62 * last)).epsilon(1e-12));
+    CHECK(end.volume_fraction == test::near(24.0 * std::numbers::pi * r * r * 0.5 / (0.62 * 0.62 * last), 1e-12));
     std::printf("pressure at %.3f: %.3e\n", middle.volume_fraction, middle.pressure / 7300.0);
     CHECK(end.pressure > std::pow(1.0 / 0.6, 3) * middle.pressure);  // van Wyk's cube; a threshold makes it steeper
     CHECK(middle.pressure >= 0.0);
+    // Only the upper plate moves: what it exerts times its way is all the work there is.
+    double work = 0.0;
+    for (std::size_t k = 1; k < states.size(); ++k)
+        work += 0.5 * (states[k].pressure + states[k - 1].pressure) * 0.62 * 0.62 * (states[k - 1].height - states[k].height);
+    std::printf("work of the plate %.4e, of pressure and way %.4e\n", report.energy.external, work);
+    CHECK(work == test::near(report.energy.external, 0.05));
     // Walls are smooth, so what the plates feel differs by what damping takes, springs to where fibres were, in full:
     CHECK(end.pressure > end.lower_pressure);
     CHECK(end.pressure - end.lower_pressure < 0.25 * end.pressure);

@@ -4,13 +4,16 @@
 #include <fibrant/proximity/brute_search.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 
+#include <near.hpp>
 #include <refusal.hpp>
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <vector>
 
 using namespace fibrant;
 
@@ -82,6 +85,35 @@ TEST_CASE("random fibres touch as often as the excluded volume says, and the sea
     }
 }
 
+TEST_CASE("directions of a mat are uniform on the sphere, or on the band of it that the tilt leaves") {
+    // Archimedes: heights on a sphere are uniform, and independent of the azimuth. Kolmogorov's distance of n uniform numbers is above 1.95 / sqrt(n)
+    // once in a thousand times.
+    for (const double tilt_deg : {90.0, 35.0}) {
+        mat::MatParameters parameters{.radius = 0.01, .length = 0.5, .width = 2.0, .height = 1.0, .fibres = 1, .tilt_deg = tilt_deg};
+        const std::size_t n = 20000;
+        const double highest = std::sin(tilt_deg * std::numbers::pi / 180.0);
+        mat::Draws draw(3);
+        std::vector<double> height, azimuth;
+        Vec3 middle = Vec3::Zero();
+        double both = 0.0;
+        for (std::size_t k = 0; k < n; ++k) {
+            const mat::MatFibre fibre = mat::drawn_fibre(parameters, draw);
+            CHECK(std::abs(fibre.along.norm() - 1.0) < 1e-14);
+            height.push_back(0.5 * (1.0 + fibre.along.z() / highest)), azimuth.push_back(0.5 + std::atan2(fibre.along.y(), fibre.along.x()) / (2.0 * std::numbers::pi));
+            both += 12.0 * (height.back() - 0.5) * (azimuth.back() - 0.5) / std::sqrt(static_cast<double>(n));
+            middle += fibre.middle / static_cast<double>(n);
+        }
+        CHECK(std::abs(both) < 3.3);  // of a variance of 1
+        for (auto* uniform : {&height, &azimuth}) {
+            std::sort(uniform->begin(), uniform->end());
+            double furthest = 0.0;
+            for (std::size_t k = 0; k < n; ++k) furthest = std::max(furthest, std::abs((*uniform)[k] - (static_cast<double>(k) + 0.5) / static_cast<double>(n)));
+            CHECK(furthest * std::sqrt(static_cast<double>(n)) < 1.95);
+        }
+        for (int k = 0; k < 3; ++k) CHECK(std::abs(middle[k] / (k < 2 ? 2.0 : 1.0) - 0.5) < 3.3 / std::sqrt(12.0 * static_cast<double>(n)));
+    }
+}
+
 TEST_CASE("fibres of a mat are inside their box and apart from each other, the same for the same seed, others for another") {
     for (const double bend : {0.0, 90.0}) {
         mat::MatParameters parameters{.radius = 0.02, .length = 0.8, .width = 1.2, .height = 0.8, .fibres = 60};
@@ -102,7 +134,7 @@ TEST_CASE("fibres of a mat are inside their box and apart from each other, the s
                 for (std::size_t j = 0; j < i; ++j)
                     for (int b = 0; b <= 200; b += 2) nearest = std::min(nearest, (x - fibres[j](b / 200.0)).norm());
             }
-            CHECK(arc == doctest::Approx(0.8).epsilon(1e-4));  // chords of a two-hundredth
+            CHECK(arc == test::near(0.8, 1e-4));  // chords of a two-hundredth
         }
         CHECK(most <= -0.02 + 1e-3);
         // A chord of a piece is 4 r long: its arc of 90 / 10 degrees rises by a fiftieth of that at most.
@@ -133,7 +165,7 @@ TEST_CASE("a mat that is cut at its sides has as much fibre there as inside, of 
                 if (std::max(std::abs(x.x() - 0.5 * width), std::abs(x.y() - 0.5 * width)) > 0.25 * width) near_sides += fibre.length / 100.0;
             }
         }
-        CHECK(length == doctest::Approx(48.0).epsilon(1e-9));
+        CHECK(length == test::near(48.0, 1e-9));
         sum += near_sides / length, squares += near_sides / length * near_sides / length;
     }
     const double share = sum / boxes, sigma = std::sqrt((squares / boxes - share * share) / (boxes - 1));
@@ -145,7 +177,7 @@ TEST_CASE("a mat that is cut at its sides has as much fibre there as inside, of 
 TEST_CASE("stacked fibres touch a lid and a floor, are apart from each other, and lie as close as straight ones can") {
     mat::MatParameters parameters{.radius = 0.02, .length = 1.2, .width = 1.5, .height = 2.0, .fibres = 60, .cut = true, .tilt_deg = 0.0, .material = {7300.0, 0.3}};
     const mat::StackedMat tight = mat::stacked_fibres(parameters, 1.0), loose = mat::stacked_fibres(parameters, 1.1);
-    CHECK(loose.height == doctest::Approx(1.1 * tight.height).epsilon(1e-12));
+    CHECK(loose.height == test::near(1.1 * tight.height, 1e-12));
     const double reach = 2.02 * 0.02;  // two radii and the clearance
     for (const mat::StackedMat* stacked : {&tight, &loose}) {
         double nearest = 1e300, lowest = 1e300, highest = -1e300;
@@ -160,9 +192,9 @@ TEST_CASE("stacked fibres touch a lid and a floor, are apart from each other, an
         CHECK(lowest >= 0.02 * (1.0 - 1e-9));
         CHECK(highest <= stacked->height - 0.02 * (1.0 - 1e-9));
         if (stacked == &tight) {  // what cannot be lower holds the lid and the floor apart: a chain of fibres each of which touches the next
-            CHECK(lowest == doctest::Approx(0.02).epsilon(1e-9));
-            CHECK(highest == doctest::Approx(stacked->height - 0.02).epsilon(1e-9));
-            CHECK(std::sqrt(nearest) == doctest::Approx(reach).epsilon(1e-9));
+            CHECK(lowest == test::near(0.02, 1e-9));
+            CHECK(highest == test::near(stacked->height - 0.02, 1e-9));
+            CHECK(std::sqrt(nearest) == test::near(reach, 1e-9));
         }
     }
     std::printf("stacked: %.4f of the box is fibre\n", parameters.volume_fraction(tight.height));

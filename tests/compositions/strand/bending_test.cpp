@@ -104,7 +104,7 @@ TEST_CASE("a strand that is drawn and bent to and fro takes Coulomb's moment bes
     std::printf("drawn by %.4f a wire: moment %.3f of that without friction at first; then more by %.3f, %.3f with half of the friction, straight again %.3f and %.3f of Coulomb's %.4f\n",
                 smooth.wire_force, first, going / expected, with_half / expected, back / expected, forth / expected, expected);
     std::printf("dissipated %.4f, by Coulomb's moment %.4f, energy %.1e missing\n", rough.report.energy.dissipated, 5.0 * angle * expected, rough.report.energy.error());
-    CHECK(smooth.states[12 + 11].moment == doctest::Approx(0.0).epsilon(1e-4 * expected));
+    CHECK(std::abs(smooth.states[12 + 11].moment) < 1e-4 * expected);
     CHECK(first > 1.15);  // what sticks is stiffer
     // Wires go aside, too, and tension bends the strand less evenly: six hundredths at this one, seven at twice as much.
     for (const double moment : {going, 2.0 * with_half, back, forth, rough.report.energy.dissipated / (5.0 * angle)}) CHECK(std::abs(moment / expected - 1.0) < 0.1);

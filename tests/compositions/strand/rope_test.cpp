@@ -2,6 +2,7 @@
 // Strands wound around each other. Their wires are helices about helices; what they carry is held to what wires carry that keep their distance from the axis.
 
 #include <compositions/strand/drawn_rope.hpp>
+#include <near.hpp>
 #include <refusal.hpp>
 
 #include <doctest/doctest.h>
@@ -24,21 +25,21 @@ TEST_CASE("a wire goes round its core at its lay angle, the core round the axis 
         const double h = 1e-5;
         const Vec3 slope = (line.place(s + h) - line.place(s - h)) / (2.0 * h), along = core.at(s).derivative;
         CHECK((slope - line.at(s).derivative).norm() < 1e-8);
-        CHECK(along.norm() == doctest::Approx(1.0).epsilon(1e-12));
-        CHECK(std::acos(along.z()) == doctest::Approx(line.lay).epsilon(1e-12));
+        CHECK(along.norm() == test::near(1.0, 1e-12));
+        CHECK(std::acos(along.z()) == test::near(line.lay, 1e-12));
         const Vec3 arm = line.place(s) - core.place(s);
-        CHECK(arm.norm() == doctest::Approx(2.0).epsilon(1e-12));
+        CHECK(arm.norm() == test::near(2.0, 1e-12));
         CHECK(std::abs(arm.dot(along)) < 1e-12);  // in the core's section
         // What is across core and arm, over what is along the core where the core is as long: the tangent of the lay angle, whatever the place.
-        CHECK(line.at(s).derivative.dot(along.cross(arm).normalized()) == doctest::Approx(std::tan(-12.0 * degree)).epsilon(1e-9));
+        CHECK(line.at(s).derivative.dot(along.cross(arm).normalized()) == test::near(std::tan(-12.0 * degree), 1e-9));
     }
     // A turn of the core about the axis turns a section that does not turn about the core by the angle that a helix leaves open: 2 pi (1 - cos).
     const double turn = 2.0 * std::numbers::pi * 6.2 / std::sin(line.lay);
     strand::WireLine idle = line;
     idle.rate = 0.0;
     const Vec3 then = idle.place(0.0) - core.place(0.0), after = idle.place(turn) - core.place(turn);
-    CHECK(std::acos(then.dot(after) / 4.0) == doctest::Approx(2.0 * std::numbers::pi * (1.0 - std::cos(line.lay))).epsilon(1e-9));
-    CHECK(line.place(line.at_height(17.0)).z() == doctest::Approx(17.0).epsilon(1e-12));
+    CHECK(std::acos(then.dot(after) / 4.0) == test::near(2.0 * std::numbers::pi * (1.0 - std::cos(line.lay)), 1e-9));
+    CHECK(line.place(line.at_height(17.0)).z() == test::near(17.0, 1e-12));
 }
 
 TEST_CASE("in lang lay the outermost place of a wire leans with its strand, in ordinary lay against it") {
@@ -47,10 +48,10 @@ TEST_CASE("in lang lay the outermost place of a wire leans with its strand, in o
             strand::RopeParameters rope = strand::rope_of_seven(1.0, wire_lay, rope_lay, 54.0, 0.02);
             const strand::WireLine wire = rope.lines(1)[1], core = rope.lines(1)[0];  // at the height 0 it is outside its core
             const Vec3 out = core.place(0.0).normalized(), around = Vec3::UnitZ().cross(out), slope = wire.at(0.0).derivative;
-            CHECK((wire.place(0.0) - core.place(0.0)).dot(out) == doctest::Approx(wire.distance).epsilon(1e-12));
+            CHECK((wire.place(0.0) - core.place(0.0)).dot(out) == test::near(wire.distance, 1e-12));
             // Its core's line is longer there by the bend: 1 + distance * curvature.
             const double longer = 1.0 + wire.distance * std::pow(std::sin(rope_lay * degree), 2) / rope.layers[0].helix_radius;
-            CHECK(std::atan2(slope.dot(around), slope.z()) == doctest::Approx(rope_lay * degree + std::atan(std::tan(wire_lay * degree) / longer)).epsilon(1e-9));
+            CHECK(std::atan2(slope.dot(around), slope.z()) == test::near(rope_lay * degree + std::atan(std::tan(wire_lay * degree) / longer), 1e-9));
         }
 }
 
@@ -73,7 +74,7 @@ TEST_CASE("the least distance of two wires is that of all their points") {
         const double found = strand::least_gap(one, other, 54.0), all = brute(one, other);
         CHECK(found < all + 1e-9);
         CHECK(found > all - 1e-3);  // points of the brute search are 0.013 and 0.027 apart
-        CHECK(strand::least_gap(other, one, 54.0) == doctest::Approx(found).epsilon(1e-6));
+        CHECK(strand::least_gap(other, one, 54.0) == test::near(found, 1e-6));
         CHECK(strand::least_gap(one, other, 54.0, found - 0.01) == found - 0.01);  // not below what is known
     }
 }
@@ -84,12 +85,12 @@ TEST_CASE("strands are laid up as tightly as their wires allow, and wires that a
             strand::RopeParameters rope = strand::rope_of_seven(1.0, wire_lay, 14.6, 54.0, 0.02, overlap);
             rope.material = {200000.0, 0.3};
             CHECK(rope.wires() == 49);
-            CHECK(strand::detail::gap_inside(rope, 0, 1.0) == doctest::Approx(-overlap).epsilon(1e-5));
-            CHECK(strand::detail::gap_beside(rope, 0, 1.0) == doctest::Approx(0.02 - overlap).epsilon(1e-5));
+            CHECK(strand::detail::gap_inside(rope, 0, 1.0) == test::near(-overlap, 1e-5));
+            CHECK(strand::detail::gap_beside(rope, 0, 1.0) == test::near(0.02 - overlap, 1e-5));
             CHECK(strand::least_gap(rope) > -overlap - 1e-6);
             CHECK_NOTHROW(rope.validate());
             // Strands rest on each other where an outermost wire of the one crosses one of the other, and are as far apart as round ones there.
-            CHECK(rope.layers[0].helix_radius == doctest::Approx(strand::detail::thickness(rope.core) + strand::detail::thickness(rope.layers[0].strand) - overlap).epsilon(1e-5));
+            CHECK(rope.layers[0].helix_radius == test::near(strand::detail::thickness(rope.core) + strand::detail::thickness(rope.layers[0].strand) - overlap, 1e-5));
             const scene::Assembly assembly = strand::wires_of(rope);
             CHECK(core::count(assembly.fibres()) == 49);
             CHECK(core::count(assembly.groups()) == 7);
@@ -101,7 +102,7 @@ TEST_CASE("strands are laid up as tightly as their wires allow, and wires that a
     plain.core.core_radius = 0.1, plain.length = 30.0, plain.material = {200000.0, 0.3};
     plain.layers = {{.strands = 3, .strand = {.core_radius = 1.0, .layers = {}}, .lay_angle_deg = 1.0}};
     strand::lay_up(plain);
-    CHECK(plain.layers[0].helix_radius == doctest::Approx(2.0 / std::sqrt(3.0)).epsilon(1e-3));
+    CHECK(plain.layers[0].helix_radius == test::near(2.0 / std::sqrt(3.0), 1e-3));
 }
 
 TEST_CASE("a rope of single wires is a strand") {
@@ -121,8 +122,8 @@ TEST_CASE("a rope of single wires is a strand") {
     // What the reference, whose rods bend and twist, has more or less than tensions on their helices: 3e-4 in the force and 4e-3 in the torque of a wire that does not contract.
     const strand::RopeStiffness bound = strand::stiffness_bound(rope);
     const double c = std::cos(15.0 * degree), area = std::numbers::pi * 7300.0;
-    CHECK(bound.force_by_strain == doctest::Approx(area * (0.022 * 0.022 + 6.0 * 0.0201 * 0.0201 * c * c * c)).epsilon(1e-9));
-    CHECK(bound.torque_by_strain == doctest::Approx(6.0 * area * 0.0201 * 0.0201 * c * c * std::sin(15.0 * degree) * 0.0421).epsilon(1e-9));
+    CHECK(bound.force_by_strain == test::near(area * (0.022 * 0.022 + 6.0 * 0.0201 * 0.0201 * c * c * c), 1e-9));
+    CHECK(bound.torque_by_strain == test::near(6.0 * area * 0.0201 * 0.0201 * c * c * std::sin(15.0 * degree) * 0.0421, 1e-9));
     CHECK(59.03860839 < bound.force_by_strain);  // k11: sections contract
 }
 

@@ -8,6 +8,7 @@
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
 
+#include <near.hpp>
 #include <refusal.hpp>
 
 #include <Eigen/Dense>
@@ -227,11 +228,11 @@ TEST_CASE("a strand that has no room for its wires, or too few of them, is refus
         CHECK(core::count(strand::wires_of(regular).fibres()) == wires);
         const strand::StrandParameters together = strand::regular_strand(wires, 0.02, 17.4, true, strand::Lay::equal_pitch);
         for (std::size_t k = 0; k < together.layers.size(); ++k) {
-            CHECK(together.pitch(k) == doctest::Approx(together.pitch(0)).epsilon(1e-9));
+            CHECK(together.pitch(k) == test::near(together.pitch(0), 1e-9));
             CHECK(together.neighbour_gap(k) > -1e-9);
             CHECK((together.layers[k].lay_angle_deg > 0.0) == (k % 2 == 0));
         }
-        CHECK(std::abs(together.layers.back().lay_angle_deg) == doctest::Approx(17.4).epsilon(1e-9));
+        CHECK(std::abs(together.layers.back().lay_angle_deg) == test::near(17.4, 1e-9));
     }
 }
 

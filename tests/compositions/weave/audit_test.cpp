@@ -5,6 +5,8 @@
 #include <fibrant/proximity/brute_search.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -118,11 +120,11 @@ TEST_CASE("two crossed fibres are apart by the distance of their axes less both 
     snapshot.fibres = {curve({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, 0.1),
                        curve({{0.3, -1, 0.25}, {0.3, 0.2, 0.25}, {0.3, 1, 0.25}}, 0.2)};
     const observe::LeastGap least = least_gap(snapshot, proximity::BruteSearch{});
-    CHECK(least.gap == doctest::Approx(-0.05));
-    CHECK(least.gap_over_radius == doctest::Approx(-0.5));
+    CHECK(least.gap == test::near(-0.05, 1e-12));
+    CHECK(least.gap_over_radius == test::near(-0.5, 1e-12));
     CHECK((least.position - Vec3{0.3, 0, 0.125}).norm() < 1e-6);
     snapshot.fibres[1].position = {{0.3, -1, 9.0}, {0.3, 0.2, 9.0}, {0.3, 1, 9.0}};  // far beyond any first reach
-    CHECK(least_gap(snapshot, proximity::GridSearch{}).gap == doctest::Approx(8.7));
+    CHECK(least_gap(snapshot, proximity::GridSearch{}).gap == test::near(8.7, 1e-12));
     snapshot.fibres.resize(1);
     CHECK(std::isinf(least_gap(snapshot, proximity::GridSearch{}).gap));
 }
@@ -134,8 +136,8 @@ TEST_CASE("the least gap is that of the curves, not of the chords between their 
     snapshot.fibres = {curve({{-0.6, 0, height(-0.6)}, {0.2, 0, height(0.2)}, {1.0, 0, height(1.0)}}, 0.02),
                        curve({{0, -1, 0}, {0, 0.1, 0}, {0, 1, 0}}, 0.02)};
     const observe::LeastGap least = least_gap(snapshot, proximity::BruteSearch{});
-    CHECK(least.gap == doctest::Approx(0.06).epsilon(1e-9));
-    CHECK(least.position.x() == doctest::Approx(0.0).epsilon(1e-6));
+    CHECK(least.gap == test::near(0.06, 1e-9));
+    CHECK(std::abs(least.position.x()) < 1e-6);  // of a curve 1.6 long
 }
 
 TEST_CASE("a pair whose chords are apart but whose curves touch deepest is not passed over") {
@@ -155,17 +157,17 @@ TEST_CASE("a pair whose chords are apart but whose curves touch deepest is not p
         const Vec3 x = bulge.position(1e-5 * k);
         lowest = std::min(lowest, std::hypot(x.z(), x.y() - 9.0));
     }
-    CHECK(least.gap == doctest::Approx(lowest - 0.2).epsilon(1e-6));
+    CHECK(least.gap == test::near(lowest - 0.2, 1e-6));
 }
 
 TEST_CASE("flattened sections touch later than round ones") {
     observe::Snapshot snapshot;
     snapshot.fibres = {curve({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, 0.1),
                        curve({{0, -1, 0.19}, {0, 0, 0.19}, {0, 1, 0.19}}, 0.1)};
-    CHECK(least_gap(snapshot, proximity::BruteSearch{}).gap == doctest::Approx(-0.01));
+    CHECK(least_gap(snapshot, proximity::BruteSearch{}).gap == test::near(-0.01, 1e-12));
     for (auto& fibre : snapshot.fibres)
         for (Vec3& director : fibre.director_2) director *= 0.9;
-    CHECK(least_gap(snapshot, proximity::BruteSearch{}).gap == doctest::Approx(0.01));
+    CHECK(least_gap(snapshot, proximity::BruteSearch{}).gap == test::near(0.01, 1e-12));
 }
 
 TEST_CASE("the least gap of a fabric is that of a dense sampling of all pairs, with any search") {

@@ -4,6 +4,8 @@
 
 #include <fibrant/compositions/weave/fabric_limits.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -31,18 +33,18 @@ TEST_CASE("the fabric of the chapter's tables is accepted, with its sizes") {
     CHECK_NOTHROW(fabric.validate());
     CHECK(fabric.fibres() == 608);
     CHECK(fabric.fibres() * fabric.nodes_per_fibre() == 39520);  // table 15.1
-    CHECK(fabric.fibre_length(Family::warp) == doctest::Approx(4.4));
+    CHECK(fabric.fibre_length(Family::warp) == test::near(4.4, 1e-12));
     // Table 15.2 gives the tow's area with three digits, and r with three.
     CHECK(static_cast<double>(fabric.warp.fibres) * fabric.warp.section().area() ==
-          doctest::Approx(0.0967).epsilon(5e-3));
+          test::near(0.0967, 5e-3));
 }
 
 TEST_CASE("macro-fibres of the two scenes stand for the same real fibres") {
     const scene::CrossSection coarse = scene::macro_fibre(380, 0.018, 19), fine = scene::macro_fibre(380, 0.018, 76);
-    CHECK(19.0 * coarse.area() == doctest::Approx(76.0 * fine.area()));
-    CHECK(19.0 * coarse.second_moment_1() == doctest::Approx(76.0 * fine.second_moment_1()));
-    CHECK(fine.radius() == doctest::Approx(0.0201).epsilon(2e-3));  // table 15.2, three digits
-    CHECK(fine.inertia_factor == doctest::Approx(0.20));            // table 15.3
+    CHECK(19.0 * coarse.area() == test::near(76.0 * fine.area(), 1e-12));
+    CHECK(19.0 * coarse.second_moment_1() == test::near(76.0 * fine.second_moment_1(), 1e-12));
+    CHECK(fine.radius() == test::near(0.0201, 2e-3));  // table 15.2, three digits
+    CHECK(fine.inertia_factor == test::near(0.20, 1e-12));            // table 15.3
 }
 
 TEST_CASE("a fibre's number and its place in the fabric say the same") {
@@ -55,8 +57,8 @@ TEST_CASE("a fibre's number and its place in the fabric say the same") {
         CHECK(fabric.fibre(place.family, place.tow, place.fibre) == number);
     }
     CHECK(fabric.place(15).family == Family::weft);
-    CHECK(fabric.tow_position(Family::warp, 0) == doctest::Approx(-0.88));
-    CHECK(fabric.tow_position(Family::weft, 1) == doctest::Approx(0.44));
+    CHECK(fabric.tow_position(Family::warp, 0) == test::near(-0.88, 1e-12));
+    CHECK(fabric.tow_position(Family::weft, 1) == test::near(0.44, 1e-12));
 }
 
 TEST_CASE("every field that cannot be is refused by field, value and bound") {

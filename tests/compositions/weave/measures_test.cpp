@@ -5,6 +5,8 @@
 #include <fibrant/compositions/weave/measures.hpp>
 #include <fibrant/compositions/weave/tow_section.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -53,12 +55,12 @@ TEST_CASE("crimp of a sine path is that of its integral, to the fourth order in 
     // A part that begins and ends within elements.
     const std::vector<Vec3> nodes = sine_nodes(a, k, length, 64);
     const double part = (sine_length(a, k, 3.0) - sine_length(a, k, 0.7)) / 2.3 - 1.0;
-    CHECK(crimp(observe::NodalCurve{nodes}, 0, 0.7, 3.0) == doctest::Approx(part).epsilon(1e-4));
+    CHECK(crimp(observe::NodalCurve{nodes}, 0, 0.7, 3.0) == test::near(part, 1e-4));
 }
 
 TEST_CASE("a straight fibre has no crimp, and one that does not reach has none to tell") {
     const std::vector<Vec3> nodes{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
-    CHECK(crimp(observe::NodalCurve{nodes}, 0, 0.25, 1.5) == doctest::Approx(0.0));
+    CHECK(std::abs(crimp(observe::NodalCurve{nodes}, 0, 0.25, 1.5)) < 1e-15);  // rounding of lengths
     CHECK(std::isnan(crimp(observe::NodalCurve{nodes}, 0, 0.25, 2.5)));
     CHECK(std::isnan(crimp(observe::NodalCurve{nodes}, 0, 1.5, 0.25)));
     CHECK(test::refusal([&] { observe::NodalCurve{std::span<const Vec3>{nodes}.first(2)}; }) ==
@@ -68,11 +70,11 @@ TEST_CASE("a straight fibre has no crimp, and one that does not reach has none t
 TEST_CASE("a curve is met by a plane where its parabolas cross it, at nodes and tangents too") {
     const std::vector<Vec3> nodes{{0, 0, 0}, {1, 0, 1}, {2, 0, 0}, {3, 0, -1}, {4, 0, 0}};
     const observe::NodalCurve curve{nodes};
-    CHECK(*curve.meets(Vec3::UnitX(), 2.5) == doctest::Approx(2.5));
-    CHECK(*curve.meets(Vec3::UnitZ(), 0.75) == doctest::Approx(0.5));  // z = 1 - (t - 1)^2
-    CHECK(*curve.meets(Vec3::UnitZ(), 1.0) == doctest::Approx(1.0));   // touches
+    CHECK(*curve.meets(Vec3::UnitX(), 2.5) == test::near(2.5, 1e-12));
+    CHECK(*curve.meets(Vec3::UnitZ(), 0.75) == test::near(0.5, 1e-12));  // z = 1 - (t - 1)^2
+    CHECK(*curve.meets(Vec3::UnitZ(), 1.0) == test::near(1.0, 1e-12));   // touches
     CHECK(*curve.meets(Vec3::UnitZ(), 0.0) == 0.0);
-    CHECK(*curve.meets(Vec3::UnitX(), 4.0) == doctest::Approx(4.0));
+    CHECK(*curve.meets(Vec3::UnitX(), 4.0) == test::near(4.0, 1e-12));
     CHECK_FALSE(curve.meets(Vec3::UnitZ(), 1.1).has_value());
     CHECK_FALSE(curve.meets(Vec3::UnitY(), 0.5).has_value());
 }
@@ -84,16 +86,16 @@ TEST_CASE("curvature of a circle is one over its radius, and its length two pi t
     const observe::NodalCurve curve{nodes};
     // Middle of an element: the parabola's curvature is 8 sag / chord^2 = 1 / (R cos^2(angle / 2)), angle = pi / 64
     // here.
-    CHECK(curve.curvature(5.0) == doctest::Approx(0.5).epsilon(1e-3));
-    CHECK(curve.length(0.0, curve.end()) == doctest::Approx(4.0 * pi).epsilon(1e-6));
+    CHECK(curve.curvature(5.0) == test::near(0.5, 1e-3));
+    CHECK(curve.length(0.0, curve.end()) == test::near(4.0 * pi, 1e-6));
     observe::Snapshot snapshot;
     snapshot.fibres.emplace_back();
     snapshot.fibres[0].position = nodes;
     const Index fibre = 0;
     const CurvatureStatistics statistics = curvature_statistics(snapshot, {&fibre, 1});
-    CHECK(statistics.mean == doctest::Approx(0.5).epsilon(2e-3));
-    CHECK(statistics.root_mean_square == doctest::Approx(0.5).epsilon(2e-3));
-    CHECK(statistics.greatest == doctest::Approx(0.5).epsilon(1e-2));
+    CHECK(statistics.mean == test::near(0.5, 2e-3));
+    CHECK(statistics.root_mean_square == test::near(0.5, 2e-3));
+    CHECK(statistics.greatest == test::near(0.5, 1e-2));
 }
 
 TEST_CASE("crimp of a drawn plain weave is that of its cosine, equal for warp and weft") {
@@ -103,12 +105,12 @@ TEST_CASE("crimp of a drawn plain weave is that of its cosine, equal for warp an
     const CrimpMeasures crimp = crimp_measures(snapshot, fabric);
     // Between crossings a half period of amplitude cos(pi x / spacing): a sine of the same amplitude, shifted.
     const double exact = sine_length(amplitude, pi / 0.88, 0.88) / 0.88 - 1.0;
-    CHECK(crimp.weft == doctest::Approx(crimp.warp).epsilon(1e-9));
+    CHECK(crimp.weft == test::near(crimp.warp, 1e-9));
     REQUIRE(crimp.warp_tows.size() == 4);
-    for (const double tow : crimp.warp_tows) CHECK(tow == doctest::Approx(exact).epsilon(5e-3));
+    for (const double tow : crimp.warp_tows) CHECK(tow == test::near(exact, 5e-3));
     // Fibres beside the centre line run on parallel curves: longer outside a bend by as much as shorter inside the
     // next.
-    CHECK(crimp.warp == doctest::Approx(exact).epsilon(5e-3));
+    CHECK(crimp.warp == test::near(exact, 5e-3));
     CHECK(crimp.fibres.size() == 56);
 }
 
@@ -124,10 +126,10 @@ TEST_CASE("a fabric is as thick as its two layers of tows") {
     const observe::Snapshot snapshot = woven_snapshot(fabric, amplitude);
     // The quadratic elements overshoot the drawn path by less than a hundredth of a radius.
     CHECK(thickness(snapshot, fabric) ==
-          doctest::Approx(2.0 * amplitude + fabric.warp.packing().thickness).epsilon(4e-4 / 0.4));
+          test::near(2.0 * amplitude + fabric.warp.packing().thickness, 4e-4 / 0.4));
     observe::Snapshot loose = snapshot;  // a free end that stands up does not count
     loose.fibres[0].position.front().z() += 1.0;
-    CHECK(thickness(loose, fabric) == doctest::Approx(thickness(snapshot, fabric)));
+    CHECK(thickness(loose, fabric) == test::near(thickness(snapshot, fabric), 1e-12));
 }
 
 TEST_CASE("the hull of seven touching discs is a hexagon with rounded corners") {
@@ -137,25 +139,25 @@ TEST_CASE("the hull of seven touching discs is a hexagon with rounded corners") 
         discs.push_back({centre + Vec2{3.0, -2.0}, {r, 0.0}, {0.0, r}});
     const TowSection section = section_of(discs);
     const double hull = (6.0 * std::sqrt(3.0) + 12.0 + pi) * r * r;  // hexagon of side 2 r, and a border r wide
-    CHECK(section.fibre_area == doctest::Approx(7.0 * pi * r * r).epsilon(1e-12));
-    CHECK(section.area == doctest::Approx(hull).epsilon(2e-4));
-    CHECK(section.fibre_volume_fraction == doctest::Approx(7.0 * pi * r * r / hull).epsilon(2e-4));
+    CHECK(section.fibre_area == test::near(7.0 * pi * r * r, 1e-12));
+    CHECK(section.area == test::near(hull, 2e-4));
+    CHECK(section.fibre_volume_fraction == test::near(7.0 * pi * r * r / hull, 2e-4));
     CHECK((section.centroid - Vec2{3.0, -2.0}).norm() < 1e-9);
-    CHECK(section.second_moments(0, 0) == doctest::Approx(section.second_moments(1, 1)).epsilon(1e-3));
+    CHECK(section.second_moments(0, 0) == test::near(section.second_moments(1, 1), 1e-3));
 }
 
 TEST_CASE("a tilted ellipse is found with its axes, area and second moments") {
     const double a = 0.3, b = 0.1, angle = 0.4;
     const Vec2 long_axis{std::cos(angle), std::sin(angle)}, short_axis{-std::sin(angle), std::cos(angle)};
     const TowSection section = section_of({{{1.0, 2.0}, a * long_axis, b * short_axis}});
-    CHECK(section.area == doctest::Approx(pi * a * b).epsilon(1e-12));  // polygons of equal area
-    CHECK(section.fibre_volume_fraction == doctest::Approx(1.0));
-    CHECK(section.width == doctest::Approx(2.0 * a).epsilon(1e-3));
-    CHECK(section.thickness == doctest::Approx(2.0 * b).epsilon(1e-3));
-    CHECK(section.aspect == doctest::Approx(3.0).epsilon(1e-3));
-    CHECK(long_axis.dot(section.second_moments * long_axis) == doctest::Approx(pi * a * a * a * b / 4.0).epsilon(1e-3));
+    CHECK(section.area == test::near(pi * a * b, 1e-12));  // polygons of equal area
+    CHECK(section.fibre_volume_fraction == test::near(1.0, 1e-12));
+    CHECK(section.width == test::near(2.0 * a, 1e-3));
+    CHECK(section.thickness == test::near(2.0 * b, 1e-3));
+    CHECK(section.aspect == test::near(3.0, 1e-3));
+    CHECK(long_axis.dot(section.second_moments * long_axis) == test::near(pi * a * a * a * b / 4.0, 1e-3));
     CHECK(short_axis.dot(section.second_moments * short_axis) ==
-          doctest::Approx(pi * a * b * b * b / 4.0).epsilon(1e-3));
+          test::near(pi * a * b * b * b / 4.0, 1e-3));
     CHECK(std::abs(long_axis.dot(section.second_moments * short_axis)) < 1e-12);
 }
 
@@ -171,8 +173,8 @@ TEST_CASE("the section of a tow across its own path is its packing, also where i
             const TowSection section = tow_section(snapshot, fabric, family, 1, t);
             CHECK(section.fibres.size() == 19);
             CHECK(section.area ==
-                  doctest::Approx(area).epsilon(1e-2));  // planes across fibres turn a little within the tow
-            CHECK(section.fibre_area == doctest::Approx(19.0 * pi * r * r).epsilon(1e-2));
+                  test::near(area, 1e-2));  // planes across fibres turn a little within the tow
+            CHECK(section.fibre_area == test::near(19.0 * pi * r * r, 1e-2));
         }
     }
 }

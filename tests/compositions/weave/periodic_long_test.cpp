@@ -7,6 +7,8 @@
 #include <fibrant/compositions/weave/settle.hpp>
 #include <fibrant/simulation/programme.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -70,7 +72,7 @@ TEST_CASE("the stress of a stretched cell is the same from the ties of its seams
     // Nothing but the seams holds the cell, so that shear agrees as well; passes stop when nothing moves by 1e-6 of a radius.
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) CHECK(std::abs(seams(i, j) - inside(i, j)) < 1e-6 * seams(0, 0));
-    CHECK(seams(0, 0) == doctest::Approx(seams(1, 1)).epsilon(0.1));  // warp and weft are alike but for their fibres' places
+    CHECK(seams(0, 0) == test::near(seams(1, 1), 0.1));  // warp and weft are alike but for their fibres' places
     CHECK(crimp_measures(simulator.snapshot(), fabric).warp < crimp_before);
     const double bound = fabric.warp.axial_stiffness();
     for (std::size_t k = 1; k < curve.points.size(); ++k) {

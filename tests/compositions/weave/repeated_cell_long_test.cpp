@@ -7,6 +7,8 @@
 #include <fibrant/compositions/weave/settle.hpp>
 #include <fibrant/simulation/programme.hpp>
 
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -72,7 +74,7 @@ double finite_force(Index repeats) {
     REQUIRE(report.converged);
     const auto& ties = simulator.equilibrium().ties();
     const Index west = load.bodies.of(Edge::west), east = load.bodies.of(Edge::east);
-    CHECK((ties.motion().position(east) - ties.motion().position(west)).x() == doctest::Approx((1.0 + strain) * load.width).epsilon(1e-12));
+    CHECK((ties.motion().position(east) - ties.motion().position(west)).x() == test::near((1.0 + strain) * load.width, 1e-12));
     const double force = 0.5 * (ties.wrench(east).force - ties.wrench(west).force).x() / static_cast<double>(fabric.warp_tows);
     std::printf("finite,   %td tows: %.4f a tow; %td iterations, %.1f s\n", fabric.warp_tows, force, report.counts.newton, report.wall_seconds);
     return force;

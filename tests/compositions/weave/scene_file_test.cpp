@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <near.hpp>
+
 #include <doctest/doctest.h>
 
 #if __has_include(<toml++/toml.h>)
@@ -48,10 +50,10 @@ TEST_CASE("the four scenes hold the chapter's tables") {
         CHECK(fabric.pattern.name() == (name.find("plain") == 0 ? "plain" : "twill22"));
         CHECK(fabric.fibres() == (fine ? 608 : 152));
         CHECK(9 * fabric.fibres() * fabric.nodes_per_fibre() == (fine ? 355680 : 88920));
-        CHECK(fabric.warp.fibre_radius == doctest::Approx(fine ? 0.0201 : 0.04025).epsilon(1e-3));
-        CHECK(fabric.weft.inertia_factor == doctest::Approx(fine ? 0.20 : 0.05));
+        CHECK(fabric.warp.fibre_radius == test::near(fine ? 0.0201 : 0.04025, 1e-3));
+        CHECK(fabric.weft.inertia_factor == test::near(fine ? 0.20 : 0.05, 1e-12));
         CHECK(fabric.warp_spacing == 0.88);
-        CHECK(fabric.fibre_length(compositions::weave::Family::weft) == doctest::Approx(4.4));
+        CHECK(fabric.fibre_length(compositions::weave::Family::weft) == test::near(4.4, 1e-12));
         CHECK(fabric.weft.material.young_modulus == 7300.0);
         CHECK(fabric.warp.material.poisson_ratio == 0.3);
         CHECK(scene.settle.friction_coefficient == 0.15);
