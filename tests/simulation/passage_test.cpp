@@ -182,7 +182,7 @@ TEST_CASE("a fibre that creeps through another one in many small motions is held
         const auto passed = swept.first(lowered(1.0 - before), lowered(1.0 - after), unchecked.contacts(), false, true);
         CHECK(passed.has_value() == (before >= 0.5 && after < 0.5));
         if (!passed) continue;
-        CHECK(passed->left == doctest::Approx(after).epsilon(1e-9));
+        CHECK(passed->left == test::near(after, 1e-9));
         CHECK(contact::text(*passed).find("of touching apart") != std::string::npos);
     }
     CHECK_FALSE(swept.first(lowered(0.55), lowered(0.3), unchecked.contacts(), false, true));  // and out again it may go

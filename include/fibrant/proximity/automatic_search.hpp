@@ -37,7 +37,7 @@ public:
     std::size_t bytes() const noexcept { return tree_.bytes() + grid_.bytes(); }
 
 private:
-    // From these on the tree was faster, in mixtures of two sizes by half as many each and in straight tows (`benchmark_search_bench`).
+    // From these on the tree was the faster one, in mixtures of as many fibres of two sizes and in straight bundles.
     static constexpr double unequal = 5.0;   // thickness of two segments over each other
     static constexpr double several = 0.05;  // of all segments: fewer of one size stand in a grid of their own at no cost
     static constexpr double slender = 32.0;  // mean length over thickness
