@@ -156,15 +156,25 @@ public:
                                   slide_of(mesh, zone, element.slide));
         element.cap = element.normal.dot(element.offset(state)) - one.place.gap;
     }
-    /// Sections anew where an element has slid to, facing each other across its normal. @returns by how much the direction across them has turned [radian]
+    /// Sections anew where an element has slid to, facing each other across its normal. @returns by how much the direction across them has turned
+    /// in the section of fibre i [radian]
     template <class Element>
     double renew(const beam::Mesh<B>& mesh, const Vector& state, const Element& element) noexcept {
         Held& one = held_[core::at(element.place)];
         const Index i = element.fibre_i, j = element.fibre_j;
-        const Vec3 before = one.i.across;
-        one.i = standing_section(mesh, state, i, element.u_i, half_of_patch(mesh, i, j, i), element.normal);
+        const StandingSection before = one.i;
+        const double half = half_of_patch(mesh, i, j, i);
+        one.i = standing_section(mesh, state, i, element.u_i, half, element.normal);
         one.j = standing_section(mesh, state, j, element.u_j, half_of_patch(mesh, i, j, j), Vec3(-element.normal));
-        return std::atan2(before.cross(one.i.across).norm(), before.dot(one.i.across));
+        if constexpr (beam::DeformableSections<B>) {
+            if (!before.stands) return 0.0;
+            const auto across = [&](const StandingSection& section) {
+                return FacingSection(mean_directors(mesh, state, i, section.u, half), section.facing, mesh.fibre(i).section).across;
+            };
+            const Vec3 was = across(before), is = across(one.i);
+            return std::atan2(was.cross(is).norm(), was.dot(is));
+        }
+        return 0.0;
     }
     /// Elements of the mesh that hold both places.
     template <class Element>
@@ -220,7 +230,7 @@ private:
     static constexpr double loop = 0.25, hysteresis = 0.05;
     /// A section is one of a place, and less than an element away from it.
     static bool near(const beam::Mesh<B>& mesh, Index fibre, double u, const StandingSection& section) noexcept {
-        return !section.across.isZero(0.0) && std::abs(u - section.u) < 0.9 && mesh.apart(fibre, u, section.u) < 0.9;
+        return section.stands && std::abs(u - section.u) < 0.9 && mesh.apart(fibre, u, section.u) < 0.9;
     }
     struct Held {
         StandingSection i, j;
