@@ -295,7 +295,7 @@ private:
         zone.stiffness = before ? before->stiffness : parameters_.stiffness.initial_fraction * zone.reference;
         if (!accepted_zones_.empty()) zone.deepest = before ? before->deepest : 0.0;
         if (zone.forced) return;
-        zone.followed = places_.wanted(*mesh_, state, zone, before);
+        places_.mark(*mesh_, state, zone, before);
         const double angle = crossing_angle_deg(*mesh_, state, zone.span, !zone.followed);
         const double shift = !before ? 0.0 : parameters_.spacing.angle_hysteresis_deg * (before->crossing ? -1.0 : 1.0);
         zone.crossing = angle > places_.angle_share(zone) * (parameters_.spacing.crossing_angle_deg + shift);

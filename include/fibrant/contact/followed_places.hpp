@@ -30,13 +30,11 @@ public:
 
     /// Whether crossings are followed from the next detection on, if it is as needed.
     void follow(bool whether) noexcept { all_ = whether; }
-    /// Crossings of a zone are to be followed. As needed they are wherever fibres are bent around each other as only loops are, whatever increments
-    /// lead there.
-    bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before) const {
-        const auto oval = [&](Index f) { return mesh.fibre(f).section.semi_axis_1 != mesh.fibre(f).section.semi_axis_2; };
-        if (oval(zone.span.fibre_i) || oval(zone.span.fibre_j)) return false;  // centrelines say too little of where they touch
-        if (places_ != Places::as_needed || all_) return places_ != Places::renewed;
-        return bend_around(mesh, state, zone.span) > loop - (before && before->followed ? hysteresis : 0.0);
+    /// Says whether crossings of a zone are followed. As needed they are wherever fibres are bent around each other as only loops are, whatever
+    /// increments lead there.
+    void mark(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Zone* before) const {
+        zone.followed = wanted(mesh, state, zone, before);
+        zone.settled = zone.followed && before && before->settled;
     }
     /// Crossings that are followed go on as one contact element until bent around each other so much that the angle between them is, but for
     /// this part of what it is elsewhere, that of fibres side by side [1].
@@ -61,75 +59,31 @@ public:
     /// What the slips of an increment count from.
     const Vector& accepted() const noexcept { return accepted_; }
 
-    /// New pairs of stations in the place of that of a crossing: where its two fibres are closest, near where they were. Where they are nearly as
-    /// close beside it, as fibres are that hang in each other at a slant or are bent around each other by a touching distance, they touch along a
-    /// line: then there are stations along this valley too. These slide across it only, and stay where they are from one detection to the next, so
-    /// that no contact hops; what touches in two places after it did in one does so on stations that were there before.
+    /// New pairs of stations in the place of that of a crossing: at each place of the zone where its two fibres are closest, near where they were. Two yarns that clasp
+    /// each other have two such places in one zone, with normals that are opposite.
     /// @param pairs  the last one is the crossing's
     template <class Memory>
     static void settle(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Memory& memory, std::vector<StationPair>& pairs) {
-        const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
-        StationPair middle = pairs.back();
+        const StationPair crossing = pairs.back();
         pairs.pop_back();
         std::vector<Eigen::Vector2d> known;
-        memory.visit_places(zone.span, [&](double u_i, double u_j) { known.emplace_back(u_i, u_j); });
-        if (!known.empty()) middle.u_i = median(known, 0), middle.u_j = median(known, 1);
-        PairGeometry pair = pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j);
-        if (known.size() < 3 || least(pair.closeness) > held) {
-            follow_closest(mesh, state, i, j, middle.u_i, middle.u_j);
-            pair = pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j);
-        }
-        const std::size_t first = pairs.size();
-        const double touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
-        const auto gap_at = [&](const StationPair& at) {
-            const PairGeometry there = pair_geometry(mesh, state, i, j, at.u_i, at.u_j);
-            return there.centres.norm() - touching;
+        if (zone.settled) memory.visit_places(zone.span, [&](double u_i, double u_j) { known.emplace_back(u_i, u_j); });
+        zone.settled = true;
+        const auto first = static_cast<std::ptrdiff_t>(pairs.size());
+        const std::vector<Eigen::Vector2d> places = closest_places(mesh, state, zone.span, {crossing.u_i, crossing.u_j});
+        const auto nearest = [&](const Eigen::Vector2d& to) {
+            const auto nearer = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return arc_apart(mesh, zone.span, a, to) < arc_apart(mesh, zone.span, b, to); };
+            return std::min_element(places.begin(), places.end(), nearer) - places.begin();
         };
-        const auto line = [&](const Eigen::Vector2d& way, std::int8_t slide) {
-            for (const double side : {-1.0, 1.0}) {
-                double last = gap_at(middle);
-                for (int k = 1; k <= most_beside; ++k) {
-                    StationPair other = middle;
-                    other.slide = slide;
-                    const Eigen::Vector2d ideal = side * k * spacing * touching * way;
-                    other.u_i += ideal[0] / pair.speed_i, other.u_j += ideal[1] / pair.speed_j;
-                    // One that was there stays.
-                    double nearest = 0.5 * spacing * touching;
-                    Eigen::Vector2d kept(other.u_i, other.u_j);
-                    for (const Eigen::Vector2d& one : known) {
-                        const double off = std::abs(way[0] * (one[0] - other.u_i) * pair.speed_i + way[1] * (one[1] - other.u_j) * pair.speed_j);
-                        const double beside = std::abs(way[1] * (one[0] - other.u_i) * pair.speed_i - way[0] * (one[1] - other.u_j) * pair.speed_j);
-                        if (off < nearest && beside < near_valley * touching) nearest = off, kept = one;
-                    }
-                    other.u_i = kept[0], other.u_j = kept[1];
-                    if (!inside(mesh, i, other.u_i) || !inside(mesh, j, other.u_j)) break;
-                    follow_along(mesh, state, i, j, slide_of(mesh, zone, slide), other.u_i, other.u_j);
-                    const double gap = gap_at(other);
-                    if (gap > clear * touching && gap > last) break;
-                    pairs.push_back(other);
-                    last = gap;
-                }
-            }
-        };
-        if (least(pair.closeness) < flat) {
-            const bool upright = std::abs(pair.closeness(0, 1)) < square;
-            const Eigen::Vector2d of_i(1.0, 0.0), of_j(0.0, 1.0);
-            if (upright) {
-                const bool weak_i = pair.closeness(0, 0) < flat, weak_j = pair.closeness(1, 1) < flat;
-                if (weak_i) line(of_i, on_j);
-                if (weak_j) line(of_j, on_i);
-                const bool held_i = pair.closeness(0, 0) < held, held_j = pair.closeness(1, 1) < held;
-                middle.slide = held_i && held_j ? fixed : held_i ? on_j : held_j ? on_i : free;
-            } else {
-                const core::SymmetricEigen<2> parts(pair.closeness);
-                const Eigen::Vector2d way = parts.vectors().col(0);
-                zone.valley = std::atan2(way[1], way[0]);
-                line(way, across_valley);
-                middle.slide = parts.values()[0] < held ? across_valley : free;
-            }
+        for (std::size_t place = 0; place < places.size(); ++place) {
+            std::vector<Eigen::Vector2d> own;
+            for (const Eigen::Vector2d& one : known)
+                if (nearest(one) == static_cast<std::ptrdiff_t>(place)) own.push_back(one);
+            StationPair middle = crossing;
+            middle.u_i = places[place][0], middle.u_j = places[place][1];
+            settle_one(mesh, state, zone, places, place, own, middle, pairs);
         }
-        pairs.push_back(middle);
-        std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end(),
+        std::sort(pairs.begin() + first, pairs.end(),
                   [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
     }
 
@@ -193,17 +147,137 @@ public:
     const SlidingPlace<B>& of(const Element& element) const noexcept { return held_[core::at(element.place)].place; }
 
 private:
-    /// How a place slides: freely, across its zone's valley, on one fibre alone, not at all.
-    enum : std::int8_t { free, across_valley, on_i, on_j, fixed };
+    /// How a place slides: freely, on one fibre alone, not at all, or across one of its zone's valleys, from this number on.
+    enum : std::int8_t { free, on_i, on_j, fixed, across_valley };
     static Slide slide_of(const beam::Mesh<B>& mesh, const Zone& zone, std::int8_t slide) noexcept {
         switch (slide) {
-            case across_valley: return {Slide::along, {-std::sin(zone.valley) / mesh.fibre(zone.span.fibre_i).element_length,
-                                                       std::cos(zone.valley) / mesh.fibre(zone.span.fibre_j).element_length}};
+            case free: return {};
             case on_i: return {Slide::along, {1.0, 0.0}};
             case on_j: return {Slide::along, {0.0, 1.0}};
             case fixed: return {Slide::nowhere, {}};
-            default: return {};
+            default: break;
         }
+        const double valley = zone.valleys[core::at(slide - across_valley)];
+        return {Slide::along, {-std::sin(valley) / mesh.fibre(zone.span.fibre_i).element_length, std::cos(valley) / mesh.fibre(zone.span.fibre_j).element_length}};
+    }
+
+    /// Of two pairs of places, at rest: the greater of both ways [length].
+    static double arc_apart(const beam::Mesh<B>& mesh, const proximity::ProximityZone& span, const Eigen::Vector2d& a, const Eigen::Vector2d& b) noexcept {
+        const Index i = span.fibre_i, j = span.fibre_j;
+        return std::max(mesh.apart(i, a[0], b[0]) * mesh.fibre(i).element_length, mesh.apart(j, a[1], b[1]) * mesh.fibre(j).element_length);
+    }
+    /// Places of a zone where its two fibres are closer than beside, as its centrelines stand, the known one first: what a walk along the zone finds, a station's
+    /// spacing at a time.
+    static std::vector<Eigen::Vector2d> closest_places(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& span, const Eigen::Vector2d& known) {
+        const Index i = span.fibre_i, j = span.fibre_j;
+        const double touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
+        const double h_i = mesh.fibre(i).element_length, h_j = mesh.fibre(j).element_length;
+        std::vector<Eigen::Vector2d> places{known};
+        const double length = std::max(std::abs(span.b_i - span.a_i) * h_i, std::abs(span.b_j - span.a_j) * h_j);
+        const Index steps = static_cast<Index>(length / (spacing * touching));
+        if (steps < 3) return places;
+        const auto distance = [&](double u_i, double u_j) { return pair_geometry(mesh, state, i, j, u_i, u_j).centres.norm(); };
+        Eigen::Vector2d before = Eigen::Vector2d::Zero();
+        double last = 0.0;
+        bool falling = false;
+        for (Index k = 0; k <= steps; ++k) {
+            const double share = static_cast<double>(k) / static_cast<double>(steps);
+            Eigen::Vector2d here(mesh.wrapped(i, span.a_i + share * (span.b_i - span.a_i)), mesh.wrapped(j, span.a_j + share * (span.b_j - span.a_j)));
+            follow_along(mesh, state, i, j, Slide{Slide::along, {0.0, 1.0}}, here[0], here[1]);
+            const double now = distance(here[0], here[1]);
+            if (k > 0 && falling && now > last && places.size() < Zone::most_crossings) {
+                Eigen::Vector2d place = before;
+                follow_closest(mesh, state, i, j, place[0], place[1]);
+                const bool self = i == j && mesh.apart(i, place[0], place[1]) * h_i < self_contact_arc(0.5 * touching, h_i);
+                const bool met = std::any_of(places.begin(), places.end(), [&](const Eigen::Vector2d& one) { return arc_apart(mesh, span, one, place) < touching; });
+                // Where the walk saw it: a search that ran off has found another one, or none.
+                if (!self && !met && arc_apart(mesh, span, place, before) < touching && distance(place[0], place[1]) < furthest_crossing * touching) places.push_back(place);
+            }
+            falling = k > 0 && now < last;
+            last = now, before = here;
+        }
+        return places;
+    }
+
+    /// Stations of one closest place. Where the fibres are nearly as close beside it, as fibres are that hang in each other at a slant or are bent around each
+    /// other by a touching distance, they touch along a line: then there are stations along this valley too. These slide across it only, and stay where they are
+    /// from one detection to the next, so that no contact hops; what touches in two places after it did in one does so on stations that were there before.
+    /// @param places  all closest places of the zone, and which of them it is: stations are of the nearest one
+    /// @param known   stations that it had
+    static void settle_one(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const std::vector<Eigen::Vector2d>& places, std::size_t place,
+                           const std::vector<Eigen::Vector2d>& known, StationPair middle, std::vector<StationPair>& pairs) {
+        const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
+        if (!known.empty()) middle.u_i = median(known, 0), middle.u_j = median(known, 1);
+        PairGeometry pair = pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j);
+        if (known.size() < 3 || least(pair.closeness) > held) {
+            follow_closest(mesh, state, i, j, middle.u_i, middle.u_j);
+            pair = pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j);
+        }
+        const double touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
+        const auto gap_at = [&](const StationPair& at) {
+            const PairGeometry there = pair_geometry(mesh, state, i, j, at.u_i, at.u_j);
+            return there.centres.norm() - touching;
+        };
+        const auto of_another = [&](const StationPair& at) {
+            const Eigen::Vector2d here(at.u_i, at.u_j);
+            const double own = arc_apart(mesh, zone.span, places[place], here) + 0.25 * spacing * touching;
+            for (std::size_t k = 0; k < places.size(); ++k)
+                if (k != place && arc_apart(mesh, zone.span, places[k], here) < own) return true;
+            return false;
+        };
+        if (place > 0 && of_another(middle)) return;  // it slid there
+        const auto line = [&](const Eigen::Vector2d& way, std::int8_t slide) {
+            for (const double side : {-1.0, 1.0}) {
+                double last = gap_at(middle);
+                for (int k = 1; k <= most_beside; ++k) {
+                    StationPair other = middle;
+                    other.slide = slide;
+                    const Eigen::Vector2d ideal = side * k * spacing * touching * way;
+                    other.u_i += ideal[0] / pair.speed_i, other.u_j += ideal[1] / pair.speed_j;
+                    // One that was there stays.
+                    double nearest = 0.5 * spacing * touching;
+                    Eigen::Vector2d kept(other.u_i, other.u_j);
+                    for (const Eigen::Vector2d& one : known) {
+                        const double off = std::abs(way[0] * (one[0] - other.u_i) * pair.speed_i + way[1] * (one[1] - other.u_j) * pair.speed_j);
+                        const double beside = std::abs(way[1] * (one[0] - other.u_i) * pair.speed_i - way[0] * (one[1] - other.u_j) * pair.speed_j);
+                        if (off < nearest && beside < near_valley * touching) nearest = off, kept = one;
+                    }
+                    other.u_i = kept[0], other.u_j = kept[1];
+                    if (!inside(mesh, i, other.u_i) || !inside(mesh, j, other.u_j)) break;
+                    follow_along(mesh, state, i, j, slide_of(mesh, zone, slide), other.u_i, other.u_j);
+                    const double gap = gap_at(other);
+                    if ((gap > clear * touching && gap > last) || of_another(other)) break;
+                    pairs.push_back(other);
+                    last = gap;
+                }
+            }
+        };
+        if (least(pair.closeness) < flat) {
+            const bool upright = std::abs(pair.closeness(0, 1)) < square;
+            const Eigen::Vector2d of_i(1.0, 0.0), of_j(0.0, 1.0);
+            if (upright) {
+                const bool weak_i = pair.closeness(0, 0) < flat, weak_j = pair.closeness(1, 1) < flat;
+                if (weak_i) line(of_i, on_j);
+                if (weak_j) line(of_j, on_i);
+                const bool held_i = pair.closeness(0, 0) < held, held_j = pair.closeness(1, 1) < held;
+                middle.slide = held_i && held_j ? fixed : held_i ? on_j : held_j ? on_i : free;
+            } else {
+                const core::SymmetricEigen<2> parts(pair.closeness);
+                const Eigen::Vector2d way = parts.vectors().col(0);
+                const auto across = static_cast<std::int8_t>(across_valley + static_cast<int>(place));
+                zone.valleys[place] = std::atan2(way[1], way[0]);
+                line(way, across);
+                middle.slide = parts.values()[0] < held ? across : free;
+            }
+        }
+        pairs.push_back(middle);
+    }
+
+    bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before) const {
+        const auto oval = [&](Index f) { return mesh.fibre(f).section.semi_axis_1 != mesh.fibre(f).section.semi_axis_2; };
+        if (oval(zone.span.fibre_i) || oval(zone.span.fibre_j)) return false;  // centrelines say too little of where they touch
+        if (places_ != Places::as_needed || all_) return places_ != Places::renewed;
+        return bend_around(mesh, state, zone.span) > loop - (before && before->followed ? hysteresis : 0.0);
     }
     static double least(const Eigen::Matrix2d& closeness) noexcept {
         return 0.5 * (closeness(0, 0) + closeness(1, 1)) - std::hypot(0.5 * (closeness(0, 0) - closeness(1, 1)), closeness(0, 1));
@@ -225,6 +299,7 @@ private:
     static constexpr double spacing = 0.35, clear = 0.1;  ///< of stations in a valley, and gap beyond which there are none [touching distance]
     static constexpr double near_valley = 2.0;          ///< of a station that stays, across [touching distance]
     static constexpr int most_beside = 8;               ///< stations to each side
+    static constexpr double furthest_crossing = 1.5;    ///< distance of centrelines beyond which a second crossing of a zone has no place [touching distance]
     /// Distance over radius of curvature from which two fibres are a loop around each other: cloths have a tenth. Less by the second once they are
     /// followed.
     static constexpr double loop = 0.25, hysteresis = 0.05;
