@@ -2,6 +2,7 @@
 #pragma once
 /// @file Which crossings of a contact set are followed, and what they push with.
 
+#include <fibrant/contact/closest_places.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/contact/sliding_place.hpp>
@@ -30,8 +31,8 @@ public:
 
     /// Whether crossings are followed from the next detection on, if it is as needed.
     void follow(bool whether) noexcept { all_ = whether; }
-    /// Says whether crossings of a zone are followed. As needed they are wherever fibres are bent around each other as only loops are, whatever
-    /// increments lead there.
+    /// Says whether crossings of a zone are followed. As needed they are wherever fibres are bent around each other as only loops are, or clasp each
+    /// other, whatever increments lead there.
     void mark(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Zone* before) const {
         zone.followed = wanted(mesh, state, zone, before);
         zone.settled = zone.followed && before && before->settled;
@@ -161,44 +162,6 @@ private:
         return {Slide::along, {-std::sin(valley) / mesh.fibre(zone.span.fibre_i).element_length, std::cos(valley) / mesh.fibre(zone.span.fibre_j).element_length}};
     }
 
-    /// Of two pairs of places, at rest: the greater of both ways [length].
-    static double arc_apart(const beam::Mesh<B>& mesh, const proximity::ProximityZone& span, const Eigen::Vector2d& a, const Eigen::Vector2d& b) noexcept {
-        const Index i = span.fibre_i, j = span.fibre_j;
-        return std::max(mesh.apart(i, a[0], b[0]) * mesh.fibre(i).element_length, mesh.apart(j, a[1], b[1]) * mesh.fibre(j).element_length);
-    }
-    /// Places of a zone where its two fibres are closer than beside, as its centrelines stand, the known one first: what a walk along the zone finds, a station's
-    /// spacing at a time.
-    static std::vector<Eigen::Vector2d> closest_places(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& span, const Eigen::Vector2d& known) {
-        const Index i = span.fibre_i, j = span.fibre_j;
-        const double touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
-        const double h_i = mesh.fibre(i).element_length, h_j = mesh.fibre(j).element_length;
-        std::vector<Eigen::Vector2d> places{known};
-        const double length = std::max(std::abs(span.b_i - span.a_i) * h_i, std::abs(span.b_j - span.a_j) * h_j);
-        const Index steps = static_cast<Index>(length / (spacing * touching));
-        if (steps < 3) return places;
-        const auto distance = [&](double u_i, double u_j) { return pair_geometry(mesh, state, i, j, u_i, u_j).centres.norm(); };
-        Eigen::Vector2d before = Eigen::Vector2d::Zero();
-        double last = 0.0;
-        bool falling = false;
-        for (Index k = 0; k <= steps; ++k) {
-            const double share = static_cast<double>(k) / static_cast<double>(steps);
-            Eigen::Vector2d here(mesh.wrapped(i, span.a_i + share * (span.b_i - span.a_i)), mesh.wrapped(j, span.a_j + share * (span.b_j - span.a_j)));
-            follow_along(mesh, state, i, j, Slide{Slide::along, {0.0, 1.0}}, here[0], here[1]);
-            const double now = distance(here[0], here[1]);
-            if (k > 0 && falling && now > last && places.size() < Zone::most_crossings) {
-                Eigen::Vector2d place = before;
-                follow_closest(mesh, state, i, j, place[0], place[1]);
-                const bool self = i == j && mesh.apart(i, place[0], place[1]) * h_i < self_contact_arc(0.5 * touching, h_i);
-                const bool met = std::any_of(places.begin(), places.end(), [&](const Eigen::Vector2d& one) { return arc_apart(mesh, span, one, place) < touching; });
-                // Where the walk saw it: a search that ran off has found another one, or none.
-                if (!self && !met && arc_apart(mesh, span, place, before) < touching && distance(place[0], place[1]) < furthest_crossing * touching) places.push_back(place);
-            }
-            falling = k > 0 && now < last;
-            last = now, before = here;
-        }
-        return places;
-    }
-
     /// Stations of one closest place. Where the fibres are nearly as close beside it, as fibres are that hang in each other at a slant or are bent around each
     /// other by a touching distance, they touch along a line: then there are stations along this valley too. These slide across it only, and stay where they are
     /// from one detection to the next, so that no contact hops; what touches in two places after it did in one does so on stations that were there before.
@@ -277,7 +240,7 @@ private:
         const auto oval = [&](Index f) { return mesh.fibre(f).section.semi_axis_1 != mesh.fibre(f).section.semi_axis_2; };
         if (oval(zone.span.fibre_i) || oval(zone.span.fibre_j)) return false;  // centrelines say too little of where they touch
         if (places_ != Places::as_needed || all_) return places_ != Places::renewed;
-        return bend_around(mesh, state, zone.span) > loop - (before && before->followed ? hysteresis : 0.0);
+        return bend_around(mesh, state, zone.span) > loop - (before && before->followed ? hysteresis : 0.0) || clasped(mesh, state, zone.span);
     }
     static double least(const Eigen::Matrix2d& closeness) noexcept {
         return 0.5 * (closeness(0, 0) + closeness(1, 1)) - std::hypot(0.5 * (closeness(0, 0) - closeness(1, 1)), closeness(0, 1));
@@ -296,10 +259,9 @@ private:
     /// Second variation of the closest distance, over the distance, below which there are stations beside a place, and below which it does not slide
     /// along its valley. Hooks that are pulled apart at 30 to 90 degrees hold most often with these, of 0.02 to 0.1 and spacings of 0.25 to 0.5 [1].
     static constexpr double flat = 0.4, held = 0.05;
-    static constexpr double spacing = 0.35, clear = 0.1;  ///< of stations in a valley, and gap beyond which there are none [touching distance]
+    static constexpr double spacing = valley_spacing, clear = 0.1;  ///< of stations in a valley, and gap beyond which there are none [touching distance]
     static constexpr double near_valley = 2.0;          ///< of a station that stays, across [touching distance]
     static constexpr int most_beside = 8;               ///< stations to each side
-    static constexpr double furthest_crossing = 1.5;    ///< distance of centrelines beyond which a second crossing of a zone has no place [touching distance]
     /// Distance over radius of curvature from which two fibres are a loop around each other: cloths have a tenth. Less by the second once they are
     /// followed.
     static constexpr double loop = 0.25, hysteresis = 0.05;
