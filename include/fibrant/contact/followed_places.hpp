@@ -10,6 +10,7 @@
 #include <fibrant/core/symmetric_eigen.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -92,12 +93,9 @@ public:
     template <class Element>
     void follow(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
         const Vec3 before = element.normal;
-        const std::int32_t first_i = element.first_i, first_j = element.first_j;
         const Slide slide = slide_of(mesh, zone, element.slide);
         if (slide.kind == Slide::freely) follow_closest(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
         if (slide.kind == Slide::along) follow_along(mesh, state, element.fibre_i, element.fibre_j, slide, element.u_i, element.u_j);
-        host(mesh, element);
-        if (element.first_i != first_i || element.first_j != first_j) held_[core::at(element.place)].rehosted = true;
         const PairGeometry pair = pair_geometry(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
         element.normal = unit_or(slide.kind == Slide::freely ? Vec3(pair.t_i.cross(pair.t_j)) : pair.centres, before);
         if (element.normal.dot(before) < 0.0) element.normal = -element.normal;
@@ -107,29 +105,39 @@ public:
     void take(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
         Held& one = held_[core::at(element.place)];
         if (!near(mesh, element.fibre_i, element.u_i, one.i) || !near(mesh, element.fibre_j, element.u_j, one.j)) renew(mesh, state, element);
+        const auto hosts = [](const SlidingPlace<B>& of) { return std::array{static_cast<Index>(of.i.count), of.i.vectors[0], static_cast<Index>(of.j.count), of.j.vectors[0]}; };
+        const auto before = hosts(one.place);
         one.place = sliding_place(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j, one.i, one.j, element.normal,
                                   slide_of(mesh, zone, element.slide));
+        if (before[0] > 0 && hosts(one.place) != before) one.rehosted = true;
+        if constexpr (beam::TurningSections<B>) {
+            element.weights_i.follow(state.segment<beam::Mesh<B>::element_unknowns>(element.first_i));
+            element.weights_j.follow(state.segment<beam::Mesh<B>::element_unknowns>(element.first_j));
+        }
         element.cap = element.normal.dot(element.offset(state)) - one.place.gap;
     }
     /// Sections anew where an element has slid to, facing each other across its normal. @returns by how much the direction across them has turned
     /// in the section of fibre i [radian]
+    /// @param rubs  the plane of its normal stands as well, and counts
     template <class Element>
-    double renew(const beam::Mesh<B>& mesh, const Vector& state, const Element& element) noexcept {
+    double renew(const beam::Mesh<B>& mesh, const Vector& state, const Element& element, bool rubs = false) noexcept {
         Held& one = held_[core::at(element.place)];
         const Index i = element.fibre_i, j = element.fibre_j;
         const StandingSection before = one.i;
         const double half = half_of_patch(mesh, i, j, i);
         one.i = standing_section(mesh, state, i, element.u_i, half, element.normal);
         one.j = standing_section(mesh, state, j, element.u_j, half_of_patch(mesh, i, j, j), Vec3(-element.normal));
+        double turn = rubs ? std::atan2(one.plane.cross(element.normal).norm(), one.plane.dot(element.normal)) : 0.0;
+        one.plane = element.normal;
         if constexpr (beam::DeformableSections<B>) {
-            if (!before.stands) return 0.0;
+            if (!before.stands) return turn;
             const auto across = [&](const StandingSection& section) {
                 return FacingSection(mean_directors(mesh, state, i, section.u, half), section.facing, mesh.fibre(i).section).across;
             };
             const Vec3 was = across(before), is = across(one.i);
-            return std::atan2(was.cross(is).norm(), was.dot(is));
+            turn = std::max(turn, std::atan2(was.cross(is).norm(), was.dot(is)));
         }
-        return 0.0;
+        return turn;
     }
     /// Elements of the mesh that hold both places.
     template <class Element>
@@ -137,7 +145,7 @@ public:
         element.first_i = static_cast<std::int32_t>(mesh.first_unknown(element.fibre_i, mesh.locate(element.fibre_i, element.u_i).first));
         element.first_j = static_cast<std::int32_t>(mesh.first_unknown(element.fibre_j, mesh.locate(element.fibre_j, element.u_j).first));
     }
-    /// Some place has come to another element since this was asked last: its tangent couples other unknowns.
+    /// The patches of some place have come to other elements since this was asked last: its tangent couples other unknowns.
     bool rehosted() noexcept {
         bool some = false;
         for (Held& one : held_) some = some || one.rehosted, one.rehosted = false;
@@ -146,6 +154,9 @@ public:
 
     template <class Element>
     const SlidingPlace<B>& of(const Element& element) const noexcept { return held_[core::at(element.place)].place; }
+    /// Normal that its element had when sections were renewed.
+    template <class Element>
+    const Vec3& plane(const Element& element) const noexcept { return held_[core::at(element.place)].plane; }
 
 private:
     /// How a place slides: freely, on one fibre alone, not at all, or across one of its zone's valleys, from this number on.
@@ -271,6 +282,7 @@ private:
     }
     struct Held {
         StandingSection i, j;
+        Vec3 plane = Vec3::Zero();
         SlidingPlace<B> place;
         bool rehosted = false;
     };
