@@ -3,6 +3,7 @@
 /// @file Contact elements between fibres and with tools.
 
 #include <fibrant/contact/allowed_depth.hpp>
+#include <fibrant/contact/closest_places.hpp>
 #include <fibrant/contact/contact_detection.hpp>
 #include <fibrant/contact/contact_element.hpp>
 #include <fibrant/contact/contact_parameters.hpp>

@@ -36,7 +36,7 @@ beam::Mesh<B> hanging(Index elements) {
 struct Followed {
     double u = 2.6, v = 3.3;
     contact::Slide slide{};
-    contact::StandingSection i{2.6, Vec3::UnitZ()}, j{3.3, Vec3(0.1, 0.0, -1.0).normalized()};
+    contact::StandingSection i{2.6, {0.6, 0.7}, true}, j{3.3, {-0.2, -1.0}, true};
 };
 
 /// Gap of the closest patches of a state, from places that are near.
@@ -131,6 +131,26 @@ TEST_CASE("with sections that are pressed flat as well, which stand while the pl
     }
 }
 
+TEST_CASE("what turns as one within an iteration pushes as it did, turned, and without a moment") {
+    const beam::Mesh<test::Beam> mesh = hanging<test::Beam>(6);
+    Vector state = mesh.start_state();
+    for (Index k = 0; k < state.size(); ++k) state[k] += 0.02 * r * std::sin(1.7 * static_cast<double>(k));  // sections strained, and none like another
+    const Mat3 turn = Eigen::AngleAxisd(0.4, Vec3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
+    Vector turned = state;
+    for (Index k = 0; k < state.size(); k += 3) turned.segment<3>(k) = turn * state.segment<3>(k);
+    const Followed at;
+    const Vector before = force_of(mesh, state, at, 300.0, 0.2 * r), after = force_of(mesh, turned, at, 300.0, 0.2 * r);
+    double misfit = 0.0;
+    Vec3 moment = Vec3::Zero();
+    for (Index k = 0; k < state.size(); k += 3) {
+        misfit = std::max(misfit, (after.segment<3>(k) - turn * before.segment<3>(k)).norm());
+        moment += turned.segment<3>(k).cross(after.segment<3>(k));
+    }
+    const double size = after.cwiseAbs().maxCoeff();
+    CHECK(misfit < 1e-9 * size);          // places are found to 1e-11 of an element
+    CHECK(moment.norm() < 1e-9 * r * size);
+}
+
 TEST_CASE("what a hook pushes against holds it sideways, with reaction times curvature; straight fibres hold nothing so") {
     using Cable = beam::KirchhoffCable;
     const beam::Mesh<Cable> mesh = hanging<Cable>(6);
@@ -143,7 +163,7 @@ TEST_CASE("what a hook pushes against holds it sideways, with reaction times cur
     assembly.add(test::straight_fibre(Vec3(-1, 0, 0), Vec3(1, 0, 0), r, 6));
     assembly.add(test::straight_fibre(Vec3(0.2, -1, 2.0 * r), Vec3(-0.2, 1, 2.0 * r), r, 6));
     const test::Mesh straight(assembly, test::Beam{});
-    const auto crossing = closest_place(straight, straight.rest_state(), {2.7, 2.8, {}, {3.0, Vec3::UnitZ()}, {3.0, -Vec3::UnitZ()}}, normal);
+    const auto crossing = closest_place(straight, straight.rest_state(), {2.7, 2.8, {}, {3.0, {0.0, 1.0}, true}, {3.0, {0.0, 1.0}, true}}, normal);
     CHECK(crossing.curvature.topLeftCorner<2, 2>().cwiseAbs().maxCoeff() < 1e-9 / r);
     CHECK(std::abs(crossing.gap) < 1e-12);
 }

@@ -70,6 +70,7 @@ public:
         const Memory& memory = last.records().empty() ? accepted_ : last;
         generate(state, accepted, memory);
         places_.number(elements_, zones_, accepted);
+        for_elements([&](Index k) { if (slides(k)) follow(k, state); });
         sides_.build(mesh_->fibre_count(), elements_);
     }
 
@@ -81,7 +82,7 @@ public:
             Element& element = elements_[core::at(k)];
             const Vec3 before = element.normal;
             if (!slides(k)) place_particles(element, state, accepted, before);
-            const double turn = slides(k) ? places_.renew(*mesh_, state, element) : std::atan2(before.cross(element.normal).norm(), before.dot(element.normal));
+            const double turn = slides(k) ? follow(k, state) : std::atan2(before.cross(element.normal).norm(), before.dot(element.normal));
             if (k < core::count(responses_) && responses_[core::at(k)].reaction > 0.0) turned[core::at(k)] = turn;
         });
         hold_reactions();
@@ -103,12 +104,12 @@ public:
         if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
-            if (slides(k) && !start) follow(k, state);
+            if (slides(k) && !start) places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
             Vec3 slip = Vec3::Zero();
             if constexpr (core::Active<Friction>)
                 if (!start) slip = element.friction_offset(state) - element.friction.accepted_offset;
-            follow_particles(*mesh_, state, element);
             if (slides(k)) places_.take(*mesh_, state, zones_[core::at(element.zone)], element);
+            else follow_particles(*mesh_, state, element);
             const double apart = element.gap(state);
             const Zone& zone = zones_[core::at(element.zone)];
             const bool none = start && apart < -2.0 * zone.deepest;
@@ -116,7 +117,7 @@ public:
             const law::NormalResponse response = normal_answer(normal_, *mesh_, element, gap, zone.stiffness);
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             if constexpr (core::Active<Friction>) {
-                slip -= slip.dot(element.normal) * element.normal;
+                slip -= slip.dot(plane(k)) * plane(k);
                 const double bound = none ? 0.0 : element.friction.bound < 0.0 ? response.reaction : element.friction.bound;
                 frictions_[core::at(k)] = friction_answer(friction_, *mesh_, element, slip, zone.friction_factor, bound);
             }
@@ -154,12 +155,7 @@ public:
     /// Stiffness of element k between particles, symmetric and positive semidefinite, as its friction bound stands [force / length].
     Mat3 tangent(Index k) const noexcept {
         const Vec3& normal = elements_[core::at(k)].normal;
-        Mat3 sum = -responses_[core::at(k)].slope * normal * normal.transpose();
-        if constexpr (core::Active<Friction>) {
-            const Mat3 plane = Mat3::Identity() - normal * normal.transpose();
-            sum += plane * frictions_[core::at(k)].tangent * plane;
-        }
-        return sum;
+        return friction_tangent(k) - responses_[core::at(k)].slope * normal * normal.transpose();
     }
 
     /// Crossings whose places and normals are those of the moment.
@@ -175,10 +171,7 @@ public:
     Vec3 point_force(Index k) const noexcept {
         return slides(k) ? Vec3(force(k) + responses_[core::at(k)].reaction * elements_[core::at(k)].normal) : force(k);
     }
-    Mat3 point_tangent(Index k) const noexcept {
-        const Vec3& normal = elements_[core::at(k)].normal;
-        return slides(k) ? Mat3(tangent(k) + responses_[core::at(k)].slope * normal * normal.transpose()) : tangent(k);
-    }
+    Mat3 point_tangent(Index k) const noexcept { return slides(k) ? friction_tangent(k) : tangent(k); }
 
     /// Friction is bounded by the reactions of the moment.
     bool follows() const noexcept { return core::Active<Friction> && parameters_.friction_bound == FrictionBound::following; }
@@ -295,7 +288,7 @@ private:
         zone.stiffness = before ? before->stiffness : parameters_.stiffness.initial_fraction * zone.reference;
         if (!accepted_zones_.empty()) zone.deepest = before ? before->deepest : 0.0;
         if (zone.forced) return;
-        zone.followed = places_.wanted(*mesh_, state, zone, before);
+        places_.mark(*mesh_, state, zone, before);
         const double angle = crossing_angle_deg(*mesh_, state, zone.span, !zone.followed);
         const double shift = !before ? 0.0 : parameters_.spacing.angle_hysteresis_deg * (before->crossing ? -1.0 : 1.0);
         zone.crossing = angle > places_.angle_share(zone) * (parameters_.spacing.crossing_angle_deg + shift);
@@ -346,16 +339,23 @@ private:
         core::join(made, elements_);
     }
 
-    /// The closest patches of a state, and what depends on them.
-    void follow(Index k, const Vector& state) {
+    /// The closest patches of a state, and what stands until normals are renewed: where friction acts, so that its forces have a potential.
+    /// @returns by how much its section has turned [radian]
+    double follow(Index k, const Vector& state) {
         Element& element = elements_[core::at(k)];
         places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
-        find_meeting_point(*mesh_, state, element), see_directions(*mesh_, state, element);
+        places_.host(*mesh_, element);
+        meet(element, state, places_.accepted());
+        if constexpr (core::Active<Friction>) recall_friction(element, state);
+        return places_.renew(*mesh_, state, element, core::Active<Friction>);
+    }
+    /// Normal of the plane of an element's friction, and its stiffness there.
+    const Vec3& plane(Index k) const noexcept { return slides(k) ? places_.plane(elements_[core::at(k)]) : elements_[core::at(k)].normal; }
+    Mat3 friction_tangent([[maybe_unused]] Index k) const noexcept {
         if constexpr (core::Active<Friction>) {
-            element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
-            element.friction.accepted_offset = contact::accepted_offset(*mesh_, parameters_.normal, element, state, places_.accepted());
-            recall_friction(element, state);
-        }
+            const Mat3 flat = Mat3::Identity() - plane(k) * plane(k).transpose();
+            return flat * frictions_[core::at(k)].tangent * flat;
+        } else return Mat3::Zero();
     }
 
     Element make(const Zone& zone, Index z, const StationPair& pair) const {
@@ -373,13 +373,19 @@ private:
     /// Normal, particles, gap shift and accepted offset of an element whose stations stand.
     void place_particles(Element& element, const Vector& state, const Vector& accepted, const Vec3& remembered) const {
         element.normal = element_normal(*mesh_, state, element, parameters_.normal, remembered);
-        find_meeting_point(*mesh_, state, element), see_directions(*mesh_, state, element);
+        meet(element, state, accepted);
         if constexpr (law::GapShifting<Normal>) element.shift.shift = normal_.gap_shift(element.gap(accepted));
         if constexpr (law::Augmenting<Normal>) element.shift.shift = -normal_.penetration(element.shift.multiplier, stiffness(element));
         if constexpr (core::Active<Friction>) {
-            element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
             Vec3& reversible = element.friction.history.reversible;
             if (!remembered.isZero()) reversible = turned_with_plane(reversible, remembered, element.normal);
+        }
+    }
+    /// Where both forces of an element act, and from where its slip counts.
+    void meet(Element& element, const Vector& state, const Vector& accepted) const {
+        find_meeting_point(*mesh_, state, element), see_directions(*mesh_, state, element);
+        if constexpr (core::Active<Friction>) {
+            element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
             element.friction.accepted_offset = contact::accepted_offset(*mesh_, parameters_.normal, element, state, accepted);
         }
     }
@@ -389,7 +395,7 @@ private:
     {
         const double range = 1.5 / parameters_.spacing.points_per_element;
         const RecordedFriction<Friction> recorded = accepted_.friction(element, range);
-        const TangentPlane plane(heading(*mesh_, element, state, recorded.sign), element.normal);
+        const TangentPlane plane(heading(*mesh_, element, state, element.normal, recorded.sign), element.normal);
         recorded.give(plane, element.friction.history);
     }
 
@@ -406,7 +412,7 @@ private:
             if constexpr (core::Active<Friction>) {
                 if (k < core::count(frictions_) && responses_[core::at(k)].reaction > 0.0) {
                     const double sign = sign_of_j(*mesh_, element, state);
-                    const TangentPlane plane(heading(*mesh_, element, state, sign), element.normal);
+                    const TangentPlane plane(heading(*mesh_, element, state, element.normal, sign), element.normal);
                     record.friction = RecordedFriction<Friction>::of(frictions_[core::at(k)].history, plane, sign);
                 }
             }

@@ -15,11 +15,13 @@ Vec3 tangent_of_i(const beam::Mesh<B>& mesh, const Element& element, const Vecto
     return contact_tangent(mesh, state, element.fibre_i, element.u_i).normalized();
 }
 
-/// A direction between the tangents of both fibres. It turns by the mean of their turns, so that slips do not depend on which
-/// fibre comes first; either sign will do as long as it is kept.
+/// A direction half-way between the tangents of both fibres in the plane of a normal. It turns by the mean of their turns, so that slips do not depend
+/// on which fibre comes first; either sign will do as long as it is kept. One between tangents that lean out of the plane by different angles would turn
+/// to the other side with the other sign, and a scene would lose the symmetry of its mirror image.
 template <class B, class Element>
-Vec3 heading(const beam::Mesh<B>& mesh, const Element& element, const Vector& state, double sign) {
-    return tangent_of_i(mesh, element, state) + sign * contact_tangent(mesh, state, element.fibre_j, element.u_j).normalized();
+Vec3 heading(const beam::Mesh<B>& mesh, const Element& element, const Vector& state, const Vec3& normal, double sign) {
+    const auto flat = [&](const Vec3& tangent) { return unit_or(tangent - tangent.dot(normal) * normal, Vec3::Zero()); };
+    return flat(tangent_of_i(mesh, element, state)) + sign * flat(contact_tangent(mesh, state, element.fibre_j, element.u_j).normalized());
 }
 template <class B, class Element>
 double sign_of_j(const beam::Mesh<B>& mesh, const Element& element, const Vector& state) {
@@ -35,7 +37,7 @@ Vec3 accepted_offset(const beam::Mesh<B>& mesh, const NormalRule& rule, const El
     const Vec3 before = element_normal(mesh, accepted, element, rule, element.normal);
     if (element.end_i || element.end_j) return turned(offset, before, element.normal);
     const double sign = sign_of_j(mesh, element, state);
-    const TangentPlane then(heading(mesh, element, accepted, sign), before), now(heading(mesh, element, state, sign), element.normal);
+    const TangentPlane then(heading(mesh, element, accepted, before, sign), before), now(heading(mesh, element, state, element.normal, sign), element.normal);
     return offset.dot(then.along) * now.along + offset.dot(then.across) * now.across + offset.dot(before) * element.normal;
 }
 

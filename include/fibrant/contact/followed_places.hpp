@@ -2,6 +2,7 @@
 #pragma once
 /// @file Which crossings of a contact set are followed, and what they push with.
 
+#include <fibrant/contact/closest_places.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/contact/sliding_place.hpp>
@@ -9,6 +10,7 @@
 #include <fibrant/core/symmetric_eigen.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -30,13 +32,11 @@ public:
 
     /// Whether crossings are followed from the next detection on, if it is as needed.
     void follow(bool whether) noexcept { all_ = whether; }
-    /// Crossings of a zone are to be followed. As needed they are wherever fibres are bent around each other as only loops are, whatever increments
-    /// lead there.
-    bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before) const {
-        const auto oval = [&](Index f) { return mesh.fibre(f).section.semi_axis_1 != mesh.fibre(f).section.semi_axis_2; };
-        if (oval(zone.span.fibre_i) || oval(zone.span.fibre_j)) return false;  // centrelines say too little of where they touch
-        if (places_ != Places::as_needed || all_) return places_ != Places::renewed;
-        return bend_around(mesh, state, zone.span) > loop - (before && before->followed ? hysteresis : 0.0);
+    /// Says whether crossings of a zone are followed. As needed they are wherever fibres are bent around each other as only loops are, or clasp each
+    /// other, whatever increments lead there.
+    void mark(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Zone* before) const {
+        zone.followed = wanted(mesh, state, zone, before);
+        zone.settled = zone.followed && before && before->settled;
     }
     /// Crossings that are followed go on as one contact element until bent around each other so much that the angle between them is, but for
     /// this part of what it is elsewhere, that of fibres side by side [1].
@@ -61,25 +61,132 @@ public:
     /// What the slips of an increment count from.
     const Vector& accepted() const noexcept { return accepted_; }
 
-    /// New pairs of stations in the place of that of a crossing: where its two fibres are closest, near where they were. Where they are nearly as
-    /// close beside it, as fibres are that hang in each other at a slant or are bent around each other by a touching distance, they touch along a
-    /// line: then there are stations along this valley too. These slide across it only, and stay where they are from one detection to the next, so
-    /// that no contact hops; what touches in two places after it did in one does so on stations that were there before.
+    /// New pairs of stations in the place of that of a crossing: at each place of the zone where its two fibres are closest, near where they were. Two yarns that clasp
+    /// each other have two such places in one zone, with normals that are opposite.
     /// @param pairs  the last one is the crossing's
     template <class Memory>
     static void settle(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Memory& memory, std::vector<StationPair>& pairs) {
-        const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
-        StationPair middle = pairs.back();
+        const StationPair crossing = pairs.back();
         pairs.pop_back();
         std::vector<Eigen::Vector2d> known;
-        memory.visit_places(zone.span, [&](double u_i, double u_j) { known.emplace_back(u_i, u_j); });
+        if (zone.settled) memory.visit_places(zone.span, [&](double u_i, double u_j) { known.emplace_back(u_i, u_j); });
+        zone.settled = true;
+        const auto first = static_cast<std::ptrdiff_t>(pairs.size());
+        const std::vector<Eigen::Vector2d> places = closest_places(mesh, state, zone.span, {crossing.u_i, crossing.u_j});
+        const auto nearest = [&](const Eigen::Vector2d& to) {
+            const auto nearer = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return arc_apart(mesh, zone.span, a, to) < arc_apart(mesh, zone.span, b, to); };
+            return std::min_element(places.begin(), places.end(), nearer) - places.begin();
+        };
+        for (std::size_t place = 0; place < places.size(); ++place) {
+            std::vector<Eigen::Vector2d> own;
+            for (const Eigen::Vector2d& one : known)
+                if (nearest(one) == static_cast<std::ptrdiff_t>(place)) own.push_back(one);
+            StationPair middle = crossing;
+            middle.u_i = places[place][0], middle.u_j = places[place][1];
+            settle_one(mesh, state, zone, places, place, own, middle, pairs);
+        }
+        std::sort(pairs.begin() + first, pairs.end(),
+                  [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
+    }
+
+    /// The closest patches of a state, and the normal from the one to the other.
+    template <class Element>
+    void follow(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
+        const Vec3 before = element.normal;
+        const Slide slide = slide_of(mesh, zone, element.slide);
+        if (slide.kind == Slide::freely) follow_closest(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
+        if (slide.kind == Slide::along) follow_along(mesh, state, element.fibre_i, element.fibre_j, slide, element.u_i, element.u_j);
+        const PairGeometry pair = pair_geometry(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
+        element.normal = unit_or(slide.kind == Slide::freely ? Vec3(pair.t_i.cross(pair.t_j)) : pair.centres, before);
+        if (element.normal.dot(before) < 0.0) element.normal = -element.normal;
+    }
+    /// What an element pushes with; its cap becomes one that makes its gap that of its patches.
+    template <class Element>
+    void take(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
+        Held& one = held_[core::at(element.place)];
+        if (!near(mesh, element.fibre_i, element.u_i, one.i) || !near(mesh, element.fibre_j, element.u_j, one.j)) renew(mesh, state, element);
+        const auto hosts = [](const SlidingPlace<B>& of) { return std::array{static_cast<Index>(of.i.count), of.i.vectors[0], static_cast<Index>(of.j.count), of.j.vectors[0]}; };
+        const auto before = hosts(one.place);
+        one.place = sliding_place(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j, one.i, one.j, element.normal,
+                                  slide_of(mesh, zone, element.slide));
+        if (before[0] > 0 && hosts(one.place) != before) one.rehosted = true;
+        if constexpr (beam::TurningSections<B>) {
+            element.weights_i.follow(state.segment<beam::Mesh<B>::element_unknowns>(element.first_i));
+            element.weights_j.follow(state.segment<beam::Mesh<B>::element_unknowns>(element.first_j));
+        }
+        element.cap = element.normal.dot(element.offset(state)) - one.place.gap;
+    }
+    /// Sections anew where an element has slid to, facing each other across its normal. @returns by how much the direction across them has turned
+    /// in the section of fibre i [radian]
+    /// @param rubs  the plane of its normal stands as well, and counts
+    template <class Element>
+    double renew(const beam::Mesh<B>& mesh, const Vector& state, const Element& element, bool rubs = false) noexcept {
+        Held& one = held_[core::at(element.place)];
+        const Index i = element.fibre_i, j = element.fibre_j;
+        const StandingSection before = one.i;
+        const double half = half_of_patch(mesh, i, j, i);
+        one.i = standing_section(mesh, state, i, element.u_i, half, element.normal);
+        one.j = standing_section(mesh, state, j, element.u_j, half_of_patch(mesh, i, j, j), Vec3(-element.normal));
+        double turn = rubs ? std::atan2(one.plane.cross(element.normal).norm(), one.plane.dot(element.normal)) : 0.0;
+        one.plane = element.normal;
+        if constexpr (beam::DeformableSections<B>) {
+            if (!before.stands) return turn;
+            const auto across = [&](const StandingSection& section) {
+                return FacingSection(mean_directors(mesh, state, i, section.u, half), section.facing, mesh.fibre(i).section).across;
+            };
+            const Vec3 was = across(before), is = across(one.i);
+            turn = std::max(turn, std::atan2(was.cross(is).norm(), was.dot(is)));
+        }
+        return turn;
+    }
+    /// Elements of the mesh that hold both places.
+    template <class Element>
+    static void host(const beam::Mesh<B>& mesh, Element& element) {
+        element.first_i = static_cast<std::int32_t>(mesh.first_unknown(element.fibre_i, mesh.locate(element.fibre_i, element.u_i).first));
+        element.first_j = static_cast<std::int32_t>(mesh.first_unknown(element.fibre_j, mesh.locate(element.fibre_j, element.u_j).first));
+    }
+    /// The patches of some place have come to other elements since this was asked last: its tangent couples other unknowns.
+    bool rehosted() noexcept {
+        bool some = false;
+        for (Held& one : held_) some = some || one.rehosted, one.rehosted = false;
+        return some;
+    }
+
+    template <class Element>
+    const SlidingPlace<B>& of(const Element& element) const noexcept { return held_[core::at(element.place)].place; }
+    /// Normal that its element had when sections were renewed.
+    template <class Element>
+    const Vec3& plane(const Element& element) const noexcept { return held_[core::at(element.place)].plane; }
+
+private:
+    /// How a place slides: freely, on one fibre alone, not at all, or across one of its zone's valleys, from this number on.
+    enum : std::int8_t { free, on_i, on_j, fixed, across_valley };
+    static Slide slide_of(const beam::Mesh<B>& mesh, const Zone& zone, std::int8_t slide) noexcept {
+        switch (slide) {
+            case free: return {};
+            case on_i: return {Slide::along, {1.0, 0.0}};
+            case on_j: return {Slide::along, {0.0, 1.0}};
+            case fixed: return {Slide::nowhere, {}};
+            default: break;
+        }
+        const double valley = zone.valleys[core::at(slide - across_valley)];
+        return {Slide::along, {-std::sin(valley) / mesh.fibre(zone.span.fibre_i).element_length, std::cos(valley) / mesh.fibre(zone.span.fibre_j).element_length}};
+    }
+
+    /// Stations of one closest place. Where the fibres are nearly as close beside it, as fibres are that hang in each other at a slant or are bent around each
+    /// other by a touching distance, they touch along a line: then there are stations along this valley too. These slide across it only, and stay where they are
+    /// from one detection to the next, so that no contact hops; what touches in two places after it did in one does so on stations that were there before.
+    /// @param places  all closest places of the zone, and which of them it is: stations are of the nearest one
+    /// @param known   stations that it had
+    static void settle_one(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const std::vector<Eigen::Vector2d>& places, std::size_t place,
+                           const std::vector<Eigen::Vector2d>& known, StationPair middle, std::vector<StationPair>& pairs) {
+        const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
         if (!known.empty()) middle.u_i = median(known, 0), middle.u_j = median(known, 1);
         PairGeometry pair = pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j);
         if (known.size() < 3 || least(pair.closeness) > held) {
             follow_closest(mesh, state, i, j, middle.u_i, middle.u_j);
             pair = pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j);
         }
-        const std::size_t first = pairs.size();
         const double touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
         const auto gap_at = [&](const StationPair& at) {
             const PairGeometry there = pair_geometry(mesh, state, i, j, at.u_i, at.u_j);
@@ -97,6 +204,14 @@ public:
         };
         const double longest = std::max((zone.span.b_i - zone.span.a_i) * pair.speed_i, std::abs(zone.span.b_j - zone.span.a_j) * pair.speed_j);
         const int most = std::max(most_beside, static_cast<int>(std::min(longest / (spacing * touching), 1e6)));  // once around closed fibres
+        const auto of_another = [&](const StationPair& at) {
+            const Eigen::Vector2d here(at.u_i, at.u_j);
+            const double own = arc_apart(mesh, zone.span, places[place], here) + 0.25 * spacing * touching;
+            for (std::size_t k = 0; k < places.size(); ++k)
+                if (k != place && arc_apart(mesh, zone.span, places[k], here) < own) return true;
+            return false;
+        };
+        if (place > 0 && of_another(middle)) return;  // it slid there
         const auto line = [&](const Eigen::Vector2d& way, std::int8_t slide) {
             for (const double side : {-1.0, 1.0}) {
                 double last = gap_at(middle), aside = 0.0;  // aside: of the last station, across the way from the middle [length]
@@ -120,6 +235,7 @@ public:
                     follow_along(mesh, state, i, j, slide_of(mesh, zone, slide), other.u_i, other.u_j);
                     aside = way[0] * (other.u_j - middle.u_j) * pair.speed_j - way[1] * (other.u_i - middle.u_i) * pair.speed_i;
                     const double gap = gap_at(other);
+                    if (of_another(other)) break;
                     const bool parts = gap > clear * touching && gap > last;
                     parted = parted || parts;
                     if (!parts) pairs.push_back(other);
@@ -139,77 +255,20 @@ public:
             } else {
                 const core::SymmetricEigen<2> parts(pair.closeness);
                 const Eigen::Vector2d way = parts.vectors().col(0);
-                zone.valley = std::atan2(way[1], way[0]);
-                line(way, across_valley);
-                middle.slide = parts.values()[0] < held ? across_valley : free;
+                const auto across = static_cast<std::int8_t>(across_valley + static_cast<int>(place));
+                zone.valleys[place] = std::atan2(way[1], way[0]);
+                line(way, across);
+                middle.slide = parts.values()[0] < held ? across : free;
             }
         }
         pairs.push_back(middle);
-        std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end(),
-                  [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
     }
 
-    /// The closest patches of a state, and the normal from the one to the other.
-    template <class Element>
-    void follow(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
-        const Vec3 before = element.normal;
-        const std::int32_t first_i = element.first_i, first_j = element.first_j;
-        const Slide slide = slide_of(mesh, zone, element.slide);
-        if (slide.kind == Slide::freely) follow_closest(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
-        if (slide.kind == Slide::along) follow_along(mesh, state, element.fibre_i, element.fibre_j, slide, element.u_i, element.u_j);
-        host(mesh, element);
-        if (element.first_i != first_i || element.first_j != first_j) held_[core::at(element.place)].rehosted = true;
-        const PairGeometry pair = pair_geometry(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
-        element.normal = unit_or(slide.kind == Slide::freely ? Vec3(pair.t_i.cross(pair.t_j)) : pair.centres, before);
-        if (element.normal.dot(before) < 0.0) element.normal = -element.normal;
-    }
-    /// What an element pushes with; its cap becomes one that makes its gap that of its patches.
-    template <class Element>
-    void take(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
-        Held& one = held_[core::at(element.place)];
-        if (!near(mesh, element.fibre_i, element.u_i, one.i) || !near(mesh, element.fibre_j, element.u_j, one.j)) renew(mesh, state, element);
-        one.place = sliding_place(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j, one.i, one.j, element.normal,
-                                  slide_of(mesh, zone, element.slide));
-        element.cap = element.normal.dot(element.offset(state)) - one.place.gap;
-    }
-    /// Sections anew where an element has slid to, facing each other across its normal. @returns by how much the direction across them has turned [radian]
-    template <class Element>
-    double renew(const beam::Mesh<B>& mesh, const Vector& state, const Element& element) noexcept {
-        Held& one = held_[core::at(element.place)];
-        const Index i = element.fibre_i, j = element.fibre_j;
-        const Vec3 before = one.i.across;
-        one.i = standing_section(mesh, state, i, element.u_i, half_of_patch(mesh, i, j, i), element.normal);
-        one.j = standing_section(mesh, state, j, element.u_j, half_of_patch(mesh, i, j, j), Vec3(-element.normal));
-        return std::atan2(before.cross(one.i.across).norm(), before.dot(one.i.across));
-    }
-    /// Elements of the mesh that hold both places.
-    template <class Element>
-    static void host(const beam::Mesh<B>& mesh, Element& element) {
-        element.first_i = static_cast<std::int32_t>(mesh.first_unknown(element.fibre_i, mesh.locate(element.fibre_i, element.u_i).first));
-        element.first_j = static_cast<std::int32_t>(mesh.first_unknown(element.fibre_j, mesh.locate(element.fibre_j, element.u_j).first));
-    }
-    /// Some place has come to another element since this was asked last: its tangent couples other unknowns.
-    bool rehosted() noexcept {
-        bool some = false;
-        for (Held& one : held_) some = some || one.rehosted, one.rehosted = false;
-        return some;
-    }
-
-    template <class Element>
-    const SlidingPlace<B>& of(const Element& element) const noexcept { return held_[core::at(element.place)].place; }
-
-private:
-    /// How a place slides: freely, across its zone's valley, on one fibre alone, not at all.
-    enum : std::int8_t { free, across_valley, on_i, on_j, fixed };
-    static Slide slide_of(const beam::Mesh<B>& mesh, const Zone& zone, std::int8_t slide) noexcept {
-        switch (slide) {
-            case across_valley: return {Slide::along, {-std::sin(zone.valley) / mesh.fibre(zone.span.fibre_i).element_length,
-                                                       std::cos(zone.valley) / mesh.fibre(zone.span.fibre_j).element_length}};
-            case on_i: return {Slide::along, {1.0, 0.0}};
-            case on_j: return {Slide::along, {0.0, 1.0}};
-            case fixed: return {Slide::nowhere, {}};
-            default: return {};
-        }
+    bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before) const {
+        const auto oval = [&](Index f) { return mesh.fibre(f).section.semi_axis_1 != mesh.fibre(f).section.semi_axis_2; };
+        if (oval(zone.span.fibre_i) || oval(zone.span.fibre_j)) return false;  // centrelines say too little of where they touch
+        if (places_ != Places::as_needed || all_) return places_ != Places::renewed;
+        return bend_around(mesh, state, zone.span) > loop - (before && before->followed ? hysteresis : 0.0) || clasped(mesh, state, zone.span);
     }
     static double least(const Eigen::Matrix2d& closeness) noexcept {
         return 0.5 * (closeness(0, 0) + closeness(1, 1)) - std::hypot(0.5 * (closeness(0, 0) - closeness(1, 1)), closeness(0, 1));
@@ -228,7 +287,7 @@ private:
     /// Second variation of the closest distance, over the distance, below which there are stations beside a place, and below which it does not slide
     /// along its valley. Hooks that are pulled apart at 30 to 90 degrees hold most often with these, of 0.02 to 0.1 and spacings of 0.25 to 0.5 [1].
     static constexpr double flat = 0.4, held = 0.05;
-    static constexpr double spacing = 0.35, clear = 0.1;  ///< of stations in a valley, and gap beyond which there are none [touching distance]
+    static constexpr double spacing = valley_spacing, clear = 0.1;  ///< of stations in a valley, and gap beyond which there are none [touching distance]
     static constexpr double near_valley = 2.0;          ///< of a station that stays, across [touching distance]
     static constexpr int most_beside = 8;  ///< stations to each side that are placed whatever the zone; more of them as far as it goes
     /// Distance over radius of curvature from which two fibres are a loop around each other: cloths have a tenth. Less by the second once they are
@@ -236,10 +295,11 @@ private:
     static constexpr double loop = 0.25, hysteresis = 0.05;
     /// A section is one of a place, and less than an element away from it.
     static bool near(const beam::Mesh<B>& mesh, Index fibre, double u, const StandingSection& section) noexcept {
-        return !section.across.isZero(0.0) && std::abs(u - section.u) < 0.9 && mesh.apart(fibre, u, section.u) < 0.9;
+        return section.stands && std::abs(u - section.u) < 0.9 && mesh.apart(fibre, u, section.u) < 0.9;
     }
     struct Held {
         StandingSection i, j;
+        Vec3 plane = Vec3::Zero();
         SlidingPlace<B> place;
         bool rehosted = false;
     };

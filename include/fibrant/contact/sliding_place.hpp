@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace fibrant::contact {
@@ -26,25 +27,70 @@ struct PatchSide {
     std::size_t count = 0;   ///< of them
     Weights place{};         ///< of the centreline [1]
     Weights slope{};         ///< of the unit tangent's turns [1 / length]
-    Weights press{};         ///< of the mean section's particle that lies furthest across, less those of the centreline
-    Weights flatten{};       ///< of what stiffens it: section_stiffness_term
-    Vec3 across = Vec3::Zero();  ///< direction in which the section faces the other fibre, unit
+    Weights press{};         ///< of the mean section's particle that lies `extent` across, less those of the centreline
+    Weights beside{};        ///< of the one that lies as far aside
+    Vec3 across = Vec3::Zero(), aside = Vec3::Zero();  ///< in the section, unit: where it faces the other fibre, and across that
     double extent = 0.0;     ///< of the section across [length]
-    double hardening = 0.0;  ///< over the reaction, of `flatten` [1 / length]
 };
 
-/// Where the section of a followed place is taken, and the direction in which it faces the other fibre: both stand while the place slides. A reaction
-/// presses flat what it rests on, and a place that went to where sections are less flat would flee from its own force.
+/// Where the section of a followed place is taken, and the lines of its material that face the other fibre: both stand while the place slides. A reaction
+/// presses flat what it rests on, and a place that went to where sections are less flat would flee from its own force. Lines of material turn with the section:
+/// directions that stood in space would push a pair that turns back with force x radius x turn.
 struct StandingSection {
-    double u = 0.0;              ///< abscissa, less than an element from the place
-    Vec3 across = Vec3::Zero();  ///< unit, in the section
+    double u = 0.0;                                    ///< abscissa, less than an element from the place
+    Eigen::Vector2d facing = Eigen::Vector2d::Zero();  ///< components of the direction along both directors
+    bool stands = false;
+};
+
+/// Means of the directors of a patch.
+template <class B>
+std::array<Vec3, 2> mean_directors(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, double half) noexcept {
+    const Patches<B> patches(mesh, state);
+    std::array<Vec3, 2> mean{Vec3::Zero(), Vec3::Zero()};
+    patches.each_sample(fibre, u, half, [&](Index e, double xi, double weight) {
+        const Index first = mesh.first_unknown(fibre, patches.around(fibre, e));
+        mean[0] += weight * beam::Mesh<B>::template director<1>(state, first, beam::director_weights<B>(xi, 1));
+        mean[1] += weight * beam::Mesh<B>::template director<2>(state, first, beam::director_weights<B>(xi, 2));
+    });
+    return mean;
+}
+
+/// A section between two lines of its material that are tangents of its contour.
+struct FacingSection {
+    Vec3 across = Vec3::Zero(), aside = Vec3::Zero();  ///< in the plane of the directors, unit: across the lines, and along them
+    Eigen::Vector2d particle = Eigen::Vector2d::Zero(), sideways = particle;  ///< of both directors: `extent` times across and aside [length]
+    double extent = 0.0;                ///< from the centre to either line [length]
+
+    /// The extent is |A c| / sqrt(c C^-1 c) with c the covector of the lines, A the half axes and C the products of the directors with each other: it
+    /// knows of the section's strain alone, however the section turns.
+    FacingSection(const std::array<Vec3, 2>& directors, const Eigen::Vector2d& facing, const scene::CrossSection& section) noexcept {
+        const Vec3& g_1 = directors[0];
+        const Vec3& g_2 = directors[1];
+        const double c_11 = g_1.dot(g_1), c_12 = g_1.dot(g_2), c_22 = g_2.dot(g_2), determinant = c_11 * c_22 - c_12 * c_12;
+        if (!(determinant > 1e-4 * c_11 * c_22)) return;  // no plane
+        const Eigen::Vector2d raised((c_22 * facing[0] - c_12 * facing[1]) / determinant, (c_11 * facing[1] - c_12 * facing[0]) / determinant);
+        const double size = std::sqrt(facing.dot(raised));
+        if (!(size > 0.0)) return;
+        extent = std::hypot(section.semi_axis_1 * facing[0], section.semi_axis_2 * facing[1]) / size;
+        across = (raised[0] * g_1 + raised[1] * g_2) / size;
+        aside = g_1.cross(g_2).normalized().cross(across);
+        const double p = aside.dot(g_1), q = aside.dot(g_2);
+        particle = extent / size * raised;
+        sideways = extent / determinant * Eigen::Vector2d(c_22 * p - c_12 * q, c_11 * q - c_12 * p);
+    }
 };
 
 /// @param normal  from this fibre to the other one, unit
 template <class B>
 StandingSection standing_section(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, double half, const Vec3& normal) noexcept {
-    const Vec3 tangent = Patches<B>(mesh, state).tangent(fibre, u, half).normalized();
-    return {u, unit_or(normal - normal.dot(tangent) * tangent, normal)};  // the gap is that of surfaces, which a normal that leans does not cut straight
+    StandingSection section{u, Eigen::Vector2d::UnitX(), true};
+    if constexpr (beam::DeformableSections<B>) {
+        const Vec3 tangent = Patches<B>(mesh, state).tangent(fibre, u, half).normalized();
+        const Vec3 across = unit_or(normal - normal.dot(tangent) * tangent, normal);  // the gap is that of surfaces, which a normal that leans does not cut straight
+        const std::array<Vec3, 2> directors = mean_directors(mesh, state, fibre, u, half);
+        section.facing = {directors[0].dot(across), directors[1].dot(across)};
+    }
+    return section;
 }
 
 template <class B>
@@ -76,20 +122,13 @@ PatchSide<B> patch_side(const beam::Mesh<B>& mesh, const Vector& state, Index fi
             add(g_1, e, weight, beam::director_weights<B>(xi, 1));
             add(g_2, e, weight, beam::director_weights<B>(xi, 2));
         });
-        const auto sum = [&](const typename PatchSide<B>::Weights& weights) {
-            Vec3 total = Vec3::Zero();
-            for (std::size_t a = 0; a < side.count; ++a) total += weights[a] * state.segment<3>(3 * side.vectors[a]);
-            return total;
-        };
         const scene::CrossSection& section = mesh.fibre(fibre).section;
-        const Vec3& across = section_at.across;
-        const double p = section.semi_axis_1 * sum(g_1).dot(across), q = section.semi_axis_2 * sum(g_2).dot(across), h = std::hypot(p, q);
-        if (h >= 0.1 * section.radius()) {
-            side.extent = h, side.across = across;
-            side.hardening = 1.0 / h;
+        const FacingSection faces(mean_directors(mesh, state, fibre, section_at.u, half), section_at.facing, section);
+        if (faces.extent >= 0.1 * section.radius()) {
+            side.extent = faces.extent, side.across = faces.across, side.aside = faces.aside;
             for (std::size_t a = 0; a < side.count; ++a) {
-                side.press[a] = (section.semi_axis_1 * p * g_1[a] + section.semi_axis_2 * q * g_2[a]) / h;
-                side.flatten[a] = (-section.semi_axis_1 * q * g_1[a] + section.semi_axis_2 * p * g_2[a]) / h;
+                side.press[a] = faces.particle[0] * g_1[a] + faces.particle[1] * g_2[a];
+                side.beside[a] = faces.sideways[0] * g_1[a] + faces.sideways[1] * g_2[a];
             }
         }
     }
@@ -160,13 +199,17 @@ struct SlidingStiffness {
     Matrix stiffness;            ///< symmetric
 };
 
+///
+/// Of a section's extent h the second derivative is ((N.x)^2 + (f.x)^2 - (f.x + e.y)^2) / h, x and y the motions of `press` and `beside`, e and f across and aside,
+/// N across both.
 /// @param positive  without the negative part of what the curvature of the gap makes of the reaction
 template <class B>
 SlidingStiffness sliding_stiffness(const SlidingPlace<B>& place, const Vec3& normal, double reaction, double slope, bool positive) {
-    constexpr Index rows = beam::DeformableSections<B> ? 7 : 5;
+    constexpr Index rows = beam::DeformableSections<B> ? 11 : 5;
     const Vec3 along = normal.unitOrthogonal(), across = normal.cross(along);
     SlidingStiffness sum{{}, Matrix::Zero(rows, 3 * static_cast<Index>(place.i.count + place.j.count)), Matrix::Zero(rows, rows)};
-    const auto fill = [&](const PatchSide<B>& side, double sign, Index turn) {
+    const auto fill = [&](const PatchSide<B>& side, double sign, Index turn, [[maybe_unused]] Index section) {
+        [[maybe_unused]] const Vec3 out = side.across.cross(side.aside);
         for (std::size_t a = 0; a < side.count; ++a) {
             const Index column = 3 * core::count(sum.vectors);
             sum.vectors.push_back(side.vectors[a]);
@@ -174,15 +217,27 @@ SlidingStiffness sliding_stiffness(const SlidingPlace<B>& place, const Vec3& nor
             sum.rows.block<1, 3>(1, column) = sign * side.place[a] * along.transpose();
             sum.rows.block<1, 3>(2, column) = sign * side.place[a] * across.transpose();
             sum.rows.block<1, 3>(turn, column) = place.distance * side.slope[a] * normal.transpose();
-            if constexpr (rows == 7) sum.rows.block<1, 3>(turn + 2, column) = side.flatten[a] * side.across.transpose();
+            if constexpr (rows == 11) {
+                sum.rows.block<1, 3>(section, column) = side.press[a] * out.transpose();
+                sum.rows.block<1, 3>(section + 1, column) = side.press[a] * side.aside.transpose();
+                sum.rows.block<1, 3>(section + 2, column) = side.beside[a] * side.across.transpose();
+            }
         }
     };
-    fill(place.i, -1.0, 3), fill(place.j, 1.0, 4);
+    fill(place.i, -1.0, 3, 5), fill(place.j, 1.0, 4, 8);
     sum.stiffness(0, 0) = -slope;
     Eigen::Matrix4d form = -reaction * place.curvature;
     if (positive) form = core::SymmetricEigen<4>(form).raised(0.0);
     sum.stiffness.block<4, 4>(1, 1) = form;
-    if constexpr (rows == 7) sum.stiffness(5, 5) = reaction * place.i.hardening, sum.stiffness(6, 6) = reaction * place.j.hardening;
+    if constexpr (rows == 11) {
+        Eigen::Matrix2d shear;
+        shear << 0.0, -1.0, -1.0, -1.0;
+        if (positive) shear = core::SymmetricEigen<2>(shear).raised(0.0);
+        for (const auto& [row, side] : {std::pair<Index, const PatchSide<B>&>{5, place.i}, {8, place.j}}) {
+            sum.stiffness(row, row) = reaction / side.extent;
+            sum.stiffness.block<2, 2>(row + 1, row + 1) = reaction / side.extent * shear;
+        }
+    }
     return sum;
 }
 

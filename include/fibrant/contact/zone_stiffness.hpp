@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <array>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -31,7 +32,10 @@ struct Zone {
     bool crossing = false;     ///< carries one contact element
     bool followed = false;     ///< that one is followed to where its fibres are closest
     bool forced = false;       ///< its normal is prescribed by a forced order
-    double valley = 0.0;       ///< direction in the plane of both arc lengths in which its fibres stay closest [radian]
+    static constexpr std::size_t most_crossings = 4;
+    std::array<double, most_crossings> valleys{};  ///< where it is followed: directions in the plane of both arc lengths in which its fibres stay closest, of each
+                                                   ///< of its crossings [radian]
+    bool settled = false;      ///< its stations are those of crossings that are followed
     double friction_factor = 1.0;     ///< of its pair of groups, on the law's coefficient [1]
     double penetration_factor = 1.0;  ///< of its pair of groups, on the allowed penetration [1]
     double narrowed = 1.0;            ///< part of it that is left where it is deeper between contact points, in (0, 1]
