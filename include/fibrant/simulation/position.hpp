@@ -119,6 +119,13 @@ struct Position {
     /// Why a stage is given up, before what else is known.
     std::string not_ended(const std::string& name) const { return "stage " + name + " did not reach its end in " + std::to_string(in_stage) + " increments"; }
 
+    /// Damping of each fibre over that of all. @param own  what each has by itself; empty: 1
+    std::vector<double> held_by_fibre(const std::vector<double>& own) const {
+        std::vector<double> all = holding;
+        for (std::size_t f = 0; f < own.size(); ++f) all[f] *= own[f];
+        return all;
+    }
+
     /// Damping of the fibre that is held hardest, over that of the stage.
     double hardest() const { return damping * (holding.empty() ? 1.0 : *std::max_element(holding.begin(), holding.end())); }
 

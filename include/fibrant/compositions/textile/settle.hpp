@@ -9,7 +9,7 @@
 #include <fibrant/simulation/settling.hpp>
 
 #include <algorithm>
-#include <limits>
+#include <vector>
 
 namespace fibrant::compositions::textile {
 
@@ -26,19 +26,17 @@ simulation::ModelParameters<M> model_parameters(const Textile& textile, const Se
 
 /// What a textile's settling goes by: the softest yarn under its tension, and in bending over the mean distance of crossings.
 inline simulation::SettlingScales scales_of(const Textile& textile, const Assembled& assembled) {
-    simulation::SettlingScales scales;
-    scales.radius = textile.smallest_radius();
-    scales.slack = scales.taut = std::numeric_limits<double>::infinity();
+    std::vector<simulation::SettledFibre> fibres;
     for (std::size_t f = 0; f < assembled.path_of.size(); ++f) {
         const Path& path = textile.paths[core::at(assembled.path_of[f])];
         const scene::FibreSpecification& fibre = assembled.assembly.fibres()[f];
-        const double bending = fibre.material.young_modulus * fibre.section.second_moment_1();
+        const double young_modulus = fibre.material.young_modulus;
         const bool pulled = path.kind == PathKind::open && path.ends == Ends::pulled;
-        const double pull = pulled ? path.tension_strain * fibre.material.young_modulus * fibre.section.area() : 0.0;
         const double element = scene::length_of(path.curve, 64) / static_cast<double>(fibre.elements);
-        scales.slack = std::min(scales.slack, simulation::node_stiffness(0.0, element, bending, assembled.longest_spacing));
-        scales.taut = std::min(scales.taut, simulation::node_stiffness(pull, element, bending, assembled.longest_spacing));
+        fibres.push_back({fibre.section.radius(), pulled ? path.tension_strain * young_modulus * fibre.section.area() : 0.0, element,
+                          young_modulus * fibre.section.second_moment_1(), assembled.longest_spacing});
     }
+    simulation::SettlingScales scales = simulation::scales_of(fibres, false, 1.0);
     scales.ordered = !assembled.assembly.orders().empty();
     scales.driven = std::any_of(textile.paths.begin(), textile.paths.end(), [](const Path& path) {
         return path.kind != PathKind::open || path.ends != Ends::free || !path.guides.empty() || path.straight;

@@ -9,6 +9,7 @@
 #include <fibrant/simulation/settling.hpp>
 
 #include <algorithm>
+#include <vector>
 
 namespace fibrant::compositions::weave {
 
@@ -17,33 +18,28 @@ inline double smallest_radius(const FabricParameters& fabric) {
     return std::min(fabric.warp.fibre_radius, fabric.weft.fibre_radius);
 }
 
-namespace detail {
-/// A fibre of a family: its pull, the length of an element, its bending stiffness, and how far its crossings are apart.
-struct FamilyFibre {
-    double pull, element, bending, span;
-    FamilyFibre(const FabricParameters& fabric, Family family, double tension_strain) {
-        const TowParameters& tow = fabric.tow(family);
-        pull = tension_strain * tow.material.young_modulus * tow.section().area();
-        element = fabric.fibre_length(family) / static_cast<double>(fabric.elements_of(family));
-        bending = tow.material.young_modulus * tow.section().second_moment_1();
-        span = family == Family::warp ? fabric.weft_spacing : fabric.warp_spacing;
-    }
-};
-}  // namespace detail
+/// A fibre of a family, as a settling sees it.
+inline simulation::SettledFibre settled_fibre(const FabricParameters& fabric, Family family, double tension_strain) {
+    const TowParameters& tow = fabric.tow(family);
+    const double young_modulus = tow.material.young_modulus, pull = tension_strain * young_modulus * tow.section().area();
+    const double element = fabric.fibre_length(family) / static_cast<double>(fabric.elements_of(family));
+    const double span = family == Family::warp ? fabric.weft_spacing : fabric.warp_spacing;
+    return {tow.fibre_radius, pull, element, young_modulus * tow.section().second_moment_1(), span};
+}
 
 /// Stiffness of a node of the softer family against moving aside alone [force / length].
 inline double node_stiffness(const FabricParameters& fabric, double tension_strain) {
     const auto of = [&](Family family) {
-        const detail::FamilyFibre fibre(fabric, family, tension_strain);
+        const simulation::SettledFibre fibre = settled_fibre(fabric, family, tension_strain);
         return simulation::node_stiffness(fibre.pull, fibre.element, fibre.bending, fibre.span);
     };
     return std::min(of(Family::warp), of(Family::weft));
 }
 
-/// Part of the tension that was asked for at which tows part, in (0, 1]: that of `simulation::parting_part`. What is asked for at the end is not touched.
+/// Part of the tension that was asked for at which tows part, in (0, 1]: that of `simulation::parting_part`.
 inline double parting_tension(const FabricParameters& fabric, double tension_strain) {
     const auto of = [&](Family family) {
-        const detail::FamilyFibre fibre(fabric, family, tension_strain);
+        const simulation::SettledFibre fibre = settled_fibre(fabric, family, tension_strain);
         return simulation::parting_part(fibre.pull, fibre.element, fibre.bending);
     };
     return std::min(of(Family::warp), of(Family::weft));
@@ -60,10 +56,10 @@ simulation::ModelParameters<M> model_parameters(const FabricParameters& fabric, 
 template <simulation::Model M>
 simulation::Loading<M> settling(const FabricParameters& fabric, const SettleParameters& settle) {
     settle.validate();
-    simulation::SettlingScales scales;
-    scales.radius = smallest_radius(fabric);
-    scales.parting = std::max(parting_tension(fabric, settle.tension_strain), settle.final_tension_factor);
-    scales.slack = node_stiffness(fabric, 0.0), scales.taut = node_stiffness(fabric, scales.parting * settle.tension_strain);
+    std::vector<simulation::SettledFibre> fibres;
+    for (Index f = 0; f < fabric.fibres(); ++f)
+        fibres.push_back(settled_fibre(fabric, fabric.place(f).family, settle.tension_strain));
+    simulation::SettlingScales scales = simulation::scales_of(fibres, true, settle.final_tension_factor);
     scales.driven = scales.ordered = true;
     return simulation::settling<M>(scales, settle, {tension_channel, true});
 }
