@@ -77,10 +77,11 @@ struct Position {
     template <Model M>
     void adapt_damping(const Stage<M>& stage, const IncrementReport& increment, double effort) {
         const double before = damping;
-        const bool waits = stage.damping_waits && progress >= 1.0 && !stage_over;
-        if (waits && increment.damping < 0.5 * stage.damping_share)
+        // What holds little enough falls no further: without any, a slack fibre is sought all over the place, and the last stage takes what it takes.
+        const bool waits = stage.damping_waits && progress >= 1.0, enough = waits && damping > 0.0 && increment.damping <= stage.damping_share;
+        if (waits && !stage_over && increment.damping < 0.5 * stage.damping_share)
             damping = std::clamp(2.0 * damping, least_damping, 1.0 / least_damping);
-        else if (increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= 0.6)
+        else if (!enough && increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= 0.6)
             damping = std::max(damping * (damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, fraction)), std::min(damping, damping_floor));
         else if (stage.damping_decay < 1.0 && effort > 0.75)
             damping = std::min(2.0 * damping, 1.0 / least_damping);

@@ -200,13 +200,11 @@ private:
                     equilibrium_->refresh(state, accepted, 0.0);
                 }
             }
-            // What is loose is solved for what carries: a slack fibre that still moves, and changes no force, moves on in the next increment.
-            if (looseness > 1.0 && report.counts.normal_passes > 0 && forces_balance(newton, state, report)) break;
             ++report.counts.normal_passes;
             const Vector before = state;
             const double loose = std::isfinite(change) ? parameters_.inexact * change : 0.02 * radius_;
             const double tolerance = contact_possible_ ? std::clamp(loose, finest, 0.02 * radius_) : finest;
-            const NewtonReport inner = newton.solve(state, tolerance, searched, bound, report.counts, looseness > 1.0 ? by_forces * parameters_.residual_tolerance : 0.0);
+            const NewtonReport inner = newton.solve(state, tolerance, searched, bound, report.counts);
             if (inner.status == NewtonStatus::converged) equilibrium_->close_ties(state);
             report.residual = inner.residual.relative(), report.force_scale = inner.residual.scale, report.step = inner.step;
             last_travel.swap(travel);
@@ -223,15 +221,6 @@ private:
         }
         return true;
     }
-
-    /// Forces of a state balance with the contacts and normals that it has now.
-    bool forces_balance(Newton<Equilibrium, Contacts, Linear>& newton, const Vector& state, AttemptReport& report) const {
-        const assembly::ResidualFigures residual = newton.residual_of(state);
-        if (!(residual.relative() <= parameters_.residual_tolerance)) return false;
-        report.residual = residual.relative(), report.force_scale = residual.scale;
-        return true;
-    }
-    static constexpr double by_forces = 0.1;  ///< of the residual's tolerance: with contacts and normals anew it may be ten times that
 
     /// Multiple of the last travel after which a geometric series of passes would end, bounded; 0 if there is none. One that grows or
     /// swings to and fro has its end behind it (Aitken 1926): a loop that can turn freely about its ends is pushed by each normal that

@@ -109,8 +109,7 @@ public:
     /// @param tolerance  of the step [length]
     /// @param anchor     state at the last search
     /// @param reach      of that search: beyond half of it `moved` is returned [length]; infinity: no bound
-    /// @param balance    residual over its scale that ends it whatever the step was [1]; 0: none does
-    NewtonReport solve(Vector& state, double tolerance, const Vector& anchor, double reach, IterationCounts& counts, double balance = 0.0) {
+    NewtonReport solve(Vector& state, double tolerance, const Vector& anchor, double reach, IterationCounts& counts) {
         NewtonReport report;
         Equilibrium& equilibrium = *equilibrium_;
         namespace with = newton_numbers;
@@ -158,10 +157,7 @@ public:
             const double enough = with::enough_of_residual * residual_tolerance(tolerance) / std::max(report.residual.relative(), residual_tolerance(tolerance));
             eta = std::clamp(with::forcing_factor * ratio * ratio, std::min(std::max(parameters_.linear_tolerance, enough), with::loosest_forcing),
                              with::loosest_forcing);
-            const bool settled = report.step <= tolerance && report.residual.relative() <= residual_tolerance(tolerance);
-            // Forces of iterated strains are those of strains that the step predicts, right to its square alone.
-            const bool balanced = !iterated && report.residual.relative() <= balance;
-            if (scale == 1.0 && (settled || balanced)) {
+            if (scale == 1.0 && report.step <= tolerance && report.residual.relative() <= residual_tolerance(tolerance)) {
                 report.status = NewtonStatus::converged;
                 return report;
             }
@@ -184,8 +180,6 @@ public:
         return report;
     }
 
-    /// What does not balance in a state, whatever has changed since it was solved for.
-    assembly::ResidualFigures residual_of(const Vector& state) { return evaluate(state); }
     /// Of the last iteration.
     const Vector& last_step() const noexcept { return step_; }
 
