@@ -30,6 +30,7 @@ struct Position {
     std::vector<double> from;    ///< amplitudes at the start of the stage
     std::vector<double> holding; ///< damping of each fibre over that of all, >= 1
     static constexpr double least_damping = 1e-3;  ///< over that of the stage: below, none
+    static constexpr double vanishing = 1e-6;      ///< the same where damping waits: it ends by its share, and by halves
     static constexpr double few = 0.1;             ///< of the fibres, which alone are held harder
     static constexpr double far = 0.25;            ///< of the greatest motion: what counts as restless
     static constexpr double most_holding = 4096.0;
@@ -85,7 +86,7 @@ struct Position {
             damping = std::max(damping * (damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, fraction)), std::min(damping, damping_floor));
         else if (stage.damping_decay < 1.0 && effort > 0.75)
             damping = std::min(2.0 * damping, 1.0 / least_damping);
-        if (damping < least_damping) damping = 0.0;
+        if (damping < (waits ? vanishing : least_damping)) damping = 0.0;
         damping_floor *= 0.8;
         // What holds a single fibre is halved after each increment without a cut, be it by its own factor or by that of all.
         const double share = 0.5 * (before > 0.0 ? before / std::max(damping, 0.5 * before) : 1.0);
