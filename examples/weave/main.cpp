@@ -17,6 +17,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 using namespace fibrant;
 
@@ -39,7 +41,8 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     simulation::Simulator<M> simulator(assembly, parameters);
 
     output.open(file);
-    for (const std::string& doubt : weave::cloth::doubts(scene.fabric)) std::fprintf(stderr, "weave: %s\n", doubt.c_str());
+    const std::vector<std::string> doubts = weave::cloth::doubts(scene.fabric, scene.settle);
+    for (const std::string& doubt : doubts) std::fprintf(stderr, "weave: %s\n", doubt.c_str());
     const std::filesystem::path& folder = output.folder;
     const observe::Start start = output.start();
     auto progress = example::progress_printer(radius, 0, output.quiet);
@@ -47,7 +50,9 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     weave::Series series(folder / "paraview", start, scene.paraview ? scene.paraview_every : 0);
     auto loading = weave::cloth::settling<M>(scene.fabric, scene.settle);
     output.tell(loading, 15.0);
-    const simulation::Report report = simulator.run(loading, progress, table, series);
+    simulation::Report report = simulator.run(loading, progress, table, series);
+    if (!report.converged)
+        for (const std::string& doubt : doubts) report.reason += "; " + doubt;
 
     const observe::Snapshot snapshot = simulator.snapshot();
     const auto audit = weave::cloth::audit(snapshot, scene.fabric, proximity::GridSearch());

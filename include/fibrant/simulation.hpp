@@ -23,6 +23,9 @@
 #include <fibrant/simulation/scene_checks.hpp>
 #include <fibrant/simulation/scene_difference.hpp>
 #include <fibrant/simulation/section_laws.hpp>
+#include <fibrant/simulation/settle_parameters.hpp>
+#include <fibrant/simulation/settling.hpp>
+#include <fibrant/simulation/settling_scales.hpp>
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 #include <fibrant/simulation/state_file.hpp>

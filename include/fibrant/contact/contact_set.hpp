@@ -110,8 +110,8 @@ public:
                 if (!start) slip = element.friction_offset(state) - element.friction.accepted_offset;
             if (slides(k)) places_.take(*mesh_, state, zones_[core::at(element.zone)], element);
             else follow_particles(*mesh_, state, element);
-            const double apart = element.gap(state);
             const Zone& zone = zones_[core::at(element.zone)];
+            const double apart = element.gap(state) - zone.unseen;
             const bool none = start && apart < -2.0 * zone.deepest;
             const double gap = (none ? 0.0 : apart) + element.shift.value();
             const law::NormalResponse response = normal_answer(normal_, *mesh_, element, gap, zone.stiffness);
@@ -213,7 +213,7 @@ public:
         }, mesh_->grain());
     }
 
-    /// Sides of elements, in order.
+    /// Of elements, in order.
     std::span<const std::int32_t> sides(Index fibre) const noexcept { return sides_.of(fibre); }
 
     /// Greatest gap or depth of what carries force [length].
@@ -248,7 +248,7 @@ public:
         parameters_.stiffness.allowed_penetration = length;
         parameters_.stiffness.validate();
     }
-    /// Keeps normals, friction and zones of an accepted state, and adapts the zones' stiffness.
+    /// Keeps normals, friction and zones of an accepted state, and adapts stiffness.
     void accept(const Vector& state) {
         accepted_.assign(records(state));
         for (Zone& zone : zones_) {

@@ -38,9 +38,9 @@ bool has_station(const Stations& stations, double u_i, double u_j) noexcept {
 }
 }  // namespace detail
 
-/// What a new zone takes over from the one before it: the places that are watched, and what it may be deep there.
+/// What a new zone takes over from the one before it: the places that are watched, what it may be deep there, and what it does not see.
 inline void keep_watch(Zone& zone, const Zone* before) noexcept {
-    if (before) zone.watched = before->watched, zone.narrowed = before->narrowed;
+    if (before) zone.watched = before->watched, zone.narrowed = before->narrowed, zone.unseen = before->unseen;
     zone.penetration_factor *= zone.narrowed;
 }
 
@@ -59,12 +59,14 @@ inline void add_watched(const Zone& zone, std::vector<StationPair>& pairs) {
 }
 
 /// Mends what is too deep, between two increments: where no contact point stands it gets one, and its zone begins as soft there as what it
-/// would meet asks for; where one stands, the zone may be less deep from now on and becomes stiffer at once.
+/// would meet asks for. Where one stands that sees less, by the evened kinks of a crossing or by sections that bulge beside it, what it misses is
+/// taken off its gaps from now on. Where it sees all, the zone may be less deep and becomes stiffer at once.
 /// @param allowed  depth of a place that is no deeper [length], > 0
 template <class Mesh, class Contacts>
 void mend(const Mesh& mesh, Contacts& contacts, std::span<const DeepPlace> places, double allowed) {
     const StiffnessAdaptation& adaptation = contacts.parameters().stiffness;
     const double narrowest = 0.02, least_step = 0.3, greatest_step = 0.95;  // of what a zone is allowed, in all and at once
+    const double missed = 0.3, most_unseen = 0.1;  // of what is allowed, from which on a point misses depth; of the radius, beyond which a mesh is too coarse
     for (const DeepPlace& place : places) {
         Zone* found = nullptr;
         double nearest = std::numeric_limits<double>::infinity();
@@ -86,6 +88,12 @@ void mend(const Mesh& mesh, Contacts& contacts, std::span<const DeepPlace> place
         if (open && !zone.followed && detail::holds(zone.span, place.u_i, place.u_j) && !detail::has_station(elements, place.u_i, place.u_j)) {
             zone.watched.at[core::at(zone.watched.count++ % WatchedPlaces::most)] = {place.u_i, place.u_j};
             zone.stiffness *= std::min(1.0, 2.0 * least / place.depth);
+            continue;
+        }
+        const double radius = std::min(mesh.fibre(zone.span.fibre_i).section.radius(), mesh.fibre(zone.span.fibre_j).section.radius());
+        const double unseen = std::min(zone.unseen + place.depth - std::max(seen, 0.0), most_unseen * radius);
+        if (unseen - zone.unseen > missed * allowed) {
+            zone.unseen = unseen;
             continue;
         }
         const double narrowed = std::max(narrowest, zone.narrowed * std::clamp(0.9 * allowed / place.depth, least_step, greatest_step));

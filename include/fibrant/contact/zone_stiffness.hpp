@@ -39,6 +39,7 @@ struct Zone {
     double friction_factor = 1.0;     ///< of its pair of groups, on the law's coefficient [1]
     double penetration_factor = 1.0;  ///< of its pair of groups, on the allowed penetration [1]
     double narrowed = 1.0;            ///< part of it that is left where it is deeper between contact points, in (0, 1]
+    double unseen = 0.0;              ///< depth that its contact points miss, taken off their gaps, >= 0 [length]
     WatchedPlaces watched;
     /// In the last accepted state, 0 for a pair that had no zone there, infinite where nothing was accepted yet [length].
     double deepest = std::numeric_limits<double>::infinity();

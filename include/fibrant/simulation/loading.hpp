@@ -84,6 +84,7 @@ template <Model M>
 struct Loading {
     Index increments = 10;
     std::vector<Stage<M>> stages{};
+    std::vector<double> damping_of_fibres{};  ///< of each fibre over that of the stages, >= 1; empty: of all the same
     double smallest_fraction = 1.0 / 256.0;  ///< of an increment, below which the run stops
     double growth = 1.5;                     ///< of the fraction after two increments without a cut
     Index most_rejected = 200;               ///< attempts in a whole run
@@ -107,6 +108,7 @@ struct Loading {
         core::require(growth > 1.0, "Loading.growth", growth, "> 1");
         core::require_finite("Loading.growth", growth);
         core::require_at_least("Loading.most_rejected", most_rejected, 0);
+        for (const double over : damping_of_fibres) core::require(over >= 1.0 && over < 1e12, "Loading.damping_of_fibres", over, ">= 1 and < 1e12");
         const bool timed = law::FrictionWithRate<typename M::Friction>;
         if (timed && stages.empty()) core::refuse("Loading.stages", "none", "at least one that has a duration: the law of friction has a rate");
         for (const Stage<M>& stage : stages) {

@@ -24,6 +24,7 @@ ModelParameters<M> parting_parameters(double radius, double allowed, double limi
     parameters.normal.law.regularisation_depth = allowed;
     parameters.normal.limit = limit;
     parameters.contact.stiffness.allowed_penetration = allowed;
+    parameters.iteration.overshoot = 0.5;  // contacts that close and let go in turns send Newton's method to and fro
     if constexpr (core::Active<typename M::Friction>) {
         parameters.friction.friction_coefficient = 0.0;  // until fibres have parted: else the way would be remembered
         parameters.friction.reversible_displacement = reversible_displacement(radius, friction_coefficient, allowed);

@@ -30,6 +30,7 @@ struct Position {
     std::vector<double> from;    ///< amplitudes at the start of the stage
     std::vector<double> holding; ///< damping of each fibre over that of all, >= 1
     static constexpr double least_damping = 1e-3;  ///< over that of the stage: below, none
+    static constexpr double vanishing = 1e-6;      ///< the same where damping waits: it ends by its share, and by halves
     static constexpr double few = 0.1;             ///< of the fibres, which alone are held harder
     static constexpr double far = 0.25;            ///< of the greatest motion: what counts as restless
     static constexpr double most_holding = 4096.0;
@@ -77,14 +78,15 @@ struct Position {
     template <Model M>
     void adapt_damping(const Stage<M>& stage, const IncrementReport& increment, double effort) {
         const double before = damping;
-        const bool waits = stage.damping_waits && progress >= 1.0 && !stage_over;
-        if (waits && increment.damping < 0.5 * stage.damping_share)
+        // What holds little enough falls no further: without any, a slack fibre is sought all over the place, and the last stage takes what it takes.
+        const bool waits = stage.damping_waits && progress >= 1.0, enough = waits && damping > 0.0 && increment.damping <= stage.damping_share;
+        if (waits && !stage_over && increment.damping < 0.5 * stage.damping_share)
             damping = std::clamp(2.0 * damping, least_damping, 1.0 / least_damping);
-        else if (increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= 0.6)
+        else if (!enough && increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= 0.6)
             damping = std::max(damping * (damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, fraction)), std::min(damping, damping_floor));
         else if (stage.damping_decay < 1.0 && effort > 0.75)
             damping = std::min(2.0 * damping, 1.0 / least_damping);
-        if (damping < least_damping) damping = 0.0;
+        if (damping < (waits ? vanishing : least_damping)) damping = 0.0;
         damping_floor *= 0.8;
         // What holds a single fibre is halved after each increment without a cut, be it by its own factor or by that of all.
         const double share = 0.5 * (before > 0.0 ? before / std::max(damping, 0.5 * before) : 1.0);
@@ -118,6 +120,13 @@ struct Position {
 
     /// Why a stage is given up, before what else is known.
     std::string not_ended(const std::string& name) const { return "stage " + name + " did not reach its end in " + std::to_string(in_stage) + " increments"; }
+
+    /// Damping of each fibre over that of all. @param own  what each has by itself; empty: 1
+    std::vector<double> held_by_fibre(const std::vector<double>& own) const {
+        std::vector<double> all = holding;
+        for (std::size_t f = 0; f < own.size(); ++f) all[f] *= own[f];
+        return all;
+    }
 
     /// Damping of the fibre that is held hardest, over that of the stage.
     double hardest() const { return damping * (holding.empty() ? 1.0 : *std::max_element(holding.begin(), holding.end())); }

@@ -139,7 +139,8 @@ private:
             Vector trial = state_;
             move_tools(amplitudes);
             laws_.drive(mesh_, amplitudes, let_last(contacts_, stage.duration * (progress - position_.progress)));
-            equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping + position_.calming.springs, position_.holding);
+            equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping + position_.calming.springs,
+                               position_.held_by_fibre(loading.damping_of_fibres));
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
                 equilibrium_, contacts_, linear_, passage_, parameters_.iteration, radius_, touching, clock_);
@@ -320,6 +321,8 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
     const auto start = std::chrono::steady_clock::now();
     const std::vector<Stage<M>> stages = stages_of(loading, channels_);
     check_ramps(stages, channels_, amplitudes_);
+    if (const Index given = core::count(loading.damping_of_fibres); given > 0 && given != mesh_.fibre_count())
+        core::refuse("Loading.damping_of_fibres", std::to_string(given) + " numbers", "one for each of " + std::to_string(mesh_.fibre_count()) + " fibres");
     if (laws_.begin(stages, mesh_, beam_, state_)) energy_.start_from_other(equilibrium_, state_);
     require_paths(stages, equilibrium_.motion(), mesh_, channels_, amplitudes_);
     Report report;

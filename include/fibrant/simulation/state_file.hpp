@@ -17,7 +17,7 @@
 
 namespace fibrant::simulation {
 
-inline constexpr const char* checkpoint_format = "fibrant checkpoint 15";
+inline constexpr const char* checkpoint_format = "fibrant checkpoint 16";
 
 /// Tells how fibres are cut and grouped: the same in programs whose compilers round differently.
 template <beam::BeamElement B>
@@ -148,7 +148,7 @@ void get_memory(CheckpointReader& file, std::vector<Record>& records, std::vecto
         std::memcpy(static_cast<void*>(&zone), bytes.data(), bytes.size());
         const proximity::ProximityZone& span = zone.span;
         file.require(known(span.fibre_i) && known(span.fibre_j) && zone.stiffness >= 0.0 && !std::isnan(zone.deepest));
-        file.require(zone.narrowed > 0.0 && zone.narrowed <= 1.0 && zone.watched.count >= 0);
+        file.require(zone.narrowed > 0.0 && zone.narrowed <= 1.0 && zone.watched.count >= 0 && zone.unseen >= 0.0 && std::isfinite(zone.unseen));
         for (const auto& place : zone.watched.at) file.require(std::isfinite(place[0]) && std::isfinite(place[1]));
         for (const double place : {span.a_i, span.b_i, span.a_j, span.b_j, span.closest_i, span.closest_j, zone.stiffness})
             file.require(std::isfinite(place));

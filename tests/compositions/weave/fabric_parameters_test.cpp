@@ -143,6 +143,21 @@ TEST_CASE("an overhang that ends may slip out of is told") {
     CHECK(doubts(fabric).size() == 2);
 }
 
+TEST_CASE("fibres that kink under the tension at the end are told, with the elements that they would need") {
+    FabricParameters fabric = small_fabric(4, 19);
+    SettleParameters settle;
+    CHECK(doubts(fabric, settle).empty());
+    // A round fibre turns over sqrt(E I / T) = r / 2 sqrt(factor / strain): 1 / 0.08 of them on its length are as many elements as it needs.
+    const double length = fabric.fibre_length(Family::warp), turn = 0.041 * length / static_cast<double>(fabric.elements);
+    const double strain = settle.tension_strain * settle.final_tension_factor, r = fabric.warp.fibre_radius;
+    fabric.warp.inertia_factor = strain * std::pow(2.0 * turn / r, 2);
+    REQUIRE(doubts(fabric, settle).size() == 1);
+    const std::string needed = std::to_string(static_cast<Index>(std::ceil(0.08 / 0.041 * static_cast<double>(fabric.elements)))) + " elements";
+    CHECK(doubts(fabric, settle).front().find(needed) != std::string::npos);
+    settle.final_tension_factor /= 5.0;
+    CHECK(doubts(fabric, settle).empty());
+}
+
 TEST_CASE("a programme of settling that cannot be is refused") {
     using S = SettleParameters;
     const auto refused_settling = [](auto&& change) {

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Settling small fabrics to their rest: what two fibres may be deep in each other holds anywhere along them.
+#include "near.hpp"
 #include "small_weave.hpp"
 
 #include <fibrant/compositions/weave/audit.hpp>
+#include <fibrant/simulation/audit.hpp>
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 using namespace fibrant;
 
@@ -68,6 +71,62 @@ TEST_CASE("contact on the way is as soft as allowed, but no softer than what par
     CHECK(std::abs(soft() / 0.05 - 1.0) < 1e-12);
     settle.allowed_penetration_over_radius = 0.2;
     CHECK(std::abs(soft() / 0.2 - 1.0) < 1e-12);
+}
+
+// Two layers of three fibres, 0.3 of a radius deep in each other, ends held: nothing says which way they part but where they lie.
+scene::Assembly two_layers(double radius, double spacing) {
+    scene::Assembly assembly;
+    for (const bool upper : {false, true})
+        for (int k = -1; k <= 1; ++k) {
+            const Vec3 along = upper ? Vec3(Vec3::UnitY()) : Vec3(Vec3::UnitX()), across = upper ? Vec3(Vec3::UnitX()) : Vec3(Vec3::UnitY());
+            const Vec3 middle = spacing * k * across + (upper ? 1.7 * radius : 0.0) * Vec3::UnitZ();
+            scene::FibreSpecification fibre;
+            fibre.from = middle - 1.5 * spacing * along, fibre.to = middle + 1.5 * spacing * along;
+            fibre.section = scene::circular(radius), fibre.material = {7300.0, 0.3}, fibre.elements = 8;
+            const Index f = assembly.add(fibre);
+            assembly.hold_position(scene::first_end(f)), assembly.hold_position(scene::last_end(f));
+            assembly.hold_axial_rotation(scene::first_end(f));
+        }
+    return assembly;
+}
+
+TEST_CASE("any assembly settles by numbers that it gives itself") {
+    const double r = 0.04, spacing = 0.6, bending = 7300.0 * scene::circular(r).second_moment_1();
+    const scene::Assembly layers = two_layers(r, spacing);
+    const auto scales = simulation::scales_of(layers, {}, 1.0, proximity::GridSearch());
+    CHECK(scales.radius == r);
+    CHECK(scales.slack == test::near(48.0 * bending / std::pow(spacing, 3), 1e-12));  // three crossings on three spacings of length
+    CHECK(scales.taut == scales.slack);                                               // nothing pulls
+    CHECK(scales.driven);
+    const auto loading = simulation::settling<Model>(layers);
+    CHECK(loading.stages.front().damping == test::near(0.1 / 0.25 * scales.slack, 1e-12));
+    simulation::Simulator<Model> simulator(layers, simulation::settling_parameters<Model>(r, {}));
+    const simulation::Report report = simulator.run(loading);
+    CAPTURE(report.reason);
+    CHECK(report.converged);
+    const simulation::Audit audit = simulation::audit(simulator, 0.01 * r);
+    CHECK(audit.clean());
+    CHECK(audit.least_gap.gap < 0.0);
+}
+
+TEST_CASE("fibres of a tow that crosses count once, and its pull is that of its ends") {
+    const cloth::FabricParameters fabric = small_fabric();
+    const double strain = 2e-3, length = fabric.fibre_length(cloth::Family::warp), span = length / static_cast<double>(fabric.weft_tows);
+    const auto scales = simulation::scales_of(cloth::flat_fabric(fabric, strain), {cloth::tension_channel, true}, 0.01, proximity::GridSearch());
+    const double area = std::numbers::pi * fabric.warp.fibre_radius * fabric.warp.fibre_radius, pull = strain * fabric.warp.material.young_modulus * area;
+    const double bending = fabric.warp.material.young_modulus * fabric.warp.inertia_factor * 0.25 * area * fabric.warp.fibre_radius * fabric.warp.fibre_radius;
+    CHECK(scales.slack == test::near(48.0 * bending / std::pow(span, 3), 1e-9));
+    CHECK(scales.taut - scales.slack == test::near(4.0 * pull * static_cast<double>(fabric.elements) / length, 1e-9));
+    CHECK(scales.ordered);
+    CHECK(scales.over_softest.empty());
+    cloth::FabricParameters mixed = fabric;  // wefts of a hundredth: springs on warps are as much stiffer as these are
+    mixed.weft.material.young_modulus /= 100.0;
+    const cloth::SettleParameters settle;
+    const auto loading = cloth::settling<Model>(mixed, settle), equal = cloth::settling<Model>(fabric, settle);
+    REQUIRE(core::count(loading.damping_of_fibres) == fabric.fibres());
+    CHECK(loading.stages[1].damping == test::near(equal.stages[1].damping / 100.0, 1e-12));
+    CHECK(loading.damping_of_fibres.front() == test::near(100.0, 1e-12));
+    CHECK(loading.damping_of_fibres.back() == 1.0);
 }
 
 }  // namespace settle_test

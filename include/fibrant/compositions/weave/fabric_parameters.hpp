@@ -8,6 +8,7 @@
 #include <fibrant/core/types.hpp>
 #include <fibrant/scene/cross_section.hpp>
 #include <fibrant/scene/elastic_material.hpp>
+#include <fibrant/simulation/settle_parameters.hpp>
 
 #include <cmath>
 #include <string>
@@ -124,39 +125,14 @@ struct FabricParameters {
     }
 };
 
-/// How flat interpenetrating tows become a fabric (Durville, section 15.3.5).
-struct SettleParameters {
-    double tension_strain = 2e-3;        ///< tension of a tow over its E A while tows part [1], > 0
-    double final_tension_factor = 1e-2;  ///< tension at the end over that at the start [1], in (0, 1]
-    Index tension_increments = 1;        ///< in which the tension is raised from its first part, >= 1
-    double gap_limit_over_radius = 0.25;  ///< deepest penetration that a law is shown in an increment, about its motion [1], > 0
-    double allowed_penetration_over_radius = 1e-2;  ///< [1], in (0, 0.5]
-    Index separation_increments = 250;              ///< at most, until no tows overlap, >= 1
-    Index release_increments = 12;                  ///< in which the tension is lowered, >= 1
-    Index rest_increments = 200;                    ///< at most, at either tension until nothing moves, >= 1
-    double rest_motion_over_radius = 1e-2;          ///< greatest nodal motion of an increment at rest [1], > 0, unless
-    double rest_share = 3e-4;  ///< damping holds no more than this part of the forces there [1], in (0, 0.01]
-    double softness = 5.0;  ///< penetration allowed on the way over that at rest [1], in [1, 20]
-    double looseness = 1000.0;  ///< on the tolerances of passes before rest: a path is only a means [1], in [1, 1000]
-    double friction_coefficient = 0.15;             ///< from the handover on [1], >= 0; tows part without friction
+/// How flat interpenetrating tows become a fabric (Durville, section 15.3.5): pulled while they part, and let go to a hundredth.
+struct SettleParameters : simulation::SettleParameters {
+    SettleParameters() { final_tension_factor = 1e-2; }
+    double tension_strain = 2e-3;  ///< tension of a tow over its E A while tows part [1], > 0
 
     void validate() const {
-        const std::string name = "SettleParameters.";
-        core::require_positive(name + "tension_strain", tension_strain);
-        core::require(final_tension_factor > 0.0 && final_tension_factor <= 1.0, name + "final_tension_factor",
-                      final_tension_factor, "> 0 and <= 1");
-        core::require_at_least(name + "tension_increments", tension_increments, 1);
-        core::require_positive(name + "gap_limit_over_radius", gap_limit_over_radius);
-        core::require(allowed_penetration_over_radius > 0.0 && allowed_penetration_over_radius <= 0.5,
-                      name + "allowed_penetration_over_radius", allowed_penetration_over_radius, "> 0 and <= 0.5");
-        core::require_at_least(name + "separation_increments", separation_increments, 1);
-        core::require_at_least(name + "release_increments", release_increments, 1);
-        core::require_at_least(name + "rest_increments", rest_increments, 1);
-        core::require_positive(name + "rest_motion_over_radius", rest_motion_over_radius);
-        core::require(rest_share > 0.0 && rest_share <= 0.01, name + "rest_share", rest_share, "> 0 and <= 0.01");
-        core::require_between(name + "softness", softness, 1.0, 20.0);
-        core::require_between(name + "looseness", looseness, 1.0, 1000.0);
-        core::require_not_negative(name + "friction_coefficient", friction_coefficient);
+        core::require_positive("SettleParameters.tension_strain", tension_strain);
+        simulation::SettleParameters::validate();
     }
 };
 

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file The programme that settles any assembly: fibres pulled, parted, handed over to ordinary contact, released, at rest.
+
+#include <fibrant/simulation/parting_parameters.hpp>
+#include <fibrant/simulation/settle_parameters.hpp>
+#include <fibrant/simulation/settling_scales.hpp>
+#include <fibrant/simulation/simulator.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace fibrant::simulation {
+
+/// Parameters of a model whose normal law is a limited, regularised penalty.
+template <Model M>
+ModelParameters<M> settling_parameters(double radius, const SettleParameters& settle) {
+    settle.validate();
+    return parting_parameters<M>(radius, settle.allowed_penetration_over_radius * radius, settle.gap_limit_over_radius * radius,
+                                 settle.friction_coefficient);
+}
+
+/// Spring from every centre to its last place [force / length] at which an increment that shows contact a gap limit g moves what
+/// is softest by some of g: k = 0.1 (r / g) k_node. It is the inverse of a time step: half the limit is half the time and twice
+/// the spring, so that the path stays the same. With less, slack fibres leap over their neighbours; with more, increments move
+/// nothing.
+inline double settling_damping(const SettleParameters& settle, double node_stiffness) noexcept {
+    const double tenth = 0.1;  // by trial, at a gap limit of one radius
+    return tenth * settle.damping / settle.gap_limit_over_radius * node_stiffness;
+}
+
+/// The stages of settling (Durville, sections 15.3.5 and 15.4.1; durations and tensions are ours). A scene that gives nothing but
+/// itself gets a run that ends: each stage ends by what forces and true gaps say, or after so many increments.
+template <Model M>
+Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle, const Pull& pull = {}) {
+    settle.validate(), scales.validate();
+    const double r = scales.radius, allowed = settle.allowed_penetration_over_radius * r,
+                 limit = settle.gap_limit_over_radius * r;
+    // No softer than what parts fibres: a fifth of the gap that contact is shown. Softer contact is as deep as that, and pushes
+    // nothing apart.
+    const double soft = std::max(allowed, std::min(settle.softness * allowed, 0.2 * limit)), motion = 0.08 * limit,
+                 parted = 5.0 * soft;
+    const double share_at_rest = settle.rest_share, share_on_the_way = std::max(1e-3, share_at_rest);
+    const bool pulled = !pull.channel.empty(),
+               released = pulled && settle.final_tension_factor != (pull.first ? scales.parting : 1.0);
+    const double taut = settling_damping(settle, scales.taut),
+                 slack = pulled && pull.first ? taut : settling_damping(settle, scales.slack);
+    const auto ramped = [](Stage<M>& stage, Index increments) {
+        stage.increments = increments, stage.most_increments = std::max<Index>(100, 40 * increments);
+    };
+    // Slack fibres creep into their places instead of leaping: `settling_damping`. What Newton's method cannot solve at once is
+    // softened: what is deep then parts as it did in the separation.
+    Stage<M> common;
+    common.increments = 1, common.gap_limit = limit, common.gap_limit_when_cut = true, common.largest_displacement = 4.0 * limit;
+    // On the way contact is softer: contacts that change their status one by one are what Newton's method and the linear solver
+    // spend their iterations on. Paths are only a means: an increment keeps its normals, and what it leaves over moves in the
+    // next.
+    common.allowed_penetration = soft, common.looseness = settle.looseness, common.damping = taut;
+    Stage<M> separation = common;
+    separation.name = "separation";
+    separation.forced_orders = scales.ordered, separation.gap_limit_when_cut = false, separation.damping = slack;
+    separation.until = until_separated(parted);
+    separation.most_increments = settle.separation_increments;
+    Stage<M> tension = common;
+    tension.name = "tension";
+    ramped(tension, settle.tension_increments);
+    tension.ramps = {{pull.channel, pull.first ? scales.parting : 1.0, false}};
+    if (pull.first) {  // crossing fibres hardly push while they are slack, and nothing leaps
+        tension.forced_orders = scales.ordered, tension.gap_limit = 1e-3 * r, tension.gap_limit_when_cut = false;
+        tension.damping = 0.0, tension.looseness = 5.0, tension.largest_displacement = std::numeric_limits<double>::infinity();
+    } else {
+        tension.gap_limit_when_cut = false;
+    }
+    // Friction meets fibres that have just parted. Without it a bundle would spread for ever more slowly, and crossings slide to
+    // and fro; how far they had come would depend on the increments.
+    Stage<M> handover = common;
+    handover.name = "handover";
+    if constexpr (core::Active<typename M::Friction>)
+        handover.friction.emplace(typename M::Friction::Parameters{
+            settle.friction_coefficient, reversible_displacement(r, settle.friction_coefficient, allowed)});
+    handover.until = until_settled(motion, parted, share_on_the_way);
+    handover.most_increments = settle.rest_increments;
+    handover.enough_increments = std::max<Index>(1, settle.rest_increments / 2);  // what creeps for ever does so no longer
+    // After the pull damping falls, at first until it holds a thousandth of the forces, then, contact being stiff, a
+    // ten-thousandth, which is what the balance of forces is solved to: rest is an equilibrium.
+    handover.damping_decay = 0.5, handover.damping_calm = 0.6 * limit, handover.damping_share = share_on_the_way;
+    Stage<M> release = common;
+    release.name = "release";
+    ramped(release, settle.release_increments);
+    release.ramps = {{pull.channel, settle.final_tension_factor, true}};
+    Stage<M> relaxation = handover;
+    relaxation.name = "relaxation";
+    relaxation.friction.reset();
+    Stage<M> stiffening = relaxation;
+    stiffening.name = "stiffening";
+    stiffening.allowed_penetration.reset();
+    // How deep contact points are says little where fibres bend sharply around each other: what ends is judged by the true gap,
+    // at rest.
+    stiffening.until = until_settled(motion, parted, share_at_rest);
+    stiffening.damping = 4.0 * taut, stiffening.damping_share = share_at_rest, stiffening.damping_waits = true;
+    Stage<M> rest = stiffening;
+    rest.name = "rest";
+    rest.until = until_settled(settle.rest_motion_over_radius * r, parted, share_at_rest);
+    rest.enough_increments = std::numeric_limits<Index>::max();
+    rest.deepest = allowed, rest.looseness = 5.0, rest.damping_goes_on = true;
+    // Fibres that nothing holds, at rest as they begin, push on each other less and less while they part: no force is left that
+    // damping could be small against, and rest is that they move no more.
+    if (!scales.driven)
+        for (Stage<M>* stage : {&handover, &stiffening, &rest}) {
+            stage->damping = slack, stage->damping_decay = 1.0, stage->damping_share = 0.0;
+            stage->damping_waits = stage->damping_goes_on = false;
+        }
+    Loading<M> loading;
+    loading.damping_of_fibres = scales.over_softest;
+    if (pulled && pull.first) loading.stages.push_back(tension);
+    loading.stages.push_back(separation);
+    if (pulled && !pull.first) loading.stages.push_back(tension);
+    loading.stages.push_back(handover);
+    if (released) loading.stages.push_back(release), loading.stages.push_back(relaxation);
+    loading.stages.push_back(stiffening), loading.stages.push_back(rest);
+    return loading;
+}
+
+/// Of any assembly: what it goes by is measured on the scene.
+/// @throws std::invalid_argument for an assembly without fibres, or a wrong parameter
+template <Model M>
+Loading<M> settling(const scene::Assembly& assembly, const SettleParameters& settle = {}, const Pull& pull = {}) {
+    return settling<M>(scales_of(assembly, pull, settle.final_tension_factor, typename M::Proximity()), settle, pull);
+}
+
+}  // namespace fibrant::simulation
