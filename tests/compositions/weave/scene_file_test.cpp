@@ -13,6 +13,7 @@
 
 #include <fibrant/proximity/grid_search.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <set>
 #include <string>
