@@ -13,6 +13,7 @@
 
 #include <fibrant/proximity/grid_search.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -50,7 +51,7 @@ TEST_CASE("the four scenes hold the chapter's tables") {
         CHECK(fabric.pattern.name() == (name.find("plain") == 0 ? "plain" : "twill22"));
         CHECK(fabric.fibres() == (fine ? 608 : 152));
         CHECK(9 * fabric.fibres() * fabric.nodes_per_fibre() == (fine ? 355680 : 88920));
-        CHECK(fabric.warp.fibre_radius == test::near(fine ? 0.0201 : 0.04025, 1e-3));
+        CHECK(fabric.warp.fibre_radius == test::near(0.009 * std::sqrt(380.0 / (fine ? 76.0 : 19.0)), 1e-12));
         CHECK(fabric.weft.inertia_factor == test::near(fine ? 0.20 : 0.05, 1e-12));
         CHECK(fabric.warp_spacing == 0.88);
         CHECK(fabric.fibre_length(compositions::weave::Family::weft) == test::near(4.4, 1e-12));
