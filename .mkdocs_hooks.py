@@ -13,14 +13,14 @@ def on_page_markdown(markdown, page, config, files):
     here = posixpath.dirname(page.file.src_path)
 
     def mend(match):
-        link = match.group(1)
+        text, link = match.groups()
         path = posixpath.normpath(posixpath.join("docs", here, link.split("#")[0]))
-        if "://" in link or link.startswith("#") or not path or path.startswith("docs/") or not (ROOT / path).is_file():
+        if "://" in link or link.startswith("#") or path.startswith("docs/") or not (ROOT / path).is_file():
             return match.group(0)
         linked.add(path)
-        return "](" + posixpath.relpath("source/" + path + ".txt", here or ".") + ")"
+        return '<a href="%s">%s</a>' % (posixpath.relpath("source/" + path + ".txt", here or "."), text)
 
-    return re.sub(r"\]\(([^)\s]+)\)", mend, markdown)
+    return re.sub(r"(?<!!)\[([^\]]*)\]\(([^)\s]+)\)", mend, markdown)
 
 
 def on_post_build(config):
