@@ -17,6 +17,9 @@
 #include <fibrant/observe/vtk_writer.hpp>
 #include <fibrant/simulation/audit.hpp>
 #include <fibrant/simulation/report.hpp>
+#ifdef FIBRANT_EXAMPLE_SOLVERS  // compiled once for several programs
+#include <fibrant/compiled/solvers.hpp>
+#endif
 
 #include <CLI/CLI.hpp>
 #if defined(_OPENMP)

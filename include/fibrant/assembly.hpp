@@ -9,6 +9,7 @@
 #include <fibrant/assembly/point_product.hpp>
 #include <fibrant/assembly/slide_products.hpp>
 #include <fibrant/assembly/solid_system.hpp>
+#include <fibrant/assembly/system_view.hpp>
 #include <fibrant/assembly/term_assembly.hpp>
 #include <fibrant/assembly/terms.hpp>
 #include <fibrant/assembly/visited_system.hpp>

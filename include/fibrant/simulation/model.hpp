@@ -47,7 +47,8 @@ struct SolidOf<M> {
 }  // namespace detail
 
 template <class M>
-concept HasSolver = requires { typename M::Solver; } && solver::LinearSolver<typename M::Solver, typename assembly::SystemOf<typename M::Beam, typename detail::SolidOf<M>::Type>::Type>;
+concept HasSolver = requires { typename M::Solver; } &&
+    solver::LinearSolver<typename M::Solver, assembly::Seen<typename assembly::SystemOf<typename M::Beam, typename detail::SolidOf<M>::Type>::Type>>;
 
 /// A model whose scenes have rigid tools says so: `using Tools = contact::RigidTools;`. It may be left out, as the next.
 template <class M>

@@ -25,18 +25,9 @@ public:
         work_->factors.analyse(system.layout());
     }
     template <assembly::LinearSystem System>
-    SolveStatus prepare(const System& system) {
-        return work_->status = work_->factors.prepare(system);
-    }
+    SolveStatus prepare(const System& system);
     template <assembly::LinearSystem System>
-    SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
-        if (work_->status == SolveStatus::not_finite) {
-            x.setZero(b.size());
-            return {};
-        }
-        const auto precondition = [&](const Vector& r, Vector& z) { work_->factors.apply(system.layout(), r, z); };
-        return conjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work_->vectors, x);
-    }
+    SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x);
 
 private:
     struct Work {
@@ -47,5 +38,22 @@ private:
     Parameters parameters_;
     Workspace<Work> work_;
 };
+
+// Outside of the class: `extern template` then leaves them to the file that has `template`.
+
+template <assembly::LinearSystem System>
+SolveStatus FibreBlockPcg::prepare(const System& system) {
+    return work_->status = work_->factors.prepare(system);
+}
+
+template <assembly::LinearSystem System>
+SolveReport FibreBlockPcg::solve(const System& system, const Vector& b, double tolerance, Vector& x) {
+    if (work_->status == SolveStatus::not_finite) {
+        x.setZero(b.size());
+        return {};
+    }
+    const auto precondition = [&](const Vector& r, Vector& z) { work_->factors.apply(system.layout(), r, z); };
+    return conjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work_->vectors, x);
+}
 
 }  // namespace fibrant::solver

@@ -36,83 +36,11 @@ public:
     explicit NodeBlockCholesky(const Parameters& parameters) : parameters_{core::validated(parameters)} {}
 
     template <assembly::LinearSystem System>
-    void analyse(const System& system) {
-        const scene::DofLayout& layout = system.layout();
-        Work& work = *work_;
-        std::vector<int> sizes;
-        std::vector<Vec3> places;
-        work.place.assign(layout.kind.size(), {});
-        for (const scene::Chain& chain : layout.chains) {
-            for (Index k = 0; k < chain.nodes * chain.vectors_per_node; ++k) {
-                work.place[core::at(chain.first_vector + k)] = {static_cast<int>(core::count(sizes) + k / chain.vectors_per_node),
-                                                                static_cast<int>(k % chain.vectors_per_node)};
-            }
-            for (Index a = 0; a < chain.nodes; ++a) places.push_back(layout.value[core::at(chain.first_vector + a * chain.vectors_per_node)]);
-            sizes.insert(sizes.end(), core::at(chain.nodes), static_cast<int>(3 * chain.vectors_per_node));
-        }
-        struct Graph {
-            const std::vector<Place>& place;
-            std::vector<std::vector<int>> columns;  // of each node, those before it, rising
-            std::vector<int> nodes;
-            void add(std::span<const Index> vectors) {
-                nodes.clear();
-                for (const Index v : vectors) nodes.push_back(place[core::at(v)].node);
-                std::sort(nodes.begin(), nodes.end());
-                nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-                for (std::size_t i = 0; i < nodes.size(); ++i)
-                    for (std::size_t j = 0; j < i; ++j) {
-                        std::vector<int>& row = columns[core::at(nodes[i])];
-                        const auto found = std::lower_bound(row.begin(), row.end(), nodes[j]);
-                        if (found == row.end() || *found != nodes[j]) row.insert(found, nodes[j]);
-                    }
-            }
-            void point(const assembly::PointTerm& term) { add(term.vectors); }
-            void dense(const assembly::DenseTerm& term) { add(term.vectors); }
-        } graph{work.place, std::vector<std::vector<int>>(sizes.size()), {}};
-        system.visit(graph);
-        std::vector<Supernodes::Pair> pairs;
-        for (int i = 0; i < static_cast<int>(sizes.size()); ++i)
-            for (const int j : graph.columns[core::at(i)]) pairs.emplace_back(i, j);
-        work.factor.analyse(sizes, pairs, places);
-    }
-
+    void analyse(const System& system);
     template <assembly::LinearSystem System>
-    SolveStatus prepare(const System& system) {
-        Work& work = *work_;
-        if (!sum(system)) {  // terms that the analysis did not have
-            analyse(system);
-            [[maybe_unused]] const bool complete = sum(system);
-            assert(complete);
-        }
-        factor(work.factor.fill() < parameters_.least_fill ? Real(0) : static_cast<Real>(parameters_.left_out));
-        work.prepared = work.factor.left_out();
-        return work.status;
-    }
-
+    SolveStatus prepare(const System& system);
     template <assembly::LinearSystem System>
-    SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
-        Work& work = *work_;
-        if (work.status == SolveStatus::not_finite) {
-            x.setZero(b.size());
-            return {};
-        }
-        const auto precondition = [&](const Vector& r, Vector& z) {
-            z = r;
-            work.factor.solve(z);
-        };
-        const auto iterate = [&](int limit) { return conjugate_gradient(system, precondition, b, tolerance, limit, work.vectors, x); };
-        if (work.factor.left_out() != work.prepared) factor(work.prepared);  // the solution before fell back
-        int before = 0;
-        if (work.prepared > 0) {
-            const SolveReport report = iterate(compressed_limit);
-            if (report.status != SolveStatus::iteration_limit) return report;
-            before = report.iterations;
-            factor(0);
-        }
-        SolveReport report = iterate(parameters_.iteration_limit);
-        report.iterations += before;
-        return report;
-    }
+    SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x);
 
     /// Entries of the factor of A as it is.
     Index fill() const { return work_->factor.fill(); }
@@ -186,6 +114,90 @@ private:
     Parameters parameters_;
     Workspace<Work> work_;
 };
+
+// Outside of the class: `extern template` then leaves them to the file that has `template`.
+
+template <class Real>
+template <assembly::LinearSystem System>
+void NodeBlockCholesky<Real>::analyse(const System& system) {
+    const scene::DofLayout& layout = system.layout();
+    Work& work = *work_;
+    std::vector<int> sizes;
+    std::vector<Vec3> places;
+    work.place.assign(layout.kind.size(), {});
+    for (const scene::Chain& chain : layout.chains) {
+        for (Index k = 0; k < chain.nodes * chain.vectors_per_node; ++k) {
+            work.place[core::at(chain.first_vector + k)] = {static_cast<int>(core::count(sizes) + k / chain.vectors_per_node),
+                                                            static_cast<int>(k % chain.vectors_per_node)};
+        }
+        for (Index a = 0; a < chain.nodes; ++a) places.push_back(layout.value[core::at(chain.first_vector + a * chain.vectors_per_node)]);
+        sizes.insert(sizes.end(), core::at(chain.nodes), static_cast<int>(3 * chain.vectors_per_node));
+    }
+    struct Graph {
+        const std::vector<Place>& place;
+        std::vector<std::vector<int>> columns;  // of each node, those before it, rising
+        std::vector<int> nodes;
+        void add(std::span<const Index> vectors) {
+            nodes.clear();
+            for (const Index v : vectors) nodes.push_back(place[core::at(v)].node);
+            std::sort(nodes.begin(), nodes.end());
+            nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+            for (std::size_t i = 0; i < nodes.size(); ++i)
+                for (std::size_t j = 0; j < i; ++j) {
+                    std::vector<int>& row = columns[core::at(nodes[i])];
+                    const auto found = std::lower_bound(row.begin(), row.end(), nodes[j]);
+                    if (found == row.end() || *found != nodes[j]) row.insert(found, nodes[j]);
+                }
+        }
+        void point(const assembly::PointTerm& term) { add(term.vectors); }
+        void dense(const assembly::DenseTerm& term) { add(term.vectors); }
+    } graph{work.place, std::vector<std::vector<int>>(sizes.size()), {}};
+    system.visit(graph);
+    std::vector<Supernodes::Pair> pairs;
+    for (int i = 0; i < static_cast<int>(sizes.size()); ++i)
+        for (const int j : graph.columns[core::at(i)]) pairs.emplace_back(i, j);
+    work.factor.analyse(sizes, pairs, places);
+}
+
+template <class Real>
+template <assembly::LinearSystem System>
+SolveStatus NodeBlockCholesky<Real>::prepare(const System& system) {
+    Work& work = *work_;
+    if (!sum(system)) {  // terms that the analysis did not have
+        analyse(system);
+        [[maybe_unused]] const bool complete = sum(system);
+        assert(complete);
+    }
+    factor(work.factor.fill() < parameters_.least_fill ? Real(0) : static_cast<Real>(parameters_.left_out));
+    work.prepared = work.factor.left_out();
+    return work.status;
+}
+
+template <class Real>
+template <assembly::LinearSystem System>
+SolveReport NodeBlockCholesky<Real>::solve(const System& system, const Vector& b, double tolerance, Vector& x) {
+    Work& work = *work_;
+    if (work.status == SolveStatus::not_finite) {
+        x.setZero(b.size());
+        return {};
+    }
+    const auto precondition = [&](const Vector& r, Vector& z) {
+        z = r;
+        work.factor.solve(z);
+    };
+    const auto iterate = [&](int limit) { return conjugate_gradient(system, precondition, b, tolerance, limit, work.vectors, x); };
+    if (work.factor.left_out() != work.prepared) factor(work.prepared);  // the solution before fell back
+    int before = 0;
+    if (work.prepared > 0) {
+        const SolveReport report = iterate(compressed_limit);
+        if (report.status != SolveStatus::iteration_limit) return report;
+        before = report.iterations;
+        factor(0);
+    }
+    SolveReport report = iterate(parameters_.iteration_limit);
+    report.iterations += before;
+    return report;
+}
 
 /// The fallback: of a fabric of 608 fibres in a quarter of the time of CHOLMOD and two fifths of its memory.
 using FloatBlockCholesky = NodeBlockCholesky<float>;

@@ -83,7 +83,7 @@ public:
                 contacts_->hold_reactions();
                 equilibrium_->evaluate(state);
                 equilibrium_->outline(state);
-                linear_->analyse(equilibrium_->system());
+                linear_->analyse(assembly::seen(equilibrium_->system()));
             });
             const Vector before_pass = state;
             const bool moved = !normal_passes(newton, state, accepted, searched, bound, looseness, report);

@@ -3,6 +3,7 @@
 /// @file Inner loop: Newton's method for finite strain, contact status and stick or slip, solved inexactly.
 
 #include <fibrant/assembly/equilibrium.hpp>
+#include <fibrant/assembly/system_view.hpp>
 #include <fibrant/core/stage_clock.hpp>
 #include <fibrant/solver/linear_solver.hpp>
 
@@ -240,7 +241,7 @@ private:
             const double shift = attempt > 1 ? std::ldexp(least_shift * stiffness_, 2 * (attempt - 2)) : 0.0;
             clock_->time(core::Part::assembly, [&] {
                 equilibrium.linearise(state, attempt > 0, shift);
-                if (contacts_->places().rehosted()) linear_->analyse(equilibrium.system());
+                if (contacts_->places().rehosted()) linear_->analyse(assembly::seen(equilibrium.system()));
                 right_ = -residual_;
                 equilibrium.add_learned(right_);
                 if (!prescribed_.isZero(0.0)) {
@@ -252,11 +253,11 @@ private:
                     if (scale > 0.0 && size > scale) tolerance = std::max(eta * scale / size, 1e-3 * eta);
                 }
             });
-            const SolveStatus prepared = clock_->time(core::Part::preparation, [&] { return linear_->prepare(equilibrium.system()); });
+            const SolveStatus prepared = clock_->time(core::Part::preparation, [&] { return linear_->prepare(assembly::seen(equilibrium.system())); });
             SolveReport report;
             report.status = prepared;
             if (prepared == SolveStatus::converged) {
-                report = clock_->time(core::Part::solution, [&] { return linear_->solve(equilibrium.system(), right_, tolerance, step_); });
+                report = clock_->time(core::Part::solution, [&] { return linear_->solve(assembly::seen(equilibrium.system()), right_, tolerance, step_); });
                 ++counts.linear_solves, counts.linear_iterations += report.iterations;
             }
             shifted_ = attempt;

@@ -52,14 +52,14 @@ public:
 
     template <SystemWithSolid System>
     void analyse(const System& system) {
-        fibres_.analyse(system.fibres());
+        fibres_.analyse(assembly::seen(system.fibres()));
         find_pattern(system);
         work_->summed = false;
     }
     template <SystemWithSolid System>
     SolveStatus prepare(const System& system) {
         Work& work = *work_;
-        work.status = fibres_.prepare(system.fibres());
+        work.status = fibres_.prepare(assembly::seen(system.fibres()));
         if (work.status == SolveStatus::not_finite) return work.status;
         if (!sum_alone(system)) {
             analyse_alone(system);
@@ -91,7 +91,7 @@ public:
         const auto precondition = [&](const Vector& r, Vector& z) {
             z.resize(r.size());
             work.residual = r.head(3 * first), work.correction.setZero(3 * first);
-            fibres_.precondition(system.fibres(), work.residual, work.correction);
+            fibres_.precondition(assembly::seen(system.fibres()), work.residual, work.correction);
             work.motion = r.tail(3 * nodes);
             z.head(3 * first) = work.correction;
             if (parameters_.carried) {

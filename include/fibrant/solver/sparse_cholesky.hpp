@@ -29,78 +29,11 @@ public:
     explicit SparseCholesky(const Parameters& parameters) : parameters_{core::validated(parameters)} {}
 
     template <assembly::LinearSystem System>
-    void analyse(const System& system) {
-        assemble(system);
-        if constexpr (assembly::AssembledSystem<System>) work_->factor.analyzePattern(work_->a);
-    }
-
+    void analyse(const System& system);
     template <assembly::LinearSystem System>
-    SolveStatus prepare(const System& system) {
-        Work& work = *work_;
-        assemble(system);
-        work.pivots.resize(0);
-        work.scale.resize(system.layout().unknowns());
-        for (Index k = 0; k < work.scale.size(); ++k) work.scale[k] = system.layout().held_stiffness(k / 3);
-        if (!Eigen::Map<const Vector>(work.a.valuePtr(), work.a.nonZeros()).allFinite()) {
-            return work.status = SolveStatus::not_finite;
-        }
-        work.factor.factorize(work.a);
-        work.status = SolveStatus::indefinite;
-        work.curvature = 0.0;
-        if (work.factor.info() != Eigen::Success) return work.status;  // a pivot is exactly zero
-        work.pivots = work.factor.vectorD();
-        if (!work.pivots.allFinite()) {
-            work.pivots.resize(0);
-            return work.status;
-        }
-        // Measured by what vectors have where they are held: the stiffness of directions has other units than that of positions.
-        work.scale = ordered(work.scale);
-        double least = work.pivots.size() > 0 ? std::numeric_limits<double>::infinity() : 1.0, most = 0.0;
-        for (Index k = 0; k < work.pivots.size(); ++k) {
-            const double pivot = work.pivots[k] / work.scale[k];
-            least = std::min(least, pivot), most = std::max(most, std::abs(pivot));
-        }
-        work.curvature = least > 0.0 ? 1.0 : least / most;
-        if (least > 0.0) work.status = SolveStatus::converged;
-        return work.status;
-    }
-
+    SolveStatus prepare(const System& system);
     template <assembly::LinearSystem System>
-    SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
-        Work& work = *work_;
-        x.setZero(b.size());
-        if (work.status == SolveStatus::not_finite || !b.allFinite()) return {};
-        const double norm = scaled_norm(system.layout(), b);
-        if (norm == 0.0) return {SolveStatus::converged, 0, 0.0, work.curvature};
-        SolveReport report{SolveStatus::iteration_limit, 0, 1.0, work.curvature};
-        if (!system.layout().ties.empty()) {  // the factor knows their supports only
-            const auto precondition = [&](const Vector& r, Vector& z) { descend(r, z); };
-            return conjugate_gradient(system, precondition, b, tolerance, tied_limit, work.vectors, x);
-        }
-        if (work.status == SolveStatus::indefinite) {
-            descend(b, x);
-            report.iterations = 1;
-            report.residual = relative_residual(system, b, norm, x, work.residual);
-            report.status = x.allFinite() ? SolveStatus::indefinite : SolveStatus::not_finite;
-            return report;
-        }
-        Vector best = x;
-        work.residual = b;
-        for (; report.iterations <= parameters_.refinements && report.residual > tolerance; ++report.iterations) {
-            x += work.factor.solve(work.residual);
-            const double residual = relative_residual(system, b, norm, x, work.residual);
-            if (!std::isfinite(residual)) return {SolveStatus::not_finite, report.iterations, residual, work.curvature};
-            if (report.iterations > 0 && residual >= report.residual) {  // refinement has reached its floor
-                x = best;
-                break;
-            }
-            report.residual = residual;
-            best = x;
-        }
-        if (report.residual <= tolerance) report.status = SolveStatus::converged;
-        if (b.dot(x) <= 0.0) report.status = SolveStatus::indefinite;
-        return report;
-    }
+    SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x);
 
 private:
     static constexpr int tied_limit = 500;  ///< iterations where a system has ties
@@ -166,5 +99,81 @@ private:
     Parameters parameters_;
     Workspace<Work> work_;
 };
+
+// Outside of the class: `extern template` then leaves them to the file that has `template`.
+
+template <assembly::LinearSystem System>
+void SparseCholesky::analyse(const System& system) {
+    assemble(system);
+    if constexpr (assembly::AssembledSystem<System>) work_->factor.analyzePattern(work_->a);
+}
+
+template <assembly::LinearSystem System>
+SolveStatus SparseCholesky::prepare(const System& system) {
+    Work& work = *work_;
+    assemble(system);
+    work.pivots.resize(0);
+    work.scale.resize(system.layout().unknowns());
+    for (Index k = 0; k < work.scale.size(); ++k) work.scale[k] = system.layout().held_stiffness(k / 3);
+    if (!Eigen::Map<const Vector>(work.a.valuePtr(), work.a.nonZeros()).allFinite()) {
+        return work.status = SolveStatus::not_finite;
+    }
+    work.factor.factorize(work.a);
+    work.status = SolveStatus::indefinite;
+    work.curvature = 0.0;
+    if (work.factor.info() != Eigen::Success) return work.status;  // a pivot is exactly zero
+    work.pivots = work.factor.vectorD();
+    if (!work.pivots.allFinite()) {
+        work.pivots.resize(0);
+        return work.status;
+    }
+    // Measured by what vectors have where they are held: the stiffness of directions has other units than that of positions.
+    work.scale = ordered(work.scale);
+    double least = work.pivots.size() > 0 ? std::numeric_limits<double>::infinity() : 1.0, most = 0.0;
+    for (Index k = 0; k < work.pivots.size(); ++k) {
+        const double pivot = work.pivots[k] / work.scale[k];
+        least = std::min(least, pivot), most = std::max(most, std::abs(pivot));
+    }
+    work.curvature = least > 0.0 ? 1.0 : least / most;
+    if (least > 0.0) work.status = SolveStatus::converged;
+    return work.status;
+}
+
+template <assembly::LinearSystem System>
+SolveReport SparseCholesky::solve(const System& system, const Vector& b, double tolerance, Vector& x) {
+    Work& work = *work_;
+    x.setZero(b.size());
+    if (work.status == SolveStatus::not_finite || !b.allFinite()) return {};
+    const double norm = scaled_norm(system.layout(), b);
+    if (norm == 0.0) return {SolveStatus::converged, 0, 0.0, work.curvature};
+    SolveReport report{SolveStatus::iteration_limit, 0, 1.0, work.curvature};
+    if (!system.layout().ties.empty()) {  // the factor knows their supports only
+        const auto precondition = [&](const Vector& r, Vector& z) { descend(r, z); };
+        return conjugate_gradient(system, precondition, b, tolerance, tied_limit, work.vectors, x);
+    }
+    if (work.status == SolveStatus::indefinite) {
+        descend(b, x);
+        report.iterations = 1;
+        report.residual = relative_residual(system, b, norm, x, work.residual);
+        report.status = x.allFinite() ? SolveStatus::indefinite : SolveStatus::not_finite;
+        return report;
+    }
+    Vector best = x;
+    work.residual = b;
+    for (; report.iterations <= parameters_.refinements && report.residual > tolerance; ++report.iterations) {
+        x += work.factor.solve(work.residual);
+        const double residual = relative_residual(system, b, norm, x, work.residual);
+        if (!std::isfinite(residual)) return {SolveStatus::not_finite, report.iterations, residual, work.curvature};
+        if (report.iterations > 0 && residual >= report.residual) {  // refinement has reached its floor
+            x = best;
+            break;
+        }
+        report.residual = residual;
+        best = x;
+    }
+    if (report.residual <= tolerance) report.status = SolveStatus::converged;
+    if (b.dot(x) <= 0.0) report.status = SolveStatus::indefinite;
+    return report;
+}
 
 }  // namespace fibrant::solver

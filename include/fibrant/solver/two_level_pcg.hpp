@@ -38,43 +38,11 @@ public:
     explicit TwoLevelPcg(const Parameters& parameters) : parameters_{core::validated(parameters)} {}
 
     template <assembly::LinearSystem System>
-    void analyse(const System& system) {
-        work_->chains.analyse(system.layout());
-        work_->coarse.analyse(system, parameters_.fibres_per_cluster, parameters_.elements_per_station);
-    }
+    void analyse(const System& system);
     template <assembly::LinearSystem System>
-    SolveStatus prepare(const System& system) {
-        Work& work = *work_;
-        const scene::DofLayout& layout = system.layout();
-        const assembly::HeldProjector held(layout);
-        work.coarse.begin(layout);
-        work.fine = Fine::none;
-        work.status = work.chains.prepare(system, [&](Index chain, const Matrix& band) { work.coarse.add_chain(layout, held, chain, band); });
-        if (work.status == SolveStatus::not_finite) return work.status;
-        work.ties.prepare(layout, [&](const Vector& r, Vector& z) { work.chains.apply_factors(layout, r, z); });
-        const SolveStatus coarse = work.coarse.finish(system);
-        if (coarse != SolveStatus::converged) work.status = coarse;
-        return work.status;
-    }
+    SolveStatus prepare(const System& system);
     template <assembly::LinearSystem System>
-    SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
-        Work& work = *work_;
-        if (work.status == SolveStatus::not_finite) {
-            x.setZero(b.size());
-            return {};
-        }
-        RigidCoarseSpace<>* space = &work.coarse;
-        const Cycle precondition{this, &system.layout(), &space};
-        if constexpr (UnsymmetricSystem<System>)
-            if (parameters_.unsymmetric && system.unsymmetric())
-                return stabilised_biconjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.biconjugate, x);
-        const auto renewed = [&](int iterations) {
-            if (iterations != parameters_.refine_after || space == &work.finer || !refine(system)) return false;
-            space = &work.finer;
-            return true;
-        };
-        return conjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.vectors, x, renewed);
-    }
+    SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x);
 
     /// z = M^-1 r with the coarser space, for strategies that have more parts than this.
     template <assembly::LinearSystem System>
@@ -143,5 +111,48 @@ private:
     Parameters parameters_;
     Workspace<Work> work_;
 };
+
+// Outside of the class: `extern template` then leaves them to the file that has `template`.
+
+template <assembly::LinearSystem System>
+void TwoLevelPcg::analyse(const System& system) {
+    work_->chains.analyse(system.layout());
+    work_->coarse.analyse(system, parameters_.fibres_per_cluster, parameters_.elements_per_station);
+}
+
+template <assembly::LinearSystem System>
+SolveStatus TwoLevelPcg::prepare(const System& system) {
+    Work& work = *work_;
+    const scene::DofLayout& layout = system.layout();
+    const assembly::HeldProjector held(layout);
+    work.coarse.begin(layout);
+    work.fine = Fine::none;
+    work.status = work.chains.prepare(system, [&](Index chain, const Matrix& band) { work.coarse.add_chain(layout, held, chain, band); });
+    if (work.status == SolveStatus::not_finite) return work.status;
+    work.ties.prepare(layout, [&](const Vector& r, Vector& z) { work.chains.apply_factors(layout, r, z); });
+    const SolveStatus coarse = work.coarse.finish(system);
+    if (coarse != SolveStatus::converged) work.status = coarse;
+    return work.status;
+}
+
+template <assembly::LinearSystem System>
+SolveReport TwoLevelPcg::solve(const System& system, const Vector& b, double tolerance, Vector& x) {
+    Work& work = *work_;
+    if (work.status == SolveStatus::not_finite) {
+        x.setZero(b.size());
+        return {};
+    }
+    RigidCoarseSpace<>* space = &work.coarse;
+    const Cycle precondition{this, &system.layout(), &space};
+    if constexpr (UnsymmetricSystem<System>)
+        if (parameters_.unsymmetric && system.unsymmetric())
+            return stabilised_biconjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.biconjugate, x);
+    const auto renewed = [&](int iterations) {
+        if (iterations != parameters_.refine_after || space == &work.finer || !refine(system)) return false;
+        space = &work.finer;
+        return true;
+    };
+    return conjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.vectors, x, renewed);
+}
 
 }  // namespace fibrant::solver
