@@ -4,29 +4,13 @@
 
 #include "fibres.hpp"
 
-#include <fibrant/law/frictionless.hpp>
-#include <fibrant/law/regularised_coulomb.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/simulation/simulator.hpp>
-#include <fibrant/solver/sparse_cholesky.hpp>
+#include <support/models.hpp>
 
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace fibrant::test {
-
-struct Smooth {
-    using Beam = test::Beam;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::Frictionless;
-    using Solver = solver::SparseCholesky;
-};
-struct Rough : Smooth {
-    using Friction = law::RegularisedCoulomb;
-};
 
 /// @param allowed  penetration [length]
 template <simulation::Model M>

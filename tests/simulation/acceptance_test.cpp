@@ -17,15 +17,13 @@ using namespace fibrant;
 
 namespace acceptance_test {
 
+using test::Pressing;
 using test::Smooth;
 
 const double r = 0.02, pi = std::numbers::pi, young = 7300.0, poisson = 0.3;
 
 struct Rigid : Smooth {
     using Beam = beam::RigidSectionRod;
-};
-struct Pressing : Smooth {
-    using Tools = contact::RigidTools;
 };
 
 struct Failures {

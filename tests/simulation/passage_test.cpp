@@ -15,13 +15,11 @@ using namespace fibrant;
 
 namespace passage_test {
 
+using test::Pressing;
 using test::Smooth;
 
 const double r = 0.02, pi = std::numbers::pi;
 
-struct Pressing : Smooth {
-    using Tools = contact::RigidTools;
-};
 struct Unchecked : Smooth {
     using Passage = contact::NoPassage;
 };

@@ -1,32 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Models and scenes of the tests of whole runs, and observers that keep what a run did.
+/// @file Scenes of the tests of whole runs, and observers that keep what a run did.
 
-#include <fibrant/beam/director_beam.hpp>
-#include <fibrant/law/frictionless.hpp>
-#include <fibrant/law/regularised_coulomb.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/simulation/simulator.hpp>
-#include <fibrant/solver/sparse_cholesky.hpp>
+#include <support/models.hpp>
 
+#include <cmath>
 #include <cstring>
 #include <numbers>
 #include <vector>
 
 namespace fibrant::test {
-
-template <law::FrictionLaw FrictionLaw>
-struct DirectModel {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = FrictionLaw;
-    using Solver = solver::SparseCholesky;
-};
-using Smooth = DirectModel<law::Frictionless>;
-using Rough = DirectModel<law::RegularisedCoulomb>;
-static_assert(simulation::Model<Smooth> && simulation::Model<Rough>);
 
 /// The fibre of the reference solutions: along z, g_1 = x, clamped at s = 0. Lengths times `unit`, forces times `force`.
 struct Rod {

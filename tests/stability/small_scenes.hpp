@@ -3,13 +3,9 @@
 /// @file Small scenes as plain data, so that they can be moved, mirrored, scaled, renamed and drawn at random; and measures of what
 /// came of them that share no code with contact.
 
-#include <fibrant/beam/director_beam.hpp>
+#include <support/models.hpp>
+
 #include <fibrant/law/augmented.hpp>
-#include <fibrant/law/regularised_coulomb.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/simulation/simulator.hpp>
-#include <fibrant/solver/sparse_cholesky.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,13 +16,7 @@
 
 namespace fibrant::test {
 
-struct StableModel {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::SparseCholesky;
-};
+using StableModel = Rough;
 
 /// Multipliers that complete the penalty.
 struct MultipliedModel : StableModel {

@@ -50,9 +50,7 @@ struct Drawn {
     double moment = 0.0;    ///< on the tool about its axis, over what the two forces at the ends exert [1]
 };
 
-struct Tooled : Rough {
-    using Tools = contact::RigidTools;
-};
+using Tooled = test::RoughPressing;
 /// Sections do not give way, as those of the reference.
 struct RigidTooled : Tooled {
     using Beam = beam::RigidSectionRod;

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 // An overhand knot in a straight rod, against the theory of loose knots (overhand_knot.json) with its next term: F R^2 / (E I) =
 // 1/2 + (3 sigma / pi) (r / R)^1/2, R the length that the knot takes up over 2 pi; and what friction adds to the pull.
-#include <fibrant/beam/director_beam.hpp>
 #include <fibrant/compositions/knot/overhand_knot.hpp>
-#include <fibrant/law/regularised_coulomb.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/sparse_cholesky.hpp>
 
 #include <refusal.hpp>
+#include <support/models.hpp>
 
 #include <doctest/doctest.h>
 
@@ -21,13 +17,7 @@ namespace overhand_knot_test {
 
 namespace knot = compositions::knot;
 
-struct Knotted {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::SparseCholesky;
-};
+using Knotted = test::Rough;
 const double r = 0.0201;
 
 knot::KnotParameters tied(double slenderness, Index elements, int crossings = 3) {
