@@ -108,11 +108,11 @@ template <WholeChainSystem System>
 SystemView seen(const System& system) noexcept {
     return SystemView(system);
 }
-template <LinearSystem System>
+template <class System>
 const System& seen(const System& system) noexcept {
     return system;
 }
-template <LinearSystem System>
+template <class System>
 using Seen = std::remove_cvref_t<decltype(seen(std::declval<const System&>()))>;
 
 }  // namespace fibrant::assembly

@@ -27,6 +27,23 @@ struct AttemptReport {
     double allowed = 0.0;       ///< what that may be anywhere without harm [length]
 };
 
+/// Numbers of the nested loops that no scene has had to change. Where no source is named, they were chosen by trial on the scenes of the
+/// examples and the tests of stability.
+namespace nested_numbers {
+inline constexpr double ahead = 1.1;   ///< of what is driven: else a search that reaches just so far is soon repeated [1]
+inline constexpr double both = 2.0;    ///< two fibres may each move by what is expected [1]
+inline constexpr double kept = 0.25;   ///< part of a search's reach that is moved before the next one [1]
+inline constexpr Index most_moves = 6, most_moves_bounded = 2;  ///< searches after such motions; where displacements are bounded
+inline constexpr Index first_searches = 2;                      ///< of an increment, which no small motion makes up for
+inline constexpr double coarsest_step = 0.02;                   ///< of an iteration within a pass [radius]
+inline constexpr double finer = 0.1;                            ///< part of a tolerance that a loop inside need not go below [1]
+// Extrapolation of passes that follow one mode, as a geometric series (Aitken 1926).
+inline constexpr double least_ratio = 0.4;       ///< of two travels, from which it pays [1]
+inline constexpr double largest_ratio = 0.8;     ///< above it the sum of the series is too uncertain: it is taken as that of this ratio [1]
+inline constexpr double largest_series = 4.0;    ///< = 0.8 / (1 - 0.8)
+inline constexpr double longest_leap = 0.25;     ///< of an extrapolation [radius]
+}  // namespace nested_numbers
+
 /// Solves increments; loops inside are solved to a part of the last change of the loop outside.
 template <class Equilibrium, class Contacts, class Linear, class Passage>
 class NestedLoops {
@@ -45,14 +62,15 @@ public:
     /// @param furthest  displacement beyond which the attempt is given up [length]
     AttemptReport solve(Vector& state, const Vector& accepted, double expected, bool forced, double looseness = 1.0,
                         double furthest = std::numeric_limits<double>::infinity()) {
+        namespace with = nested_numbers;
         AttemptReport report;
         Newton<Equilibrium, Contacts, Linear> newton(*equilibrium_, *contacts_, *linear_, parameters_, radius_, *clock_);
         // What is driven goes on as it did: a search that reaches just so far would have to be repeated every other time.
         Vector driven;
         equilibrium_->prescribed_step(state, driven);
-        if (const double least = equilibrium_->greatest(driven); least > 0.0) expected = 1.1 * std::max(expected, least);
-        const double reach = std::clamp(2.0 * expected, parameters_.margin * radius_, parameters_.largest_margin * radius_);
-        contacts_->parameters().detection.wanted = 2.0 * expected;
+        if (const double least = equilibrium_->greatest(driven); least > 0.0) expected = with::ahead * std::max(expected, least);
+        const double reach = std::clamp(with::both * expected, parameters_.margin * radius_, parameters_.largest_margin * radius_);
+        contacts_->parameters().detection.wanted = with::both * expected;
         const double bound = contact_possible_ ? std::max(reach, radius_) : std::numeric_limits<double>::infinity();
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
@@ -61,7 +79,7 @@ public:
         Index passes = 0, searches = 0, moves = 0, renewals = 0, stiffenings = 0;
         // Further than so many searches reach: what hardly anything holds goes on for ever, and where displacements have a bound,
         // more damping or a smaller increment costs less than to follow it.
-        const Index most_moves = std::isfinite(furthest) ? 2 : 6;
+        const Index most_moves = std::isfinite(furthest) ? with::most_moves_bounded : with::most_moves;
         while (true) {
             if (passes >= parameters_.contact_limit || moves > most_moves) {
                 report.reason = "contact passes do not settle: last displacement " + core::text(change / radius_) + " radii";
@@ -71,7 +89,7 @@ public:
             ++report.counts.contact_passes;
             // Zones are kept while nothing could have come into or out of reach unseen. Beside the time, this keeps
             // contact elements from jumping in and out at the ends of zones, which may go on for ever.
-            const bool search = searches < 2 || !contact_possible_ || equilibrium_->greatest(state - searched) > 0.25 * bound;
+            const bool search = searches < with::first_searches || !contact_possible_ || equilibrium_->greatest(state - searched) > with::kept * bound;
             if (search) searched = state, ++searches;
             clock_->time(search ? core::Part::search : core::Part::contact, [&] {
                 const double far = std::isfinite(bound) ? bound : parameters_.margin * radius_;
@@ -181,6 +199,7 @@ private:
     /// Normal passes on one set of contact elements. @returns false if the search has to be repeated first.
     bool normal_passes(Newton<Equilibrium, Contacts, Linear>& newton, Vector& state, const Vector& accepted,
                        const Vector& searched, double bound, double looseness, AttemptReport& report) {
+        namespace with = nested_numbers;
         const double finest = parameters_.step_tolerance * radius_;
         const double enough = looseness * parameters_.normal_step_tolerance * radius_;
         double first = 0.0, change = std::numeric_limits<double>::infinity();
@@ -190,7 +209,7 @@ private:
                 const double turn = turn_ = clock_->time(core::Part::contact, [&] { return equilibrium_->refresh(state, accepted, contacts_->refresh(state, accepted)); });
                 // The contact elements will move on all the same: no need to be finer than a part of what this pass moved.
                 const bool settled = turn < looseness * parameters_.normal_tolerance && change < enough;
-                if (settled || change < std::max(0.1 * parameters_.inexact * first, 0.1 * enough)) break;
+                if (settled || change < std::max(with::finer * parameters_.inexact * first, with::finer * enough)) break;
                 // Fibres that roll over each other creep in equal steps: go several of them at once.
                 const double factor = extrapolation(travel, last_travel, change);
                 if (factor != 0.0) {
@@ -202,8 +221,8 @@ private:
             }
             ++report.counts.normal_passes;
             const Vector before = state;
-            const double loose = std::isfinite(change) ? parameters_.inexact * change : 0.02 * radius_;
-            const double tolerance = contact_possible_ ? std::clamp(loose, finest, 0.02 * radius_) : finest;
+            const double loose = std::isfinite(change) ? parameters_.inexact * change : with::coarsest_step * radius_;
+            const double tolerance = contact_possible_ ? std::clamp(loose, finest, with::coarsest_step * radius_) : finest;
             const NewtonReport inner = newton.solve(state, tolerance, searched, bound, report.counts);
             if (inner.status == NewtonStatus::converged) equilibrium_->close_ties(state);
             report.residual = inner.residual.relative(), report.force_scale = inner.residual.scale, report.step = inner.step;
@@ -226,14 +245,15 @@ private:
     /// swings to and fro has its end behind it (Aitken 1926): a loop that can turn freely about its ends is pushed by each normal that
     /// turns with it.
     double extrapolation(const Vector& travel, const Vector& last_travel, double change) const {
+        namespace with = nested_numbers;
         if (travel.size() == 0 || last_travel.size() == 0) return 0.0;
         const double along = equilibrium_->product(travel, last_travel), last = equilibrium_->product(last_travel, last_travel);
         const double ratio = along / last;
         if ((ratio > growing || ratio < -swinging) && along * along > same_way * same_way * last * equilibrium_->product(travel, travel))
-            return std::max(ratio / (1.0 - ratio), -0.25 * radius_ / change);
-        if (!(ratio > 0.4)) return 0.0;
-        const double series = ratio < 0.8 ? ratio / (1.0 - ratio) : 4.0;
-        return std::min(series, 0.25 * radius_ / change);
+            return std::max(ratio / (1.0 - ratio), -with::longest_leap * radius_ / change);
+        if (!(ratio > with::least_ratio)) return 0.0;
+        const double series = ratio < with::largest_ratio ? ratio / (1.0 - ratio) : with::largest_series;
+        return std::min(series, with::longest_leap * radius_ / change);
     }
     static constexpr double same_way = 0.9;  ///< cosine of two travels that follow one mode
     static constexpr double growing = 1.3, swinging = 0.7;  ///< ratios of two travels from which a series does not end by itself, or hardly
