@@ -6,6 +6,7 @@
 #include <fibrant/contact/closest_places.hpp>
 #include <fibrant/contact/contact_detection.hpp>
 #include <fibrant/contact/contact_element.hpp>
+#include <fibrant/contact/contact_figures.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/contact/contact_set.hpp>

@@ -4,6 +4,7 @@
 
 #include <fibrant/contact/contact_detection.hpp>
 #include <fibrant/contact/contact_element.hpp>
+#include <fibrant/contact/contact_figures.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/contact/element_directions.hpp>
@@ -224,24 +225,7 @@ public:
         return most;
     }
 
-    ContactFigures figures(const Vector& state) const {
-        return core::ordered_sum(core::count(elements_), ContactFigures{}, [&](Index first, Index last) {
-            ContactFigures sum;
-            sum.elements = last - first;
-            for (Index k = first; k < last; ++k) {
-                const Element& element = elements_[core::at(k)];
-                const ContactResponse& response = responses_[core::at(k)];
-                if (response.reaction > 0.0) ++sum.active;
-                if (element.shift.value() > 0.0) ++sum.shifted;
-                sum.greatest_penetration = std::max(sum.greatest_penetration, -element.gap(state));
-                sum.work += normal_energy(normal_, *mesh_, element, response.gap, stiffness(element));
-                sum.reaction_sum += response.reaction;
-                if constexpr (core::Active<Friction>)
-                    sum.work += frictions_[core::at(k)].stored, sum.dissipated += frictions_[core::at(k)].dissipated;
-            }
-            return sum;
-        });
-    }
+    ContactFigures figures(const Vector& state) const { return contact::figures(*this, *mesh_, state); }
 
     /// Penetration that zones are adapted to from now on [length], > 0.
     void allow_penetration(double length) {
