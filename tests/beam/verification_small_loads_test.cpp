@@ -71,7 +71,9 @@ TEST_CASE("a fibre stretches with EA and Poisson's contraction is free") {
         const double error = extension / (strain * rod.length) - 1.0;
         std::printf("stretching, %s clamp: %.1e\n", rigid ? "whole" : "rotation", error);
         CHECK(std::abs(error) < (rigid ? 0.7 * rod.radius / rod.length : 1e-6));
-        CHECK(mesh.director(16, 1)[0] - 1.0 == test::near(-rod.poisson * strain, 1e-5));
+        // What a clamp holds of the contraction dies out within a radius or so. Elements of 12.5 radii do not see that: of it a quarter is left at the
+        // last node, eight of them away.
+        CHECK(mesh.director(16, 1)[0] - 1.0 == test::near(-rod.poisson * strain, rigid ? 0.3 : 1e-5));
     }
 }
 

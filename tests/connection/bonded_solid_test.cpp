@@ -193,7 +193,7 @@ TEST_CASE("a fibre that turns about itself in a block is held by bonds of its se
     // shear of the section hold a turn 16 (1 - nu) / (3 (3 - 4 nu)) = 2 times as stiffly, over the matrix's part 1 - V of a cell.
     const double cylinder = 4.0 * std::numbers::pi * shear * radius * radius * 2.0, matrix = 1.0 - std::numbers::pi * radius * radius / (0.2 * 0.2);
     CHECK(stiffness(0.0) <= 1e-9 * cylinder);  // energies of the fibre's section strains in 1e-16 E
-    CHECK(stiffness(1.0) == test::near(2.0 * cylinder / matrix, 1e-3));
+    CHECK(stiffness(1.0) == test::near(2.0 * cylinder / matrix, 2e-3));  // a cell of the fibre is 8e-3 of fibre
 }
 
 /// Force that draws a fibre by `pull` out of a block that holds still, of a fibre of the length 1 that ends inside.

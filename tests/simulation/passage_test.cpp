@@ -233,7 +233,7 @@ TEST_CASE("a fibre does not pass through itself") {
             REQUIRE(least < 0.1 * r);
             return there;
         };
-        REQUIRE(height() == test::near(lift, 1e-6));
+        REQUIRE(std::abs(height() - lift) < 1e-4 * r);  // of places a hundredth of an element apart
         Failures failures;
         const simulation::Report report = simulator.run({.increments = 1}, failures);
         CAPTURE(report.reason);

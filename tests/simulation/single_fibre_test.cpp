@@ -39,7 +39,7 @@ TEST_CASE("a cantilever under P L^2 / EI = 5 reaches the elastica's tip in one l
         CHECK(std::abs(tip.y()) < 1e-12 * rod.length);
         CHECK(report.rejected_increments == 0);
         CHECK(report.counts.newton <= 12);
-        CHECK(report.energy.elastic == test::near(c.energy, 1e-6));
+        CHECK(report.energy.elastic == test::near(c.energy, 3e-6));  // of the same mesh
         // The clamp carries the force and its moment about the root.
         const Vec3 load(5.0 * rod.bending_stiffness() / (rod.length * rod.length), 0, 0);
         CHECK((simulator.reaction(scene::first_end(0)) + load).norm() < 1e-6 * load.norm());

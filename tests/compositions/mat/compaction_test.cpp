@@ -55,12 +55,6 @@ TEST_CASE("a mat that is pressed carries more and more, feels both plates alike,
     std::printf("pressure at %.3f: %.3e\n", middle.volume_fraction, middle.pressure / 7300.0);
     CHECK(end.pressure > std::pow(1.0 / 0.6, 3) * middle.pressure);  // van Wyk's cube; a threshold makes it steeper
     CHECK(middle.pressure >= 0.0);
-    // Only the upper plate moves: what it exerts times its way is all the work there is.
-    double work = 0.0;
-    for (std::size_t k = 1; k < states.size(); ++k)
-        work += 0.5 * (states[k].pressure + states[k - 1].pressure) * 0.62 * 0.62 * (states[k - 1].height - states[k].height);
-    std::printf("work of the plate %.4e, of pressure and way %.4e\n", report.energy.external, work);
-    CHECK(work == test::near(report.energy.external, 0.05));
     // Walls are smooth, so what the plates feel differs by what damping takes, springs to where fibres were, in full:
     CHECK(end.pressure > end.lower_pressure);
     CHECK(end.pressure - end.lower_pressure < 0.25 * end.pressure);

@@ -122,7 +122,7 @@ Bundles bundles(const std::string& name, const std::vector<simulation::Ramp>& ra
     std::filesystem::remove(file);
     simulation::LoadProgramme programme;
     programme.stages = {{.name = "load", .increments = increments, .ramps = ramps, .damping = damped ? 1.0 : 0.0, .looseness = 1.0}};
-    programme.damping = 1e-8 * fabric.warp.axial_stiffness() / fabric.fibre_length(cloth::Family::warp);
+    programme.damping = 1e-6 * fabric.warp.axial_stiffness() / fabric.fibre_length(cloth::Family::warp);
     const simulation::Report report = simulator.run(simulation::loading_of<Loaded>(programme));
     CAPTURE(report.reason);
     REQUIRE(report.converged);
@@ -160,7 +160,7 @@ TEST_CASE("bundles of straight fibres are drawn, sheared and bent by what their 
         const Bundles sheared = bundles("shear", {{cloth::tension_channel, pull}, {cloth::shear_channel, 0.02}}, 2, 1.0, true);
         const double angle = std::atan2(0.02 * sheared.load.height, sheared["north_y"] - sheared["south_y"]);
         CHECK(sheared["angle_deg"] == test::near(angle * 180.0 / 3.14159265358979323846, 1e-9));
-        CHECK(sheared["force"] == test::near(2.0 * EA * pull * std::tan(angle), 1e-4));  // damping holds a 1e-6th of it
+        CHECK(sheared["force"] == test::near(2.0 * EA * pull * std::tan(angle), 3e-4));  // damping holds a ten-thousandth of it
         CHECK(sheared["east_force_x"] == test::near(2.0 * EA * pull, 1e-6));
         CHECK(sheared["west_force_x"] == test::near(-2.0 * EA * pull, 1e-6));
     }
@@ -181,7 +181,7 @@ TEST_CASE("bundles of straight fibres are drawn, sheared and bent by what their 
             stiffness += 2.0 * fabric.warp.material.young_modulus * (fabric.warp.section().second_moment_1() + fabric.warp.section().area() * centre.y() * centre.y());
         const Bundles bent = bundles("bending", {{cloth::bend_channel, angle}}, 2, 1.0, true);
         CHECK(bent["curvature"] == test::near(2.0 * angle / L, 1e-9));
-        CHECK(bent["moment"] == test::near(stiffness * 2.0 * angle / L, 1e-3));
+        CHECK(bent["moment"] == test::near(stiffness * 2.0 * angle / L, 0.04));  // three hundredths are the damping of the weft, which rises along the arc
         CHECK(bent.energy.elastic == test::near(0.5 * stiffness * 4.0 * angle * angle / L, 1e-3));
     }
 }
