@@ -87,13 +87,14 @@ inline std::vector<Warning> warnings(const observe::JsonObject& summary, const T
                         "Forces do not balance in the state that is shown. The how-to page \"When it says ...\" has cause and remedy.", true});
     const double gap = number("least_gap_over_radius"), depth = number("greatest_penetration_over_radius");
     const double wrong = number("wrong_crossings"), missing = number("missing_crossings");
-    if (is_false("audit_clean") && wrong + missing > 0.0)
+    const bool ended = !is_false("converged");  // what a run that stopped had not yet mended says nothing more
+    if (ended && is_false("audit_clean") && wrong + missing > 0.0)
         list.push_back({short_number(wrong) + " crossings are against the pattern, " + short_number(missing) + " are missing.",
                         "Fibres went to the wrong side. Take a smaller gap limit, less tension, or more elements.", true});
-    else if (is_false("audit_clean"))
+    else if (ended && is_false("audit_clean"))
         list.push_back({"Two fibres are " + short_number(-gap) + " radii deep in each other.",
                         "This is more than allowed. Take more elements, or say by output.deepest_over_radius that you accept it.", true});
-    if (is_false("topology_clean"))
+    if (ended && is_false("topology_clean"))
         list.push_back({"Yarns do not lie above and below each other as the textile says.",
                         "Yarns went through each other. Start with yarns that overlap less, or with more elements.", true});
     if (-gap > std::max(0.0, depth) + unseen && !is_false("audit_clean"))
