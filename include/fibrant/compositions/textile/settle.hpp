@@ -36,7 +36,7 @@ inline simulation::SettlingScales scales_of(const Textile& textile, const Assemb
         fibres.push_back({fibre.section.radius(), pulled ? path.tension_strain * young_modulus * fibre.section.area() : 0.0, element,
                           young_modulus * fibre.section.second_moment_1(), assembled.longest_spacing});
     }
-    simulation::SettlingScales scales = simulation::scales_of(fibres, false, 1.0);
+    simulation::SettlingScales scales = simulation::scales_of(fibres, false);
     scales.ordered = !assembled.assembly.orders().empty();
     scales.driven = std::any_of(textile.paths.begin(), textile.paths.end(), [](const Path& path) {
         return path.kind != PathKind::open || path.ends != Ends::free || !path.guides.empty() || path.straight;
