@@ -125,7 +125,7 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
 /// @throws std::invalid_argument for an assembly without fibres, or a wrong parameter
 template <Model M>
 Loading<M> settling(const scene::Assembly& assembly, const SettleParameters& settle = {}, const Pull& pull = {}) {
-    return settling<M>(scales_of(assembly, pull, settle.final_tension_factor, typename M::Proximity()), settle, pull);
+    return settling<M>(scales_of(assembly, pull, typename M::Proximity()), settle, pull);
 }
 
 }  // namespace fibrant::simulation

@@ -72,13 +72,12 @@ struct SettlingScales {
 };
 
 /// Of fibres, all that follows from their numbers.
-/// @param final  tension at the end over that which is asked for at first [1]; fibres part at no less
-inline SettlingScales scales_of(const std::vector<SettledFibre>& fibres, bool pulled_first, double final) {
+inline SettlingScales scales_of(const std::vector<SettledFibre>& fibres, bool pulled_first) {
     SettlingScales scales;
     scales.radius = scales.slack = scales.taut = std::numeric_limits<double>::infinity();
     if (pulled_first)
         for (const SettledFibre& fibre : fibres)
-            scales.parting = std::min(scales.parting, std::max(final, parting_part(fibre.pull, fibre.element, fibre.bending)));
+            scales.parting = std::min(scales.parting, parting_part(fibre.pull, fibre.element, fibre.bending));
     bool equal = true;
     for (const SettledFibre& fibre : fibres) {
         scales.radius = std::min(scales.radius, fibre.radius);
@@ -156,7 +155,7 @@ double crossing_span(const scene::Assembly& assembly, Search search) {
 /// The numbers of any assembly.
 /// @throws std::invalid_argument for one without fibres
 template <proximity::ProximitySearch Search>
-SettlingScales scales_of(const scene::Assembly& assembly, const Pull& pull, double final, const Search& search) {
+SettlingScales scales_of(const scene::Assembly& assembly, const Pull& pull, const Search& search) {
     if (assembly.fibres().empty()) core::refuse("assembly.fibres", "none", "at least one fibre");
     std::vector<SettledFibre> fibres;
     bool straightened = false;
@@ -172,7 +171,7 @@ SettlingScales scales_of(const scene::Assembly& assembly, const Pull& pull, doub
             double& most = fibres[core::at(force.at.fibre)].pull;
             most = std::max(most, force.force.norm());
         }
-    SettlingScales scales = scales_of(fibres, pull.first, final);
+    SettlingScales scales = scales_of(fibres, pull.first);
     scales.ordered = !assembly.orders().empty();
     const auto any = [](const auto&... lists) { return (!lists.empty() || ...); };
     scales.driven = straightened || any(assembly.holds(), assembly.forces(), assembly.moments(), assembly.pressures(),

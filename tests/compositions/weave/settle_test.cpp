@@ -93,7 +93,7 @@ scene::Assembly two_layers(double radius, double spacing) {
 TEST_CASE("any assembly settles by numbers that it gives itself") {
     const double r = 0.04, spacing = 0.6, bending = 7300.0 * scene::circular(r).second_moment_1();
     const scene::Assembly layers = two_layers(r, spacing);
-    const auto scales = simulation::scales_of(layers, {}, 1.0, proximity::GridSearch());
+    const auto scales = simulation::scales_of(layers, {}, proximity::GridSearch());
     CHECK(scales.radius == r);
     CHECK(scales.slack == test::near(48.0 * bending / std::pow(spacing, 3), 1e-12));  // three crossings on three spacings of length
     CHECK(scales.taut == scales.slack);                                               // nothing pulls
@@ -112,7 +112,7 @@ TEST_CASE("any assembly settles by numbers that it gives itself") {
 TEST_CASE("fibres of a tow that crosses count once, and its pull is that of its ends") {
     const cloth::FabricParameters fabric = small_fabric();
     const double strain = 2e-3, length = fabric.fibre_length(cloth::Family::warp), span = length / static_cast<double>(fabric.weft_tows);
-    const auto scales = simulation::scales_of(cloth::flat_fabric(fabric, strain), {cloth::tension_channel, true}, 0.01, proximity::GridSearch());
+    const auto scales = simulation::scales_of(cloth::flat_fabric(fabric, strain), {cloth::tension_channel, true}, proximity::GridSearch());
     const double area = std::numbers::pi * fabric.warp.fibre_radius * fabric.warp.fibre_radius, pull = strain * fabric.warp.material.young_modulus * area;
     const double bending = fabric.warp.material.young_modulus * fabric.warp.inertia_factor * 0.25 * area * fabric.warp.fibre_radius * fabric.warp.fibre_radius;
     CHECK(scales.slack == test::near(48.0 * bending / std::pow(span, 3), 1e-9));

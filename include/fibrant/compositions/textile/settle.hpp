@@ -33,10 +33,11 @@ inline simulation::SettlingScales scales_of(const Textile& textile, const Assemb
         const double young_modulus = fibre.material.young_modulus;
         const bool pulled = path.kind == PathKind::open && path.ends == Ends::pulled;
         const double element = scene::length_of(path.curve, 64) / static_cast<double>(fibre.elements);
-        fibres.push_back({fibre.section.radius(), pulled ? path.tension_strain * young_modulus * fibre.section.area() : 0.0, element,
-                          young_modulus * fibre.section.second_moment_1(), assembled.longest_spacing});
+        const double pull = pulled ? path.tension_strain * young_modulus * fibre.section.area() : 0.0;
+        const double bending = young_modulus * fibre.section.second_moment_1();
+        fibres.push_back({fibre.section.radius(), pull, element, bending, assembled.longest_spacing});
     }
-    simulation::SettlingScales scales = simulation::scales_of(fibres, false, 1.0);
+    simulation::SettlingScales scales = simulation::scales_of(fibres, false);
     scales.ordered = !assembled.assembly.orders().empty();
     scales.driven = std::any_of(textile.paths.begin(), textile.paths.end(), [](const Path& path) {
         return path.kind != PathKind::open || path.ends != Ends::free || !path.guides.empty() || path.straight;

@@ -59,7 +59,7 @@ simulation::Loading<M> settling(const FabricParameters& fabric, const SettlePara
     std::vector<simulation::SettledFibre> fibres;
     for (Index f = 0; f < fabric.fibres(); ++f)
         fibres.push_back(settled_fibre(fabric, fabric.place(f).family, settle.tension_strain));
-    simulation::SettlingScales scales = simulation::scales_of(fibres, true, settle.final_tension_factor);
+    simulation::SettlingScales scales = simulation::scales_of(fibres, true);
     scales.driven = scales.ordered = true;
     return simulation::settling<M>(scales, settle, {tension_channel, true});
 }
