@@ -3,6 +3,7 @@
 #include "two_fibres.hpp"
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
+#include <fibrant/contact/closest_places.hpp>
 #include <fibrant/contact/sliding_place.hpp>
 
 #include <Eigen/Eigenvalues>
@@ -128,6 +129,34 @@ TEST_CASE("with sections that are pressed flat as well, which stand while the pl
         CAPTURE(slide.kind);
         CHECK(worst.stiffness < 1e-6);
         CHECK(worst.force < 1e-6);
+    }
+}
+
+TEST_CASE("fibres that clasp each other touch at two places of one zone, with opposite normals; a crossing is one") {
+    const double h = 2.0 * r, w = 4.0 * r;
+    const auto mesh_of = [&](bool clasp) {
+        std::vector<scene::FibreSpecification> fibres(2, test::straight_fibre(Vec3(0, 0, 0), Vec3(1, 0, 0), r, 8));
+        for (const double side : {1.0, -1.0}) fibres[side < 0.0 ? 1 : 0].curve = [=](double t) {
+            const double x = 3.2 * t - 1.6;
+            return clasp ? Vec3(w * x, side * h * (1.0 - x * x), side * r * x) : Vec3(w * x, side * w * x, -side * r);
+        };
+        return test::mesh_of(fibres);
+    };
+    for (const bool clasp : {true, false}) {
+        const test::Mesh mesh = mesh_of(clasp);
+        const Vector& state = mesh.rest_state();
+        proximity::ProximityZone zone = test::zone_of(0.0, 8.0, 0.0, 8.0);
+        zone.closest_i = zone.closest_j = clasp ? 6.5 : 4.0;
+        contact::follow_closest(mesh, state, 0, 1, zone.closest_i, zone.closest_j);
+        const auto places = contact::closest_places(mesh, state, zone, {zone.closest_i, zone.closest_j});
+        CHECK(places.size() == (clasp ? 2 : 1));
+        CHECK(contact::clasped(mesh, state, zone) == clasp);
+        if (!clasp || places.size() < 2) continue;
+        // Mirror images of each other.
+        CHECK(std::abs(places[0][0] + places[1][0] - 8.0) < 1e-9);
+        CHECK(std::abs(places[0][1] + places[1][1] - 8.0) < 1e-9);
+        const auto centres = [&](const auto& place) { return contact::pair_geometry(mesh, state, 0, 1, place[0], place[1]).centres; };
+        CHECK(centres(places[0]).dot(centres(places[1])) < 0.0);
     }
 }
 

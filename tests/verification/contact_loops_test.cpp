@@ -34,9 +34,13 @@ TEST_CASE("hooks without friction hold and stay symmetric, and what pulls them d
     CHECK(few.report.counts.newton < 200);
 }
 
-TEST_CASE("hooks with friction hold as well") {
-    check_held(test::pull_hooks<test::Rough>({.elements = 20, .increments = 10, .friction = 0.1}), "friction 0.1");
-    check_held(test::pull_hooks<test::Rough>({.elements = 20, .increments = 10, .friction = 0.5}), "friction 0.5");
+TEST_CASE("hooks with friction hold as well, and stay symmetric") {
+    for (const double friction : {0.1, 0.5}) {
+        const Hooked hooked = test::pull_hooks<test::Rough>({.elements = 20, .increments = 10, .friction = friction});
+        CAPTURE(friction);
+        check_held(hooked, "friction");
+        CHECK(hooked.asymmetry < 1e-6);
+    }
 }
 
 TEST_CASE("hooks at a slant touch along a valley, and hold as well") {

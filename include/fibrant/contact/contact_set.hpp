@@ -83,7 +83,7 @@ public:
             Element& element = elements_[core::at(k)];
             const Vec3 before = element.normal;
             if (!slides(k)) place_particles(element, state, accepted, before);
-            const double turn = slides(k) ? follow(k, state) : std::atan2(before.cross(element.normal).norm(), before.dot(element.normal));
+            const double turn = slides(k) ? follow(k, state) : turn_between(before, element.normal);
             if (k < core::count(responses_) && responses_[core::at(k)].reaction > 0.0) turned[core::at(k)] = turn;
         });
         hold_reactions();
@@ -323,8 +323,7 @@ private:
         core::join(made, elements_);
     }
 
-    /// The closest patches of a state, and what stands until normals are renewed: where friction acts, so that its forces have a potential.
-    /// @returns by how much its section has turned [radian]
+    /// The closest patches, and what stands until normals are renewed: where friction acts, so that it has a potential. @returns its turn [radian]
     double follow(Index k, const Vector& state) {
         Element& element = elements_[core::at(k)];
         places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
@@ -333,7 +332,7 @@ private:
         if constexpr (core::Active<Friction>) recall_friction(element, state);
         return places_.renew(*mesh_, state, element, core::Active<Friction>);
     }
-    /// Normal of the plane of an element's friction, and its stiffness there.
+    /// Normal to an element's friction, and its stiffness.
     const Vec3& plane(Index k) const noexcept { return slides(k) ? places_.plane(elements_[core::at(k)]) : elements_[core::at(k)].normal; }
     Mat3 friction_tangent([[maybe_unused]] Index k) const noexcept {
         if constexpr (core::Active<Friction>) {
@@ -377,10 +376,7 @@ private:
     void recall_friction(Element& element, const Vector& state) const
         requires core::Active<Friction>
     {
-        const double range = 1.5 / parameters_.spacing.points_per_element;
-        const RecordedFriction<Friction> recorded = accepted_.friction(element, range);
-        const TangentPlane plane(heading(*mesh_, element, state, element.normal, recorded.sign), element.normal);
-        recorded.give(plane, element.friction.history);
+        give_friction<Friction>(*mesh_, element, state, accepted_.friction(element, 1.5 / parameters_.spacing.points_per_element));
     }
 
     std::vector<typename Memory::Record> records(const Vector& state) const {
@@ -394,11 +390,8 @@ private:
             if constexpr (law::Augmenting<Normal>)
                 if (k < core::count(responses_)) record.multiplier.force = responses_[core::at(k)].reaction;
             if constexpr (core::Active<Friction>) {
-                if (k < core::count(frictions_) && responses_[core::at(k)].reaction > 0.0) {
-                    const double sign = sign_of_j(*mesh_, element, state);
-                    const TangentPlane plane(heading(*mesh_, element, state, element.normal, sign), element.normal);
-                    record.friction = RecordedFriction<Friction>::of(frictions_[core::at(k)].history, plane, sign);
-                }
+                if (k < core::count(frictions_) && responses_[core::at(k)].reaction > 0.0)
+                    record.friction = recorded_friction<Friction>(*mesh_, element, state, frictions_[core::at(k)].history);
             }
         });
         return list;

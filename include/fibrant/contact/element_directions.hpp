@@ -41,4 +41,15 @@ Vec3 accepted_offset(const beam::Mesh<B>& mesh, const NormalRule& rule, const El
     return offset.dot(then.along) * now.along + offset.dot(then.across) * now.across + offset.dot(before) * element.normal;
 }
 
+/// A history of friction by components between the tangents of its element, and back.
+template <law::FrictionLaw Friction, class B, class Element>
+RecordedFriction<Friction> recorded_friction(const beam::Mesh<B>& mesh, const Element& element, const Vector& state, const typename Friction::History& history) {
+    const double sign = sign_of_j(mesh, element, state);
+    return RecordedFriction<Friction>::of(history, TangentPlane(heading(mesh, element, state, element.normal, sign), element.normal), sign);
+}
+template <law::FrictionLaw Friction, class B, class Element>
+void give_friction(const beam::Mesh<B>& mesh, Element& element, const Vector& state, const RecordedFriction<Friction>& recorded) {
+    recorded.give(TangentPlane(heading(mesh, element, state, element.normal, recorded.sign), element.normal), element.friction.history);
+}
+
 }  // namespace fibrant::contact

@@ -105,7 +105,9 @@ public:
     void take(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
         Held& one = held_[core::at(element.place)];
         if (!near(mesh, element.fibre_i, element.u_i, one.i) || !near(mesh, element.fibre_j, element.u_j, one.j)) renew(mesh, state, element);
-        const auto hosts = [](const SlidingPlace<B>& of) { return std::array{static_cast<Index>(of.i.count), of.i.vectors[0], static_cast<Index>(of.j.count), of.j.vectors[0]}; };
+        const auto hosts = [](const SlidingPlace<B>& of) {
+            return std::array{static_cast<Index>(of.i.count), of.i.vectors[0], static_cast<Index>(of.j.count), of.j.vectors[0]};
+        };
         const auto before = hosts(one.place);
         one.place = sliding_place(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j, one.i, one.j, element.normal,
                                   slide_of(mesh, zone, element.slide));
@@ -127,15 +129,14 @@ public:
         const double half = half_of_patch(mesh, i, j, i);
         one.i = standing_section(mesh, state, i, element.u_i, half, element.normal);
         one.j = standing_section(mesh, state, j, element.u_j, half_of_patch(mesh, i, j, j), Vec3(-element.normal));
-        double turn = rubs ? std::atan2(one.plane.cross(element.normal).norm(), one.plane.dot(element.normal)) : 0.0;
+        double turn = rubs ? turn_between(one.plane, element.normal) : 0.0;
         one.plane = element.normal;
         if constexpr (beam::DeformableSections<B>) {
             if (!before.stands) return turn;
             const auto across = [&](const StandingSection& section) {
                 return FacingSection(mean_directors(mesh, state, i, section.u, half), section.facing, mesh.fibre(i).section).across;
             };
-            const Vec3 was = across(before), is = across(one.i);
-            turn = std::max(turn, std::atan2(was.cross(is).norm(), was.dot(is)));
+            turn = std::max(turn, turn_between(across(before), across(one.i)));
         }
         return turn;
     }

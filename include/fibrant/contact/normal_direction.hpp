@@ -37,6 +37,9 @@ inline double angle_between_deg(const Vec3& a, const Vec3& b) noexcept {
     return std::atan2(a.cross(b).norm(), std::abs(a.dot(b))) * 180.0 / std::numbers::pi;
 }
 
+/// Angle between two vectors [radian]; 0 where one vanishes.
+inline double turn_between(const Vec3& a, const Vec3& b) noexcept { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
 /// Unit vector along `direction`, or `otherwise` where it vanishes.
 inline Vec3 unit_or(const Vec3& direction, const Vec3& otherwise) noexcept {
     const double size = direction.norm();
