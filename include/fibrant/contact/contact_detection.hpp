@@ -134,10 +134,10 @@ struct SampledCentrelines {
             for (Index e = 0; e < mesh.fibre(f).elements; ++e)
                 bend = std::max(bend, 0.25 * mesh.greatest_bend(state, f, e));
             const double bound = detection.chord_bound * mesh.fibre(f).section.radius();
-            const Index cut = std::clamp<Index>(static_cast<Index>(std::ceil(std::sqrt(0.5 * bend / bound))), 1, detection.finest_cut);
-            pieces.push_back({f, cut, points_total, segments_total, bend});
-            points_total += mesh.fibre(f).elements * cut + 1;
-            segments_total += mesh.fibre(f).elements * cut;
+            const Index parts = std::clamp<Index>(static_cast<Index>(std::ceil(std::sqrt(0.5 * bend / bound))), 1, detection.finest_cut);
+            pieces.push_back({f, parts, points_total, segments_total, bend});
+            points_total += mesh.fibre(f).elements * parts + 1;
+            segments_total += mesh.fibre(f).elements * parts;
         }
         points.resize(core::at(points_total));
         inflation.resize(core::at(segments_total));

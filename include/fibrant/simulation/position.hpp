@@ -38,10 +38,10 @@ struct Position {
 
     /// Progress that the next increment of a stage is to reach.
     template <Model M>
-    double next(const Stage<M>& stage) const {
+    double next(const Stage<M>& present) const {
         if (calming.resting) return progress;
-        if (stage.ramps.empty() && !stage.until && stage.duration == 0.0) return 1.0;
-        const double ahead = std::min(1.0, progress + fraction / static_cast<double>(stage.increments));
+        if (present.ramps.empty() && !present.until && present.duration == 0.0) return 1.0;
+        const double ahead = std::min(1.0, progress + fraction / static_cast<double>(present.increments));
         return ahead > 1.0 - 1e-9 ? 1.0 : ahead;
     }
 
@@ -52,11 +52,11 @@ struct Position {
     /// @param allowed   that it may be without harm [length]
     /// @param attempts  at this increment that have failed, >= 1
     template <Model M>
-    void give_way(const Stage<M>& stage, const std::vector<double>& moved, double allowed, Index attempts) {
+    void give_way(const Stage<M>& present, const std::vector<double>& moved, double allowed, Index attempts) {
         easy = 0;
-        if (attempts % 5 != 0 && damping * stage.damping > 0.0 && hold_restless(moved, allowed)) return;
+        if (attempts % 5 != 0 && damping * present.damping > 0.0 && hold_restless(moved, allowed)) return;
         // Once its ramps are over, only more damping makes an increment easier.
-        const bool damped = stage.damping > 0.0 && damping < 1.0 / least_damping;
+        const bool damped = present.damping > 0.0 && damping < 1.0 / least_damping;
         if (progress < 1.0 || !damped) fraction *= 0.5;
         damping_floor = 2.0 * damping;
         damping = std::clamp(4.0 * damping, least_damping, 1.0 / least_damping);
@@ -76,15 +76,15 @@ struct Position {
     /// Damping is the inverse of a time step: what was solved with ease goes on faster, and what was hard more slowly.
     /// @param effort  iterations of a normal pass of the last attempt over how many it may take [1]
     template <Model M>
-    void adapt_damping(const Stage<M>& stage, const IncrementReport& increment, double effort) {
+    void adapt_damping(const Stage<M>& present, const IncrementReport& increment, double effort) {
         const double before = damping;
         // What holds little enough falls no further: without any, a slack fibre is sought all over the place, and the last stage takes what it takes.
-        const bool waits = stage.damping_waits && progress >= 1.0, enough = waits && damping > 0.0 && increment.damping <= stage.damping_share;
-        if (waits && !stage_over && increment.damping < 0.5 * stage.damping_share)
+        const bool waits = present.damping_waits && progress >= 1.0, enough = waits && damping > 0.0 && increment.damping <= present.damping_share;
+        if (waits && !stage_over && increment.damping < 0.5 * present.damping_share)
             damping = std::clamp(2.0 * damping, least_damping, 1.0 / least_damping);
-        else if (!enough && increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= 0.6)
-            damping = std::max(damping * (damping > 1.0 ? 0.5 : std::pow(stage.damping_decay, fraction)), std::min(damping, damping_floor));
-        else if (stage.damping_decay < 1.0 && effort > 0.75)
+        else if (!enough && increment.cuts == 0 && increment.displacement <= present.damping_calm && effort <= 0.6)
+            damping = std::max(damping * (damping > 1.0 ? 0.5 : std::pow(present.damping_decay, fraction)), std::min(damping, damping_floor));
+        else if (present.damping_decay < 1.0 && effort > 0.75)
             damping = std::min(2.0 * damping, 1.0 / least_damping);
         if (damping < (waits ? vanishing : least_damping)) damping = 0.0;
         damping_floor *= 0.8;
@@ -112,11 +112,11 @@ struct Position {
     }
 
     template <Model M>
-    bool limits_gap(const Stage<M>& stage) const noexcept { return stage.gap_limit && (fraction < 1.0 || !stage.gap_limit_when_cut); }
+    bool limits_gap(const Stage<M>& present) const noexcept { return present.gap_limit && (fraction < 1.0 || !present.gap_limit_when_cut); }
 
     /// What was mended without success is solved to what is stated: a state that only nearly balances does not show what a mend does.
     template <Model M>
-    double looseness(const Stage<M>& stage) const noexcept { return mends > 1 ? 1.0 : stage.looseness; }
+    double looseness(const Stage<M>& present) const noexcept { return mends > 1 ? 1.0 : present.looseness; }
 
     /// Why a stage is given up, before what else is known.
     std::string not_ended(const std::string& name) const { return "stage " + name + " did not reach its end in " + std::to_string(in_stage) + " increments"; }
