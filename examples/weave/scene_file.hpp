@@ -181,9 +181,9 @@ Scene read_fabric(SceneReader& file, const More& more) {
     // Contacts that close and let go in turns send Newton's method to and fro: most of the attempts that a large weave gave up.
     scene.iteration.overshoot = 0.5;
     file.read("settle", "overshoot", scene.iteration.overshoot, {.low = 0.0, .high = 1e6, .above = true, .endless = true}, "1",
-              "a step at whose end the energy rises by more than this part of the slope at which it fell is cut");
-    example::read_friction(file, settle.friction_coefficient, "coefficient of friction, once tows have parted; 0 leaves friction out");
-    example::read_allowed_penetration(file, settle.allowed_penetration_over_radius);
+              "Newton's step is cut where the energy rises at its end by more than this part of the slope at which it fell");
+    example::read_friction(file, settle.friction_coefficient, "coefficient of friction, once tows have parted; 0: none");
+    example::read_allowed_penetration(file, settle.allowed_penetration_over_radius, "how deep a contact may be at the end, over the radius");
     read_iteration(file, scene.linear_solver, scene.iteration);
     file.read("solver", "threads", scene.threads, example::between(0, 100000), "0: as many as the machine has");
     file.read("output", "paraview", scene.paraview, "files for ParaView");

@@ -165,8 +165,10 @@ TEST_CASE("a bonded strip takes the moment of both parts, its energy balances, a
     const double matrix = matrix_modulus * width * (std::pow(0.1, 3) + std::pow(0.02, 3)) / 3.0;
     const double fibres = 3.0 * fibre_modulus * std::acos(-1.0) / 4.0 * std::pow(radius, 4);
     const simulation::Wrench wrench = composite::edge_wrench(held, scene);
-    // Beyond the inner face between the fibres, which hangs from their own, strains of 1.3 % stiffen by as much.
-    CHECK(wrench.moment.y() == test::near(curvature * (matrix + fibres), 0.02));
+    // Ends that are driven whole do not contract: 2.8 % more here, 4.0 % at 3 degrees, where strains are too small to matter. The strip below, whose ends
+    // may contract, has 0.2 % less.
+    CHECK(wrench.moment.y() == test::near(curvature * (matrix + fibres), 0.05));
+    CHECK(wrench.moment.y() > curvature * (matrix + fibres));
     CHECK(std::abs(wrench.moment.x()) + std::abs(wrench.moment.z()) <= 1e-3 * wrench.moment.y());
     // The work is summed by the trapezoidal rule, over steps in which forces turn by 1/15: that squared, over 12.
     CHECK(std::abs(report.energy.error()) <= 2e-3 * report.energy.elastic);
