@@ -21,7 +21,7 @@ struct SettleParameters {
     double softness = 5.0;                ///< penetration allowed on the way over that at rest [1], in [1, 20]
     double looseness = 1000.0;            ///< on the tolerances of passes before rest: a path is only a means [1], in [1, 1000]
     double rest_motion_over_radius = 1e-2;  ///< greatest nodal motion of an increment at rest [1], > 0, unless
-    double rest_share = 3e-4;               ///< damping holds no more than this part of the forces there [1], in (0, 0.01]
+    double rest_share = 1e-4;               ///< damping holds no more than this part of the forces there [1], in (0, 0.01]
     double damping = 1.0;                   ///< over what follows from tension, bending and spans [1], > 0
 
     void validate() const {
