@@ -16,7 +16,7 @@
 namespace fibrant::compositions::mat {
 
 /// Channel of the upper plate; its amplitude is the way that it has come down [length].
-inline const std::string press = "press";
+inline const std::string press_channel = "press";
 
 /// Tools in the order in which they are added: the lower plate, the upper one, the walls.
 inline constexpr Index lower_plate = 0, upper_plate = 1;
@@ -33,7 +33,7 @@ inline scene::Assembly boxed_mat(const MatParameters& parameters, const std::vec
     }
     const auto plane = [&](const Vec3& origin, const Vec3& normal, const std::string& name) {
         scene::Tool tool;
-        tool.name = name, tool.origin = origin, tool.axis = normal, tool.friction_factor = 0.0, tool.channel = press;
+        tool.name = name, tool.origin = origin, tool.axis = normal, tool.friction_factor = 0.0, tool.channel = press_channel;
         return tool;
     };
     assembly.add(plane(Vec3::Zero(), Vec3::UnitZ(), "lower plate"));
@@ -77,7 +77,7 @@ double mean_sine(const simulation::Simulator<M>& simulator) {
 template <simulation::Model M>
 MatState measure(const simulation::Simulator<M>& simulator, const MatParameters& parameters) {
     MatState state;
-    state.height = parameters.height - simulator.amplitude(press);
+    state.height = parameters.height - simulator.amplitude(press_channel);
     state.volume_fraction = parameters.volume_fraction(state.height);
     const auto& tools = simulator.contacts().tools();
     const double area = parameters.width * parameters.width;
@@ -141,7 +141,7 @@ simulation::Loading<M> pressing(const MatParameters& parameters, const PressPara
     simulation::Loading<M> loading;
     loading.stages.resize(1);
     simulation::Stage<M>& down = loading.stages[0];
-    down.name = "press", down.ramps = {{mat::press, parameters.height - press.height}};
+    down.name = "press", down.ramps = {{mat::press_channel, parameters.height - press.height}};
     down.increments = press.increments, down.most_increments = 40 * press.increments;
     down.damping = press.damping * 192.0 * bending / std::pow(0.1 * parameters.length, 3), down.looseness = press.looseness;
     return loading;

@@ -87,7 +87,7 @@ simulation::Loading<M> pressing_by_levels(const MatParameters& parameters, const
     double height = parameters.height;
     for (double fraction = levels.ratio * parameters.volume_fraction(height); fraction < 1.0001 * levels.last; fraction *= levels.ratio) {
         const double to = parameters.volume_fraction(1.0) / fraction;
-        press.ramps = {{mat::press, parameters.height - to}};
+        press.ramps = {{mat::press_channel, parameters.height - to}};
         press.increments = std::max<Index>(1, static_cast<Index>(std::ceil((height - to) / (levels.step * r)))), press.most_increments = 400 + 40 * press.increments;
         simulation::Stage<M> level = rest;
         level.name = "level", level.friction.reset(), level.damping = press.damping;
