@@ -40,7 +40,7 @@ for race in "" -DRACE; do
   if [ -n "$race" ] && [ $status -ne 66 ]; then cat "$scratch/race.log"; echo "a race is not seen"; exit 1; fi
 done
 
-"$compiler" "$@" -O1 -g1 -DNDEBUG -DFIBRANT_VERSION='"0"' -fopenmp -fsanitize=thread -I"$source/include" -I"$source/examples" \
+"$compiler" "$@" -O1 -g1 -DNDEBUG -fopenmp -fsanitize=thread -I"$source/include" -I"$source/examples" \
   "$source/examples/weave/main.cpp" -o "$scratch/weave"
 rm -rf "$scratch/out"
 status=0
