@@ -22,9 +22,10 @@ inline void measure_growth(int repeats) {
         const auto lines = scene.centrelines(false);
         proximity::GridSearch grid;
         proximity::BvhSearch tree;
-        const std::vector<Figures> all = measure_in_turn(repeats, {{[&] { return nanoflann_pairs(lines, scene.margin); }},
-                                                                   {[&] { return Call{.pairs = grid.pairs(lines, scene.margin)}; }},
-                                                                   {[&] { return Call{.pairs = tree.pairs(lines, scene.margin)}; }}});
+        const std::vector<Turn> turns{{[&] { return nanoflann_pairs(lines, scene.margin); }},
+                                      {[&] { return Call{.pairs = grid.pairs(lines, scene.margin)}; }},
+                                      {[&] { return Call{.pairs = tree.pairs(lines, scene.margin)}; }}};
+        const std::vector<Figures> all = measure_in_turn(repeats, turns);
         for (std::size_t m = 0; m < curves.size(); ++m) {
             const Figures& figures = all[m];
             const auto n = static_cast<double>(scene.segments());

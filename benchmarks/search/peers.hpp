@@ -28,8 +28,8 @@
 
 namespace fibrant::benchmarks {
 
-/// nanoflann's static kd-tree over the middles of segments, leaves of 20, every search wide enough for the longest segment; what it finds goes to the
-/// filter where the balls around both segments meet, as a careful user would have it.
+/// nanoflann's static kd-tree over the middles of segments, leaves of 20, every search wide enough for the longest segment; what it
+/// finds goes to the filter where the balls around both segments meet, as a careful user would have it.
 inline Call nanoflann_pairs(std::span<const proximity::Centreline> fibres, double reach) {
     using namespace proximity::detail;
     const SegmentTable table(fibres, reach);

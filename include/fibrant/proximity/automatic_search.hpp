@@ -11,17 +11,10 @@ namespace fibrant::proximity {
 
 /// `BvhSearch` where many segments are much thicker than many others, and where they are long and lie along each other; else `GridSearch`.
 /// It looks at the data at each call; both give the same pairs in the same order.
-class AutomaticSearch {
+class AutomaticSearch : public detail::InTwoHalves<AutomaticSearch> {
 public:
     using Parameters = core::NoParameters;
     explicit AutomaticSearch(const Parameters& = {}) {}
-
-    std::vector<SegmentPair> pairs(std::span<const Centreline> fibres, double reach) {
-        const detail::SegmentTable table(fibres, reach);
-        build(table);
-        return search(table);
-    }
-    std::vector<ProximityZone> find(std::span<const Centreline> fibres, double reach) { return zones_from_pairs(fibres, reach, pairs(fibres, reach)); }
 
     /// @name The two halves of `pairs`, to be timed apart. The table must be the same.
     /// @{

@@ -15,20 +15,10 @@ namespace fibrant::proximity {
 ///
 /// Nothing in it depends on a size of cells, so it serves sets of fibres that no grid suits. Result and order do not depend on the
 /// number of threads.
-class BvhSearch {
+class BvhSearch : public detail::InTwoHalves<BvhSearch> {
 public:
     using Parameters = core::NoParameters;
     explicit BvhSearch(const Parameters& = {}) {}
-
-    std::vector<SegmentPair> pairs(std::span<const Centreline> fibres, double reach) {
-        const detail::SegmentTable table(fibres, reach);
-        build(table);
-        return search(table);
-    }
-
-    std::vector<ProximityZone> find(std::span<const Centreline> fibres, double reach) {
-        return zones_from_pairs(fibres, reach, pairs(fibres, reach));
-    }
 
     /// @name The two halves of `pairs`, to be timed apart. The table must be the same.
     /// @{

@@ -16,20 +16,10 @@ namespace fibrant::proximity {
 /// The box of a segment is widened by half its threshold. Segments much longer than the others, or than their thickness,
 /// are cut into pieces; boxes much larger than the others (thick fibres) stand in coarser grids. All that is taken from the data
 /// at each call. Result and order do not depend on the number of threads.
-class GridSearch {
+class GridSearch : public detail::InTwoHalves<GridSearch> {
 public:
     using Parameters = core::NoParameters;
     explicit GridSearch(const Parameters& = {}) {}
-
-    std::vector<SegmentPair> pairs(std::span<const Centreline> fibres, double reach) {
-        const detail::SegmentTable table(fibres, reach);
-        build(table);
-        return search(table);
-    }
-
-    std::vector<ProximityZone> find(std::span<const Centreline> fibres, double reach) {
-        return zones_from_pairs(fibres, reach, pairs(fibres, reach));
-    }
 
     /// @name The two halves of `pairs`, to be timed apart. The table must be the same.
     /// @{

@@ -203,4 +203,25 @@ inline std::vector<ProximityZone> zones_from_pairs(std::span<const Centreline> f
     return zones;
 }
 
+namespace detail {
+
+/// What a search in two halves owes beside them: own.build(table), then own.search(table).
+template <class Own>
+class InTwoHalves {
+public:
+    std::vector<SegmentPair> pairs(std::span<const Centreline> fibres, double reach) {
+        const SegmentTable table(fibres, reach);
+        own().build(table);
+        return own().search(table);
+    }
+    std::vector<ProximityZone> find(std::span<const Centreline> fibres, double reach) {
+        return zones_from_pairs(fibres, reach, pairs(fibres, reach));
+    }
+
+private:
+    Own& own() noexcept { return static_cast<Own&>(*this); }
+};
+
+}  // namespace detail
+
 }  // namespace fibrant::proximity
