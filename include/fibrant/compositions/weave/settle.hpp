@@ -27,22 +27,24 @@ inline simulation::SettledFibre settled_fibre(const FabricParameters& fabric, Fa
     return {tow.fibre_radius, pull, element, young_modulus * tow.section().second_moment_1(), span};
 }
 
+/// The lesser of what is measured on a fibre of each family.
+template <class Measure>
+double least_of_families(const FabricParameters& fabric, double tension_strain, const Measure& measure) {
+    return std::min(measure(settled_fibre(fabric, Family::warp, tension_strain)), measure(settled_fibre(fabric, Family::weft, tension_strain)));
+}
+
 /// Stiffness of a node of the softer family against moving aside alone [force / length].
 inline double node_stiffness(const FabricParameters& fabric, double tension_strain) {
-    const auto of = [&](Family family) {
-        const simulation::SettledFibre fibre = settled_fibre(fabric, family, tension_strain);
+    return least_of_families(fabric, tension_strain, [](const simulation::SettledFibre& fibre) {
         return simulation::node_stiffness(fibre.pull, fibre.element, fibre.bending, fibre.span);
-    };
-    return std::min(of(Family::warp), of(Family::weft));
+    });
 }
 
 /// Part of the tension that was asked for at which tows part, in (0, 1]: that of `simulation::parting_part`.
 inline double parting_tension(const FabricParameters& fabric, double tension_strain) {
-    const auto of = [&](Family family) {
-        const simulation::SettledFibre fibre = settled_fibre(fabric, family, tension_strain);
+    return least_of_families(fabric, tension_strain, [](const simulation::SettledFibre& fibre) {
         return simulation::parting_part(fibre.pull, fibre.element, fibre.bending);
-    };
-    return std::min(of(Family::warp), of(Family::weft));
+    });
 }
 
 /// Parameters of a model whose normal law is a limited, regularised penalty.
