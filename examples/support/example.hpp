@@ -21,21 +21,14 @@
 #include <fibrant/compiled/solvers.hpp>
 #endif
 
-#include <CLI/CLI.hpp>
-#if defined(_OPENMP)
-#include <omp.h>
-#endif
-
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
-#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -59,6 +52,8 @@ struct Output {
     std::string told;                             ///< what the scene is, line by line: kept in checkpoints
     std::vector<std::filesystem::path> parts{};   ///< folders in it that have checkpoints of their own
     std::shared_ptr<const ResultsFolder> locked;  ///< the folder, from `open` on
+    /// Is shown the end of the run and its summary, once all files are written; empty: nobody is.
+    std::function<void(const observe::Snapshot&, const observe::JsonObject&)> ended{};
 
     /// Takes the folder, once the scene is known to be sound, and writes parameters.toml. Results of an earlier run that are
     /// neither resumed nor overwritten on purpose are left, as is a checkpoint of another scene.
@@ -103,108 +98,6 @@ struct Output {
         loading.audited = true, loading.deepest_over_radius = deepest_over_radius;
     }
 };
-
-/// Threads that a program may be told to use: more do not help, and far more cannot be had.
-inline int most_threads() {
-#if defined(_OPENMP)
-    return std::max(64, 4 * omp_get_num_procs());
-#else
-    return 1;
-#endif
-}
-
-/// Threads as told, read whole.
-/// @throws std::invalid_argument
-inline int threads_of(const std::string& text, const std::string& name) {
-    int value = -1;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || value < 0 || value > most_threads())
-        fibrant::core::refuse(name, clipped(text),
-                              "a whole number from 0 (as many as the machine has) to " + std::to_string(most_threads()));
-    return value;
-}
-
-/// Runs solve(reader, output) with the command line NAME SCENE.toml --output DIR [--set section.key=value]... [--threads N]
-/// [--resume | --overwrite] [--other-scene] [--quiet], or tells the keys of a scene: NAME --help-scene.
-/// @param resumes  the program keeps checkpoints
-/// @returns 0 if it says so, 1 if not, 2 if the scene is refused or what is needed cannot be read, written or held in memory, 130
-/// and 143 if it was stopped by SIGINT and SIGTERM
-template <class Solve>
-int run(int argc, char** argv, const char* name, const char* description, const Solve& solve, bool resumes = true) {
-    std::string scene, folder, threads = "0";
-    std::vector<std::string> set;
-    bool keys = false;
-    Output output;
-    CLI::App app{description};
-    app.set_version_flag("--version", FIBRANT_VERSION);
-    app.add_option("scene", scene, "scene file (TOML)");
-    app.add_option("--output", folder, "folder for the results, made if need be");
-    app.add_option("--set", set, "section.key=value, in the place of what the file says")->allow_extra_args(false);
-    app.add_option("--threads", threads, "0: as many as the machine has");
-    auto* overwrite = app.add_flag("--overwrite", output.overwrite, "begin anew in a folder that holds results");
-    if (resumes) {
-        app.add_flag("--resume", output.resume, "go on from the last accepted increment in the folder")->excludes(overwrite);
-        app.add_flag("--other-scene", output.other_scene, "take a checkpoint although it is of another scene");
-    }
-    app.add_flag("--quiet", output.quiet, "print nothing but errors");
-    app.add_flag("--help-scene", keys, "print the keys of a scene file, with their units, bounds and defaults");
-    try {
-        app.parse(argc, argv);
-        if (!keys && scene.empty()) throw CLI::RequiredError("scene");
-        if (!keys && app.count("--output") == 0) throw CLI::RequiredError("--output");
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 2;
-    }
-    keep_freed_memory();
-    listen_for_stops();
-    const auto fail = [&](const std::string& message) {
-        std::fprintf(stderr, "%s: %s\n", name, message.c_str());
-        return stopped() ? 128 + stop_signal() : 2;
-    };
-    try {
-        if (!keys) require_folder(folder);
-        SceneReader reader = keys ? SceneReader::of_keys() : SceneReader(scene, set);
-        reader.read("output", "paraview", output.paraview, "write files for ParaView");
-        reader.read("output", "pictures", output.pictures, "write pictures of the end");
-        reader.read("output", "unit", output.unit, any_text(), "name of the unit of length, for pictures");
-        reader.read("output", "deepest_over_radius", output.deepest_over_radius, above(0.0, 2.0), "1",
-                    "how deep fibres may be in each other at the end, anywhere, over the radius; left out: as deep as contact "
-                    "may be, and what its points may leave unseen");
-        Index wanted = 0;
-        reader.read("solver", "threads", wanted, between(0, 100000), "number of threads; 0: as many as the machine has; --threads goes first");
-        output.folder = folder, output.scene = scene;
-        int count = threads_of(threads, "--threads");
-        if (app.count("--threads") == 0) count = threads_of(std::to_string(wanted), scene + ": solver.threads");
-#if defined(_OPENMP)
-        if (count > 0) omp_set_num_threads(count);
-        else threads_of(std::to_string(omp_get_max_threads()), "--threads is not given, and OMP_NUM_THREADS");
-#endif
-        try {
-            const bool sound = solve(reader, output);
-            if (stopped()) {
-                if (!output.quiet)
-                    std::fprintf(stderr, "%s: stopped by signal %d%s\n", name, stop_signal(),
-                                 resumes ? ": --resume goes on from the last increment" : "");
-                return 128 + stop_signal();
-            }
-            return sound ? 0 : 1;
-        } catch (const Described&) {
-            std::printf("Keys of a scene of %s. Values after = are taken where a key is not given.\n\n%s", name,
-                        reader.help().c_str());
-            return 0;
-        } catch (const std::invalid_argument& error) {
-            return fail(std::string_view(error.what()).substr(0, 2) == "--" ? error.what() : reader.told(error.what()));
-        }
-    } catch (const std::bad_alloc&) {
-        return fail(scene + ": there is not enough memory for this scene (this machine has " + gigabytes(machine_memory()) +
-                    ", and this process had " + gigabytes(static_cast<double>(peak_memory_bytes())) + ")");
-    } catch (const std::length_error&) {
-        return fail(scene + ": a count of this scene is larger than memory can hold (this machine has " +
-                    gigabytes(machine_memory()) + ")");
-    } catch (const std::exception& error) {
-        return fail(error.what());
-    }
-}
 
 /// The ParaView series, a row of increments.csv and a line of progress after each increment. `more()` gives columns of its own, the first
 /// three of which are told in the line of progress, too.

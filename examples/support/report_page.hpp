@@ -236,9 +236,11 @@ inline std::string report_page(const std::filesystem::path& folder, const Report
     return text;
 }
 
-/// Writes report.html into the folder of a run.
-inline void write_report(const std::filesystem::path& folder, const ReportPage& page, const observe::Snapshot& snapshot) {
-    observe::write_file(folder / "report.html", report_page(folder, page, snapshot));
+/// Writes report.html into the folder of a run, the last of its files.
+template <class Output>
+void write_report(const Output& output, const ReportPage& page, const observe::Snapshot& snapshot) {
+    observe::write_file(output.folder / "report.html", report_page(output.folder, page, snapshot));
+    if (output.ended) output.ended(snapshot, page.summary);
 }
 /// The same with what the summary says before the counts of iterations shown first.
 template <class Output>
@@ -249,7 +251,7 @@ void write_report(const Output& output, const char* program, const observe::Json
         if (key != "reason" && value.find_first_of("{[") == std::string::npos) page.foremost.push_back(key);
     }
     page.foremost.push_back("wall_seconds");
-    write_report(output.folder, page, snapshot);
+    write_report(output, page, snapshot);
 }
 
 }  // namespace example

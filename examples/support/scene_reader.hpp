@@ -38,8 +38,10 @@ public:
     using Names = std::vector<std::pair<std::string, std::string>>;
 
     /// @param overrides  "section.key=value", the value as in the file (quotes of a text may be left out); later ones win
-    SceneReader(std::string file, const std::vector<std::string>& overrides) : file_{std::move(file)} {
-        const std::string text = scene_text(file_);
+    SceneReader(std::string file, const std::vector<std::string>& overrides) : SceneReader(file, scene_text(file), overrides) {}
+    /// A text in the place of a file.
+    /// @param name  that messages give it; relative paths in the scene are as from a file of this name
+    SceneReader(std::string name, const std::string& text, const std::vector<std::string>& overrides) : file_{std::move(name)} {
         try {
             table_ = toml::parse(text);
         } catch (const toml::parse_error& error) {

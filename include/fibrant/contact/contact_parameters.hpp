@@ -24,8 +24,8 @@ enum class Places : std::uint8_t { renewed, followed, as_needed };
 
 /// Parameters of contact that no law holds.
 struct ContactParameters {
-    FrictionBound friction_bound = FrictionBound::held;
-    Places places = Places::as_needed;
+    FrictionBound friction_bound = FrictionBound::held;  ///< which reaction bounds friction within Newton
+    Places places = Places::as_needed;  ///< whether contact places and normals are followed within Newton
     Detection detection;
     ContactSpacing spacing;
     NormalRule normal;

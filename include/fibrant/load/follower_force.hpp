@@ -19,7 +19,7 @@ public:
         std::string channel = "load";
     };
     struct Parameters {
-        std::vector<Force> forces{};
+        std::vector<Force> forces{};  ///< all that there are
         void validate() const {
             for (const Force& force : forces) core::require_finite("FollowerForces.Force.along", force.along);
         }

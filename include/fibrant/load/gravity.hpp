@@ -12,7 +12,7 @@ public:
     static constexpr auto role = term::Role::external;
     struct Parameters {
         Vec3 weight = Vec3::Constant(core::unset);  ///< density times acceleration, at amplitude 1 [force / length^3]
-        std::string channel = "gravity";
+        std::string channel = "gravity";  ///< whose amplitude it is multiplied by
         void validate() const { scene::require_finite("Gravity.weight", weight); }
     };
     struct Slot {

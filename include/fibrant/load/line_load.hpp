@@ -13,10 +13,10 @@ class LineLoads : public term::NoSearch, public term::NoStiffness, public term::
 public:
     static constexpr auto role = term::Role::external;
     struct Load {
-        Index fibre = -1;
+        Index fibre = -1;  ///< number of the fibre that it acts on
         Vec3 force = Vec3::Constant(core::unset);  ///< at amplitude 1 [force / length]
         double from = 0.0, to = 1.0;               ///< parts of the fibre's rest length, 0 <= from < to <= 1
-        std::string channel = "load";
+        std::string channel = "load";  ///< whose amplitude it is multiplied by
         void validate() const {
             scene::require_finite("LineLoads.Load.force", force);
             core::require_between("LineLoads.Load.from", from, 0.0, 1.0);
@@ -24,7 +24,7 @@ public:
         }
     };
     struct Parameters {
-        std::vector<Load> loads{};
+        std::vector<Load> loads{};  ///< all that there are
         void validate() const {
             for (const Load& load : loads) load.validate();
         }

@@ -38,7 +38,7 @@ public:
         double strength = core::unset;          ///< s0 [force / length^2], > 0
         double modulus = core::unset;           ///< Weibull's m [1], > 0
         double reference_length = core::unset;  ///< L0 [length], > 0
-        Flaws flaws = Flaws::surface;
+        Flaws flaws = Flaws::surface;  ///< where a fibre has its flaws, which decides how strength falls with size
         std::uint64_t seed = 1;                 ///< of the lots
         void validate() const {
             core::require_positive("Brittle.strength", strength);

@@ -23,9 +23,9 @@ struct SliceParameters {
     Index axis = 0;                 ///< across which the plane lies: 0 for x, 1 for y, 2 for z
     double position = core::unset;  ///< of the plane on that axis [length]
     double width = 1200.0;          ///< of the picture, >= 100 [pixels]; the height follows
-    std::string title;
+    std::string title;  ///< above the picture; empty: none
     std::string unit;  ///< of lengths, for the scale bar
-    Palette palette;
+    Palette palette;  ///< colours by fibre and group
 
     void validate() const {
         core::require(axis >= 0 && axis <= 2, "SliceParameters.axis", static_cast<double>(axis), "0, 1 or 2");

@@ -24,9 +24,9 @@ struct ViewParameters {
     double elevation = 35.0;  ///< of the eye above the plane z = 0, in [-90, 90] [degrees]
     double width = 1200.0;    ///< of the picture, >= 100 [pixels]; the height follows
     Index pieces = 30000;     ///< at most about so many pieces of fibres are drawn, >= 1
-    std::string title;
+    std::string title;  ///< above the picture; empty: none
     std::string unit;  ///< of lengths, for the scale bar
-    Palette palette;
+    Palette palette;  ///< colours by fibre and group
 
     void validate() const {
         core::require_finite("ViewParameters.azimuth", azimuth);

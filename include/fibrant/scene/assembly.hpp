@@ -29,7 +29,7 @@ struct FibreSpecification {
     Curve curve{};                            ///< rest shape of a curved fibre; takes the place of from and to
     /// Where the fibre lies when a run begins, if not at rest: of the same length as its rest shape. Conditions count from there.
     Curve start{};
-    CrossSection section{};
+    CrossSection section{};  ///< at rest
     ElasticMaterial material{};
     Index elements = 0;                       ///< along the fibre, >= 1
     Vec3 director = Vec3::Zero();             ///< g_1 at the first end, less its axial part; zero: any

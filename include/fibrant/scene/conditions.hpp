@@ -44,11 +44,11 @@ inline void require_at(const std::string& of, double amplitude, const std::funct
 /// amplitude of the channel. A rotation of a director turns the direction; of a position, turns it about the origin of
 /// `pivot`.
 struct Hold {
-    Station at{};
-    NodeVector vector = NodeVector::position;
+    Station at{};  ///< fibre and place on it
+    NodeVector vector = NodeVector::position;  ///< position or director of the node that lies there
     Mat3 directions = Mat3::Identity();  ///< symmetric projector on what is held
     Axes axes = Axes::space;             ///< of `directions`
-    std::string channel = "motion";
+    std::string channel = "motion";  ///< whose amplitude drives it
     Vec3 displacement = Vec3::Zero();    ///< at amplitude 1 [length], or [1] for a director
     std::function<Vec3(double)> path{};  ///< displacement at amplitude a, where it is not proportional
     std::function<Mat3(double)> rotation{};  ///< at amplitude a; none: identity
@@ -66,10 +66,10 @@ struct Hold {
 /// A force that keeps its direction and size. On a director it is a force at the material point one length unit off the
 /// axis, so a force Q at xi_1 = r acts as Q on the position and r Q on g_1.
 struct DeadForce {
-    Station at{};
-    NodeVector vector = NodeVector::position;
+    Station at{};  ///< fibre and place on it
+    NodeVector vector = NodeVector::position;  ///< position or director of the node that lies there
     Vec3 force = Vec3::Zero();  ///< at amplitude 1 [force], [force * length] on a director
-    std::string channel = "load";
+    std::string channel = "load";  ///< whose amplitude it is multiplied by
 
     void validate() const {
         require_vector("DeadForce.vector", vector);
@@ -80,10 +80,10 @@ struct DeadForce {
 /// A moment about a fixed axis, applied to a section through one director: force M x g / |g|^2. The moment
 /// must stay perpendicular to that director; the tangent is symmetrised, exact while the director turns in a plane.
 struct Moment {
-    Station at{};
-    NodeVector director = NodeVector::director_1;
+    Station at{};  ///< fibre and place on it
+    NodeVector director = NodeVector::director_1;  ///< that it turns
     Vec3 moment = Vec3::Zero();  ///< at amplitude 1 [force * length]
-    std::string channel = "load";
+    std::string channel = "load";  ///< whose amplitude it is multiplied by
 
     void validate() const {
         require_vector("Moment.director", director);
@@ -99,7 +99,7 @@ struct LinePressure {
     Index fibre = -1;
     double pressure = core::unset;  ///< at amplitude 1 [force / length]
     Vec3 axis = Vec3::UnitZ();      ///< unit
-    std::string channel = "load";
+    std::string channel = "load";  ///< whose amplitude it is multiplied by
 };
 
 /// Contact between the fibres of two groups, or within one, where it is not that of the laws. A fibre that is in no rule counts

@@ -37,10 +37,10 @@ struct Solid {
 
 /// Components of nodes of a solid that follow a prescribed path, as `Hold` says it of a fibre's node.
 struct SolidHold {
-    Index solid = 0;
-    std::vector<Index> nodes;
+    Index solid = 0;  ///< number of the solid in the assembly
+    std::vector<Index> nodes;  ///< that are held
     Mat3 directions = Mat3::Identity();      ///< symmetric projector on what is held; it turns with `rotation`
-    std::string channel = "motion";
+    std::string channel = "motion";  ///< whose amplitude drives it
     Vec3 displacement = Vec3::Zero();        ///< at amplitude 1 [length]
     std::function<Vec3(double)> path{};      ///< displacement at amplitude a, where it is not proportional
     std::function<Mat3(double)> rotation{};  ///< at amplitude a; none: identity

@@ -82,8 +82,8 @@ struct Stage {
 /// What a simulator runs. With no stages, one that takes all channels to 1 in `increments`.
 template <Model M>
 struct Loading {
-    Index increments = 10;
-    std::vector<Stage<M>> stages{};
+    Index increments = 10;  ///< of a loading without stages, >= 1
+    std::vector<Stage<M>> stages{};  ///< one after the other; none: all channels go to 1 together
     std::vector<double> damping_of_fibres{};  ///< of each fibre over that of the stages, >= 1; empty: of all the same
     double smallest_fraction = 1.0 / 256.0;  ///< of an increment, below which the run stops
     double growth = 1.5;                     ///< of the fraction after two increments without a cut

@@ -26,7 +26,7 @@ struct ProgrammeStage {
 
 /// A programme and what its stages share.
 struct LoadProgramme {
-    std::vector<ProgrammeStage> stages{};
+    std::vector<ProgrammeStage> stages{};  ///< one after the other, at least one
     double damping = 0.0;               ///< unit of the stages' damping [force / length], >= 0
     double rest_motion = core::unset;   ///< of an increment at rest [length], > 0, unless
     double rest_share = 1e-4;           ///< damping holds no more than this part of the forces [1], in (0, 0.01]

@@ -34,8 +34,8 @@ struct LayerParameters {
     double least_thickness = core::unset;     ///< of a layer anywhere [length], > 0
     double clearance = core::unset;           ///< between the inner faces, where there are two [length], > 0
     Index smoothing = 1;                      ///< passes over the inner faces, >= 0
-    Sides sides = Sides::both;
-    Crossing crossing = Crossing::clip;
+    Sides sides = Sides::both;  ///< which of the two layers there are
+    Crossing crossing = Crossing::clip;  ///< what to do where the inner faces would cross
     scene::ElasticMaterial material{};
 
     void validate() const {

@@ -23,8 +23,8 @@ struct MatrixParameters {
     double bonding_factor = 1.0;                   ///< on the bonds' stiffness [1], > 0
     double section_factor = 0.0;                   ///< on that of bonds of sections [1], >= 0; 0: none
     bool lower_fibres = false;                     ///< fibres' Young's modulus is lowered by the matrix's, which fills their place too
-    solid::Sides sides = solid::Sides::both;
-    solid::Crossing crossing = solid::Crossing::clip;
+    solid::Sides sides = solid::Sides::both;  ///< which of the two layers there are
+    solid::Crossing crossing = solid::Crossing::clip;  ///< what to do where the inner faces would cross
 
     void validate() const {
         const std::string name = "MatrixParameters.";
@@ -54,7 +54,7 @@ enum class LoadCase {
     twisting,  ///< they turn against each other about the warp
 };
 struct LoadParameters {
-    LoadCase load = LoadCase::bending;
+    LoadCase load = LoadCase::bending;  ///< what is done to the composite
     double strain = 0.01;             ///< of tension, or angle of shear [1]
     double angle_deg = 90.0;          ///< between the edges in bending and twisting [degree]
     Index increments = 20;            ///< >= 1

@@ -24,7 +24,7 @@ struct KnotParameters {
     double tail = core::unset;         ///< of each end, beyond the braid [length], > 0
     int crossings = 3;                 ///< of the braid: 3 overhand (trefoil), 5 double overhand (cinquefoil); odd
     scene::ElasticMaterial material;
-    Index elements = 200;
+    Index elements = 200;  ///< along the rod, >= 16
     void validate() const {
         core::require_positive("KnotParameters.radius", radius);
         core::require(loop_radius > 20.0 * radius, "KnotParameters.loop_radius", loop_radius, "> 20 radii");

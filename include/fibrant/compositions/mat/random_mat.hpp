@@ -53,7 +53,7 @@ struct MatParameters {
     double clearance = 0.02;      ///< least gap between two fibres [radius]; -2 or less: they may lie in each other
     scene::ElasticMaterial material{};
     Index elements = 8;           ///< along each fibre
-    std::uint64_t seed = 1;
+    std::uint64_t seed = 1;  ///< of the random numbers; the same gives the same mat
     Index draws = 2'000'000;      ///< of fibres in all, after which a box counts as full, >= fibres
 
     double diameter() const noexcept { return 2.0 * radius; }

@@ -17,7 +17,7 @@ struct FlatBraid {
     double period = core::unset;      ///< of a yarn, to and fro [length], > 0
     double periods = 2.0;             ///< in all [1], > 0
     Index over = 1;                   ///< yarns in turn that one passes above, then below: 1 or 2
-    YarnType type{};
+    YarnType type{};  ///< of all yarns
     double height_over_radius = 1.05;  ///< of a yarn at a crossing out of the middle plane [1], > 0
 
     void validate() const {
@@ -83,8 +83,8 @@ struct TubularBraid {
     double turns = 0.5;           ///< > 0
     Index over = 1;               ///< 1: 1x1; 2: 2x2; divides the carriers
     bool axials = false;          ///< an axial yarn at every other line of meetings, with 1x1 only
-    YarnType type{};
-    double height_over_radius = 1.05;
+    YarnType type{};  ///< of all yarns
+    double height_over_radius = 1.05;  ///< of a yarn at a crossing out of the middle of the tube [1], > 0
 
     void validate() const {
         core::require_at_least("TubularBraid.carriers", carriers, 2);

@@ -3,6 +3,7 @@
 // rest.
 //   dense_mat SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/program.hpp"
 #include "../support/report_page.hpp"
 #include "../support/table.hpp"
 #include "../support/usual_keys.hpp"
@@ -21,6 +22,8 @@
 
 using namespace fibrant;
 namespace mat = compositions::mat;
+
+namespace {
 
 struct Mat {
     using Beam = beam::KirchhoffCable;
@@ -130,6 +133,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     return converged;
 }
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, "dense_mat", "Presses a dense mat of random fibres from level to level.", solve);
+}  // namespace
+
+example::Program dense_mat_program() {
+    return {"dense_mat", "Presses a dense mat of random fibres from level to level.", solve};
 }

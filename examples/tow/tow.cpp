@@ -3,6 +3,7 @@
 // flatten where isotropic ones would not. Prints the load a unit of length, and that of the closed form.
 //   tow SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/program.hpp"
 #include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
@@ -20,6 +21,8 @@
 #include <string>
 
 using namespace fibrant;
+
+namespace {
 
 struct Tow {
     using Beam = beam::With<beam::DirectorBeam<>, material::Elastic>;
@@ -99,6 +102,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     return report.converged && audit.clean();
 }
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, "tow", "Presses a stack of fibres that are softer across than along.", solve);
+}  // namespace
+
+example::Program tow_program() {
+    return {"tow", "Presses a stack of fibres that are softer across than along.", solve};
 }

@@ -2,6 +2,7 @@
 // Two straight rods side by side are pulled and wound around each other; prints the torque beside that of Kirchhoff's helices.
 //   two_ply SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/program.hpp"
 #include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
@@ -19,6 +20,8 @@
 
 using namespace fibrant;
 namespace two_ply = compositions::two_ply;
+
+namespace {
 
 struct TwoPly {
     using Beam = beam::DirectorBeam<3, beam::DirectorBeamOptions{.twist = beam::TwistStrain::turn}>;
@@ -88,6 +91,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     return report.converged && audit.clean();
 }
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, "two_ply", "Winds two rods around each other.", solve);
+}  // namespace
+
+example::Program two_ply_program() {
+    return {"two_ply", "Winds two rods around each other.", solve};
 }

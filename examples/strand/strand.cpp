@@ -3,6 +3,7 @@
 // force and torque.
 //   strand SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/program.hpp"
 #include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
@@ -20,6 +21,8 @@
 
 using namespace fibrant;
 namespace strand = compositions::strand;
+
+namespace {
 
 struct Strand {
     using Beam = beam::DirectorBeam<>;
@@ -150,6 +153,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
          {"torque_of_stuck_wires", given.strain * stuck.torque_by_strain + given.rotation * stuck.torque_by_rotation}});
 }
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, "strand", "Stretches and turns a strand of helical wires around a core, or a rope of seven strands.", solve);
+}  // namespace
+
+example::Program strand_program() {
+    return {"strand", "Stretches and turns a strand of helical wires around a core, or a rope of seven strands.", solve};
 }

@@ -2,6 +2,7 @@
 // Settles a textile of any kind, braid, weave, knit, rope, net or mail, from the paths of its yarns, and audits what came of it.
 //   textile SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/program.hpp"
 #include "../support/report_page.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
@@ -12,6 +13,8 @@
 #include <fibrant/solver/any_solver.hpp>
 
 using namespace fibrant;
+
+namespace {
 
 struct Yarns {
     using Beam = beam::DirectorBeam<>;
@@ -49,7 +52,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     textile::write_pictures(output, scene.textile, coloured);
     const observe::JsonObject summary = textile::write_summary(output, report, audit, topology, scene.textile, assembled, drawn, settled,
                                                                simulator.mesh().layout().unknowns());
-    example::write_report(output.folder, {"textile", output.unit, summary, {},
+    example::write_report(output, {"textile", output.unit, summary, {},
                                           {"textile", "converged", "audit_clean", "topology_clean", "yarns", "fibres", "crossings",
                                            "right_crossings", "greatest_move_over_radius", "least_gap_over_radius",
                                            "greatest_penetration_over_radius", "wall_seconds"}},
@@ -57,7 +60,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     return report.converged && audit.clean() && topology.clean();
 }
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, "textile", "Settles a textile of any kind from the paths of its yarns, and audits it.",
-                        solve);
+}  // namespace
+
+example::Program textile_program() {
+    return {"textile", "Settles a textile of any kind from the paths of its yarns, and audits it.", solve};
 }

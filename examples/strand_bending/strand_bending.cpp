@@ -3,6 +3,7 @@
 // wires may yield: [material.law] kind = "wire".
 //   strand_bending SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/program.hpp"
 #include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
@@ -21,6 +22,8 @@
 
 using namespace fibrant;
 namespace strand = compositions::strand;
+
+namespace {
 
 /// @tparam Law  of the section of the wires
 template <class Law>
@@ -162,6 +165,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     return bend<material::Wire>(asked, {beam}, file, output);
 }
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, "strand_bending", "Bends a strand of helical wires with friction to an arc.", solve);
+}  // namespace
+
+example::Program strand_bending_program() {
+    return {"strand_bending", "Bends a strand of helical wires with friction to an arc.", solve};
 }

@@ -2,6 +2,7 @@
 // The initial state of a woven fabric at the scale of its fibres, found from flat, interpenetrating tows.
 //   weave SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/program.hpp"
 #include "../support/report_page.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
@@ -21,6 +22,8 @@
 #include <vector>
 
 using namespace fibrant;
+
+namespace {
 
 template <law::FrictionLaw Law>
 struct Weave {
@@ -71,7 +74,7 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     if (scene.pictures) weave::write_pictures(folder, snapshot, scene.fabric, scene.unit);
     summary.cpu_seconds = example::cpu_seconds();
     summary.peak_memory_bytes = example::peak_memory_bytes();
-    example::write_report(folder, {"weave", scene.unit, weave::write_summary(folder, summary), weave::cloth::fabric_palette(scene.fabric),
+    example::write_report(output, {"weave", scene.unit, weave::write_summary(folder, summary), weave::cloth::fabric_palette(scene.fabric),
                                    {"converged", "audit_clean", "fibres", "crimp_warp", "crimp_weft", "thickness", "least_gap_over_radius",
                                     "greatest_penetration_over_radius", "wrong_crossings", "energy_error_over_work", "wall_seconds"}},
                           snapshot);
@@ -88,7 +91,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
                                                    : settle<Weave<law::Frictionless>>(scene, file, output);
 }
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, "weave", "Finds the initial state of a woven fabric from flat, interpenetrating tows.",
-                        solve);
+}  // namespace
+
+example::Program weave_program() {
+    return {"weave", "Finds the initial state of a woven fabric from flat, interpenetrating tows.", solve};
 }

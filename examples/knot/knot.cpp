@@ -2,6 +2,7 @@
 // A knot is tied in a straight rod, comes to rest and is drawn tight; prints the pull beside that of loose knots.
 //   knot SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/program.hpp"
 #include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
@@ -17,6 +18,8 @@
 
 using namespace fibrant;
 namespace knot = compositions::knot;
+
+namespace {
 
 struct Knot {
     using Beam = beam::DirectorBeam<>;
@@ -101,6 +104,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     return report.converged && audit.clean();
 }
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, "knot", "Ties a knot in a straight rod and draws it tight.", solve);
+}  // namespace
+
+example::Program knot_program() {
+    return {"knot", "Ties a knot in a straight rod and draws it tight.", solve};
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A woven fabric is settled, put between two layers of matrix, bonded to them, and bent, twisted, drawn or sheared.
 //   composite SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
+#include "../support/program.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
 
@@ -13,6 +14,8 @@
 using namespace fibrant;
 namespace cloth = compositions::weave;
 namespace parts = compositions::composite;
+
+namespace {
 
 struct Dry {
     using Beam = beam::DirectorBeam<>;
@@ -83,6 +86,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     return report.converged && audit.clean();
 }
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, "composite", "A woven fabric between two layers of matrix, bent, twisted, drawn or sheared.", solve);
+}  // namespace
+
+example::Program composite_program() {
+    return {"composite", "A woven fabric between two layers of matrix, bent, twisted, drawn or sheared.", solve};
 }

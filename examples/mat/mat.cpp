@@ -2,6 +2,7 @@
 // Random fibres in a box are compacted by a plate; prints pressure and contacts by volume fraction, beside those of theory.
 //   mat SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/program.hpp"
 #include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
@@ -17,6 +18,8 @@
 
 using namespace fibrant;
 namespace mat = compositions::mat;
+
+namespace {
 
 struct Mat {
     using Beam = beam::DirectorBeam<>;
@@ -105,6 +108,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     return report.converged && audit.clean();
 }
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, "mat", "Compacts a mat of random fibres in a box.", solve);
+}  // namespace
+
+example::Program mat_program() {
+    return {"mat", "Compacts a mat of random fibres in a box.", solve};
 }

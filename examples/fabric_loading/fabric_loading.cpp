@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Load cases of a dry woven fabric, from the settled state that `weave` has written.
 //   fabric_loading CASE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
+#include "../support/program.hpp"
 #include "load_file.hpp"
 #include "output.hpp"
 
@@ -17,6 +18,8 @@
 
 using namespace fibrant;
 namespace cloth = compositions::weave;
+
+namespace {
 
 struct LoadedWeave {
     using Beam = beam::DirectorBeam<>;
@@ -94,6 +97,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     return report.converged && audit.clean();
 }
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, "fabric_loading", "Loads a settled woven fabric through bodies at its edges.", solve);
+}  // namespace
+
+example::Program fabric_loading_program() {
+    return {"fabric_loading", "Loads a settled woven fabric through bodies at its edges.", solve};
 }

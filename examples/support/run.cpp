@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "example.hpp"
+#include "program.hpp"
+
+#include <CLI/CLI.hpp>
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace example {
+
+namespace {
+
+/// Threads that a program may be told to use: more do not help, and far more cannot be had.
+int most_threads() {
+#if defined(_OPENMP)
+    return std::max(64, 4 * omp_get_num_procs());
+#else
+    return 1;
+#endif
+}
+
+/// Threads as told, read whole.
+/// @throws std::invalid_argument
+int threads_of(const std::string& text, const std::string& name) {
+    int value = -1;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || value < 0 || value > most_threads())
+        fibrant::core::refuse(name, clipped(text),
+                              "a whole number from 0 (as many as the machine has) to " + std::to_string(most_threads()));
+    return value;
+}
+
+}  // namespace
+
+bool solve(const Program& program, SceneReader& scene, Output& output, const std::string& threads, const std::string& threads_name) {
+    scene.read("output", "paraview", output.paraview, "write files for ParaView");
+    scene.read("output", "pictures", output.pictures, "write pictures of the end");
+    scene.read("output", "unit", output.unit, any_text(), "name of the unit of length, for pictures");
+    scene.read("output", "deepest_over_radius", output.deepest_over_radius, above(0.0, 2.0), "1",
+               "how deep fibres may be in each other at the end, anywhere, over the radius; left out: as deep as contact "
+               "may be, and what its points may leave unseen");
+    Index wanted = 0;
+    scene.read("solver", "threads", wanted, between(0, 100000),
+               "number of threads; 0: as many as the machine has; --threads goes first");
+    const int count = threads.empty() ? threads_of(std::to_string(wanted), scene.file() + ": solver.threads")
+                                      : threads_of(threads, threads_name);
+#if defined(_OPENMP)
+    if (count > 0) omp_set_num_threads(count);
+    else threads_of(std::to_string(omp_get_max_threads()), threads_name + " is not given, and OMP_NUM_THREADS");
+#else
+    static_cast<void>(count);
+#endif
+    try {
+        return program.solve(scene, output);
+    } catch (const std::invalid_argument& error) {  // of the command line: as it is
+        throw std::invalid_argument(std::string_view(error.what()).substr(0, 2) == "--" ? error.what() : scene.told(error.what()));
+    }
+}
+
+int run(int argc, char** argv, const Program& program) {
+    std::string scene, folder, threads = "0";
+    std::vector<std::string> set;
+    bool keys = false;
+    Output output;
+    CLI::App app{program.description};
+    app.set_version_flag("--version", FIBRANT_VERSION);
+    app.add_option("scene", scene, "scene file (TOML)");
+    app.add_option("--output", folder, "folder for the results, made if need be");
+    app.add_option("--set", set, "section.key=value, in the place of what the file says")->allow_extra_args(false);
+    app.add_option("--threads", threads, "0: as many as the machine has");
+    auto* overwrite = app.add_flag("--overwrite", output.overwrite, "begin anew in a folder that holds results");
+    app.add_flag("--resume", output.resume, "go on from the last accepted increment in the folder")->excludes(overwrite);
+    app.add_flag("--other-scene", output.other_scene, "take a checkpoint although it is of another scene");
+    app.add_flag("--quiet", output.quiet, "print nothing but errors");
+    app.add_flag("--help-scene", keys, "print the keys of a scene file, with their units, bounds and defaults");
+    try {
+        app.parse(argc, argv);
+        if (!keys && scene.empty()) throw CLI::RequiredError("scene");
+        if (!keys && app.count("--output") == 0) throw CLI::RequiredError("--output");
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    keep_freed_memory();
+    const ListeningForStops listening;
+    const auto fail = [&](const std::string& message) {
+        std::fprintf(stderr, "%s: %s\n", program.name, message.c_str());
+        return stopped() ? 128 + stop_signal() : 2;
+    };
+    try {
+        if (!keys) require_folder(folder);
+        SceneReader reader = keys ? SceneReader::of_keys() : SceneReader(scene, set);
+        output.folder = folder, output.scene = scene;
+        try {
+            const bool sound = solve(program, reader, output, app.count("--threads") == 0 ? "" : threads, "--threads");
+            if (!stopped()) return sound ? 0 : 1;
+            if (!output.quiet)
+                std::fprintf(stderr, "%s: stopped by signal %d: --resume goes on from the last increment\n", program.name, stop_signal());
+            return 128 + stop_signal();
+        } catch (const Described&) {
+            std::printf("Keys of a scene of %s. Values after = are taken where a key is not given.\n\n%s", program.name,
+                        reader.help().c_str());
+            return 0;
+        }
+    } catch (const std::bad_alloc&) {
+        return fail(scene + ": there is not enough memory for this scene (this machine has " + gigabytes(machine_memory()) +
+                    ", and this process had " + gigabytes(static_cast<double>(peak_memory_bytes())) + ")");
+    } catch (const std::length_error&) {
+        return fail(scene + ": a count of this scene is larger than memory can hold (this machine has " +
+                    gigabytes(machine_memory()) + ")");
+    } catch (const std::exception& error) {
+        return fail(error.what());
+    }
+}
+
+}  // namespace example
