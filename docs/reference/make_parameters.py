@@ -74,7 +74,7 @@ def structures(text):
         yield found, body
 
 
-FIELD = re.compile(r"^ +(?P<type>[A-Za-z_][\w:]*(?:<[^;=\n]*>)?) (?P<rest>\w+[^;()\n]*(?:\{[^;\n]*\}|\([^;\n]*\))?[^;\n]*);"
+FIELD = re.compile(r"^ +(?P<type>(?:typename )?[A-Za-z_][\w:]*(?:<[^;=\n]*>)?) (?P<rest>\w+[^;()\n]*(?:\{[^;\n]*\}|\([^;\n]*\))?[^;\n]*);"
                    r" *(?P<comment>///<[^\n]*)?$")
 NO_FIELD = re.compile(r" *(using|static|friend|return|explicit|constexpr|template|struct|class|public|private)\b")
 
@@ -130,7 +130,9 @@ def page():
                         unit = re.search(r"\[([^\]]*)\](?=[,.;]?(?: |$)|$)", comment)
                         said = bounds(checks, name.strip())
                         whole = f"{found[2]}.{name.strip()}"
-                        if not comment and not re.search(r"(Parameters|Law|Detection|Spacing|Rule|Adaptation|Material)\b", kind):
+                        if not comment and re.search(r"(Parameters|Detection|Spacing|Rule|Adaptation|Material)$", kind):
+                            comment = "a structure of its own"
+                        elif not comment:
                             missing.append(f"{header.relative_to(headers.parent)}: {whole} has no comment")
                         rows.append(f"| `{name.strip()}` | `{kind}` | {f'`{default}`' if default else '-'} | "
                                     f"{unit[1] if unit else '-'} | {cell(said)} | {cell(comment)} |")
