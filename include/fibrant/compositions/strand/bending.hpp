@@ -123,23 +123,26 @@ double furthest_from_layer(const simulation::Simulator<M>& simulator, const Stra
 /// Of wires that bend each by itself, as helical springs: over a turn, sin^2 / 2 of the moment twists a wire and the rest bends it, and there
 /// is 1 / cos of wire on a length of axis. So E I cos / (1 + nu sin^2 / 2) of the lay angle (Costello) [force * length^2].
 inline double loose_stiffness(const StrandParameters& parameters) {
-    double sum = std::pow(parameters.core_radius, 4);
+    double sum = parameters.material.young_modulus * std::pow(parameters.core_radius, 4);
     for (const Layer& layer : parameters.layers) {
+        const scene::ElasticMaterial& own = parameters.material_of(layer);
         const double lay = layer.lay_angle_deg * std::numbers::pi / 180.0, twisting = 0.5 * std::pow(std::sin(lay), 2);
-        sum += static_cast<double>(layer.wires) * std::pow(layer.radius, 4) * std::cos(lay) / (1.0 + parameters.material.poisson_ratio * twisting);
+        sum += own.young_modulus * static_cast<double>(layer.wires) * std::pow(layer.radius, 4) * std::cos(lay) /
+               (1.0 + own.poisson_ratio * twisting);
     }
-    return 0.25 * std::numbers::pi * parameters.material.young_modulus * sum;
+    return 0.25 * std::numbers::pi * sum;
 }
 
 /// E I of a strand whose sections stay plane: none is stiffer [force * length^2].
 inline double solid_stiffness(const StrandParameters& parameters) {
-    const double wire = 0.25 * std::numbers::pi * parameters.material.young_modulus;
-    double sum = wire * std::pow(parameters.core_radius, 4);
+    double sum = parameters.material.young_modulus * std::pow(parameters.core_radius, 4);
     for (std::size_t k = 0; k < parameters.layers.size(); ++k) {
-        const double radius = parameters.layers[k].radius, a = parameters.helix_radius(k);
-        sum += static_cast<double>(parameters.layers[k].wires) * wire * (std::pow(radius, 4) + 2.0 * radius * radius * a * a);
+        const Layer& layer = parameters.layers[k];
+        const double radius = layer.radius, a = parameters.helix_radius(k);
+        sum += parameters.material_of(layer).young_modulus * static_cast<double>(layer.wires) *
+               (std::pow(radius, 4) + 2.0 * radius * radius * a * a);
     }
-    return sum;
+    return 0.25 * std::numbers::pi * sum;
 }
 
 }  // namespace fibrant::compositions::strand

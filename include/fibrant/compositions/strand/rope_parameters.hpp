@@ -186,14 +186,18 @@ inline void RopeParameters::validate() const {
     core::require_at_least("RopeParameters.elements", elements, 2);
     core::require_not_negative("RopeParameters.overlap", overlap);
     material.validate();
-    for (const Layer& wires : core.layers) wires.validate();
+    const auto check = [](const Layer& wires, const std::string& name) {
+        wires.validate();
+        if (wires.material) core::refuse(name + ".material", "given", "left out: all wires of a rope are of RopeParameters.material");
+    };
+    for (const Layer& wires : core.layers) check(wires, "RopeParameters.core.layers");
     for (std::size_t k = 0; k < layers.size(); ++k) {
         const std::string name = "RopeParameters.layers[" + std::to_string(k) + "]";
         core::require_at_least(name + ".strands", layers[k].strands, 1);
         core::require_between(name + ".lay_angle_deg", layers[k].lay_angle_deg, -60.0, 60.0);
         core::require_positive(name + ".helix_radius", layers[k].helix_radius);
         core::require_positive(name + ".strand.core_radius", layers[k].strand.core_radius);
-        for (const Layer& wires : layers[k].strand.layers) wires.validate();
+        for (const Layer& wires : layers[k].strand.layers) check(wires, name + ".strand.layers");
     }
     double thinnest = core.core_radius;
     for (const StrandLayer& layer : layers) thinnest = std::min(thinnest, layer.strand.core_radius);

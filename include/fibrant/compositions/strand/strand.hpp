@@ -32,7 +32,7 @@ inline scene::Assembly wires_of(const StrandParameters& parameters) {
             scene::FibreSpecification fibre;
             fibre.curve = [=](double t) { return Vec3(a * std::cos(start + turn * t), a * std::sin(start + turn * t), length * t); };
             fibre.section = scene::circular(layer.radius);
-            fibre.material = parameters.material;
+            fibre.material = parameters.material_of(layer);
             fibre.elements = parameters.elements;
             fibre.director = Vec3(std::cos(start), std::sin(start), 0.0);
             fibre.group = own;

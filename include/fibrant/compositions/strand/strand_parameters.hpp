@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,14 @@ struct Layer {
     /// Angle of the wires to the axis [degree], in (-80, 80): positive is a right-handed helix; 0: straight wires.
     double lay_angle_deg = core::unset;
     double clearance = 0.0;       ///< from the layer inside [length], >= 0
+    std::optional<scene::ElasticMaterial> material{};  ///< of its wires; none: that of the strand
 
     void validate() const {
         core::require_at_least("Layer.wires", wires, 1);
         core::require_positive("Layer.radius", radius);
         core::require_between("Layer.lay_angle_deg", lay_angle_deg, -80.0, 80.0);
         core::require_not_negative("Layer.clearance", clearance);
+        if (material) material->validate();
     }
 };
 
@@ -83,8 +86,14 @@ struct StrandParameters : StrandSection {
     double length = core::unset;  ///< along the axis [length], > 0
     Index elements = 40;          ///< along each wire, >= 2
 
+    const scene::ElasticMaterial& material_of(const Layer& layer) const noexcept { return layer.material ? *layer.material : material; }
     /// Sum of E A of all wires [force].
-    double metal_stiffness() const noexcept { return material.young_modulus * area(); }
+    double metal_stiffness() const noexcept {
+        double sum = material.young_modulus * core_radius * core_radius;
+        for (const Layer& layer : layers)
+            sum += material_of(layer).young_modulus * static_cast<double>(layer.wires) * layer.radius * layer.radius;
+        return std::numbers::pi * sum;
+    }
 
     void validate() const {
         core::require_positive("StrandParameters.core_radius", core_radius);
