@@ -123,6 +123,10 @@ int main(int argc, char** argv) {
                         curvature > 0.0 ? moment_at(measured, curvature) : 0.0, state.tension);
             std::fflush(stdout);
         }
+        void gave_up(const simulation::FailedAttempt& attempt) const {
+            std::fprintf(stderr, "increment %td of %s, %g of it, %td iterations, %.0f s: %s\n", attempt.number, attempt.stage.c_str(), attempt.fraction,
+                         attempt.newton, attempt.seconds, attempt.reason.c_str());
+        }
     } follow{simulator, conductor, bending, measured, computed};
     std::printf("# friction %g, %td elements, penetration %g and reversible displacement %g radii; all stuck %.0f N m^2, all loose %.1f N m^2\n",
                 friction, conductor.elements, depth, reversible, 1e-6 * strand::solid_stiffness(conductor), 1e-6 * strand::loose_stiffness(conductor));
