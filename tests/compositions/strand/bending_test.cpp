@@ -23,6 +23,7 @@ strand::StrandParameters one_layer() {
     parameters.core_radius *= 1.02;
     parameters.length = parameters.pitch(0), parameters.elements = 24;
     parameters.material = {200000.0, 0.3};
+    parameters.layers[0].material = {{70000.0, 0.33}};  // aluminium around steel
     return parameters;
 }
 
