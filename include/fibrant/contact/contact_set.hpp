@@ -166,7 +166,7 @@ public:
     bool slides(Index k) const noexcept { return elements_[core::at(k)].place >= 0; }
     SlidingStiffness sliding(Index k, bool positive) const {
         const ContactResponse& response = responses_[core::at(k)];
-        return sliding_stiffness(places_.of(elements_[core::at(k)]), elements_[core::at(k)].normal, response.reaction, response.slope, positive);
+        return places_.stiffness(elements_[core::at(k)], response.reaction, response.slope, positive);
     }
     /// Of `force` and of `tangent`, what acts on the particles.
     Vec3 point_force(Index k) const noexcept {
@@ -275,7 +275,7 @@ private:
         places_.mark(*mesh_, state, zone, before);
         const double angle = crossing_angle_deg(*mesh_, state, zone.span, !zone.followed);
         const double shift = !before ? 0.0 : parameters_.spacing.angle_hysteresis_deg * (before->crossing ? -1.0 : 1.0);
-        zone.crossing = angle > places_.angle_share(zone) * (parameters_.spacing.crossing_angle_deg + shift);
+        zone.crossing = angle > places_.angle_share(*mesh_, zone) * (parameters_.spacing.crossing_angle_deg + shift);
     }
 
     void generate(const Vector& state, const Vector& accepted, const Memory& memory) {

@@ -5,6 +5,7 @@
 #include <fibrant/contact/closest_places.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
+#include <fibrant/contact/oval_place.hpp>
 #include <fibrant/contact/sliding_place.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
 #include <fibrant/core/symmetric_eigen.hpp>
@@ -39,8 +40,13 @@ public:
         zone.settled = zone.followed && before && before->settled;
     }
     /// Crossings that are followed go on as one contact element until bent around each other so much that the angle between them is, but for
-    /// this part of what it is elsewhere, that of fibres side by side [1].
-    static double angle_share(const Zone& zone) noexcept { return zone.followed ? 0.2 : 1.0; }
+    /// this part of what it is elsewhere, that of fibres side by side [1]. Those that are not round have no line of stations beside one.
+    static double angle_share(const beam::Mesh<B>& mesh, const Zone& zone) noexcept { return zone.followed && !oval(mesh, zone.span.fibre_i, zone.span.fibre_j) ? 0.2 : 1.0; }
+    /// Whether a section of two fibres is not round.
+    static bool oval(const beam::Mesh<B>& mesh, Index i, Index j) noexcept {
+        const auto not_round = [&](Index f) { return mesh.fibre(f).section.semi_axis_1 != mesh.fibre(f).section.semi_axis_2; };
+        return not_round(i) || not_round(j);
+    }
     /// Of a contact element, or of a pair of stations.
     static bool follows(const auto& pair, const Zone& zone) noexcept {
         return zone.followed && !zone.forced && pair.crossing && !pair.end_i && !pair.end_j;
@@ -93,6 +99,13 @@ public:
     template <class Element>
     void follow(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
         const Vec3 before = element.normal;
+        if constexpr (beam::DeformableSections<B>) {
+            if (oval(mesh, element.fibre_i, element.fibre_j)) {
+                Held& one = held_[core::at(element.place)];
+                if (!stand(mesh, element, one)) renew(mesh, state, element);
+                return follow_oval(mesh, state, element.fibre_i, element.fibre_j, one.i, one.j, element.u_i, element.u_j, element.normal);
+            }
+        }
         const Slide slide = slide_of(mesh, zone, element.slide);
         if (slide.kind == Slide::freely) follow_closest(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
         if (slide.kind == Slide::along) follow_along(mesh, state, element.fibre_i, element.fibre_j, slide, element.u_i, element.u_j);
@@ -104,19 +117,24 @@ public:
     template <class Element>
     void take(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
         Held& one = held_[core::at(element.place)];
-        if (!near(mesh, element.fibre_i, element.u_i, one.i) || !near(mesh, element.fibre_j, element.u_j, one.j)) renew(mesh, state, element);
+        if (!stand(mesh, element, one)) renew(mesh, state, element);
         const auto hosts = [](const SlidingPlace<B>& of) {
             return std::array{static_cast<Index>(of.i.count), of.i.vectors[0], static_cast<Index>(of.j.count), of.j.vectors[0]};
         };
         const auto before = hosts(one.place);
-        one.place = sliding_place(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j, one.i, one.j, element.normal,
-                                  slide_of(mesh, zone, element.slide));
+        one.place = place_of(mesh, state, zone, element, one);
         if (before[0] > 0 && hosts(one.place) != before) one.rehosted = true;
         if constexpr (beam::TurningSections<B>) {
             element.weights_i.follow(state.segment<beam::Mesh<B>::element_unknowns>(element.first_i));
             element.weights_j.follow(state.segment<beam::Mesh<B>::element_unknowns>(element.first_j));
         }
         element.cap = element.normal.dot(element.offset(state)) - one.place.gap;
+    }
+    SlidingStiffness stiffness(const auto& element, double reaction, double slope, bool positive) const {
+        const SlidingPlace<B>& place = of(element);
+        if constexpr (beam::DeformableSections<B>)
+            if (place.oval) return oval_stiffness(place, element.normal, reaction, slope, positive);
+        return sliding_stiffness(place, element.normal, reaction, slope, positive);
     }
     /// Sections anew where an element has slid to, facing each other across its normal. @returns by how much the direction across them has turned
     /// in the section of fibre i [radian]
@@ -126,6 +144,7 @@ public:
         Held& one = held_[core::at(element.place)];
         const Index i = element.fibre_i, j = element.fibre_j;
         const StandingSection before = one.i;
+        [[maybe_unused]] const double before_j = one.j.u;
         const double half = half_of_patch(mesh, i, j, i);
         one.i = standing_section(mesh, state, i, element.u_i, half, element.normal);
         one.j = standing_section(mesh, state, j, element.u_j, half_of_patch(mesh, i, j, j), Vec3(-element.normal));
@@ -133,6 +152,13 @@ public:
         one.plane = element.normal;
         if constexpr (beam::DeformableSections<B>) {
             if (!before.stands) return turn;
+            if (oval(mesh, i, j)) {
+                const auto turned = [&](Index f, double u, double v, double around) {
+                    const auto was = mean_directors(mesh, state, f, u, around), is = mean_directors(mesh, state, f, v, around);
+                    return std::max(turn_between(was[0], is[0]), turn_between(was[1], is[1]));
+                };
+                return std::max({turn, turned(i, before.u, one.i.u, half), turned(j, before_j, one.j.u, half_of_patch(mesh, i, j, j))});
+            }
             const auto across = [&](const StandingSection& section) {
                 return FacingSection(mean_directors(mesh, state, i, section.u, half), section.facing, mesh.fibre(i).section).across;
             };
@@ -182,6 +208,7 @@ private:
     static void settle_one(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const std::vector<Eigen::Vector2d>& places, std::size_t place,
                            const std::vector<Eigen::Vector2d>& known, StationPair middle, std::vector<StationPair>& pairs) {
         const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
+        if (oval(mesh, i, j)) return pairs.push_back(middle);
         if (!known.empty()) middle.u_i = median(known, 0), middle.u_j = median(known, 1);
         PairGeometry pair = pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j);
         if (known.size() < 3 || least(pair.closeness) > held) {
@@ -266,8 +293,7 @@ private:
     }
 
     bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before) const {
-        const auto oval = [&](Index f) { return mesh.fibre(f).section.semi_axis_1 != mesh.fibre(f).section.semi_axis_2; };
-        if (oval(zone.span.fibre_i) || oval(zone.span.fibre_j)) return false;  // centrelines say too little of where they touch
+        if (!beam::DeformableSections<B> && oval(mesh, zone.span.fibre_i, zone.span.fibre_j)) return false;  // centrelines say too little of where they touch
         if (places_ != Places::as_needed || all_) return places_ != Places::renewed;
         return bend_around(mesh, state, zone.span) > loop - (before && before->followed ? hysteresis : 0.0) || clasped(mesh, state, zone.span);
     }
@@ -295,8 +321,19 @@ private:
     /// followed.
     static constexpr double loop = 0.25, hysteresis = 0.05;
     /// A section is one of a place, and less than an element away from it.
+    static bool stand(const beam::Mesh<B>& mesh, const auto& element, const auto& one) noexcept {
+        return near(mesh, element.fibre_i, element.u_i, one.i) && near(mesh, element.fibre_j, element.u_j, one.j);
+    }
     static bool near(const beam::Mesh<B>& mesh, Index fibre, double u, const StandingSection& section) noexcept {
         return section.stands && std::abs(u - section.u) < 0.9 && mesh.apart(fibre, u, section.u) < 0.9;
+    }
+    template <class Element>
+    static SlidingPlace<B> place_of(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Element& element, const auto& one) {
+        if constexpr (beam::DeformableSections<B>)
+            if (oval(mesh, element.fibre_i, element.fibre_j))
+                return oval_place(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j, one.i, one.j, element.normal);
+        return sliding_place(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j, one.i, one.j, element.normal,
+                             slide_of(mesh, zone, element.slide));
     }
     struct Held {
         StandingSection i, j;
