@@ -275,7 +275,7 @@ private:
         places_.mark(*mesh_, state, zone, before);
         const double angle = crossing_angle_deg(*mesh_, state, zone.span, !zone.followed);
         const double shift = !before ? 0.0 : parameters_.spacing.angle_hysteresis_deg * (before->crossing ? -1.0 : 1.0);
-        zone.crossing = angle > places_.angle_share(*mesh_, zone) * (parameters_.spacing.crossing_angle_deg + shift);
+        zone.crossing = angle > places_.angle_share(zone) * (parameters_.spacing.crossing_angle_deg + shift);
     }
 
     void generate(const Vector& state, const Vector& accepted, const Memory& memory) {

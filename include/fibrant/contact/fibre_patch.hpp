@@ -125,12 +125,12 @@ struct Slide {
     Kind kind = freely;
     Eigen::Vector2d direction = Eigen::Vector2d::Zero();  ///< of both abscissae [element], where it slides along one
 
-    /// Part of the inverse of `closeness` that sliding takes, which counts with at least `least`.
-    Eigen::Matrix2d slack(const PairGeometry& pair, double least) const noexcept {
+    /// Part of the inverse of a second variation by both arc lengths that sliding takes, which counts with at least `least`.
+    Eigen::Matrix2d slack(const PairGeometry& pair, const Eigen::Matrix2d& closeness, double least) const noexcept {
         if (kind == nowhere) return Eigen::Matrix2d::Zero();
-        if (kind == freely) return raised(pair.closeness, least).inverse();
+        if (kind == freely) return raised(closeness, least).inverse();
         const Eigen::Vector2d way = arc(pair);
-        return way * way.transpose() / std::max(way.dot(pair.closeness * way), least);
+        return way * way.transpose() / std::max(way.dot(closeness * way), least);
     }
     /// The direction in arc lengths, unit.
     Eigen::Vector2d arc(const PairGeometry& pair) const noexcept { return Eigen::Vector2d(direction[0] * pair.speed_i, direction[1] * pair.speed_j).normalized(); }

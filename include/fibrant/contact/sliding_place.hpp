@@ -33,7 +33,8 @@ struct PatchSide {
     Vec3 across = Vec3::Zero(), aside = Vec3::Zero();  ///< in the section, unit: where it faces the other fibre, and across that
     double extent = 0.0;     ///< of the section across [length]
     Vec3 out = Vec3::Zero();  ///< normal of an oval section, unit
-    double tilt = 0.0;       ///< cosine between that and the normal of the pair, times the extent [length]
+    double tilt = 0.0, lengthened = 1.0;  ///< slope of its extent by the cosine between that and the normal of the pair [length]; 1 / its sine
+    std::array<Weights, 2> directors{};   ///< of the means of its directors
 };
 
 /// Where the section of a followed place is taken, and the lines of its material that face the other fibre: both stand while the place slides. A reaction
@@ -161,8 +162,8 @@ struct SlidingPlace {
     double gap = 0.0;                                     ///< [length]
     double distance = 0.0;                                ///< d [length]
     Eigen::Matrix4d curvature = Eigen::Matrix4d::Zero();  ///< of y, for d [1 / length]
-    bool oval = false;                                    ///< of sections that are not round: the gap bends with twelve numbers (oval_place)
-    Eigen::Matrix<double, 12, 12> bending = Eigen::Matrix<double, 12, 12>::Zero();  ///< then its second derivative by these
+    bool oval = false;                                    ///< of sections that are not round: the gap bends with sixteen numbers (oval_place)
+    Eigen::Matrix<double, 16, 16> bending = Eigen::Matrix<double, 16, 16>::Zero();  ///< then its second derivative by these
 };
 
 /// @param at_i, at_j  sections that stand
@@ -179,7 +180,7 @@ SlidingPlace<B> sliding_place(const beam::Mesh<B>& mesh, const Vector& state, In
     const Vec3 along = normal.unitOrthogonal(), across = normal.cross(along);
     Eigen::Matrix<double, 2, 4> b;
     b << -pair.t_i.dot(along), -pair.t_i.dot(across), -1.0, 0.0, pair.t_j.dot(along), pair.t_j.dot(across), 0.0, 1.0;
-    Eigen::Matrix2d slack = slide.slack(pair, least_closeness);
+    Eigen::Matrix2d slack = slide.slack(pair, pair.closeness, least_closeness);
     // What is at an end of its fibre does not slide.
     const bool held_i = u_i <= mesh.bounds(i).first || u_i >= mesh.bounds(i).second;
     const bool held_j = u_j <= mesh.bounds(j).first || u_j >= mesh.bounds(j).second;
