@@ -20,6 +20,7 @@
 #include <fibrant/contact/learned_contacts.hpp>
 #include <fibrant/contact/meeting_point.hpp>
 #include <fibrant/contact/normal_direction.hpp>
+#include <fibrant/contact/oval_place.hpp>
 #include <fibrant/contact/overlaps.hpp>
 #include <fibrant/contact/pair_rules.hpp>
 #include <fibrant/contact/particle.hpp>

@@ -166,7 +166,7 @@ public:
     bool slides(Index k) const noexcept { return elements_[core::at(k)].place >= 0; }
     SlidingStiffness sliding(Index k, bool positive) const {
         const ContactResponse& response = responses_[core::at(k)];
-        return sliding_stiffness(places_.of(elements_[core::at(k)]), elements_[core::at(k)].normal, response.reaction, response.slope, positive);
+        return places_.stiffness(elements_[core::at(k)], response.reaction, response.slope, positive);
     }
     /// Of `force` and of `tangent`, what acts on the particles.
     Vec3 point_force(Index k) const noexcept {

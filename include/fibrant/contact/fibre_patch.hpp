@@ -93,6 +93,7 @@ struct PairGeometry {
     Vec3 centres;               ///< x_j - x_i [length]
     Vec3 t_i, t_j;              ///< unit tangents
     double speed_i, speed_j;    ///< |dx/du| [length]
+    Vec3 bend_i, bend_j;        ///< second derivatives by arc length [1 / length]
     Eigen::Matrix2d closeness;  ///< second derivatives of |x_j - x_i|^2 / 2 by both arc lengths [1]
 };
 
@@ -105,10 +106,10 @@ PairGeometry pair_geometry(const beam::Mesh<B>& mesh, const Vector& state, Index
     const Vec3 d_i = patches.tangent(i, u_i, half_i), d_j = patches.tangent(j, u_j, half_j);
     pair.speed_i = d_i.norm(), pair.speed_j = d_j.norm();
     pair.t_i = d_i / pair.speed_i, pair.t_j = d_j / pair.speed_j;
-    const double bend_i = pair.centres.dot(patches.bend(i, u_i, half_i)) / (pair.speed_i * pair.speed_i);
-    const double bend_j = pair.centres.dot(patches.bend(j, u_j, half_j)) / (pair.speed_j * pair.speed_j);
-    const double cosine = pair.t_i.dot(pair.t_j);
-    pair.closeness << 1.0 - bend_i, -cosine, -cosine, 1.0 + bend_j;
+    const Vec3 bend_i = patches.bend(i, u_i, half_i), bend_j = patches.bend(j, u_j, half_j);
+    const double square_i = pair.speed_i * pair.speed_i, square_j = pair.speed_j * pair.speed_j, cosine = pair.t_i.dot(pair.t_j);
+    pair.bend_i = bend_i / square_i, pair.bend_j = bend_j / square_j;
+    pair.closeness << 1.0 - pair.centres.dot(bend_i) / square_i, -cosine, -cosine, 1.0 + pair.centres.dot(bend_j) / square_j;
     return pair;
 }
 
@@ -124,12 +125,12 @@ struct Slide {
     Kind kind = freely;
     Eigen::Vector2d direction = Eigen::Vector2d::Zero();  ///< of both abscissae [element], where it slides along one
 
-    /// Part of the inverse of `closeness` that sliding takes, which counts with at least `least`.
-    Eigen::Matrix2d slack(const PairGeometry& pair, double least) const noexcept {
+    /// Part of the inverse of a second variation by both arc lengths that sliding takes, which counts with at least `least`.
+    Eigen::Matrix2d slack(const PairGeometry& pair, const Eigen::Matrix2d& closeness, double least) const noexcept {
         if (kind == nowhere) return Eigen::Matrix2d::Zero();
-        if (kind == freely) return raised(pair.closeness, least).inverse();
+        if (kind == freely) return raised(closeness, least).inverse();
         const Eigen::Vector2d way = arc(pair);
-        return way * way.transpose() / std::max(way.dot(pair.closeness * way), least);
+        return way * way.transpose() / std::max(way.dot(closeness * way), least);
     }
     /// The direction in arc lengths, unit.
     Eigen::Vector2d arc(const PairGeometry& pair) const noexcept { return Eigen::Vector2d(direction[0] * pair.speed_i, direction[1] * pair.speed_j).normalized(); }

@@ -5,6 +5,7 @@
 #include <fibrant/contact/closest_places.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
+#include <fibrant/contact/oval_place.hpp>
 #include <fibrant/contact/sliding_place.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
 #include <fibrant/core/symmetric_eigen.hpp>
@@ -41,6 +42,11 @@ public:
     /// Crossings that are followed go on as one contact element until bent around each other so much that the angle between them is, but for
     /// this part of what it is elsewhere, that of fibres side by side [1].
     static double angle_share(const Zone& zone) noexcept { return zone.followed ? 0.2 : 1.0; }
+    /// Whether a section of two fibres is not round.
+    static bool oval(const beam::Mesh<B>& mesh, Index i, Index j) noexcept {
+        const auto not_round = [&](Index f) { return mesh.fibre(f).section.semi_axis_1 != mesh.fibre(f).section.semi_axis_2; };
+        return not_round(i) || not_round(j);
+    }
     /// Of a contact element, or of a pair of stations.
     static bool follows(const auto& pair, const Zone& zone) noexcept {
         return zone.followed && !zone.forced && pair.crossing && !pair.end_i && !pair.end_j;
@@ -93,6 +99,14 @@ public:
     template <class Element>
     void follow(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
         const Vec3 before = element.normal;
+        if constexpr (beam::DeformableSections<B>) {
+            if (oval(mesh, element.fibre_i, element.fibre_j)) {
+                Held& one = held_[core::at(element.place)];
+                if (!stand(mesh, element, one)) renew(mesh, state, element);
+                follow_oval(mesh, state, element.fibre_i, element.fibre_j, one.i, one.j, slide_of(mesh, zone, element.slide), element.u_i, element.u_j, element.normal);
+                return;
+            }
+        }
         const Slide slide = slide_of(mesh, zone, element.slide);
         if (slide.kind == Slide::freely) follow_closest(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
         if (slide.kind == Slide::along) follow_along(mesh, state, element.fibre_i, element.fibre_j, slide, element.u_i, element.u_j);
@@ -104,19 +118,24 @@ public:
     template <class Element>
     void take(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
         Held& one = held_[core::at(element.place)];
-        if (!near(mesh, element.fibre_i, element.u_i, one.i) || !near(mesh, element.fibre_j, element.u_j, one.j)) renew(mesh, state, element);
+        if (!stand(mesh, element, one)) renew(mesh, state, element);
         const auto hosts = [](const SlidingPlace<B>& of) {
             return std::array{static_cast<Index>(of.i.count), of.i.vectors[0], static_cast<Index>(of.j.count), of.j.vectors[0]};
         };
         const auto before = hosts(one.place);
-        one.place = sliding_place(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j, one.i, one.j, element.normal,
-                                  slide_of(mesh, zone, element.slide));
+        one.place = place_of(mesh, state, zone, element, one);
         if (before[0] > 0 && hosts(one.place) != before) one.rehosted = true;
         if constexpr (beam::TurningSections<B>) {
             element.weights_i.follow(state.segment<beam::Mesh<B>::element_unknowns>(element.first_i));
             element.weights_j.follow(state.segment<beam::Mesh<B>::element_unknowns>(element.first_j));
         }
         element.cap = element.normal.dot(element.offset(state)) - one.place.gap;
+    }
+    SlidingStiffness stiffness(const auto& element, double reaction, double slope, bool positive) const {
+        const SlidingPlace<B>& place = of(element);
+        if constexpr (beam::DeformableSections<B>)
+            if (place.oval) return oval_stiffness(place, element.normal, reaction, slope, positive);
+        return sliding_stiffness(place, element.normal, reaction, slope, positive);
     }
     /// Sections anew where an element has slid to, facing each other across its normal. @returns by how much the direction across them has turned
     /// in the section of fibre i [radian]
@@ -126,6 +145,7 @@ public:
         Held& one = held_[core::at(element.place)];
         const Index i = element.fibre_i, j = element.fibre_j;
         const StandingSection before = one.i;
+        [[maybe_unused]] const double before_j = one.j.u;
         const double half = half_of_patch(mesh, i, j, i);
         one.i = standing_section(mesh, state, i, element.u_i, half, element.normal);
         one.j = standing_section(mesh, state, j, element.u_j, half_of_patch(mesh, i, j, j), Vec3(-element.normal));
@@ -133,6 +153,13 @@ public:
         one.plane = element.normal;
         if constexpr (beam::DeformableSections<B>) {
             if (!before.stands) return turn;
+            if (oval(mesh, i, j)) {
+                const auto turned = [&](Index f, double u, double v, double around) {
+                    const auto was = mean_directors(mesh, state, f, u, around), is = mean_directors(mesh, state, f, v, around);
+                    return std::max(turn_between(was[0], is[0]), turn_between(was[1], is[1]));
+                };
+                return std::max({turn, turned(i, before.u, one.i.u, half), turned(j, before_j, one.j.u, half_of_patch(mesh, i, j, j))});
+            }
             const auto across = [&](const StandingSection& section) {
                 return FacingSection(mean_directors(mesh, state, i, section.u, half), section.facing, mesh.fibre(i).section).across;
             };
@@ -174,6 +201,32 @@ private:
         return {Slide::along, {-std::sin(valley) / mesh.fibre(zone.span.fibre_i).element_length, std::cos(valley) / mesh.fibre(zone.span.fibre_j).element_length}};
     }
 
+    /// What two places are to each other.
+    struct Seen {
+        PairGeometry pair;
+        Eigen::Matrix2d closeness;  ///< second variation of their distance by both arc lengths, times it [1]
+        double gap;                 ///< [length]
+    };
+    /// The same of a pair of stations that slides to where it is closest.
+    /// @param normal  of sections that are not round; in: of the side that they are on
+    static Seen slid(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, const Slide& slide, StationPair& at, [[maybe_unused]] Vec3& normal) {
+        if constexpr (beam::DeformableSections<B>) {
+            if (oval(mesh, i, j)) {
+                Eigen::Matrix2d closeness;
+                double gap = 0.0;
+                for (int pass = 0; pass < 2; ++pass) {  // sections where the first one has led
+                    const OvalGap found = follow_oval(mesh, state, i, j, {at.u_i, Eigen::Vector2d::UnitX(), true}, {at.u_j, Eigen::Vector2d::UnitX(), true}, slide, at.u_i, at.u_j, normal);
+                    closeness = found.closeness, gap = found.gap;
+                }
+                return {pair_geometry(mesh, state, i, j, at.u_i, at.u_j), closeness, gap};
+            }
+        }
+        if (slide.kind == Slide::freely) follow_closest(mesh, state, i, j, at.u_i, at.u_j);
+        if (slide.kind == Slide::along) follow_along(mesh, state, i, j, slide, at.u_i, at.u_j);
+        const PairGeometry pair = pair_geometry(mesh, state, i, j, at.u_i, at.u_j);
+        return {pair, pair.closeness, pair.centres.norm() - (mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius())};
+    }
+
     /// Stations of one closest place. Where the fibres are nearly as close beside it, as fibres are that hang in each other at a slant or are bent around each
     /// other by a touching distance, they touch along a line: then there are stations along this valley too. These slide across it only, and stay where they are
     /// from one detection to the next, so that no contact hops; what touches in two places after it did in one does so on stations that were there before.
@@ -183,16 +236,12 @@ private:
                            const std::vector<Eigen::Vector2d>& known, StationPair middle, std::vector<StationPair>& pairs) {
         const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
         if (!known.empty()) middle.u_i = median(known, 0), middle.u_j = median(known, 1);
-        PairGeometry pair = pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j);
-        if (known.size() < 3 || least(pair.closeness) > held) {
-            follow_closest(mesh, state, i, j, middle.u_i, middle.u_j);
-            pair = pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j);
-        }
         const double touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
-        const auto gap_at = [&](const StationPair& at) {
-            const PairGeometry there = pair_geometry(mesh, state, i, j, at.u_i, at.u_j);
-            return there.centres.norm() - touching;
-        };
+        Vec3 normal = unit_or(pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j).centres, Vec3::UnitZ());
+        Seen seen = slid(mesh, state, i, j, {Slide::nowhere, {}}, middle, normal);
+        if (known.size() < 3 || least(seen.closeness) > held) seen = slid(mesh, state, i, j, {}, middle, normal);
+        const PairGeometry& pair = seen.pair;
+        const Eigen::Matrix2d& closeness = seen.closeness;
         // Where fibres come close again further on, or lie along each other in all of the zone, they touch there too.
         const auto in_zone = [&](const StationPair& at) {
             const auto off = [&](Index f, double u, double from) {
@@ -215,7 +264,7 @@ private:
         if (place > 0 && of_another(middle)) return;  // it slid there
         const auto line = [&](const Eigen::Vector2d& way, std::int8_t slide) {
             for (const double side : {-1.0, 1.0}) {
-                double last = gap_at(middle), aside = 0.0;  // aside: of the last station, across the way from the middle [length]
+                double last = seen.gap, aside = 0.0;  // aside: of the last station, across the way from the middle [length]
                 bool parted = false;
                 for (int k = 1; k <= most; ++k) {
                     StationPair other = middle;
@@ -233,9 +282,9 @@ private:
                     }
                     other.u_i = kept[0], other.u_j = kept[1];
                     if (!inside(mesh, i, other.u_i) || !inside(mesh, j, other.u_j)) break;
-                    follow_along(mesh, state, i, j, slide_of(mesh, zone, slide), other.u_i, other.u_j);
+                    Vec3 there = normal;
+                    const double gap = slid(mesh, state, i, j, slide_of(mesh, zone, slide), other, there).gap;
                     aside = way[0] * (other.u_j - middle.u_j) * pair.speed_j - way[1] * (other.u_i - middle.u_i) * pair.speed_i;
-                    const double gap = gap_at(other);
                     if (of_another(other)) break;
                     const bool parts = gap > clear * touching && gap > last;
                     parted = parted || parts;
@@ -244,17 +293,17 @@ private:
                 }
             }
         };
-        if (least(pair.closeness) < flat) {
-            const bool upright = std::abs(pair.closeness(0, 1)) < square;
+        if (least(closeness) < flat) {
+            const bool upright = std::abs(closeness(0, 1)) < square;
             const Eigen::Vector2d of_i(1.0, 0.0), of_j(0.0, 1.0);
             if (upright) {
-                const bool weak_i = pair.closeness(0, 0) < flat, weak_j = pair.closeness(1, 1) < flat;
+                const bool weak_i = closeness(0, 0) < flat, weak_j = closeness(1, 1) < flat;
                 if (weak_i) line(of_i, on_j);
                 if (weak_j) line(of_j, on_i);
-                const bool held_i = pair.closeness(0, 0) < held, held_j = pair.closeness(1, 1) < held;
+                const bool held_i = closeness(0, 0) < held, held_j = closeness(1, 1) < held;
                 middle.slide = held_i && held_j ? fixed : held_i ? on_j : held_j ? on_i : free;
             } else {
-                const core::SymmetricEigen<2> parts(pair.closeness);
+                const core::SymmetricEigen<2> parts(closeness);
                 const Eigen::Vector2d way = parts.vectors().col(0);
                 const auto across = static_cast<std::int8_t>(across_valley + static_cast<int>(place));
                 zone.valleys[place] = std::atan2(way[1], way[0]);
@@ -266,8 +315,7 @@ private:
     }
 
     bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before) const {
-        const auto oval = [&](Index f) { return mesh.fibre(f).section.semi_axis_1 != mesh.fibre(f).section.semi_axis_2; };
-        if (oval(zone.span.fibre_i) || oval(zone.span.fibre_j)) return false;  // centrelines say too little of where they touch
+        if (!beam::DeformableSections<B> && oval(mesh, zone.span.fibre_i, zone.span.fibre_j)) return false;  // centrelines say too little of where they touch
         if (places_ != Places::as_needed || all_) return places_ != Places::renewed;
         return bend_around(mesh, state, zone.span) > loop - (before && before->followed ? hysteresis : 0.0) || clasped(mesh, state, zone.span);
     }
@@ -295,8 +343,22 @@ private:
     /// followed.
     static constexpr double loop = 0.25, hysteresis = 0.05;
     /// A section is one of a place, and less than an element away from it.
+    static bool stand(const beam::Mesh<B>& mesh, const auto& element, const auto& one) noexcept {
+        return near(mesh, element.fibre_i, element.u_i, one.i) && near(mesh, element.fibre_j, element.u_j, one.j);
+    }
     static bool near(const beam::Mesh<B>& mesh, Index fibre, double u, const StandingSection& section) noexcept {
         return section.stands && std::abs(u - section.u) < 0.9 && mesh.apart(fibre, u, section.u) < 0.9;
+    }
+    template <class Element>
+    static SlidingPlace<B> place_of(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Element& element, const auto& one) {
+        const Index i = element.fibre_i, j = element.fibre_j;
+        const Slide slide = slide_of(mesh, zone, element.slide);
+        if constexpr (beam::DeformableSections<B>)
+            if (oval(mesh, i, j)) {
+                const OvalGap gap = oval_gap(mesh, pair_geometry(mesh, state, i, j, element.u_i, element.u_j), i, j, standing_directors(mesh, state, i, j, one.i, one.j), element.normal);
+                return oval_place(mesh, state, i, j, element.u_i, element.u_j, one.i, one.j, gap, slide);
+            }
+        return sliding_place(mesh, state, i, j, element.u_i, element.u_j, one.i, one.j, element.normal, slide);
     }
     struct Held {
         StandingSection i, j;

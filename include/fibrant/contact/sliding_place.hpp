@@ -28,9 +28,13 @@ struct PatchSide {
     Weights place{};         ///< of the centreline [1]
     Weights slope{};         ///< of the unit tangent's turns [1 / length]
     Weights press{};         ///< of the mean section's particle that lies `extent` across, less those of the centreline
-    Weights beside{};        ///< of the one that lies as far aside
+    Weights beside{};        ///< of the one that lies as far aside; of an oval section those of how it turns about its fibre
+    Weights lean{};          ///< of an oval section: of its material along the normal
     Vec3 across = Vec3::Zero(), aside = Vec3::Zero();  ///< in the section, unit: where it faces the other fibre, and across that
     double extent = 0.0;     ///< of the section across [length]
+    Vec3 out = Vec3::Zero();  ///< normal of an oval section, unit
+    double tilt = 0.0, lengthened = 1.0;  ///< slope of its extent by the cosine between that and the normal of the pair [length]; 1 / its sine
+    std::array<Weights, 2> directors{};   ///< of the means of its directors
 };
 
 /// Where the section of a followed place is taken, and the lines of its material that face the other fibre: both stand while the place slides. A reaction
@@ -93,9 +97,11 @@ StandingSection standing_section(const beam::Mesh<B>& mesh, const Vector& state,
     return section;
 }
 
-template <class B>
-PatchSide<B> patch_side(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, const StandingSection& section_at, double half,
-                        double speed) noexcept {
+/// One side of a place: its vectors, `place` and `slope`.
+/// @param rest  called with it and the weights of the means of both directors, where sections deform
+template <class B, class Rest>
+PatchSide<B> line_side(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, const StandingSection& section_at, double half, double speed,
+                       const Rest& rest) noexcept {
     constexpr Index step = beam::Mesh<B>::vectors_per_element_step;
     const Patches<B> patches(mesh, state);
     const auto [least, most] = std::minmax(u, section_at.u);
@@ -115,23 +121,31 @@ PatchSide<B> patch_side(const beam::Mesh<B>& mesh, const Vector& state, Index fi
         const auto [e, xi] = patches.located(fibre, u + end * half);
         add(side.slope, e, end / (2.0 * half * speed), B::centreline_weights(xi));
     }
-    side.extent = mesh.fibre(fibre).section.radius();
     if constexpr (beam::DeformableSections<B>) {
-        typename PatchSide<B>::Weights g_1{}, g_2{};
+        typename PatchSide<B>::Weights g_1{}, g_2{};  // of the means of the directors
         patches.each_sample(fibre, section_at.u, half, [&](Index e, double xi, double weight) {
             add(g_1, e, weight, beam::director_weights<B>(xi, 1));
             add(g_2, e, weight, beam::director_weights<B>(xi, 2));
         });
-        const scene::CrossSection& section = mesh.fibre(fibre).section;
-        const FacingSection faces(mean_directors(mesh, state, fibre, section_at.u, half), section_at.facing, section);
-        if (faces.extent >= 0.1 * section.radius()) {
-            side.extent = faces.extent, side.across = faces.across, side.aside = faces.aside;
-            for (std::size_t a = 0; a < side.count; ++a) {
-                side.press[a] = faces.particle[0] * g_1[a] + faces.particle[1] * g_2[a];
-                side.beside[a] = faces.sideways[0] * g_1[a] + faces.sideways[1] * g_2[a];
-            }
-        }
+        rest(side, g_1, g_2);
     }
+    return side;
+}
+
+template <class B>
+PatchSide<B> patch_side(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, const StandingSection& section_at, double half,
+                        double speed) noexcept {
+    const scene::CrossSection& section = mesh.fibre(fibre).section;
+    PatchSide<B> side = line_side(mesh, state, fibre, u, section_at, half, speed, [&](PatchSide<B>& of, const auto& g_1, const auto& g_2) {
+        const FacingSection faces(mean_directors(mesh, state, fibre, section_at.u, half), section_at.facing, section);
+        if (!(faces.extent >= 0.1 * section.radius())) return;
+        of.extent = faces.extent, of.across = faces.across, of.aside = faces.aside;
+        for (std::size_t a = 0; a < of.count; ++a) {
+            of.press[a] = faces.particle[0] * g_1[a] + faces.particle[1] * g_2[a];
+            of.beside[a] = faces.sideways[0] * g_1[a] + faces.sideways[1] * g_2[a];
+        }
+    });
+    if (!(side.extent > 0.0)) side.extent = section.radius();
     return side;
 }
 
@@ -148,6 +162,8 @@ struct SlidingPlace {
     double gap = 0.0;                                     ///< [length]
     double distance = 0.0;                                ///< d [length]
     Eigen::Matrix4d curvature = Eigen::Matrix4d::Zero();  ///< of y, for d [1 / length]
+    bool oval = false;                                    ///< of sections that are not round: the gap bends with sixteen numbers (oval_place)
+    Eigen::Matrix<double, 16, 16> bending = Eigen::Matrix<double, 16, 16>::Zero();  ///< then its second derivative by these
 };
 
 /// @param at_i, at_j  sections that stand
@@ -164,7 +180,7 @@ SlidingPlace<B> sliding_place(const beam::Mesh<B>& mesh, const Vector& state, In
     const Vec3 along = normal.unitOrthogonal(), across = normal.cross(along);
     Eigen::Matrix<double, 2, 4> b;
     b << -pair.t_i.dot(along), -pair.t_i.dot(across), -1.0, 0.0, pair.t_j.dot(along), pair.t_j.dot(across), 0.0, 1.0;
-    Eigen::Matrix2d slack = slide.slack(pair, least_closeness);
+    Eigen::Matrix2d slack = slide.slack(pair, pair.closeness, least_closeness);
     // What is at an end of its fibre does not slide.
     const bool held_i = u_i <= mesh.bounds(i).first || u_i >= mesh.bounds(i).second;
     const bool held_j = u_j <= mesh.bounds(j).first || u_j >= mesh.bounds(j).second;
@@ -182,7 +198,7 @@ SlidingPlace<B> sliding_place(const beam::Mesh<B>& mesh, const Vector& state, In
 template <class B>
 Vec3 gap_gradient(const SlidingPlace<B>& place, const Vec3& normal, double sign, std::size_t a) noexcept {
     const PatchSide<B>& side = sign < 0.0 ? place.i : place.j;
-    return sign * side.place[a] * normal - side.press[a] * side.across;
+    return sign * side.place[a] * normal - side.press[a] * side.across + side.tilt * side.lean[a] * side.out;
 }
 
 /// Adds the forces of a reaction on the vectors that a side averages, of internal minus external ones.

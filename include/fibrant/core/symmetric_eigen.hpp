@@ -12,7 +12,7 @@
 
 namespace fibrant::core {
 
-inline constexpr int most_eigen_rows = 8;
+inline constexpr int most_eigen_rows = 16;
 
 /// Eigenvalues and eigenvectors of a symmetric matrix of plain numbers, by Jacobi's rotations (Golub and Van Loan, Matrix Computations, section 8.5).
 /// @param size     rows, at most `most_eigen_rows`
