@@ -49,8 +49,8 @@ struct Stage {
     std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
     GapLimitOf<typename M::Normal> gap_limit{};  ///< of a law that limits the gap [length], as std::optional; scaled down when cut
     bool gap_limit_when_cut = false;            ///< limited in increments that were cut alone: what Newton's method cannot solve at once is softer then
-    /// That increments may grow to over what they are, their gap limit with them and damping against them, where fibres are far deeper in
-    /// each other than they are shown and are parted with ease [1], in [1, 1000].
+    /// That increments may grow to over what they are, their gap limit and allowed penetration with them and damping against
+    /// them, where fibres are far deeper in each other than they are shown and are parted with ease [1], in [1, 1000].
     double largest_fraction = 1.0;
     std::optional<double> allowed_penetration{};  ///< that the penalty adapts to in this stage, for the model's [length]
     bool forced_orders = false;                 ///< keep the scene's forced orders
@@ -75,7 +75,7 @@ struct Stage {
     /// The stage ends only once no two fibres are deeper in each other than this anywhere, as `observe::least_gap` measures it [length], > 0. Pairs
     /// that are get contact points there and become stiffer; where that has no success the run stops and says so.
     std::optional<double> deepest{};
-    double patience = 1.0;                      ///< on the limit of Newton's iterations: what hardly resists bending converges slowly [1], in [1, 10]
+    double patience = 1.0;  ///< on the limit of Newton's iterations: what hardly resists bending converges slowly [1], in [1, 10]
     double looseness = 1.0;                     ///< on the tolerances of contact and normal passes, >= 1
     std::optional<typename M::Normal> normal{};
     std::optional<typename M::Friction> friction{};

@@ -78,7 +78,8 @@ struct Position {
         return true;
     }
 
-    /// Over an increment as the stage says it, >= 1: gaps are limited to as much more, and damping holds as much less.
+    /// Over an increment as the stage says it, >= 1: gaps are limited to as much more, contact is as much softer, and damping
+    /// holds as much less.
     double stride() const noexcept { return std::max(1.0, fraction); }
 
     /// After an accepted increment: what was cut grows again, and one that parts what is deep goes further.
@@ -157,7 +158,8 @@ struct Position {
     bool sound(Index stages) const {
         const auto finite = [](double value) { return std::isfinite(value) && value >= 0.0; };
         return stage >= 0 && stage <= stages && in_stage >= 0 && accepted >= 0 && finite(progress) && fraction > 0.0 &&
-               fraction <= most_fraction && finite(displacement) && finite(damping) && finite(damping_floor) && calming.sound() && mends >= 0 && mended >= 0.0 &&
+               fraction <= most_fraction && finite(displacement) && finite(damping) && finite(damping_floor) && calming.sound() &&
+               mends >= 0 && mended >= 0.0 &&
                std::all_of(holding.begin(), holding.end(), finite);
     }
 

@@ -65,7 +65,8 @@ struct SettlingScales {
     bool ordered = false;              ///< forced orders part fibres
     void validate() const {
         core::require_positive("SettlingScales.radius", radius);
-        if (!std::isnan(thickest)) core::require(thickest >= radius, "SettlingScales.thickest", thickest, ">= radius, " + core::text(radius));
+        if (!std::isnan(thickest))
+            core::require(thickest >= radius, "SettlingScales.thickest", thickest, ">= radius, " + core::text(radius));
         core::require_positive("SettlingScales.slack", slack);
         core::require(taut >= slack, "SettlingScales.taut", taut, ">= slack, " + core::text(slack));
         core::require_finite("SettlingScales.taut", taut);

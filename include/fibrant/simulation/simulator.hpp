@@ -127,7 +127,9 @@ private:
                 const double limit = position_.limits_gap(stage) ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
                 contacts_.normal_law() = contacts_.normal_law().with_limit(limit);
             }
-            contacts_.allow_penetration(stage.allowed_penetration.value_or(parameters_.contact.stiffness.allowed_penetration));
+            const double stride = position_.stride();
+            const double stated = parameters_.contact.stiffness.allowed_penetration;
+            contacts_.allow_penetration(stride * stage.allowed_penetration.value_or(stated));
             const std::vector<double> amplitudes = amplitudes_at(stage, progress, position_, channels_, amplitudes_), change = difference(amplitudes, amplitudes_);
             if (const std::string reason = turned_too_far(mesh_, equilibrium_, amplitudes_, amplitudes); !reason.empty()) {
                 ++increment.cuts, position_.fraction *= 0.5, position_.easy = 0;
@@ -139,7 +141,6 @@ private:
             Vector trial = state_;
             move_tools(amplitudes);
             laws_.drive(mesh_, amplitudes, let_last(contacts_, stage.duration * (progress - position_.progress)));
-            const double stride = position_.stride();
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping / stride + position_.calming.springs,
                                position_.held_by_fibre(loading.damping_of_fibres));
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
@@ -148,11 +149,13 @@ private:
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
                 equilibrium_, contacts_, linear_, passage_, iteration, radius_, touching, clock_);
             // A limited gap moves fibres by about the limit: the search looks that far ahead.
-            const double ahead = std::max(position_.displacement, stage.forced_orders ? stride * stage.gap_limit.value_or(0.0) : 0.0);
+            const double shown = stage.forced_orders ? stride * stage.gap_limit.value_or(0.0) : 0.0;
+            const double ahead = std::max(position_.displacement, shown);
             solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, position_.looseness(stage),
                                                          stride * stage.largest_displacement);
             increment.counts += attempt.counts;
-            effort = static_cast<double>(attempt.counts.newton) / static_cast<double>(std::max<Index>(1, attempt.counts.normal_passes) * iteration.newton_limit);
+            const Index most = std::max<Index>(1, attempt.counts.normal_passes) * iteration.newton_limit;
+            effort = static_cast<double>(attempt.counts.newton) / static_cast<double>(most);
             if (attempt.converged) {
                 attempt.reason = clock_.time(core::Part::search, [&] { return refusal(mesh_, beam_, passage_, contacts_, state_, trial, stage.forced_orders, touching); });
                 if (attempt.reason.empty()) attempt.reason = laws_.refusal(mesh_, beam_, trial);

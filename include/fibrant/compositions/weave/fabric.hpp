@@ -16,9 +16,9 @@ namespace fibrant::compositions::weave {
 /// Channel that scales the tension of all tows.
 inline constexpr const char* tension_channel = "tension";
 
-/// How high the ends of a tow are held: in the plane where the overhang leaves room to come back to it, the nearer to their height
-/// at the last crossing, half of the mean thickness, the less it does. Ends that are all held in the plane beside a crossing lie in
-/// each other whatever fibres do: at a corner, two that reach d beyond each other's tows are sqrt(2) d apart.
+/// How high the ends of a tow are held: in the plane where the overhang leaves room to come back to it, the nearer to their
+/// height at the last crossing, half of the mean thickness, the less it does. Ends that are all held in the plane beside a
+/// crossing lie in each other whatever fibres do: at a corner, two that cross d before their ends have these sqrt(2) d apart.
 /// @returns z of the first end and of the last one [length]
 inline std::array<double, 2> end_heights(const FabricParameters& fabric, Family family, Index tow) {
     const double steepest = 0.5;  // at which a fibre comes down from a crossing to the plane [1], by trial
@@ -36,7 +36,8 @@ inline std::array<double, 2> end_heights(const FabricParameters& fabric, Family 
 
 /// Adds all fibres, straight in the plane z = 0, in groups by tow. @returns the groups of the warp and of the weft tows
 /// @param lifted  they begin turned, so that their ends lie as high as they are to be held
-inline std::array<std::vector<Index>, 2> add_flat_fibres(scene::Assembly& assembly, const FabricParameters& fabric, bool lifted = false) {
+inline std::array<std::vector<Index>, 2> add_flat_fibres(scene::Assembly& assembly, const FabricParameters& fabric,
+                                                         bool lifted = false) {
     const Index cloth = assembly.add_group("fabric");
     std::array<std::vector<Index>, 2> groups;
     for (const Family family : {Family::warp, Family::weft}) {
@@ -57,7 +58,8 @@ inline std::array<std::vector<Index>, 2> add_flat_fibres(scene::Assembly& assemb
                 scene::FibreSpecification fibre;
                 fibre.from = centre - half * along, fibre.to = centre + half * along;
                 if (lifted && (first != 0.0 || last != 0.0)) {
-                    const Vec3 middle = centre + 0.5 * (first + last) * Vec3::UnitZ(), way = half * (flat * along + turned * Vec3::UnitZ());
+                    const Vec3 middle = centre + 0.5 * (first + last) * Vec3::UnitZ();
+                    const Vec3 way = half * (flat * along + turned * Vec3::UnitZ());
                     fibre.start = [middle, way](double s) { return Vec3(middle + (2.0 * s - 1.0) * way); };
                 }
                 fibre.section = tow.section(), fibre.material = tow.material;
@@ -81,8 +83,8 @@ inline void force_pattern(scene::Assembly& assembly, const FabricParameters& fab
         }
 }
 
-/// Scene of a fabric before it is settled (Durville, section 15.3.5): all tows straight in the plane z = 0, but for ends that have
-/// no room to come back to it (`end_heights`).
+/// Scene of a fabric before it is settled (Durville, section 15.3.5): all tows straight in the plane z = 0, but for those whose
+/// ends have no room to come back to it (`end_heights`).
 ///
 /// The ends of a fibre keep their place across the fibre and are pulled along it by a dead force; its middle keeps its
 /// place along it. Ends are free to turn and to draw in, so nothing but the tension holds a fibre's length.
