@@ -37,6 +37,9 @@ struct NoGapLimit {
 template <class Normal>
 using GapLimitOf = std::conditional_t<law::GapLimiting<Normal>, std::optional<double>, NoGapLimit<Normal>>;
 
+/// Bound of `Stage::largest_fraction`: no radius is a thousand times another one's in a fabric [1].
+inline constexpr double most_fraction = 1e3;
+
 /// Part of a loading. Laws that are set replace the model's from this stage on.
 template <Model M>
 struct Stage {
@@ -46,6 +49,9 @@ struct Stage {
     std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
     GapLimitOf<typename M::Normal> gap_limit{};  ///< of a law that limits the gap [length], as std::optional; scaled down when cut
     bool gap_limit_when_cut = false;            ///< limited in increments that were cut alone: what Newton's method cannot solve at once is softer then
+    /// That increments may grow to over what they are, their gap limit and allowed penetration with them and damping against
+    /// them, where fibres are far deeper in each other than they are shown and are parted with ease [1], in [1, 1000].
+    double largest_fraction = 1.0;
     std::optional<double> allowed_penetration{};  ///< that the penalty adapts to in this stage, for the model's [length]
     bool forced_orders = false;                 ///< keep the scene's forced orders
     /// Spring from every centre to its last accepted place [force / length]: keeps what is slack from leaping.
@@ -69,6 +75,7 @@ struct Stage {
     /// The stage ends only once no two fibres are deeper in each other than this anywhere, as `observe::least_gap` measures it [length], > 0. Pairs
     /// that are get contact points there and become stiffer; where that has no success the run stops and says so.
     std::optional<double> deepest{};
+    double patience = 1.0;  ///< on the limit of Newton's iterations: what hardly resists bending converges slowly [1], in [1, 10]
     double looseness = 1.0;                     ///< on the tolerances of contact and normal passes, >= 1
     std::optional<typename M::Normal> normal{};
     std::optional<typename M::Friction> friction{};
@@ -123,9 +130,11 @@ struct Loading {
             core::require_not_negative("Stage.damping_share", stage.damping_share);
             core::require(stage.largest_displacement > 0.0, "Stage.largest_displacement", stage.largest_displacement, "> 0");
             core::require(stage.looseness >= 1.0 && stage.looseness <= 1000.0, "Stage.looseness", stage.looseness, "in [1, 1000]");
+            core::require_between("Stage.patience", stage.patience, 1.0, 10.0);
             if (stage.allowed_penetration) core::require_positive("Stage.allowed_penetration", *stage.allowed_penetration);
             if (stage.deepest) core::require_positive("Stage.deepest", *stage.deepest);
             if (stage.gap_limit) core::require_positive("Stage.gap_limit", *stage.gap_limit);
+            core::require_between("Stage.largest_fraction", stage.largest_fraction, 1.0, most_fraction);
             for (const Ramp& ramp : stage.ramps) core::require_finite("Ramp.to", ramp.to);
         }
     }

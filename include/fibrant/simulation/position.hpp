@@ -54,12 +54,17 @@ struct Position {
     template <Model M>
     void give_way(const Stage<M>& present, const std::vector<double>& moved, double allowed, Index attempts) {
         easy = 0;
+        if (fraction > 1.0) {
+            fraction = std::max(1.0, 0.5 * fraction);
+            return;
+        }
         if (attempts % 5 != 0 && damping * present.damping > 0.0 && hold_restless(moved, allowed)) return;
         // Once its ramps are over, only more damping makes an increment easier.
         const bool damped = present.damping > 0.0 && damping < 1.0 / least_damping;
         if (progress < 1.0 || !damped) fraction *= 0.5;
         damping_floor = 2.0 * damping;
-        damping = std::clamp(4.0 * damping, least_damping, 1.0 / least_damping);
+        const double harder = attempts > 2 ? 16.0 : 4.0;  // what has failed three times is far from what it takes
+        damping = std::clamp(harder * damping, least_damping, 1.0 / least_damping);
     }
 
     /// An attempt has failed: the other way of finding places is tried before anything else is, once at a size of increment. Where that fails
@@ -71,6 +76,24 @@ struct Position {
         if (tried == now) return false;
         tried = now;
         return true;
+    }
+
+    /// Over an increment as the stage says it, >= 1: gaps are limited to as much more, contact is as much softer, and damping
+    /// holds as much less.
+    double stride() const noexcept { return std::max(1.0, fraction); }
+
+    /// After an accepted increment: what was cut grows again, and one that parts what is deep goes further.
+    /// @param growth  factor after two increments without a cut
+    /// @param effort  as of `adapt_damping`
+    template <Model M>
+    void grow(const Stage<M>& present, const IncrementReport& increment, double growth, double effort) {
+        const double part = 0.25, with_ease = 0.6;  // of the deepest overlap, by trial; of the iterations, as for damping
+        double most = 1.0;
+        if (present.gap_limit && present.largest_fraction > 1.0)
+            most = std::clamp(part * increment.contact.greatest_penetration / *present.gap_limit, 1.0, present.largest_fraction);
+        fraction = std::min(fraction, most);
+        if (increment.cuts > 0 || ++easy < 2 || fraction >= most || (fraction >= 1.0 && effort > with_ease)) return;
+        fraction = std::min(fraction < 1.0 ? 1.0 : most, growth * fraction), easy = 0;
     }
 
     /// Damping is the inverse of a time step: what was solved with ease goes on faster, and what was hard more slowly.
@@ -135,7 +158,8 @@ struct Position {
     bool sound(Index stages) const {
         const auto finite = [](double value) { return std::isfinite(value) && value >= 0.0; };
         return stage >= 0 && stage <= stages && in_stage >= 0 && accepted >= 0 && finite(progress) && fraction > 0.0 &&
-               fraction <= 1.0 && finite(displacement) && finite(damping) && finite(damping_floor) && calming.sound() && mends >= 0 && mended >= 0.0 &&
+               fraction <= most_fraction && finite(displacement) && finite(damping) && finite(damping_floor) && calming.sound() &&
+               mends >= 0 && mended >= 0.0 &&
                std::all_of(holding.begin(), holding.end(), finite);
     }
 

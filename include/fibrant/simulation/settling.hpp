@@ -52,6 +52,10 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     // softened: what is deep then parts as it did in the separation.
     Stage<M> common;
     common.increments = 1, common.gap_limit = limit, common.gap_limit_when_cut = true, common.largest_displacement = 4.0 * limit;
+    // Fibres that part at a small part of the pull that is asked for hardly resist bending: Newton's method converges slowly, and
+    // damping that waited for it to be quick would not fall.
+    const double hardly = 0.1;  // of the pull, by trial
+    common.patience = pulled && scales.parting < hardly ? 2.0 : 1.0;
     // On the way contact is softer: contacts that change their status one by one are what Newton's method and the linear solver
     // spend their iterations on. Paths are only a means: an increment keeps its normals, and what it leaves over moves in the
     // next.
@@ -60,6 +64,8 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     separation.name = "separation";
     separation.forced_orders = scales.ordered, separation.gap_limit_when_cut = false, separation.damping = slack;
     separation.until = until_separated(parted);
+    // By pair: thin fibres that lie in thick ones are parted as far as fibres of their mean radius are, if that goes with ease.
+    if (scales.thickest > r) separation.largest_fraction = std::min(most_fraction, 0.5 * (1.0 + scales.thickest / r));
     separation.most_increments = settle.separation_increments;
     Stage<M> tension = common;
     tension.name = "tension";

@@ -56,6 +56,7 @@ struct SettledFibre {
 /// What a settling goes by.
 struct SettlingScales {
     double radius = core::unset;       ///< of the thinnest fibre [length], > 0
+    double thickest = core::unset;     ///< radius of the thickest fibre [length], >= radius; unset: as thin
     double slack = core::unset;        ///< `node_stiffness` of the softest fibre without a pull [force / length], > 0
     double taut = core::unset;         ///< and with the pull under which fibres part, or that follows [force / length], >= slack
     std::vector<double> over_softest;  ///< the latter of each fibre over that of the softest [1], >= 1; empty: all are equal
@@ -64,6 +65,8 @@ struct SettlingScales {
     bool ordered = false;              ///< forced orders part fibres
     void validate() const {
         core::require_positive("SettlingScales.radius", radius);
+        if (!std::isnan(thickest))
+            core::require(thickest >= radius, "SettlingScales.thickest", thickest, ">= radius, " + core::text(radius));
         core::require_positive("SettlingScales.slack", slack);
         core::require(taut >= slack, "SettlingScales.taut", taut, ">= slack, " + core::text(slack));
         core::require_finite("SettlingScales.taut", taut);
@@ -74,13 +77,14 @@ struct SettlingScales {
 /// Of fibres, all that follows from their numbers.
 inline SettlingScales scales_of(const std::vector<SettledFibre>& fibres, bool pulled_first) {
     SettlingScales scales;
+    scales.thickest = 0.0;
     scales.radius = scales.slack = scales.taut = std::numeric_limits<double>::infinity();
     if (pulled_first)
         for (const SettledFibre& fibre : fibres)
             scales.parting = std::min(scales.parting, parting_part(fibre.pull, fibre.element, fibre.bending));
     bool equal = true;
     for (const SettledFibre& fibre : fibres) {
-        scales.radius = std::min(scales.radius, fibre.radius);
+        scales.radius = std::min(scales.radius, fibre.radius), scales.thickest = std::max(scales.thickest, fibre.radius);
         scales.slack = std::min(scales.slack, node_stiffness(0.0, fibre.element, fibre.bending, fibre.span));
         const double taut = node_stiffness(scales.parting * fibre.pull, fibre.element, fibre.bending, fibre.span);
         scales.taut = std::min(scales.taut, taut);

@@ -113,7 +113,7 @@ private:
     bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report, const GaveUp& gave_up) {
         const auto start = std::chrono::steady_clock::now();
         IncrementReport increment;
-        double attempt_newton = 0.0;  // iterations a normal pass of it
+        double effort = 0.0;  // iterations a normal pass of it, over how many it may take
         bool rehearsed = false;
         const std::string present = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": ";
         const bool touching = mesh_.fibre_count() > 1 || parameters_.contact.detection.self_contact || HasTools<M>;
@@ -127,7 +127,9 @@ private:
                 const double limit = position_.limits_gap(stage) ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
                 contacts_.normal_law() = contacts_.normal_law().with_limit(limit);
             }
-            contacts_.allow_penetration(stage.allowed_penetration.value_or(parameters_.contact.stiffness.allowed_penetration));
+            const double stride = position_.stride();
+            const double stated = parameters_.contact.stiffness.allowed_penetration;
+            contacts_.allow_penetration(stride * stage.allowed_penetration.value_or(stated));
             const std::vector<double> amplitudes = amplitudes_at(stage, progress, position_, channels_, amplitudes_), change = difference(amplitudes, amplitudes_);
             if (const std::string reason = turned_too_far(mesh_, equilibrium_, amplitudes_, amplitudes); !reason.empty()) {
                 ++increment.cuts, position_.fraction *= 0.5, position_.easy = 0;
@@ -139,16 +141,21 @@ private:
             Vector trial = state_;
             move_tools(amplitudes);
             laws_.drive(mesh_, amplitudes, let_last(contacts_, stage.duration * (progress - position_.progress)));
-            equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping + position_.calming.springs,
+            equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping / stride + position_.calming.springs,
                                position_.held_by_fibre(loading.damping_of_fibres));
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
+            solver::IterationParameters iteration = parameters_.iteration;
+            iteration.newton_limit = static_cast<Index>(stage.patience * static_cast<double>(iteration.newton_limit));
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
-                equilibrium_, contacts_, linear_, passage_, parameters_.iteration, radius_, touching, clock_);
+                equilibrium_, contacts_, linear_, passage_, iteration, radius_, touching, clock_);
             // A limited gap moves fibres by about the limit: the search looks that far ahead.
-            const double ahead = std::max(position_.displacement, stage.forced_orders ? stage.gap_limit.value_or(0.0) : 0.0);
-            solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, position_.looseness(stage), stage.largest_displacement);
+            const double shown = stage.forced_orders ? stride * stage.gap_limit.value_or(0.0) : 0.0;
+            const double ahead = std::max(position_.displacement, shown);
+            solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, position_.looseness(stage),
+                                                         stride * stage.largest_displacement);
             increment.counts += attempt.counts;
-            attempt_newton = static_cast<double>(attempt.counts.newton) / static_cast<double>(std::max<Index>(1, attempt.counts.normal_passes));
+            const Index most = std::max<Index>(1, attempt.counts.normal_passes) * iteration.newton_limit;
+            effort = static_cast<double>(attempt.counts.newton) / static_cast<double>(most);
             if (attempt.converged) {
                 attempt.reason = clock_.time(core::Part::search, [&] { return refusal(mesh_, beam_, passage_, contacts_, state_, trial, stage.forced_orders, touching); });
                 if (attempt.reason.empty()) attempt.reason = laws_.refusal(mesh_, beam_, trial);
@@ -203,8 +210,7 @@ private:
         if (!position_.calming.active()) position_.calming.none_taken();
         else position_.calming.soften_after(increment.unstable, increment.displacement / radius_, Calming::softest(mesh_));
         ++position_.accepted, position_.in_stage += position_.calming.resting ? 0 : 1;
-        if (increment.cuts == 0 && ++position_.easy >= 2 && position_.fraction < 1.0)
-            position_.fraction = std::min(1.0, loading.growth * position_.fraction), position_.easy = 0;
+        position_.grow(stage, increment, loading.growth, effort);
         increment.number = position_.accepted, increment.stage = stage.name, increment.stage_progress = position_.progress;
         increment.progress = part_done(stages, position_.stage, position_.progress);
         // At rest: what holds takes no more force than the balance may miss anyway.
@@ -213,7 +219,7 @@ private:
         deep_ = touching && reached && !held && !laws_.again() ? mend_deep_places(loading, stages, *this, contacts_, radius_, position_) : std::string();
         position_.stage_over =
             !laws_.again() && ((reached && !held && deep_.empty()) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments));
-        position_.adapt_damping(stage, increment, attempt_newton / static_cast<double>(parameters_.iteration.newton_limit));
+        position_.adapt_damping(stage, increment, effort);
         contacts_.accept(state_), equilibrium_.accept(state_);
         if constexpr (HasSolid<M>)
             if (equilibrium_.solid().accept(state_) > 0) energy_.release(equilibrium_.elastic_energy(state_));  // bonds that had too much

@@ -73,6 +73,64 @@ TEST_CASE("contact on the way is as soft as allowed, but no softer than what par
     CHECK(std::abs(soft() / 0.2 - 1.0) < 1e-12);
 }
 
+TEST_CASE("ends that have no room to come back to the plane are held beside each other, as the last crossing asks") {
+    cloth::FabricParameters fabric = small_fabric();
+    for (const scene::FibreSpecification& fibre : cloth::flat_fabric(fabric, 2e-3).fibres()) CHECK_FALSE(fibre.start);
+    fabric.warp.fibres = fabric.weft.fibres = 1;
+    const double r = fabric.warp.fibre_radius;
+    for (const double over_radius : {1.05, 1.2, 1.4}) {  // in the plane two ends of a corner would be less than 2 r apart
+        fabric.overhang = over_radius * r;
+        const auto fibres = cloth::flat_fabric(fabric, 2e-3).fibres();
+        for (const double end : {0.0, 1.0}) {
+            const auto& warp = end > 0.5 ? fibres[core::at(fabric.warp_tows - 1)] : fibres.front();
+            const auto& weft = end > 0.5 ? fibres.back() : fibres[core::at(fabric.warp_tows)];
+            const Vec3 a = warp.start(end), b = weft.start(end);
+            CHECK((warp.start(1.0) - warp.start(0.0)).norm() == test::near(fabric.fibre_length(cloth::Family::warp), 1e-12));
+            CHECK((a - b).head<2>().norm() < 2.0 * r);
+            CHECK((a - b).norm() > 2.0 * r);
+            const Index tow = end > 0.5 ? fabric.warp_tows - 1 : 0, across = end > 0.5 ? fabric.weft_tows - 1 : 0;
+            CHECK((a.z() > b.z()) == fabric.pattern.over(tow, across));
+        }
+    }
+}
+
+TEST_CASE("what is far deeper than it is shown is parted in longer increments, as long as that goes with ease") {
+    const cloth::SettleParameters settle;
+    cloth::FabricParameters fabric = small_fabric();
+    CHECK(cloth::settling<Model>(fabric, settle).stages[1].largest_fraction == 1.0);
+    fabric.weft.fibre_radius *= 0.1;
+    const simulation::Stage<Model> separation = cloth::settling<Model>(fabric, settle).stages[1];
+    CHECK(separation.largest_fraction == test::near(5.5, 1e-12));  // the mean of 1 and 10
+    simulation::Position position;
+    position.progress = 1.0;
+    simulation::IncrementReport increment;
+    increment.contact.greatest_penetration = 100.0 * *separation.gap_limit;
+    const auto easy = [&] { position.grow(separation, increment, 1.5, 0.2), position.grow(separation, increment, 1.5, 0.2); };
+    easy();
+    CHECK(position.stride() == test::near(1.5, 1e-12));
+    for (int k = 0; k < 10; ++k) easy();
+    CHECK(position.stride() == separation.largest_fraction);
+    position.give_way(separation, {}, 0.0, 1);
+    CHECK(position.stride() == test::near(2.75, 1e-12));
+    CHECK(position.damping == 1.0);
+    position.grow(separation, increment, 1.5, 0.9), position.grow(separation, increment, 1.5, 0.9);  // solved with effort
+    CHECK(position.stride() == test::near(2.75, 1e-12));
+    increment.contact.greatest_penetration = 6.0 * *separation.gap_limit;  // a quarter of what is left
+    easy();
+    CHECK(position.stride() == test::near(1.5, 1e-12));
+}
+
+TEST_CASE("fibres that hardly resist bending are given more iterations") {
+    const cloth::SettleParameters settle;
+    cloth::FabricParameters fabric = small_fabric();
+    CHECK(cloth::settling<Model>(fabric, settle).stages[1].patience == 1.0);
+    fabric.warp.inertia_factor *= 0.101 / (cloth::parting_tension(fabric, 2.0) * 1e3);  // just above a tenth of what is asked for
+    CHECK(cloth::parting_tension(fabric, settle.tension_strain) == test::near(0.101, 1e-9));
+    CHECK(cloth::settling<Model>(fabric, settle).stages[1].patience == 1.0);
+    fabric.warp.inertia_factor *= 0.98;
+    CHECK(cloth::settling<Model>(fabric, settle).stages[1].patience == 2.0);
+}
+
 // Two layers of three fibres, 0.3 of a radius deep in each other, ends held: nothing says which way they part but where they lie.
 scene::Assembly two_layers(double radius, double spacing) {
     scene::Assembly assembly;

@@ -5,7 +5,9 @@
 #include <fibrant/compositions/weave/fabric_parameters.hpp>
 #include <fibrant/scene/assembly.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -14,8 +16,28 @@ namespace fibrant::compositions::weave {
 /// Channel that scales the tension of all tows.
 inline constexpr const char* tension_channel = "tension";
 
+/// How high the ends of a tow are held: in the plane where the overhang leaves room to come back to it, the nearer to their
+/// height at the last crossing, half of the mean thickness, the less it does. Ends that are all held in the plane beside a
+/// crossing lie in each other whatever fibres do: at a corner, two that cross d before their ends have these sqrt(2) d apart.
+/// @returns z of the first end and of the last one [length]
+inline std::array<double, 2> end_heights(const FabricParameters& fabric, Family family, Index tow) {
+    const double steepest = 0.5;  // at which a fibre comes down from a crossing to the plane [1], by trial
+    const bool warp = family == Family::warp;
+    const Family across = warp ? Family::weft : Family::warp;
+    const double high = 0.25 * (fabric.warp.packing().thickness + fabric.weft.packing().thickness);
+    const double free = fabric.overhang - 0.5 * fabric.tow(across).packing().width;
+    const double height = std::max(0.0, high - steepest * free);
+    const auto side = [&](Index crossed) {
+        const bool warp_above = warp ? fabric.pattern.over(tow, crossed) : fabric.pattern.over(crossed, tow);
+        return warp_above == warp ? height : -height;
+    };
+    return {side(0), side(fabric.tows(across) - 1)};
+}
+
 /// Adds all fibres, straight in the plane z = 0, in groups by tow. @returns the groups of the warp and of the weft tows
-inline std::array<std::vector<Index>, 2> add_flat_fibres(scene::Assembly& assembly, const FabricParameters& fabric) {
+/// @param lifted  they begin turned, so that their ends lie as high as they are to be held
+inline std::array<std::vector<Index>, 2> add_flat_fibres(scene::Assembly& assembly, const FabricParameters& fabric,
+                                                         bool lifted = false) {
     const Index cloth = assembly.add_group("fabric");
     std::array<std::vector<Index>, 2> groups;
     for (const Family family : {Family::warp, Family::weft}) {
@@ -28,11 +50,18 @@ inline std::array<std::vector<Index>, 2> add_flat_fibres(scene::Assembly& assemb
         for (Index t = 0; t < fabric.tows(family); ++t) {
             const Index group = assembly.add_group((warp ? "warp " : "weft ") + std::to_string(t), cloth);
             groups[warp ? 0 : 1].push_back(group);
+            const auto [first, last] = end_heights(fabric, family, t);
+            const double turned = 0.5 * (last - first) / half, flat = std::sqrt(1.0 - turned * turned);
             for (Index k = 0; k < tow.fibres; ++k) {
                 const auto& offset = packing.centres[core::at(k)];
                 const Vec3 centre = (fabric.tow_position(family, t) + offset.x()) * across + offset.y() * Vec3::UnitZ();
                 scene::FibreSpecification fibre;
                 fibre.from = centre - half * along, fibre.to = centre + half * along;
+                if (lifted && (first != 0.0 || last != 0.0)) {
+                    const Vec3 middle = centre + 0.5 * (first + last) * Vec3::UnitZ();
+                    const Vec3 way = half * (flat * along + turned * Vec3::UnitZ());
+                    fibre.start = [middle, way](double s) { return Vec3(middle + (2.0 * s - 1.0) * way); };
+                }
                 fibre.section = tow.section(), fibre.material = tow.material;
                 fibre.elements = fabric.elements_of(family);
                 fibre.director = Vec3::UnitZ();
@@ -54,7 +83,8 @@ inline void force_pattern(scene::Assembly& assembly, const FabricParameters& fab
         }
 }
 
-/// Scene of a fabric before it is settled (Durville, section 15.3.5): all tows straight in the plane z = 0.
+/// Scene of a fabric before it is settled (Durville, section 15.3.5): all tows straight in the plane z = 0, but for those whose
+/// ends have no room to come back to it (`end_heights`).
 ///
 /// The ends of a fibre keep their place across the fibre and are pulled along it by a dead force; its middle keeps its
 /// place along it. Ends are free to turn and to draw in, so nothing but the tension holds a fibre's length.
@@ -63,7 +93,7 @@ inline scene::Assembly flat_fabric(const FabricParameters& fabric, double tensio
     fabric.validate();
     core::require_positive("flat_fabric.tension_strain", tension_strain);
     scene::Assembly assembly;
-    const std::array<std::vector<Index>, 2> groups = add_flat_fibres(assembly, fabric);
+    const std::array<std::vector<Index>, 2> groups = add_flat_fibres(assembly, fabric, true);
     for (Index f = 0; f < fabric.fibres(); ++f) {
         const Family family = fabric.place(f).family;
         const TowParameters& tow = fabric.tow(family);
