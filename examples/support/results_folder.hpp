@@ -32,6 +32,8 @@ inline void require_folder(const std::filesystem::path& folder) {
     const std::string name = "--output " + folder.string();
     if (folder.empty()) throw std::invalid_argument("--output is empty, but it must be a folder");
     std::error_code error;
+    if (std::filesystem::status(folder, error).type() == std::filesystem::file_type::none)  // such as a name that is too long
+        throw std::invalid_argument("--output " + folder.string().substr(0, 80) + ": cannot be made: " + error.message());
     if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
         throw std::invalid_argument(name + ": is a file, but it must be a folder");
     for (std::filesystem::path above = folder.parent_path(); !above.empty(); above = above.parent_path()) {
