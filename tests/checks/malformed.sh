@@ -154,13 +154,13 @@ while IFS= read -r line; do
     "number: "*)
       key=${line#number: }
       for value in nan inf -inf '"text"' true '[1.0]' '{a = 1}' 0,5 '0.02 rad' '0.02 0.03' 1e400 -1e31 1e31 2026-11-26; do
-        with "$key=$value" ": $key"
+        with "$key=$value" ": $key = "
       done
       ;;
     "count: "*)
       key=${line#count: }
       for value in -1 1.5 nan 1e3 '"7"' 7x 9223372036854775807 99999999999999999999999 -9223372036854775808 '[7]'; do
-        with "$key=$value" ": $key"
+        with "$key=$value" ": $key = "
       done
       ;;
     "missing: "*)
