@@ -132,7 +132,19 @@ every_key() {
       print section "." key "|" substr($0, RSTART + 1, RLENGTH - 1)
     }'
 }
+# A section in capitals stands for those that the user names: the table says "stands: STAGE for NAME". One that the scene has no use
+# for is refused whole.
+section_known() {  # by the program in this scene
+  case $("$program" "$scene" --output "$out/results" --quiet --set "$1.no_such_key=1" 2>&1) in
+    *"$1.no_such_key = 1"*) ;;
+    *) return 1 ;;
+  esac
+}
 every_key > "$out/keys"
+if [ -n "$(sed -n 's/^stands: //p' "$table")" ]; then
+  sed -n 's/^stands: \(.*\) for \(.*\)$/s,^\1[.],\2.,/p' "$table" > "$out/stands"
+  sed -f "$out/stands" "$out/keys" > "$out/keys.named" && mv "$out/keys.named" "$out/keys"
+fi
 [ -s "$out/keys" ] || { echo "malformed: $name tells of no keys"; exit 1; }
 while IFS='|' read -r key kind; do
   case $kind in
@@ -142,6 +154,8 @@ while IFS='|' read -r key kind; do
     text) values='3 true ["text"] "\u0000"' ;;
     *) values='3 [1] [["text"]] [true]' ;;
   esac
+  with "$key=[[[1]]]" ": ${key%.*}"
+  grep -q "^ *\[${key%.*}\]" "$scene" || section_known "${key%.*}" || continue
   for value in $values; do
     with "$key=$value" ": $key"
   done
@@ -150,7 +164,7 @@ done < "$out/keys"
 # The program's own keys. A line "number: section.key" is a number to which all is done that a number may not be.
 while IFS= read -r line; do
   case $line in
-    "" | "#"*) ;;
+    "" | "#"* | "stands: "*) ;;
     "number: "*)
       key=${line#number: }
       for value in nan inf -inf '"text"' true '[1.0]' '{a = 1}' 0,5 '0.02 rad' '0.02 0.03' 1e400 -1e31 1e31 2026-11-26; do
