@@ -46,11 +46,11 @@ inline Scene read_scene(example::SceneReader& file) {
         file.read("matrix", "smoothing", matrix.smoothing, example::between(0, 1000), "smoothing passes over the inner faces");
         file.read("matrix", "penetration_depth_over_radius", matrix.penetration_depth_over_radius, example::between(0.0, 1e3),
                   "1", "how far the inner faces reach below the surface of the fibres, over the radius");
-        file.read("matrix", "clearance_over_radius", matrix.clearance_over_radius, example::above(0.0, 1e3), "1",
+        file.read("matrix", "clearance_over_radius", matrix.clearance_over_radius, example::between(1e-6, 1e3), "1",
                   "least distance of the inner faces, over the radius");
-        file.read("matrix", "least_thickness_over_cover", matrix.least_thickness_over_cover, example::above(0.0, 1.0), "1",
+        file.read("matrix", "least_thickness_over_cover", matrix.least_thickness_over_cover, example::between(1e-6, 1.0), "1",
                   "least thickness of a layer, over the cover");
-        file.read("matrix", "bonding_factor", matrix.bonding_factor, example::above(0.0, 1e9), "1",
+        file.read("matrix", "bonding_factor", matrix.bonding_factor, example::between(1e-9, 1e9), "1",
                   "factor on the stiffness of bonds of centrelines");
         file.read("matrix", "section_factor", matrix.section_factor, example::between(0.0, 1e9), "1",
                   "factor on the stiffness of bonds of sections; 0: none");
@@ -93,6 +93,8 @@ inline Scene read_scene(example::SceneReader& file) {
     if (matrix.lower_fibres)
         file.check(matrix.material.young_modulus < stiffest, "matrix", "young_modulus",
                    "< that of the fibres, " + fibrant::core::text(stiffest) + ", which matrix.lower_fibres lowers by it");
+    file.check(matrix.cover >= 1e-3 * thickest, "matrix", "cover",
+               ">= a thousandth of the radius of a fibre = " + fibrant::core::text(1e-3 * thickest));
     file.check(matrix.cover <= 1e4 * thickest, "matrix", "cover",
                "<= 10000 radii of a fibre = " + fibrant::core::text(1e4 * thickest));
     if (!scene.settled.empty())

@@ -88,6 +88,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.check(parameters.height > 2.0, "mat", "fibres",
                ">= " + core::text(std::ceil(2.0 * static_cast<double>(parameters.fibres) / parameters.height)) +
                    ", or the box is no higher than a fibre");
+    file.check(parameters.height <= 1e5 * static_cast<double>(parameters.fibres), "mat", "volume_fraction",
+               ">= " + core::text(parameters.volume_fraction(1e5) / static_cast<double>(parameters.fibres)) +
+                   ", or the box is higher than 100000 radii with a single fibre");
     file.check(parameters.height <= 1e5, "mat", "fibres",
                "<= " + core::text(std::floor(1e5 * static_cast<double>(parameters.fibres) / parameters.height)) +
                    ", or the box is higher than 100000 radii");

@@ -57,7 +57,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.check(element >= parameters.radius, "knot", "elements",
                "<= " + core::text(std::floor(length / parameters.radius)) + ", or elements are shorter than a radius");
     example::require_room(file, "knot", "elements", example::unknowns_of(1, parameters.elements), 20000.0);
-    file.names({{"KnotParameters.", "knot."}});
+    file.names({{"KnotParameters.", "knot."}, {"fibre.start: turn", "knot.elements is too small: turn"}});
     parameters.crossings = static_cast<int>(crossings);
     parameters.validate();
 

@@ -60,7 +60,7 @@ bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters&
     simulation::Loading<Strand> loading;
     loading.stages.resize(1);
     loading.stages[0].ramps = {{strand::stretch, given.strain}, {strand::twist, given.rotation}};
-    loading.stages[0].increments = given.increments;
+    loading.stages[0].increments = given.increments, loading.stages[0].most_increments = 20 * given.increments;
     output.tell(loading);
     const simulation::Report report = simulator.run(loading, recorder);
     const strand::StrandState state = strand::measure(simulator, parameters);

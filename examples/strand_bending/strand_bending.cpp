@@ -143,11 +143,14 @@ bool solve(example::SceneReader& file, example::Output& output) {
     bending.anchor = anchor == "near_plate" ? strand::Anchor::near_plate : strand::Anchor::both_plates;
     strand::StrandParameters parameters = strand::regular_strand(
         wires, radius, lay_angle, alternate, lay == "equal_angle" ? strand::Lay::equal_angle : strand::Lay::equal_pitch);
+    const double pitch = parameters.pitch(parameters.layers.size() - 1);
+    file.check(pitch <= 1e5 * radius, "strand", "lay_angle_deg",
+               "larger: the outer layer goes round once on " + core::text(pitch) + ", and may on <= 100000 strand.radius = " + core::text(1e5 * radius));
     parameters.material = material;
-    parameters.length = length > 0.0 ? length : turns * parameters.pitch(parameters.layers.size() - 1);
+    parameters.length = length > 0.0 ? length : turns * pitch;
     // Sixteen a turn follow a helix; wires of opposite hands cross each other every two diameters, and hardly bend in between.
     parameters.elements = elements > 0 ? elements : static_cast<Index>(std::ceil(std::max(16.0 * turns, parameters.length / (7.0 * radius))));
-    const double round = parameters.length / parameters.pitch(parameters.layers.size() - 1);
+    const double round = parameters.length / pitch;
     file.check(static_cast<double>(parameters.elements) >= 4.0 * round, "strand", "elements",
                ">= " + core::text(std::ceil(4.0 * round)) + ", for wires go around " + core::text(round) +
                    " times: an element may not turn by more than 90 degrees");

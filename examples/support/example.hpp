@@ -70,7 +70,7 @@ struct Output {
                                         "): " + (goes_on ? "--resume goes on from its last increment, " : "") +
                                         "--overwrite begins anew, or name another folder");
         if (resume && !goes_on) {
-            if (!found.empty())
+            if (!found.empty() && !hardly_begun(folder))
                 throw std::invalid_argument(name + ": holds results (" + found +
                                             ") but no checkpoint.bin to resume from: --overwrite begins anew");
             if (!quiet) std::fprintf(stderr, "%s: there is nothing to resume from, so the run begins\n", name.c_str());

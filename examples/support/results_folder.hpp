@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -32,6 +33,8 @@ inline void require_folder(const std::filesystem::path& folder) {
     const std::string name = "--output " + folder.string();
     if (folder.empty()) throw std::invalid_argument("--output is empty, but it must be a folder");
     std::error_code error;
+    if (std::filesystem::status(folder, error).type() == std::filesystem::file_type::none)  // such as a name that is too long
+        throw std::invalid_argument("--output " + folder.string().substr(0, 80) + ": cannot be made: " + error.message());
     if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
         throw std::invalid_argument(name + ": is a file, but it must be a folder");
     for (std::filesystem::path above = folder.parent_path(); !above.empty(); above = above.parent_path()) {
@@ -94,6 +97,19 @@ private:
     std::filesystem::path lock_;
     int file_ = -1;
 };
+
+/// Whether a run in the folder was ended before its first checkpoint: there is no summary, and no more than the first row of a table.
+inline bool hardly_begun(const std::filesystem::path& folder) {
+    if (std::filesystem::exists(folder / "summary.json")) return false;
+    for (const char* name : {"increments.csv", "levels.csv"}) {
+        std::ifstream table(folder / name);
+        std::string line;
+        int lines = 0;
+        while (lines < 3 && std::getline(table, line)) ++lines;
+        if (lines > 2) return false;
+    }
+    return true;
+}
 
 /// Files of an earlier run in the folder, by name, a few of them; empty: none.
 inline std::string earlier_results(const std::filesystem::path& folder) {

@@ -43,6 +43,9 @@ inline void require_room(const SceneReader& file, const std::string& section, co
 inline void require_element(const SceneReader& file, const std::string& section, Index elements, double length, double radius,
                             double least = 0.1) {
     const double most = std::floor(length / (least * radius));
+    file.check(most >= 1.0, section, "elements",
+               "in fibres that are longer: " + fibrant::core::text(length) + " is shorter than " + fibrant::core::text(least) +
+                   " radii = " + fibrant::core::text(least * radius));
     file.check(static_cast<double>(elements) <= most, section, "elements",
                "<= " + fibrant::core::text(most) + ", or elements are shorter than " + fibrant::core::text(least) + " radii");
 }

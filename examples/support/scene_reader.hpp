@@ -90,7 +90,9 @@ public:
         Entry& entry = tell(section, key, "whole number", bound.text(), "", sentence, std::to_string(value));
         const toml::node* found = find(section, key);
         if (found == nullptr) return false;
-        if (!found->is_integer()) refuse(section, key, *found, "a whole number " + bound.text());
+        if (!found->is_integer())
+            refuse(section, key, *found,
+                   "a whole number " + bound.text() + (found->is_number() ? ", without a point or an exponent" : ""));
         value = static_cast<Index>(found->as_integer()->get());
         if (!bound.holds(static_cast<double>(value))) refuse(section, key, *found, bound.text());
         entry.value = std::to_string(value);
@@ -312,6 +314,8 @@ private:
         const std::string section = trimmed(text.substr(0, dot)), key = trimmed(text.substr(dot + 1, equals - dot - 1));
         const std::string value = trimmed(text.substr(equals + 1));
         if (value.empty()) fibrant::core::refuse("--set", clipped(text), "section.key=value, and the value is missing");
+        if (value.find_first_of("\r\n") != std::string::npos)
+            fibrant::core::refuse("--set", clipped(text), "section.key=value in one line");
         require_readable(value, "--set " + clipped(section + "." + key));
         find(section, key);  // refuses what is no section
         toml::table* inner = &table_;
@@ -326,7 +330,10 @@ private:
             const toml::table parsed = toml::parse("value = " + value);
             if (parsed.size() == 1)
                 return parsed.get("value")->visit([&](const auto& known) { table.insert_or_assign(key, known); });
-        } catch (const toml::parse_error&) {  // a text without quotes
+        } catch (const toml::parse_error& error) {  // a text without quotes, or what is begun and not ended
+            if (std::string_view("\"'[{").find(value.front()) != std::string_view::npos)
+                fibrant::core::refuse("--set " + clipped(section + "." + key), clipped(value),
+                                      "a value of TOML: " + std::string(error.description()));
         }
         table.insert_or_assign(key, value);
     }

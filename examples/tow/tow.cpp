@@ -70,6 +70,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     example::check_transverse(file, "material", kind);
     file.names({{"ElasticMaterial.poisson_ratio", "material.poisson_ratio"}});
     material.validate();
+    file.check(length <= 1e5 * radius, "tow", "length", "<= 100000 tow.radius = " + core::text(1e5 * radius));
     example::require_element(file, "tow", elements, length, radius);
     example::require_room(file, "tow", "fibres", example::unknowns_of(fibres, elements), 6000.0);
 

@@ -116,10 +116,55 @@ with "output.deepest_over_radius=-1" "output.deepest_over_radius = -1, but it mu
 with "output.nonsense=1" "output.nonsense = 1, but it must be one of the keys"
 with "solver.threads=100000" "solver.threads = 100000, but it must be a whole number from 0"
 with "solver.threads=-1" "solver.threads = -1, but it must be"
+with 'output.unit="mm' "--set output.unit = \"mm, but it must be a value of TOML"
+with "output.unit=mm
+solver.threads=1" "but it must be section.key=value in one line"
+try "File name too long" "$scene" --output "$out/$(head -c 300 /dev/zero | tr '\0' 'a')" --quiet
+# A byte order mark and lines that end in CR LF are read as what they are.
+{ printf '\357\273\277'; sed 's/$/\r/' "$scene"; printf '[nonsense]\r\na = 1\r\n'; } > "$out/scene.toml"
+try "nonsense = [section], but it must be one of the sections" "$out/scene.toml" --output "$out/results" --quiet
+# Every key that the program tells of is given what is of another kind, and is misspelt.
+every_key() {
+  "$program" --help-scene | awk '/^\[/ { section = substr($0, 2, length($0) - 2) }
+    /^  [a-z]/ && match($0, /\((number|whole number|true or false|text|list of texts)/) {
+      key = $1
+      sub(":", "", key)
+      print section "." key "|" substr($0, RSTART + 1, RLENGTH - 1)
+    }'
+}
+# A section in capitals stands for those that the user names: the table says "stands: STAGE for NAME". One that the scene has no use
+# for is refused whole.
+section_known() {  # by the program in this scene
+  case $("$program" "$scene" --output "$out/results" --quiet --set "$1.no_such_key=1" 2>&1) in
+    *"$1.no_such_key = 1"*) ;;
+    *) return 1 ;;
+  esac
+}
+every_key > "$out/keys"
+if [ -n "$(sed -n 's/^stands: //p' "$table")" ]; then
+  sed -n 's/^stands: \(.*\) for \(.*\)$/s,^\1[.],\2.,/p' "$table" > "$out/stands"
+  sed -f "$out/stands" "$out/keys" > "$out/keys.named" && mv "$out/keys.named" "$out/keys"
+fi
+[ -s "$out/keys" ] || { echo "malformed: $name tells of no keys"; exit 1; }
+while IFS='|' read -r key kind; do
+  case $kind in
+    number) values='"text" true [1.0] nan 0,5 1_ -1e31' ;;
+    "whole number") values='1.5 "7" [7] true nan -9223372036854775808' ;;
+    "true or false") values='1 True [true] yes' ;;
+    text) values='3 true ["text"] "\u0000"' ;;
+    *) values='3 [1] [["text"]] [true]' ;;
+  esac
+  with "$key=[[[1]]]" ": ${key%.*}"
+  grep -q "^ *\[${key%.*}\]" "$scene" || section_known "${key%.*}" || continue
+  for value in $values; do
+    with "$key=$value" ": $key"
+  done
+  with "${key}x=1" ": ${key}x = 1, but it must be one of the keys"
+done < "$out/keys"
 # The program's own keys. A line "number: section.key" is a number to which all is done that a number may not be.
 while IFS= read -r line; do
   case $line in
-    "" | "#"*) ;;
+    "" | "#"* | "stands: "*) ;;
     "number: "*)
       key=${line#number: }
       for value in nan inf -inf '"text"' true '[1.0]' '{a = 1}' 0,5 '0.02 rad' '0.02 0.03' 1e400 -1e31 1e31 2026-11-26; do

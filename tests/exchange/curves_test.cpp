@@ -16,7 +16,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 #include <string>
+#include <vector>
 
 namespace exchange_curves_test {
 
@@ -170,9 +172,44 @@ TEST_CASE("surfaces of fibres are closed, look outwards, and hold the volume of 
     std::uint32_t size = 0;
     std::memcpy(&size, glb.data() + 8, 4);
     CHECK(size == glb.size());
+    // Its root turns z up into y up, and millimetres into metres.
+    const auto numbers_after = [&](const std::string& key) {
+        std::vector<double> numbers;
+        std::istringstream text(glb.substr(glb.find(key) + key.size()));
+        for (double x = 0.0; text >> x; text.get()) numbers.push_back(x);
+        return numbers;
+    };
+    const std::vector<double> turn = numbers_after("\"rotation\":[");
+    REQUIRE(turn.size() == 4);
+    CHECK((Eigen::Quaterniond(turn[3], turn[0], turn[1], turn[2]) * Vec3(Vec3::UnitZ()) - Vec3::UnitY()).norm() < 1e-15);
+    CHECK(numbers_after("\"scale\":[") == std::vector<double>(3, 1e-3));
     const std::string stl = stl_of(sample());
     std::memcpy(&size, stl.data() + 80, 4);
     CHECK(stl.size() == 84 + 50 * size);
+}
+
+TEST_CASE("a tube that tapers is a frustum, and one around a knot is no more twisted at its seam than elsewhere") {
+    FileCurve cone{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(3, 0, 0)}};
+    cone.radius = 0.2, cone.radii = {0.1, 0.2, 0.4};
+    Surface surface;
+    add_tube(surface, cone, 8);
+    CHECK(surface.volume() == test::near(pi / 3.0 * (0.01 + 0.02 + 0.04 + 2.0 * (0.04 + 0.08 + 0.16)), 1e-12));
+    FileCurve trefoil;
+    const std::size_t n = 200, sides = 8;
+    for (std::size_t k = 0; k < n; ++k) {
+        const double t = 2.0 * pi * static_cast<double>(k) / static_cast<double>(n);
+        trefoil.points.emplace_back(std::sin(t) + 2.0 * std::sin(2.0 * t), std::cos(t) - 2.0 * std::cos(2.0 * t), -std::sin(3.0 * t));
+    }
+    trefoil.radius = 0.3, trefoil.closed = true;
+    Surface knot;
+    add_tube(knot, trefoil, sides);
+    double seam = 0.0, most = 0.0;  // longest edge along the tube
+    for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t a = 0; a < sides; ++a) {
+            double& longest = k + 1 == n ? seam : most;
+            longest = std::max(longest, (knot.points[(k + 1) % n * sides + a] - knot.points[k * sides + a]).norm());
+        }
+    CHECK(seam < 1.01 * most);
 }
 
 TEST_CASE("voxels hold the volume of fibres to a thousandth at half a radius, and their orientation") {
@@ -191,10 +228,35 @@ TEST_CASE("voxels hold the volume of fibres to a thousandth at half a radius, an
         sum += static_cast<double>(fine.share[k]);
         if (fine.share[k] == 0.0f) continue;
         CHECK(fine.yarn[k] == 7);
+        const auto& d = fine.direction[k];
+        const auto& o = fine.orientation[k];
+        CHECK((Vec3(d[0], d[1], d[2]) - along).norm() < 1e-6);
+        CHECK((Vec3(o[3], o[4], o[5]) - Vec3(along.x() * along.y(), along.y() * along.z(), along.x() * along.z())).norm() < 1e-6);
         CHECK(std::abs(static_cast<double>(fine.orientation[k][0] + fine.orientation[k][1] + fine.orientation[k][2]) - 1.0) <
               1e-6);  // single precision
     }
     CHECK(sum * std::pow(0.05, 3) == test::near(fine.volume, 1e-6));
+    // Drawn twice it is too much wherever a cell is more than half full, and a cell is of the yarn that fills most of it.
+    const Voxels twice = voxels_of({slanted, slanted}, fine.grid);
+    double excess = 0.0;
+    for (const float share : fine.share) excess += std::max(0.0, 2.0 * static_cast<double>(share) - 1.0) * std::pow(0.05, 3);
+    CHECK(twice.excess == test::near(excess, 1e-6));
+    FileCurve thin = slanted;
+    thin.radius = 0.05, thin.group = 3;
+    for (const std::vector<FileCurve>& both : {std::vector{slanted, thin}, std::vector{thin, slanted}})
+        CHECK(voxels_of(both, grid_around(both, 3.0), 40).yarn == std::vector<std::int32_t>{7});
+    CHECK((orientation_of({FileCurve{.points = {Vec3(0, 0, 0), Vec3(3, 0, 0)}, .radius = 2.0}, FileCurve{.points = {Vec3(0, 0, 0), Vec3(0, 4, 0)}, .radius = 1.0}}) -
+           Mat3(Vec3(0.75, 0.25, 0.0).asDiagonal())).norm() < 1e-15);  // by volume
+    // The middle of a cone is nearer to its thick end: (1 + 2 q + 3 q^2) / (1 + q + q^2) / 4 of the way, q = 3 times as thick there.
+    FileCurve cone{{Vec3(0, 0, 0), Vec3(2, 0, 0)}};
+    cone.radius = 0.3, cone.radii = {0.1, 0.3};
+    const Voxels tapered = voxels_of({cone}, grid_around({cone}, 0.05));
+    double middle = 0.0, filled = 0.0;
+    for (std::size_t k = 0; k < tapered.share.size(); ++k) {
+        const double x = tapered.grid.origin.x() + 0.05 * (static_cast<double>(static_cast<Index>(k) % tapered.grid.counts[0]) + 0.5);
+        filled += static_cast<double>(tapered.share[k]), middle += static_cast<double>(tapered.share[k]) * x;
+    }
+    CHECK(middle / filled == test::near(2.0 * (1.0 + 6.0 + 27.0) / (1.0 + 3.0 + 9.0) / 4.0, 1e-3));
     // A ring: tr A = 1, and as much along x as along y.
     FileCurve ring;
     for (Index k = 0; k < 400; ++k)

@@ -111,6 +111,93 @@ TEST_CASE("a step that ends where the energy rises is cut, and Newton's method g
     }
 }
 
+TEST_CASE("a step is cut until the energy rises at its end by no more than half of the slope at which it fell, and what was cut is no end") {
+    const auto solved = [](Vector& x, double tolerance, Index limit) {
+        Bounded problem;
+        Untouched contacts;
+        Exact linear{&problem};
+        solver::IterationParameters parameters;
+        parameters.mixed = false, parameters.overshoot = 0.5, parameters.newton_limit = limit;
+        core::StageClock clock;
+        solver::Newton<Bounded, Untouched, Exact> newton(problem, contacts, linear, parameters, 1.0, clock);
+        solver::IterationCounts counts;
+        return newton.solve(x, tolerance, x, std::numeric_limits<double>::infinity(), counts);
+    };
+    // From 4 the step is 22 long, and has to be cut three times.
+    Vector x = Vec3(4.0, 0.0, 0.0);
+    solved(x, 1e-4, 1);
+    const double step = x[0] - 4.0;
+    CHECK(step < 0.0);
+    CHECK(std::atan(x[0]) * step <= -0.5 * std::atan(4.0) * step);
+    // Where any step is good enough, one that was cut is not the last.
+    Vector far = Vec3(4.0, 0.0, 0.0), near = Vec3(0.1, 0.0, 0.0);
+    CHECK(solved(far, 1e9, 50).iterations > 1);
+    CHECK(solved(near, 1e9, 50).iterations == 1);
+}
+
+/// Two wells: (x^2 - 1)^2 / 4 in each component, whose tangent is negative between them.
+struct Wells : Bounded {
+    struct Mesh : Bounded::Mesh {
+        Index fibre_count() const { return 1; }
+        Index node_count(Index) const { return 1; }
+    };
+    Mesh one;
+    struct Asked {
+        bool without_compression;
+        double shift;
+    };
+    std::vector<std::vector<Asked>> asked{};  ///< of each iteration
+    const Mesh& mesh() const { return one; }
+    void linearise(const Vector& x, bool without_compression, double shift) {
+        asked.back().push_back({without_compression, shift});
+        stiffness = 3.0 * x.array().square() - 1.0 + shift;
+    }
+    void prescribed_step(const Vector& x, Vector& step) {
+        asked.emplace_back();
+        step = Vector::Zero(x.size());
+    }
+    assembly::ResidualFigures residual(const Vector& x, Vector& r) const {
+        r = x.array().cube() - x.array();
+        return {r.norm(), 1.0, 0.0};
+    }
+};
+struct Definite {
+    const Wells* problem;
+    void analyse(const Bounded::System&) {}
+    solver::SolveStatus prepare(const Bounded::System&) const {
+        return problem->stiffness.minCoeff() > 0.0 ? solver::SolveStatus::converged : solver::SolveStatus::indefinite;
+    }
+    solver::SolveReport solve(const Bounded::System&, const Vector& b, double, Vector& x) {
+        x = b.cwiseQuotient(problem->stiffness);
+        return {solver::SolveStatus::converged, 1, 0.0, 1.0};
+    }
+};
+
+TEST_CASE("an indefinite tangent is met without compression, then by shifts that are four times the last, and the next one begins a step below") {
+    Wells problem;
+    Untouched contacts;
+    Definite linear{&problem};
+    solver::IterationParameters parameters;
+    parameters.mixed = false, parameters.newton_limit = 100;
+    core::StageClock clock;
+    solver::Newton<Wells, Untouched, Definite> newton(problem, contacts, linear, parameters, 1.0, clock);
+    solver::IterationCounts counts;
+    Vector x = Vec3(0.1, 0.1, 0.1);
+    REQUIRE(newton.solve(x, 1e-4, x, std::numeric_limits<double>::infinity(), counts).status == solver::NewtonStatus::converged);
+    CHECK((x - Vec3::Ones()).norm() < 1e-5);
+    const std::vector<Wells::Asked>& first = problem.asked.front();
+    REQUIRE(first.size() == 10);  // the tangent is -0.97 of the mean stiffness, and the last shift 1.64 of it
+    for (std::size_t k = 0; k < first.size(); ++k) {
+        CHECK(first[k].without_compression == (k > 0));
+        CHECK(first[k].shift == (k < 2 ? 0.0 : 1e-4 * std::pow(4.0, static_cast<double>(k) - 2.0)));
+    }
+    for (std::size_t n = 1; n < problem.asked.size(); ++n) {
+        const double before = problem.asked[n - 1].back().shift;
+        CHECK(problem.asked[n].front().shift == (before > 1e-4 ? 0.25 * before : 0.0));
+    }
+    CHECK(problem.asked.back().back().shift < 0.1);
+}
+
 TEST_CASE("what the first step of a prescribed motion may leave over is a part of the forces, not of what the motion does to an end alone") {
     Bounded problem;
     scene::DofLayout& layout = problem.own.own;

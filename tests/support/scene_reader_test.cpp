@@ -74,6 +74,11 @@ TEST_CASE("a number is read whole, is one, and lies within its bound") {
          {"0", "1001", "1.5", "1e2", "9223372036854775807", "-9223372036854775808", "99999999999999999999", "7x"})
         CHECK(refused(sound, {std::string("rod.elements=") + text}).starts_with("rod.elements = "));
     CHECK(refused(sound, {"rod.elements=1001"}) == "rod.elements = 1001, but it must be >= 1 and <= 1000");
+    CHECK(refused(sound, {"rod.elements=10.0"}) ==
+          "rod.elements = 10, but it must be a whole number >= 1 and <= 1000, without a point or an exponent");
+    for (const char* text : {"\"a", "'''a", "[\"a\"", "{a = 1"})  // begun and not ended: no text without quotes
+        CHECK(refused(sound, {std::string("rod.name=") + text}).starts_with("--set rod.name = "));
+    CHECK(refused(sound, {"rod.name=a\nrod.bent=true"}).ends_with("but it must be section.key=value in one line"));
     CHECK(refused("[rod]\nradius = 0.05\n") == "rod.depth = 0.1 (not given), but it must be <= rod.radius = 0.05");
 }
 
