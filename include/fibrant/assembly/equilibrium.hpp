@@ -3,6 +3,7 @@
 /// @file Equilibrium of a mesh with its contacts, terms and prescribed motion: residual, tangent, energies.
 
 #include <fibrant/assembly/solid_system.hpp>
+#include <fibrant/assembly/vector_measures.hpp>
 #include <fibrant/connection/connections.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/contact/contact_set.hpp>
@@ -48,6 +49,9 @@ public:
     static_assert(connection::Connection<Ties, B>);
     /// The force of an element in an iteration depends on the strains that it predicts.
     static constexpr bool iterated_strains = beam::IteratedStrains<B>;
+    /// A term makes it move in time.
+    static constexpr bool moves = Terms::moves;
+    static_assert(!moves || !has_solid, "solids have no inertia yet: a model with a term that moves it has no part Solid");
     static constexpr Index element_unknowns = beam::Mesh<B>::element_unknowns;
 
     Equilibrium(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const B& beam, Contacts& contacts,
@@ -183,7 +187,12 @@ public:
 
     /// Adds the forces of fibres and solids in a state.
     /// @param iterated  as the iteration has them, whose strains are those of the state once it has converged
-    void add_internal_forces(const Vector& state, Vector& forces, [[maybe_unused]] bool iterated = false) {
+    void add_internal_forces(const Vector& state, Vector& forces, bool iterated = false) {
+        add_fibre_forces(state, forces, iterated);
+        if constexpr (has_solid) solid_.add_forces(state, forces);
+        terms_.template of<term::Role::structure>([&](const auto& term) { term.add_forces(state, forces); });
+    }
+    void add_fibre_forces(const Vector& state, Vector& forces, [[maybe_unused]] bool iterated) {
         core::parallel_for(mesh_->fibre_count(), [&](Index f) {
             for (Index e = 0; e < mesh_->fibre(f).elements; ++e) {
                 if constexpr (iterated_strains)
@@ -196,8 +205,6 @@ public:
                     beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e));
             }
         }, mesh_->grain());
-        if constexpr (has_solid) solid_.add_forces(state, forces);
-        terms_.template of<term::Role::structure>([&](const auto& term) { term.add_forces(state, forces); });
     }
 
     /// Residual of a state whose contacts have been evaluated.
@@ -209,7 +216,13 @@ public:
         terms_.template of<term::Role::interaction>(add);
         scene::fold_images(system_.layout(), residual);
         const double contact = norm(residual);
-        add_internal_forces(state, residual, true);
+        if constexpr (moves) terms_.moving([&](auto& term) {
+            fibres_.setZero(state.size());
+            add_fibre_forces(state, fibres_, true);
+            term.add_averaged(state, fibres_, residual);
+            terms_.template of<term::Role::structure>(add);
+        });
+        else add_internal_forces(state, residual, true);
         terms_.template of<term::Role::aid>(add);
         scene::fold_images(system_.layout(), residual);
         external_.setZero(state.size());
@@ -225,11 +238,13 @@ public:
         reaction_ = residual;
         scene::project_free(system_.layout(), residual);
         reaction_ -= residual;
+        if constexpr (moves) add_left(state);
         ResidualFigures figures;
         figures.residual = norm(residual);
         figures.rounding = rounding_;
         const double reaction = std::sqrt(std::max(0.0, all * all - figures.residual * figures.residual));
         figures.scale = std::sqrt(contact * contact + load * load + reaction * reaction);
+        if constexpr (moves) figures.scale = std::hypot(figures.scale, norm(fibres_));  // in free flight there is nothing else
         return figures;
     }
 
@@ -238,11 +253,14 @@ public:
     /// @param shift         added on every vector, as a spring on positions [force / length]
     void linearise(const Vector& state, bool tension_only, double shift) {
         system_.place(state);
+        [[maybe_unused]] double share = 1.0;
+        if constexpr (moves) terms_.moving([&](const auto& term) { share = term.share(); });
         core::parallel_for(mesh_->fibre_count(), [&](Index f) {
             system_.clear(f);
             for (Index e = 0; e < mesh_->fibre(f).elements; ++e) {
                 const typename B::Stresses geometric = tension_only ? B::without_compression(stress(f, e)) : stress(f, e);
-                system_.add(f, e, beam_.tangent_stiffness(mesh_->rest(f, e), mesh_->element(state, f, e), geometric));
+                if constexpr (moves) system_.add(f, e, beam::ElementMatrix<B>(share * beam_.tangent_stiffness(mesh_->rest(f, e), mesh_->element(state, f, e), geometric)));
+                else system_.add(f, e, beam_.tangent_stiffness(mesh_->rest(f, e), mesh_->element(state, f, e), geometric));
             }
             contacts_->section_stiffness_terms(f, state, [&](Index first, const auto& weights, const Mat3& stiffness) {
                 system_.add_rank_one(f, first, weights, stiffness);
@@ -297,41 +315,25 @@ public:
     Vector& reaction() noexcept { return reaction_; }
 
     /// Norm with forces on directors divided by the radius [force].
-    double norm(const Vector& forces) const {
-        const std::vector<double>& length = system_.layout().length;
-        return std::sqrt(core::ordered_sum(core::count(length), 0.0, [&](Index first, Index last) {
-            double sum = 0.0;
-            for (Index v = first; v < last; ++v) sum += forces.segment<3>(3 * v).squaredNorm() / (length[core::at(v)] * length[core::at(v)]);
-            return sum;
-        }));
-    }
+    double norm(const Vector& forces) const { return norm_of(system_.layout(), forces); }
     /// Greatest displacement of a step, directors counted at the surface [length].
-    double greatest(const Vector& step) const {
-        const std::vector<double>& length = system_.layout().length;
-        return std::sqrt(core::largest(core::count(length), 0.0, [&](Index v) {
-            return step.segment<3>(3 * v).squaredNorm() * length[core::at(v)] * length[core::at(v)];
-        }));
-    }
-
+    double greatest(const Vector& step) const { return greatest_of(system_.layout(), step); }
     /// Scalar product of the displacements of two steps, directors counted at the surface [length^2].
-    double product(const Vector& a, const Vector& b) const {
-        const std::vector<double>& length = system_.layout().length;
-        return core::ordered_sum(core::count(length), 0.0, [&](Index first, Index last) {
-            double sum = 0.0;
-            for (Index v = first; v < last; ++v) sum += a.segment<3>(3 * v).dot(b.segment<3>(3 * v)) * length[core::at(v)] * length[core::at(v)];
-            return sum;
-        });
-    }
+    double product(const Vector& a, const Vector& b) const { return product_of(system_.layout(), a, b); }
 
     /// Of each fibre the greatest displacement of a step, directors counted at the surface [length]; empty if the step is not finite.
-    std::vector<double> greatest_by_fibre(const Vector& step) const {
-        std::vector<double> greatest(step.size() > 0 && step.allFinite() ? core::at(mesh_->fibre_count()) : 0, 0.0);
-        for (Index f = 0; f < core::count(greatest); ++f)
-            scene::for_own_vectors(system_.layout(), f, [&](Index v, double length) { greatest[core::at(f)] = std::max(greatest[core::at(f)], length * step.segment<3>(3 * v).norm()); });
-        return greatest;
-    }
+    std::vector<double> greatest_by_fibre(const Vector& step) const { return greatest_of_chains(system_.layout(), mesh_->fibre_count(), step); }
 
 private:
+    /// Supports carry forces of the end of a step.
+    void add_left(const Vector& state) {
+        terms_.moving([&](const auto& term) {
+            const Vector left = term.left(state);
+            Vector free = left;
+            scene::project_free(system_.layout(), free);
+            reaction_ += left - free;
+        });
+    }
     static Solid taken(Solid solid, [[maybe_unused]] const scene::Assembly& assembly, [[maybe_unused]] const beam::Mesh<B>& mesh,
                        [[maybe_unused]] const connection::Channels& channels) {
         if constexpr (has_solid) solid.take(assembly, mesh, channels);
@@ -431,6 +433,7 @@ private:
     contact::LearnedContacts learned_;
     std::vector<Vec3> targets_;
     Vector external_, reaction_;
+    [[no_unique_address]] std::conditional_t<moves, Vector, core::Inactive> fibres_;  // forces of the fibres
     double rounding_ = 0.0;
 };
 

@@ -31,6 +31,10 @@ public:
         const double elastic = equilibrium.elastic_energy(state);
         balance_.external += elastic - balance_.elastic;
         balance_.elastic = elastic;
+        if constexpr (Equilibrium::moves) equilibrium.terms().moving([&](const auto& term) {
+            balance_.external += term.kinetic(state) - balance_.kinetic;
+            balance_.kinetic = term.kinetic(state);
+        });
         external_ = contact_.size() == state.size() ? contact_ : Vector(Vector::Zero(state.size()));
         equilibrium.add_internal_forces(state, external_);
         damping_.resize(0);
@@ -62,6 +66,10 @@ public:
         const Vector way = to - from;
         balance_.external += trapezium(way, external_, equilibrium.external() + equilibrium.reaction());
         balance_.damped += trapezium(way, damping_, equilibrium.damping_force(to));
+        if constexpr (Equilibrium::moves) equilibrium.terms().moving([&](const auto& term) {
+            balance_.kinetic = term.kinetic(to);
+            balance_.numerical += term.lost(from, to);
+        });
         if constexpr (requires { contacts.tools(); }) balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(true);
         const contact::ContactFigures end = contacts.figures(to);
         const auto pairs = contacts.turn_back(from);

@@ -109,10 +109,10 @@ struct Loading {
         core::require_finite("Loading.growth", growth);
         core::require_at_least("Loading.most_rejected", most_rejected, 0);
         for (const double over : damping_of_fibres) core::require(over >= 1.0 && over < 1e12, "Loading.damping_of_fibres", over, ">= 1 and < 1e12");
-        const bool timed = law::FrictionWithRate<typename M::Friction>;
-        if (timed && stages.empty()) core::refuse("Loading.stages", "none", "at least one that has a duration: the law of friction has a rate");
+        const std::string timed = law::FrictionWithRate<typename M::Friction> ? "the law of friction has a rate" : MovesInTime<M> ? "fibres have inertia" : "";
+        if (!timed.empty() && stages.empty()) core::refuse("Loading.stages", "none", "at least one that has a duration: " + timed);
         for (const Stage<M>& stage : stages) {
-            if (timed) core::require(stage.duration > 0.0, "Stage.duration of stage " + stage.name, stage.duration, "> 0: the law of friction has a rate");
+            if (!timed.empty()) core::require(stage.duration > 0.0, "Stage.duration of stage " + stage.name, stage.duration, "> 0: " + timed);
             core::require_at_least("Stage.increments", stage.increments, 1);
             core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);
             core::require_at_least("Stage.enough_increments", stage.enough_increments, 1);

@@ -45,6 +45,10 @@ struct Position {
         return ahead > 1.0 - 1e-9 ? 1.0 : ahead;
     }
 
+    /// Duration of an increment of a stage.
+    template <Model M>
+    double step(const Stage<M>& present) const noexcept { return present.duration * fraction / static_cast<double>(present.increments); }
+
     /// After an attempt that has failed. What stops increments is often one fibre, or two at the edge of a bundle: those that moved
     /// most in the last iteration or pass, if they are few, are held four times as hard, and the increment stays as it is. Else it
     /// is made smaller, and damping of all rises.
