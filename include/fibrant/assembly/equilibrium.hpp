@@ -97,7 +97,7 @@ public:
         ties_.begin(amplitudes);
         if constexpr (has_solid) solid_.hold(amplitudes, system_.layout().held, targets_);
         ties_.hold(system_.layout().held, targets_);
-        hold_images();
+        scene::hold_images(system_.layout(), targets_);
         if constexpr (has_solid) system_.share_held();
         reset_stresses(state);
     }
@@ -216,18 +216,22 @@ public:
         terms_.template of<term::Role::interaction>(add);
         scene::fold_images(system_.layout(), residual);
         const double contact = norm(residual);
-        if constexpr (moves) terms_.moving([&](auto& term) {
-            fibres_.setZero(state.size());
-            add_fibre_forces(state, fibres_, true);
-            term.add_averaged(state, fibres_, residual);
-            terms_.template of<term::Role::structure>(add);
-        });
-        else add_internal_forces(state, residual, true);
+        if constexpr (!moves) add_internal_forces(state, residual, true);
         terms_.template of<term::Role::aid>(add);
         scene::fold_images(system_.layout(), residual);
         external_.setZero(state.size());
         terms_.template of<term::Role::external>([&](const auto& term) { term.add_forces(state, external_); });
         scene::fold_images(system_.layout(), external_);
+        terms_.moving([&](auto& term) {  // fibres and loads act by a mean over the step
+            terms_.template of<term::Role::structure>(add);
+            fibres_.setZero(state.size());
+            add_fibre_forces(state, fibres_, true);
+            fibres_ -= external_;
+            scene::fold_images(system_.layout(), fibres_);
+            term.add_averaged(state, fibres_, residual);
+            residual += external_;
+            scene::fold_images(system_.layout(), residual);
+        });
         if constexpr (core::Active<Ties>) {
             ties_.hold_forces(system_.layout(), residual - external_);
             ties_.add_forces(system_.layout(), external_);
@@ -244,7 +248,7 @@ public:
         figures.rounding = rounding_;
         const double reaction = std::sqrt(std::max(0.0, all * all - figures.residual * figures.residual));
         figures.scale = std::sqrt(contact * contact + load * load + reaction * reaction);
-        if constexpr (moves) figures.scale = std::hypot(figures.scale, norm(fibres_));  // in free flight there is nothing else
+        terms_.moving([&](const auto& term) { figures.scale = std::hypot(figures.scale, norm(fibres_)), figures.rounding += term.rounding(); });
         return figures;
     }
 
@@ -270,7 +274,10 @@ public:
         }, mesh_->grain());
         Sink sink{this, state};
         term::Bands bands(sink);
-        terms_.each([&](const auto& term) { term.add_bands(state, bands); });
+        terms_.each([&]<class One>(const One& term) {
+            if constexpr (moves) sink.factor = One::role == term::Role::external ? share : 1.0;
+            term.add_bands(state, bands);
+        });
         ties_.stiffen(system_.layout(), !tension_only);
         if constexpr (has_solid) {
             solid_.add_to_fibres([&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
@@ -375,24 +382,19 @@ private:
         for (Index k = 0; k < core::count(contacts_->elements()); ++k)
             if (contacts_->slides(k) && contacts_->responses()[core::at(k)].slope != 0.0) system_.slides().push_back(contacts_->sliding(k, positive));
     }
-    /// Images are held, behind what holds and ties hold; where they go the sources say.
-    void hold_images() {
-        scene::DofLayout& layout = system_.layout();
-        if (layout.images.empty()) return;
-        std::vector<std::pair<scene::HeldVector, Vec3>> all;
-        for (std::size_t k = 0; k < layout.held.size(); ++k) all.emplace_back(layout.held[k], targets_[k]);
-        for (const scene::ImageVector& one : layout.images) all.emplace_back(scene::HeldVector{one.image, Mat3::Zero()}, Vec3::Zero());
-        std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first.vector < b.first.vector; });
-        layout.held.clear(), targets_.clear();
-        for (const auto& [one, target] : all) layout.held.push_back(one), targets_.push_back(target);
-    }
     /// What a term's stiffness goes into.
     struct Sink {
         Equilibrium* to;
         const Vector& state;
-        void add_diagonal(Index vector, const Mat3& stiffness) { to->system_.add_diagonal(vector, stiffness); }
+        [[no_unique_address]] std::conditional_t<moves, double, core::Inactive> factor{};  ///< on what is added to bands
+        void add_diagonal(Index vector, const Mat3& stiffness) {
+            if constexpr (moves) to->system_.add_diagonal(vector, Mat3(factor * stiffness));
+            else to->system_.add_diagonal(vector, stiffness);
+        }
         void add_element(Index f, Index e, const double* entries) {
-            to->system_.add(f, e, Eigen::Map<const beam::ElementMatrix<B>>(entries));
+            const Eigen::Map<const beam::ElementMatrix<B>> stiffness(entries);
+            if constexpr (moves) to->system_.add(f, e, beam::ElementMatrix<B>(factor * stiffness));
+            else to->system_.add(f, e, stiffness);
         }
         void add_coupling(const term::CentrePoint& i, const term::CentrePoint& j, const Mat3& stiffness) {
             to->system_.points().push_back({static_cast<std::int32_t>(3 * i.first_vector), static_cast<std::int32_t>(3 * j.first_vector),

@@ -69,6 +69,8 @@ public:
             const double density = parameters.densities.empty() ? parameters.density : parameters.densities[core::at(f)];
             core::require_positive("Inertia.density of fibre " + std::to_string(f), density);
             masses_.emplace_back(mesh_->fibre(f), density);
+            const double node = density * mesh_->fibre(f).section.area() * mesh_->fibre(f).element_length;
+            mass_norm_ = std::hypot(mass_norm_, node * std::sqrt(static_cast<double>(mesh_->node_count(f))));
         }
         size_ = mesh_->rest_state().size();
         velocity_ = acceleration_ = Vector::Zero(Own::size(mesh_->rest_state()));
@@ -81,12 +83,15 @@ public:
     void last(double duration) noexcept { duration_ = duration; }
     void begin(std::span<const double>, const Vector& accepted) {
         from_ = Own::of(accepted);
+        extent_ = from_.cwiseAbs().maxCoeff();
         if (!(duration_ > 0.0)) return;
         step_ = integrator_.step(duration_);
         if (moving_ == 0.0 && (step_.by_acceleration != 0.0 || step_.old_acceleration != 0.0 || step_.share != 1.0)) step_ = first_step(duration_);
         place_ = from_ + step_.by_velocity * velocity_ + step_.by_acceleration * acceleration_;
     }
     double share() const noexcept { return step_.share; }
+    /// Places keep the digits of coordinates.
+    double rounding() const noexcept { return duration_ > 0.0 ? 8.0 * std::numeric_limits<double>::epsilon() * extent_ * mass_norm_ / step_.c2 : 0.0; }
 
     void add_forces(const Vector& state, Vector& sum) const {
         if (!(duration_ > 0.0)) return;
@@ -270,7 +275,8 @@ private:
     double allowed_, error_ = 0.0;
     std::vector<ElementMass<B>> masses_;  // of each fibre
     Index size_ = 0;                      // of a state of the fibres
-    double duration_ = 0.0;
+    double duration_ = 0.0, extent_ = 0.0;
+    double mass_norm_ = 0.0;              // of the masses of nodes
     TimeStep step_{};
     Vector velocity_, acceleration_;  // accepted, in the coordinates of mass
     Vector force_, left_;             // accepted: forces of the fibres in space, and what they were more than the step had them

@@ -19,6 +19,7 @@ struct Ramp {
     std::string channel{};
     double to = 1.0;         ///< amplitude at the end of the stage
     bool geometric = false;  ///< by equal factors instead of equal steps; both ends must be > 0
+    bool at_once = false;    ///< from the first increment of the stage on, as a weight that nothing holds any more
 };
 
 /// In the place of a limit, where a law has none: it stays empty, and what sets it is refused.

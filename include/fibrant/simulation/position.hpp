@@ -194,7 +194,7 @@ std::vector<double> amplitudes_at(const Stage<M>& stage, double progress, const 
     for (const Ramp& ramp : stage.ramps) {
         const std::size_t c = core::at(channels.find(ramp.channel));
         const double from = position.from[c];
-        amplitudes[c] = ramp.geometric ? from * std::pow(ramp.to / from, progress) : from + progress * (ramp.to - from);
+        amplitudes[c] = ramp.at_once ? ramp.to : ramp.geometric ? from * std::pow(ramp.to / from, progress) : from + progress * (ramp.to - from);
     }
     return amplitudes;
 }
