@@ -90,6 +90,7 @@ public:
         place_ = from_ + step_.by_velocity * velocity_ + step_.by_acceleration * acceleration_;
     }
     double share() const noexcept { return step_.share; }
+    bool begins() const noexcept { return moving_ == 0.0; }
     /// Places keep the digits of coordinates.
     double rounding() const noexcept { return duration_ > 0.0 ? 8.0 * std::numeric_limits<double>::epsilon() * extent_ * mass_norm_ / step_.c2 : 0.0; }
 

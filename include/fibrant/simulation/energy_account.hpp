@@ -64,12 +64,13 @@ public:
     void book(const Equilibrium& equilibrium, Contacts& contacts, const Vector& from, const Vector& to, bool leap) {
         const double error_before = balance_.error();
         const Vector way = to - from;
-        balance_.external += trapezium(way, external_, equilibrium.external() + equilibrium.reaction());
-        balance_.damped += trapezium(way, damping_, equilibrium.damping_force(to));
         if constexpr (Equilibrium::moves) equilibrium.terms().moving([&](const auto& term) {
+            if (term.begins()) external_ = equilibrium.external() + equilibrium.reaction();  // what lets go is there from the start on
             balance_.kinetic = term.kinetic(to);
             balance_.numerical += term.lost(from, to);
         });
+        balance_.external += trapezium(way, external_, equilibrium.external() + equilibrium.reaction());
+        balance_.damped += trapezium(way, damping_, equilibrium.damping_force(to));
         if constexpr (requires { contacts.tools(); }) balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(true);
         const contact::ContactFigures end = contacts.figures(to);
         const auto pairs = contacts.turn_back(from);

@@ -132,6 +132,7 @@ concept Moving = requires(T term, const T seen, const Vector& state, Vector& sum
     { seen.share() } -> std::same_as<double>;               // of those in that average: factor on their stiffness
     { seen.left(state) } -> std::same_as<Vector>;           // of them, what the average has not
     { seen.rounding() } -> std::same_as<double>;            // norm of what rounding makes of its forces [force]
+    { seen.begins() } -> std::same_as<bool>;                // the motion, with this step
     { seen.kinetic(state) } -> std::same_as<double>;        // [force length]
     { seen.lost(state, state) } -> std::same_as<double>;    // from one state to the other [force length]
     { term.refusal(state) } -> std::same_as<std::string>;   // empty: none
