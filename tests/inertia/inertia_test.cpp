@@ -231,7 +231,7 @@ TEST_CASE("two rods that meet exchange their velocities in the time of the close
     const double before = turn.motion().kinetic;
     turn.run(2.0, 40);
     std::printf("turning by 2: kinetic energy off by %.1e, lost %.1e of it\n", turn.motion().kinetic / before - 1.0, turn.report.energy.lost / before);
-    CHECK(turn.report.energy.lost < 1e-6 * before);
+    CHECK(turn.report.energy.lost < 1e-5 * before);  // of the stretch that the turn begins with
     CHECK(turn.motion().kinetic == test::near(before, 1e-3));
 }
 

@@ -162,7 +162,8 @@ private:
                 continue;
             }
             if (attempt.converged) {
-                energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again());
+                if (position_.progress == 0.0) energy_.turn();
+                energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again(), laws_.smooth ? progress - position_.progress : 0.0);
                 laws_.accept(mesh_, beam_, trial, energy_);
                 increment.energy = energy_.balance();
                 if (stage.damping_carried) motion_.learn(mesh_, state_, trial, change);
