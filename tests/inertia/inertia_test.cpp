@@ -144,7 +144,7 @@ TEST_CASE("a cantilever rings at the frequencies of Timoshenko's beam with rotar
 TEST_CASE("a thrown fibre falls as a body does, and keeps its momenta and, to the second order of the step, its energy") {
     const double L = 1.0, r = 0.02, density = 2.0, T = 0.4, mass = density * pi * r * r * L;
     const Vec3 g(0, 0, -9.81), v(1, 0, 3), spin(0, 2, 0), centre(0.5, 0, 0);
-    double lost[2], turned[2];
+    double lost[2], turned[2], missing[2];
     for (int fine = 0; fine < 2; ++fine) {
         scene::Assembly assembly;
         assembly.add(along_x(L, r, 1e5, 3));
@@ -164,11 +164,14 @@ TEST_CASE("a thrown fibre falls as a body does, and keeps its momenta and, to th
         const simulation::EnergyBalance& energy = fall.report.energy;
         lost[fine] = std::abs(energy.numerical) / energy.kinetic;
         std::printf("thrown: spin off by %.1e, lost %.1e, missing %.1e of the kinetic energy\n", turned[fine], lost[fine], std::abs(energy.error()) / energy.kinetic);
-        CHECK(std::abs(energy.error()) < 1e-5 * energy.kinetic);
-        CHECK(energy.kinetic == test::near(energy.external - energy.elastic - energy.numerical, 1e-5));
+        missing[fine] = std::abs(energy.error()) / energy.kinetic;
     }
-    CHECK(lost[1] < 1e-4);
-    CHECK(turned[1] < 0.35 * turned[0]);
+    // Second order: a quarter with half of the step.
+    CHECK(lost[1] < 1e-5);
+    CHECK(lost[1] < 0.4 * lost[0]);
+    CHECK(turned[1] < 0.3 * turned[0]);
+    CHECK(missing[1] < 3e-5);
+    CHECK(missing[1] < 0.3 * missing[0]);
 }
 
 TEST_CASE("a pendulum of 90 degrees swings with the period of the closed form, in steps that follow its error") {
@@ -245,7 +248,7 @@ TEST_CASE("a cantilever that is let go under its weight comes to rest at its def
     auto with = parameters<Hitting>(r, density, {0, 0, -g});
     with.beam.laws = {{.stretch = 1.0 / omega, .bending = 1.0 / omega, .turning = 1.0 / omega}};  // half of what is critical
     Moved<Hitting> sink(assembly, with);
-    sink.run(12.0 * 2.0 * pi / omega / 3.0, 100);
+    sink.run(4.0 * 2.0 * pi / omega, 300);
     const simulation::EnergyBalance& energy = sink.report.energy;
     std::printf("cantilever: sinks by %.6f of %.6f; kinetic %.1e, missing %.1e, numerical %.1e of the work, lost %.4f\n", -sink.tips.back().z(), sag, energy.kinetic / energy.external, energy.error() / energy.external,
                 energy.numerical / energy.external, energy.lost / energy.external);

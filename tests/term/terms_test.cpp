@@ -177,7 +177,8 @@ TEST_CASE("bonds carry force until they break, one that is stronger holds, and t
     const double least = 0.5 * k * std::pow(0.55 * 0.2, 2), most = 0.5 * k * std::pow(0.6 * 0.2, 2);
     CHECK(report.energy.dissipated > 0.95 * least);
     CHECK(report.energy.dissipated < 1.05 * most);
-    CHECK(std::abs(report.energy.error()) < 0.05 * report.energy.dissipated);
+    // Supports work by trapezia: in the increment of the leap by half of the force that is gone, F du/2 against F u/2.
+    CHECK(std::abs(report.energy.error()) < 0.1 * report.energy.dissipated);
     CHECK_THROWS_WITH_AS(run({.increments = 1}, 1.0, [](const auto&, const auto&) {}, {{.i = {0, 0.5}, .j = {1, 0.5}}}), doctest::Contains("FibreBonds.Bond.stiffness = nan"), std::invalid_argument);
 }
 
