@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Fibres that move in time: what they weigh, fall, swing, spin, ring and hit as closed forms say, and that energy and momenta are kept.
+// Fibres that move in time: what they weigh, fall, swing, spin, ring and hit as closed forms say, and that energy and momenta are
+// kept.
 #include <near.hpp>
 #include <refusal.hpp>
 #include <term/term_contract.hpp>
@@ -46,13 +47,21 @@ struct Still : Falling {
 static_assert(simulation::MovesInTime<Falling> && simulation::MovesInTime<Hitting> && !simulation::MovesInTime<Still>);
 
 scene::FibreSpecification along_x(double length, double radius, double young, Index elements) {
-    return {.from = {0, 0, 0}, .to = {length, 0, 0}, .section = scene::circular(radius), .material = {young, 0.3}, .elements = elements, .director = Vec3::UnitZ()};
+    return {.from = {0, 0, 0},
+            .to = {length, 0, 0},
+            .section = scene::circular(radius),
+            .material = {young, 0.3},
+            .elements = elements,
+            .director = Vec3::UnitZ()};
 }
 template <class M>
 simulation::ModelParameters<M> parameters(double radius, double density, const Vec3& acceleration = Vec3::Zero()) {
     simulation::ModelParameters<M> all;
-    if constexpr (std::is_same_v<M, Falling>) all.normal.regularisation_depth = 1e-3 * radius;
-    else all.normal = {.line_stiffness = 1.0, .line_exponent = 1.0, .crossing_stiffness = 1.0, .crossing_exponent = 1.0}, all.beam.laws.emplace_back();
+    if constexpr (std::is_same_v<M, Falling>)
+        all.normal.regularisation_depth = 1e-3 * radius;
+    else
+        all.normal = {.line_stiffness = 1.0, .line_exponent = 1.0, .crossing_stiffness = 1.0, .crossing_exponent = 1.0},
+        all.beam.laws.emplace_back();
     all.contact.stiffness.allowed_penetration = 1e-2 * radius;
     all.iteration.step_tolerance = 1e-9, all.iteration.residual_tolerance = 1e-9;
     all.acts.inertia.density = density;
@@ -63,7 +72,11 @@ simulation::ModelParameters<M> parameters(double radius, double density, const V
 template <class M>
 simulation::Loading<M> lasting(double duration, Index steps) {
     simulation::Loading<M> loading;
-    loading.stages.push_back({.name = "move", .increments = steps, .duration = duration, .ramps = {{.channel = "gravity", .at_once = true}}, .most_increments = 20 * steps});
+    loading.stages.push_back({.name = "move",
+                              .increments = steps,
+                              .duration = duration,
+                              .ramps = {{.channel = "gravity", .at_once = true}},
+                              .most_increments = 20 * steps});
     return loading;
 }
 template <class M>
@@ -76,7 +89,9 @@ struct Moved {
     simulation::Report report;
 
     Moved(const scene::Assembly& assembly, const simulation::ModelParameters<M>& with) : simulator(assembly, with) {}
-    inertia::Motion motion() const { return simulator.equilibrium().terms().template get<inertia::Inertia<>>().motion(simulator.state()); }
+    inertia::Motion motion() const {
+        return simulator.equilibrium().terms().template get<inertia::Inertia<>>().motion(simulator.state());
+    }
     void reported(const simulation::IncrementReport& increment) {
         motions.push_back(motion());
         tips.push_back(simulator.value(scene::last_end(0)));
@@ -95,8 +110,10 @@ TEST_CASE("inertia keeps the contract of a term, on all beams") {
         scene::Assembly assembly;
         assembly.add(along_x(2.0, 0.3, 1.0, 3));
         const beam::Mesh<B> mesh(assembly, B());
-        const Vector state = mesh.rest_state() + 0.05 * Vector::LinSpaced(mesh.rest_state().size(), -1.0, 1.0).array().sin().matrix();
-        test::check_term<B, inertia::Inertia<>>(assembly, {.density = 3.0, .starts = {{.velocity = {1, 2, 3}, .spin = {0.5, -1, 2}}}}, state);
+        const Vector state =
+            mesh.rest_state() + 0.05 * Vector::LinSpaced(mesh.rest_state().size(), -1.0, 1.0).array().sin().matrix();
+        test::check_term<B, inertia::Inertia<>>(
+            assembly, {.density = 3.0, .starts = {{.velocity = {1, 2, 3}, .spin = {0.5, -1, 2}}}}, state);
     };
     check(std::type_identity<beam::DirectorBeam<3>>{});
     check(std::type_identity<beam::KirchhoffCable>{});
@@ -119,7 +136,8 @@ std::array<double, 2> frequencies(double slenderness, Index elements) {
         stiffness.block<size, size>(first, first) += B().tangent_stiffness(scene.mesh.rest(0, e), scene.mesh.element(rest, 0, e));
     }
     const Index free = rest.size() - B::dofs_per_node;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes(stiffness.bottomRightCorner(free, free), mass.bottomRightCorner(free, free));
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes(stiffness.bottomRightCorner(free, free),
+                                                                 mass.bottomRightCorner(free, free));
     const double unit = std::sqrt(E * 0.25 * r * r / density) / (L * L);
     return {std::sqrt(modes.eigenvalues()[0]) / unit, std::sqrt(modes.eigenvalues()[2]) / unit};
 }
@@ -152,7 +170,8 @@ TEST_CASE("a thrown fibre falls as a body does, and keeps its momenta and, to th
         with.acts.inertia.starts = {{.velocity = v, .spin = spin, .centre = centre}};
         Moved<Falling> fall(assembly, with);
         // Moment of inertia of a cylinder about a normal through its middle.
-        CHECK(fall.motion().angular_momentum.y() - (centre.cross(mass * v)).y() == test::near(spin.y() * mass * (L * L / 12.0 + r * r / 4.0), 1e-12));
+        CHECK(fall.motion().angular_momentum.y() - (centre.cross(mass * v)).y() ==
+              test::near(spin.y() * mass * (L * L / 12.0 + r * r / 4.0), 1e-12));
         CHECK(fall.motion().kinetic == test::near(0.5 * mass * (v.squaredNorm() + 4.0 * (L * L / 12.0 + r * r / 4.0)), 1e-12));
         fall.run(T, fine == 0 ? 40 : 80);
         const Vec3 end = centre + T * v + 0.5 * T * T * g, momentum = mass * (v + T * g);
@@ -163,7 +182,8 @@ TEST_CASE("a thrown fibre falls as a body does, and keeps its momenta and, to th
         turned[fine] = std::abs(own / (spin.y() * mass * (L * L / 12.0 + r * r / 4.0)) - 1.0);
         const simulation::EnergyBalance& energy = fall.report.energy;
         lost[fine] = std::abs(energy.numerical) / energy.kinetic;
-        std::printf("thrown: spin off by %.1e, lost %.1e, missing %.1e of the kinetic energy\n", turned[fine], lost[fine], std::abs(energy.error()) / energy.kinetic);
+        std::printf("thrown: spin off by %.1e, lost %.1e, missing %.1e of the kinetic energy\n", turned[fine], lost[fine],
+                    std::abs(energy.error()) / energy.kinetic);
         missing[fine] = std::abs(energy.error()) / energy.kinetic;
     }
     // Second order: a quarter with half of the step.
@@ -176,7 +196,8 @@ TEST_CASE("a thrown fibre falls as a body does, and keeps its momenta and, to th
 
 TEST_CASE("a pendulum of 90 degrees swings with the period of the closed form, in steps that follow its error") {
     // Thin rod on a pivot: 1.180341 times 2 pi sqrt(2 L/3 g) sqrt(1 + 3 r^2/4 L^2).
-    const double L = 1.0, r = 0.01, g = 9.81, quarter = 0.25 * 1.180341 * 2.0 * pi * std::sqrt(2.0 * L / (3.0 * g) * (1.0 + 0.75 * r * r / (L * L)));
+    const double L = 1.0, r = 0.01, g = 9.81,
+                 quarter = 0.25 * 1.180341 * 2.0 * pi * std::sqrt(2.0 * L / (3.0 * g) * (1.0 + 0.75 * r * r / (L * L)));
     for (const bool controlled : {false, true}) {
         scene::Assembly assembly;
         assembly.add(along_x(L, r, 1e8, 4));
@@ -188,9 +209,14 @@ TEST_CASE("a pendulum of 90 degrees swings with the period of the closed form, i
         swing.run(T, controlled ? 10 : 110);
         double passed = 0.0;
         for (std::size_t k = 1; k < swing.tips.size() && passed == 0.0; ++k)
-            if (swing.tips[k].x() <= 0.0) passed = T * (swing.lasted[k - 1] + (swing.lasted[k] - swing.lasted[k - 1]) * swing.tips[k - 1].x() / (swing.tips[k - 1].x() - swing.tips[k].x()));
-        std::printf("pendulum: quarter period %.6f of %.6f, %zu steps, %td refused; energy missing %.1e, numerical %.1e of the work\n", passed, quarter, swing.tips.size(), swing.report.rejected_increments,
-                    std::abs(swing.report.energy.error() / swing.report.energy.external), swing.report.energy.numerical / swing.report.energy.external);
+            if (swing.tips[k].x() <= 0.0)
+                passed = T * (swing.lasted[k - 1] + (swing.lasted[k] - swing.lasted[k - 1]) * swing.tips[k - 1].x() /
+                                                        (swing.tips[k - 1].x() - swing.tips[k].x()));
+        std::printf(
+            "pendulum: quarter period %.6f of %.6f, %zu steps, %td refused; energy missing %.1e, numerical %.1e of the work\n",
+            passed, quarter, swing.tips.size(), swing.report.rejected_increments,
+            std::abs(swing.report.energy.error() / swing.report.energy.external),
+            swing.report.energy.numerical / swing.report.energy.external);
         CHECK(passed == test::near(quarter, 5e-4));
         CHECK(std::abs(swing.report.energy.error()) < 1e-3 * swing.report.energy.external);
         CHECK((swing.report.rejected_increments > 0) == controlled);
@@ -215,10 +241,11 @@ TEST_CASE("two rods that meet exchange their velocities in the time of the close
     hit.run(T, steps);
     double touching = 0.0;
     for (const double stored : hit.contact) touching += (stored > 0.0 ? 1.0 : 0.0) * T / static_cast<double>(steps);
-    const Vec3 first = (hit.tips.back() - hit.tips[hit.tips.size() - 2]) * static_cast<double>(steps) / T, second = (hit.others.back() - hit.others[hit.others.size() - 2]) * static_cast<double>(steps) / T;
+    const Vec3 first = (hit.tips.back() - hit.tips[hit.tips.size() - 2]) * static_cast<double>(steps) / T,
+               second = (hit.others.back() - hit.others[hit.others.size() - 2]) * static_cast<double>(steps) / T;
     std::printf("impact: lasts %.5f of %.5f, velocities %.4f and %.4f of %.1f\n", touching, lasts, first.y(), second.y(), v);
     CHECK(touching == test::near(lasts, 0.03));
-    CHECK(second.y() == test::near(v, 0.03));       // contact is of first order: 40 steps in it keep 0.96 of the approach
+    CHECK(second.y() == test::near(v, 0.03));  // contact is of first order: 40 steps in it keep 0.96 of the approach
     CHECK(std::abs(first.y()) < 0.03 * v);
     CHECK((hit.motion().momentum - mass * Vec3(0, v, 0)).norm() < 1e-8 * mass * v);
     CHECK(hit.report.energy.numerical >= 0.0);
@@ -233,7 +260,8 @@ TEST_CASE("two rods that meet exchange their velocities in the time of the close
     Moved<Hitting> turn(one, turning);
     const double before = turn.motion().kinetic;
     turn.run(2.0, 40);
-    std::printf("turning by 2: kinetic energy off by %.1e, lost %.1e of it\n", turn.motion().kinetic / before - 1.0, turn.report.energy.lost / before);
+    std::printf("turning by 2: kinetic energy off by %.1e, lost %.1e of it\n", turn.motion().kinetic / before - 1.0,
+                turn.report.energy.lost / before);
     CHECK(turn.report.energy.lost < 1e-5 * before);  // of the stretch that the turn begins with
     CHECK(turn.motion().kinetic == test::near(before, 1e-3));
 }
@@ -250,7 +278,8 @@ TEST_CASE("a cantilever that is let go under its weight comes to rest at its def
     Moved<Hitting> sink(assembly, with);
     sink.run(4.0 * 2.0 * pi / omega, 300);
     const simulation::EnergyBalance& energy = sink.report.energy;
-    std::printf("cantilever: sinks by %.6f of %.6f; kinetic %.1e, missing %.1e, numerical %.1e of the work, lost %.4f\n", -sink.tips.back().z(), sag, energy.kinetic / energy.external, energy.error() / energy.external,
+    std::printf("cantilever: sinks by %.6f of %.6f; kinetic %.1e, missing %.1e, numerical %.1e of the work, lost %.4f\n",
+                -sink.tips.back().z(), sag, energy.kinetic / energy.external, energy.error() / energy.external,
                 energy.numerical / energy.external, energy.lost / energy.external);
     CHECK(-sink.tips.back().z() == test::near(sag, 5e-3));  // 12 elements of constant strain
     CHECK(energy.kinetic < 1e-6 * energy.external);
@@ -261,10 +290,13 @@ TEST_CASE("a cantilever that is let go under its weight comes to rest at its def
     // What has no density or no duration is refused by name.
     auto none = with;
     none.acts.inertia.density = core::unset;
-    CHECK(test::refusal([&] { simulation::Simulator<Hitting>(assembly, none); }).find("Inertia.density of fibre 0 = nan") != std::string::npos);
+    CHECK(test::refusal([&] { simulation::Simulator<Hitting>(assembly, none); }).find("Inertia.density of fibre 0 = nan") !=
+          std::string::npos);
     simulation::Loading<Hitting> timeless;
     timeless.stages.emplace_back();
-    CHECK(test::refusal([&] { timeless.validate(); }).find("Stage.duration of stage loading = 0, but it must be > 0: fibres have inertia") != std::string::npos);
+    CHECK(test::refusal([&] {
+              timeless.validate();
+          }).find("Stage.duration of stage loading = 0, but it must be > 0: fibres have inertia") != std::string::npos);
 }
 
 }  // namespace inertia_test

@@ -16,7 +16,8 @@ inline double norm_of(const scene::DofLayout& layout, const Vector& forces) {
     const std::vector<double>& length = layout.length;
     return std::sqrt(core::ordered_sum(core::count(length), 0.0, [&](Index first, Index last) {
         double sum = 0.0;
-        for (Index v = first; v < last; ++v) sum += forces.segment<3>(3 * v).squaredNorm() / (length[core::at(v)] * length[core::at(v)]);
+        for (Index v = first; v < last; ++v)
+            sum += forces.segment<3>(3 * v).squaredNorm() / (length[core::at(v)] * length[core::at(v)]);
         return sum;
     }));
 }
@@ -32,12 +33,14 @@ inline double product_of(const scene::DofLayout& layout, const Vector& a, const 
     const std::vector<double>& length = layout.length;
     return core::ordered_sum(core::count(length), 0.0, [&](Index first, Index last) {
         double sum = 0.0;
-        for (Index v = first; v < last; ++v) sum += a.segment<3>(3 * v).dot(b.segment<3>(3 * v)) * length[core::at(v)] * length[core::at(v)];
+        for (Index v = first; v < last; ++v)
+            sum += a.segment<3>(3 * v).dot(b.segment<3>(3 * v)) * length[core::at(v)] * length[core::at(v)];
         return sum;
     });
 }
 
-/// Of each of the first chains the greatest displacement of a step, directors counted at the surface [length]; empty if the step is not finite.
+/// Of each of the first chains the greatest displacement of a step, directors counted at the surface [length]; empty if the step
+/// is not finite.
 inline std::vector<double> greatest_of_chains(const scene::DofLayout& layout, Index chains, const Vector& step) {
     std::vector<double> greatest(step.size() > 0 && step.allFinite() ? core::at(chains) : 0, 0.0);
     for (Index f = 0; f < core::count(greatest); ++f)

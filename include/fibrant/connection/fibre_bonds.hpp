@@ -13,19 +13,24 @@
 
 namespace fibrant::connection {
 
-/// Springs between particles of two centrelines, at rest as the fibres are at rest. A bond without a span is one spring. One with a span
-/// has two particles on either fibre, half a span before and behind its station, and the four springs between them: a truss that resists
-/// relative motion in all directions and relative turns but those of a fibre about itself.
+/// Springs between particles of two centrelines, at rest as the fibres are at rest. A bond without a span is one spring. One with
+/// a span has two particles on either fibre, half a span before and behind its station, and the four springs between them: a
+/// truss that resists relative motion in all directions and relative turns but those of a fibre about itself.
 ///
-/// A bond breaks at the end of the increment in which F/strength + M/moment_strength reaches 1, F and M the size of what it carries from
-/// one fibre to the other, M about the middle of its particles. What it stored then counts as dissipated in the next increment.
-class FibreBonds : public term::NoDrive, public term::NoSearch, public term::NoBands, public term::NoSpring, public term::NoPicture {
+/// A bond breaks at the end of the increment in which F/strength + M/moment_strength reaches 1, F and M the size of what it
+/// carries from one fibre to the other, M about the middle of its particles. What it stored then counts as dissipated in the next
+/// increment.
+class FibreBonds : public term::NoDrive,
+                   public term::NoSearch,
+                   public term::NoBands,
+                   public term::NoSpring,
+                   public term::NoPicture {
 public:
     static constexpr auto role = term::Role::interaction;
     struct Bond {
         scene::Station i{}, j{};
-        double stiffness = core::unset;  ///< of each spring [force / length], > 0
-        double span = 0.0;               ///< along either fibre at rest [length], >= 0
+        double stiffness = core::unset;                                    ///< of each spring [force / length], > 0
+        double span = 0.0;                                                 ///< along either fibre at rest [length], >= 0
         double strength = std::numeric_limits<double>::infinity();         ///< [force], > 0
         double moment_strength = std::numeric_limits<double>::infinity();  ///< [force length], > 0
         void validate() const {
@@ -70,7 +75,8 @@ public:
     void add_couplings(const Vector& state, term::Couplings& couplings) const {
         each_spring(state, [&](const Spring& spring) {
             const Mat3 onto = spring.along * spring.along.transpose();
-            const Mat3 stiffness = spring.stiffness * onto + std::max(0.0, spring.tension) / spring.length * (Mat3::Identity() - onto);
+            const Mat3 stiffness =
+                spring.stiffness * onto + std::max(0.0, spring.tension) / spring.length * (Mat3::Identity() - onto);
             couplings.between(*spring.i, *spring.j, stiffness);
         });
     }
@@ -85,7 +91,8 @@ public:
         for (Index k = 0; k < core::count(trusses_); ++k) {
             if (broken_[k] != 0.0) continue;
             if (use(k, state) < 1.0) continue;
-            springs_of(k, state, [&](const Spring& spring) { released_ += 0.5 * spring.tension * spring.tension / spring.stiffness; });
+            springs_of(k, state,
+                       [&](const Spring& spring) { released_ += 0.5 * spring.tension * spring.tension / spring.stiffness; });
             broken_[k] = 1.0;
         }
     }
@@ -149,7 +156,7 @@ private:
     }
 
     std::vector<Truss> trusses_;
-    Vector broken_;           // accepted: 1 of a bond that has broken
+    Vector broken_;          // accepted: 1 of a bond that has broken
     double released_ = 0.0;  // by bonds that broke at the end of the last increment
 };
 static_assert(term::Term<FibreBonds>);

@@ -18,26 +18,27 @@ namespace fibrant::inertia {
 
 /// What a fibre begins to move with: as a rigid body. Fibres that nothing is said of begin at rest.
 struct Start {
-    Index fibre = -1;                 ///< -1: all
-    Vec3 velocity = Vec3::Zero();     ///< of `centre` [length / time]
-    Vec3 spin = Vec3::Zero();         ///< [radian / time]
-    Vec3 centre = Vec3::Zero();       ///< [length]
+    Index fibre = -1;              ///< -1: all
+    Vec3 velocity = Vec3::Zero();  ///< of `centre` [length / time]
+    Vec3 spin = Vec3::Zero();      ///< [radian / time]
+    Vec3 centre = Vec3::Zero();    ///< [length]
 };
 
 /// Energy and momenta of a motion.
 struct Motion {
-    double kinetic = 0.0;                     ///< [force length]
-    Vec3 momentum = Vec3::Zero();             ///< [force time]
-    Vec3 angular_momentum = Vec3::Zero();     ///< about the origin [force length time]
+    double kinetic = 0.0;                  ///< [force length]
+    Vec3 momentum = Vec3::Zero();          ///< [force time]
+    Vec3 angular_momentum = Vec3::Zero();  ///< about the origin [force length time]
 };
 
 template <TimeIntegrator Integrator>
 struct InertiaParameters {
     double density = core::unset;     ///< of all fibres [mass / length^3], > 0
     std::vector<double> densities{};  ///< or one for each fibre
-    double allowed_error = std::numeric_limits<double>::infinity();  ///< of a step, directors counted at the surface [length], > 0
+    double allowed_error =
+        std::numeric_limits<double>::infinity();  ///< of a step, directors counted at the surface [length], > 0
     typename Integrator::Parameters integrator{};
-    std::vector<Start> starts{};      ///< the last that is said of a fibre counts
+    std::vector<Start> starts{};  ///< the last that is said of a fibre counts
 };
 template <TimeIntegrator Integrator>
 struct InertiaSlot {
@@ -46,10 +47,14 @@ struct InertiaSlot {
 
 /// Inertia of the fibres of a beam: a spring from every vector to where it would go without forces, of the stiffness M/c^2.
 ///
-/// Each stage has a `duration`; its increments are the steps of time, and what follows its ramps goes on in steps of the last one. A step that
-/// errs by more than `allowed_error` is cut, and grows again by as much as the error lets it.
+/// Each stage has a `duration`; its increments are the steps of time, and what follows its ramps goes on in steps of the last
+/// one. A step that errs by more than `allowed_error` is cut, and grows again by as much as the error lets it.
 template <beam::BeamElement B, TimeIntegrator Integrator>
-class InertiaOf : public term::NoSearch, public term::NoSpring, public term::NoCouplings, public term::NoEnergy, public term::NoPicture {
+class InertiaOf : public term::NoSearch,
+                  public term::NoSpring,
+                  public term::NoCouplings,
+                  public term::NoEnergy,
+                  public term::NoPicture {
     using Own = Coordinates<B>;
     static constexpr Index vectors = B::nodes * B::vectors_per_node;  // of an element
 
@@ -64,7 +69,8 @@ public:
         core::require(allowed_ > 0.0, "Inertia.allowed_error", allowed_, "> 0");
         const Index fibres = mesh_->fibre_count();
         if (!parameters.densities.empty() && core::count(parameters.densities) != fibres)
-            core::refuse("Inertia.densities", std::to_string(parameters.densities.size()) + " numbers", "one for each of " + std::to_string(fibres) + " fibres");
+            core::refuse("Inertia.densities", std::to_string(parameters.densities.size()) + " numbers",
+                         "one for each of " + std::to_string(fibres) + " fibres");
         for (Index f = 0; f < fibres; ++f) {
             const double density = parameters.densities.empty() ? parameters.density : parameters.densities[core::at(f)];
             core::require_positive("Inertia.density of fibre " + std::to_string(f), density);
@@ -86,13 +92,16 @@ public:
         extent_ = from_.cwiseAbs().maxCoeff();
         if (!(duration_ > 0.0)) return;
         step_ = integrator_.step(duration_);
-        if (moving_ == 0.0 && (step_.by_acceleration != 0.0 || step_.old_acceleration != 0.0 || step_.share != 1.0)) step_ = first_step(duration_);
+        if (moving_ == 0.0 && (step_.by_acceleration != 0.0 || step_.old_acceleration != 0.0 || step_.share != 1.0))
+            step_ = first_step(duration_);
         place_ = from_ + step_.by_velocity * velocity_ + step_.by_acceleration * acceleration_;
     }
     double share() const noexcept { return step_.share; }
     bool begins() const noexcept { return moving_ == 0.0; }
     /// Places keep the digits of coordinates.
-    double rounding() const noexcept { return duration_ > 0.0 ? 8.0 * std::numeric_limits<double>::epsilon() * extent_ * mass_norm_ / step_.c2 : 0.0; }
+    double rounding() const noexcept {
+        return duration_ > 0.0 ? 8.0 * std::numeric_limits<double>::epsilon() * extent_ * mass_norm_ / step_.c2 : 0.0;
+    }
 
     void add_forces(const Vector& state, Vector& sum) const {
         if (!(duration_ > 0.0)) return;
@@ -108,7 +117,8 @@ public:
             stiffness.setZero();
             for (Index a = 0; a < vectors; ++a)
                 for (Index b = 0; b < vectors; ++b)
-                    for (Index c = 0; c < 3; ++c) stiffness(3 * a + c, 3 * b + c) = masses_[core::at(f)].of[core::at(a)][core::at(b)] / step_.c2;
+                    for (Index c = 0; c < 3; ++c)
+                        stiffness(3 * a + c, 3 * b + c) = masses_[core::at(f)].of[core::at(a)][core::at(b)] / step_.c2;
             for (Index e = 0; e < mesh_->fibre(f).elements; ++e) bands.element(f, e, stiffness);
         }
         if constexpr (Own::turn)
@@ -140,9 +150,12 @@ public:
         const auto [velocity, acceleration] = arrived(to);
         const Vector mean = 0.5 * (acceleration + (moving_ > 0.0 ? acceleration_ : acceleration));
         const Vector way = Own::way(from.head(size_), to.head(size_));
-        return (Own::of(to) - from_).dot(times_mass(mean)) - 0.5 * way.dot((1.0 - step_.share) * (now_ - force_) + left_) - kinetic_of(velocity) + kinetic_of(velocity_);
+        return (Own::of(to) - from_).dot(times_mass(mean)) - 0.5 * way.dot((1.0 - step_.share) * (now_ - force_) + left_) -
+               kinetic_of(velocity) + kinetic_of(velocity_);
     }
-    double kinetic(const Vector& state) const { return duration_ > 0.0 ? kinetic_of(arrived(state).first) : kinetic_of(velocity_); }
+    double kinetic(const Vector& state) const {
+        return duration_ > 0.0 ? kinetic_of(arrived(state).first) : kinetic_of(velocity_);
+    }
     /// Of the state that was accepted last, which is `state`.
     Motion motion(const Vector& state) const {
         const Vector p = times_mass(velocity_), q = Own::of(state.head(size_));
@@ -177,15 +190,18 @@ public:
         velocity_.setZero(), moving_ = 0.0;
         const Vector q = Own::of(mesh_->start_state());
         for (const Start& start : starts) {
-            if (start.fibre < -1 || start.fibre >= mesh_->fibre_count()) core::refuse("Inertia.starts: fibre", std::to_string(start.fibre), "a fibre of this assembly, or -1");
-            scene::require_finite("Inertia.starts: velocity", start.velocity), scene::require_finite("Inertia.starts: spin", start.spin);
+            if (start.fibre < -1 || start.fibre >= mesh_->fibre_count())
+                core::refuse("Inertia.starts: fibre", std::to_string(start.fibre), "a fibre of this assembly, or -1");
+            scene::require_finite("Inertia.starts: velocity", start.velocity),
+                scene::require_finite("Inertia.starts: spin", start.spin);
             for (Index f = 0; f < mesh_->fibre_count(); ++f) {
                 if (start.fibre >= 0 && f != start.fibre) continue;
                 const Index first = mesh_->fibre(f).first_vector / B::vectors_per_node, nodes = mesh_->node_count(f);
                 for (Index v = first * Own::per_node; v < (first + nodes) * Own::per_node; ++v) {
                     const Vec3 arm = q.segment<3>(3 * v);
                     const bool position = v % Own::per_node == 0;
-                    velocity_.segment<3>(3 * v) = position ? Vec3(start.velocity + start.spin.cross(arm - start.centre)) : Vec3(start.spin.cross(arm));
+                    velocity_.segment<3>(3 * v) =
+                        position ? Vec3(start.velocity + start.spin.cross(arm - start.centre)) : Vec3(start.spin.cross(arm));
                 }
             }
         }
@@ -226,24 +242,28 @@ private:
     }
     /// Adds to forces on nodal vectors the mass times what is given in the coordinates of mass.
     void times_mass(const Vector& q, Vector& sum, [[maybe_unused]] const Vector& state) const {
-        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
-            const ElementMass<B>& mass = masses_[core::at(f)];
-            for (Index e = 0; e < mesh_->fibre(f).elements; ++e) {
-                const Index first = mesh_->first_unknown(f, e);
-                for (Index a = 0; a < vectors; ++a)
-                    for (Index b = 0; b < vectors; ++b) {
-                        if (mass.of[core::at(a)][core::at(b)] == 0.0) continue;
-                        const Index other = Own::turn ? first / 6 * 9 + 9 * (b / 2) : first + 3 * b;  // rods: positions alone
-                        sum.segment<3>(first + 3 * a) += mass.of[core::at(a)][core::at(b)] * q.segment<3>(other);
-                    }
-            }
-        }, mesh_->grain());
+        core::parallel_for(
+            mesh_->fibre_count(),
+            [&](Index f) {
+                const ElementMass<B>& mass = masses_[core::at(f)];
+                for (Index e = 0; e < mesh_->fibre(f).elements; ++e) {
+                    const Index first = mesh_->first_unknown(f, e);
+                    for (Index a = 0; a < vectors; ++a)
+                        for (Index b = 0; b < vectors; ++b) {
+                            if (mass.of[core::at(a)][core::at(b)] == 0.0) continue;
+                            const Index other = Own::turn ? first / 6 * 9 + 9 * (b / 2) : first + 3 * b;  // rods: positions alone
+                            sum.segment<3>(first + 3 * a) += mass.of[core::at(a)][core::at(b)] * q.segment<3>(other);
+                        }
+                }
+            },
+            mesh_->grain());
         if constexpr (Own::turn)
             each_turning([&](Index vector, const std::array<double, 2>& mass) {
                 const Vec3 psi = state.segment<3>(3 * vector);
                 const Mat3 R = core::rotation(psi);
                 Vec3 moment = Vec3::Zero();
-                for (Index k = 0; k < 2; ++k) moment += mass[core::at(k)] * Vec3(R.col(k)).cross(Vec3(q.segment<3>(9 * (vector / 2) + 3 * (k + 1))));
+                for (Index k = 0; k < 2; ++k)
+                    moment += mass[core::at(k)] * Vec3(R.col(k)).cross(Vec3(q.segment<3>(9 * (vector / 2) + 3 * (k + 1))));
                 sum.segment<3>(3 * vector) += core::spin_matrix(psi).transpose() * moment;
             });
     }
@@ -259,7 +279,8 @@ private:
                     const Index first = mesh_->first_unknown(f, e) / 6 * 9;
                     for (Index a = 0; a < 2; ++a)
                         for (Index b = 0; b < 2; ++b)
-                            product.segment<3>(first + 9 * a) += masses_[core::at(f)].of[core::at(2 * a)][core::at(2 * b)] * q.segment<3>(first + 9 * b);
+                            product.segment<3>(first + 9 * a) +=
+                                masses_[core::at(f)].of[core::at(2 * a)][core::at(2 * b)] * q.segment<3>(first + 9 * b);
                 }
             each_turning([&](Index vector, const std::array<double, 2>& mass) {
                 for (Index k = 0; k < 2; ++k) {
@@ -277,7 +298,7 @@ private:
     std::vector<ElementMass<B>> masses_;  // of each fibre
     Index size_ = 0;                      // of a state of the fibres
     double duration_ = 0.0, extent_ = 0.0;
-    double mass_norm_ = 0.0;              // of the masses of nodes
+    double mass_norm_ = 0.0;  // of the masses of nodes
     TimeStep step_{};
     Vector velocity_, acceleration_;  // accepted, in the coordinates of mass
     Vector force_, left_;             // accepted: forces of the fibres in space, and what they were more than the step had them

@@ -9,33 +9,34 @@
 
 namespace fibrant::inertia {
 
-/// A step of duration dt from (q, v, a): M (q' - place)/c2 + share F(q') + (1 - share) F_n + contact(q') = loads, with
+/// A step of duration dt from (q, v, a): M (q' - place)/c2 + share F(q') + (1 - share) F_n + contact(q') = 0, with
 ///   place = q + by_velocity v + by_acceleration a,   a' = (q' - place)/c2,   v' = v + old_acceleration a + new_acceleration a',
-/// F the forces of the fibres, F_n those at the start. What it errs by is error_old a + error_new a', to its leading order.
+/// F the forces of the fibres less the loads, F_n those at the start. What it errs by is error_old a + error_new a', to its leading order.
 struct TimeStep {
-    double by_velocity = 0.0;       ///< [time]
-    double by_acceleration = 0.0;   ///< [time^2]
-    double c2 = 1.0;                ///< [time^2]
-    double share = 1.0;             ///< [1]
-    double old_acceleration = 0.0;  ///< [time]
-    double new_acceleration = 0.0;  ///< [time]
+    double by_velocity = 0.0;                 ///< [time]
+    double by_acceleration = 0.0;             ///< [time^2]
+    double c2 = 1.0;                          ///< [time^2]
+    double share = 1.0;                       ///< [1]
+    double old_acceleration = 0.0;            ///< [time]
+    double new_acceleration = 0.0;            ///< [time]
     double error_old = 0.0, error_new = 0.0;  ///< [time^2]
 };
 
-/// The first step of a motion whose acceleration is not known yet: that of its end, all along. Of second order, as one step among many.
+/// The first step of a motion whose acceleration is not known yet: that of its end, all along. Of second order, as one step among
+/// many.
 inline TimeStep first_step(double dt) noexcept { return {dt, 0.0, 0.5 * dt * dt, 1.0, 0.0, dt, 0.0, 0.0}; }
 
-/// A scheme of one step. Owed beyond the syntax: without forces a uniform motion goes on exactly; under a constant force the acceleration
-/// that it has is kept.
+/// A scheme of one step. Owed beyond the syntax: without forces a uniform motion goes on exactly; under a constant force the
+/// acceleration that it has is kept.
 template <class I>
 concept TimeIntegrator = core::Policy<I> && requires(const I integrator, double duration) {
     { integrator.step(duration) } -> std::same_as<TimeStep>;
 };
 
 /// The scheme of Hilber, Hughes and Taylor (1977) by its spectral radius at high frequencies, rho: alpha = (1 - rho)/(1 + rho),
-/// beta = (1 + alpha)^2/4, gamma = 1/2 + alpha; forces of fibres count by 1 - alpha at the end of the step and by alpha at its start.
-/// Of second order in free motion. Contact, friction, loads and what materials remember are those of the end: then an impact that a step
-/// does not resolve takes energy and gives none, at the price of first order in contact.
+/// beta = (1 + alpha)^2/4, gamma = 1/2 + alpha; forces of fibres and loads count by 1 - alpha at the end of the step and by alpha at its
+/// start. Of second order in free motion. Contact, friction and what materials remember are those of the end: then an
+/// impact that a step does not resolve takes energy and gives none, at the price of first order in contact.
 class GeneralisedAlpha {
 public:
     struct Parameters {

@@ -8,10 +8,10 @@
 
 namespace fibrant::material {
 
-/// A law, and beside it S = beta C d eps/dt, C that of Elastic, with a time beta for each group of strains (Kelvin and Voigt). A mode of
-/// the angular frequency omega is damped by the ratio beta omega/2. Strains do not change in a rigid motion of any size, so nothing
-/// resists it, under stress as well. Of backward Euler: what is dissipated is the work of a constant rate. An increment without a
-/// duration has none of it.
+/// A law, and beside it S = beta C d eps/dt, C that of Elastic, with a time beta for each group of strains (Kelvin and Voigt). A
+/// mode of the angular frequency omega is damped by the ratio beta omega/2. Strains do not change in a rigid motion of any size,
+/// so nothing resists it, under stress as well. Of backward Euler: what is dissipated is the work of a constant rate. An
+/// increment without a duration has none of it.
 template <beam::SectionMaterial Base>
     requires std::derived_from<typename Base::Section, ElasticSection>
 class Damped {
@@ -76,16 +76,11 @@ public:
         answer.tangent[twist] += by_[strain::c12] / drive.duration * C[13];
         return answer;
     }
-    double utilisation(const Section& section, const SectionStrains& e, const History& accepted) const
-        requires beam::Breakable<Base>
-    {
+    double utilisation(const Section& section, const SectionStrains& e,
+                       const History& accepted) const requires beam::Breakable<Base> {
         return base_.utilisation(section, e, accepted.base);
     }
-    void break_now(History& history) const
-        requires beam::Breakable<Base>
-    {
-        base_.break_now(history.base);
-    }
+    void break_now(History& history) const requires beam::Breakable<Base> { base_.break_now(history.base); }
 
 private:
     static constexpr int at_lateral = beam::detail::entry_of(entries, strain::e11, strain::e22);

@@ -43,7 +43,8 @@ template <Model M>
 struct Stage {
     std::string name = "loading";
     Index increments = 10;                      ///< that its ramps take when none is cut, >= 1
-    double duration = 0.0;                      ///< of its ramps, for laws with a rate, >= 0; what follows them takes no time [time]
+    /// Of its ramps, for laws with a rate and for inertia, >= 0; what follows them takes no time, but with inertia goes on in steps of it [time].
+    double duration = 0.0;
     std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
     GapLimitOf<typename M::Normal> gap_limit{};  ///< of a law that limits the gap [length], as std::optional; scaled down when cut
     bool gap_limit_when_cut = false;            ///< limited in increments that were cut alone: what Newton's method cannot solve at once is softer then
