@@ -51,7 +51,7 @@ public:
     static constexpr bool iterated_strains = beam::IteratedStrains<B>;
     /// A term makes it move in time.
     static constexpr bool moves = Terms::moves;
-    static_assert(!moves || !has_solid, "solids have no inertia yet: a model with a term that moves it has no part Solid");
+    static_assert(!moves || !has_solid, "solids have no inertia yet: a model that moves has no part Solid");
     static constexpr Index element_unknowns = beam::Mesh<B>::element_unknowns;
 
     Equilibrium(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const B& beam, Contacts& contacts,
@@ -222,7 +222,7 @@ public:
         external_.setZero(state.size());
         terms_.template of<term::Role::external>([&](const auto& term) { term.add_forces(state, external_); });
         scene::fold_images(system_.layout(), external_);
-        terms_.moving([&](auto& term) {  // fibres and loads act by a mean over the step
+        if constexpr (moves) terms_.moving([&](auto& term) {  // fibres and loads act by a mean over the step
             terms_.template of<term::Role::structure>(add);
             fibres_.setZero(state.size());
             add_fibre_forces(state, fibres_, true);
@@ -248,7 +248,7 @@ public:
         figures.rounding = rounding_;
         const double reaction = std::sqrt(std::max(0.0, all * all - figures.residual * figures.residual));
         figures.scale = std::sqrt(contact * contact + load * load + reaction * reaction);
-        terms_.moving([&](const auto& term) { figures.scale = std::hypot(figures.scale, norm(fibres_)), figures.rounding += term.rounding(); });
+        if constexpr (moves) terms_.moving([&](const auto& term) { figures.scale = std::hypot(figures.scale, norm(fibres_)), figures.rounding += term.rounding(); });
         return figures;
     }
 

@@ -80,7 +80,7 @@ public:
         }
         size_ = mesh_->rest_state().size();
         velocity_ = acceleration_ = Vector::Zero(Own::size(mesh_->rest_state()));
-        force_ = left_ = Vector::Zero(size_);
+        force_ = Vector::Zero(size_);
         set_off(parameters.starts);
     }
 
@@ -144,15 +144,6 @@ public:
     /// What forces of the fibres at the end of the step are more than the step had them: what holds the fibres carries it.
     Vector left(const Vector& state) const { return Own::from_space(state, (1.0 - step_.share) * (now_ - force_)); }
 
-    /// What was lost to the scheme from the accepted state to another one [force length], by trapezia.
-    double lost(const Vector& from, const Vector& to) const {
-        if (!(duration_ > 0.0)) return 0.0;
-        const auto [velocity, acceleration] = arrived(to);
-        const Vector mean = 0.5 * (acceleration + (moving_ > 0.0 ? acceleration_ : acceleration));
-        const Vector way = Own::way(from.head(size_), to.head(size_));
-        return (Own::of(to) - from_).dot(times_mass(mean)) - 0.5 * way.dot((1.0 - step_.share) * (now_ - force_) + left_) -
-               kinetic_of(velocity) + kinetic_of(velocity_);
-    }
     double kinetic(const Vector& state) const {
         return duration_ > 0.0 ? kinetic_of(arrived(state).first) : kinetic_of(velocity_);
     }
@@ -179,11 +170,11 @@ public:
     void accept(const Vector& state) {
         if (!(duration_ > 0.0)) return;
         std::tie(velocity_, acceleration_) = arrived(state);
-        if (now_.size() == size_) left_ = (1.0 - step_.share) * (now_ - force_), force_ = now_;
+        if (now_.size() == size_) force_ = now_;
         moving_ = 1.0;
     }
     void restore() const noexcept {}
-    void each(const auto& see) { see(velocity_), see(acceleration_), see(force_), see(left_), see(moving_); }
+    void each(const auto& see) { see(velocity_), see(acceleration_), see(force_), see(moving_); }
 
     /// Begins anew from a state: at rest, or as it is told. @throws std::invalid_argument for a fibre that is none
     void set_off(const std::vector<Start>& starts) {
@@ -301,7 +292,7 @@ private:
     double mass_norm_ = 0.0;  // of the masses of nodes
     TimeStep step_{};
     Vector velocity_, acceleration_;  // accepted, in the coordinates of mass
-    Vector force_, left_;             // accepted: forces of the fibres in space, and what they were more than the step had them
+    Vector force_;                    // accepted: forces of the fibres less the loads, in space
     double moving_ = 0.0;             // 1: an acceleration is known
     Vector from_, place_, now_;       // of the step: start and place in the coordinates of mass, forces in space
 };

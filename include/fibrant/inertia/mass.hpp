@@ -88,15 +88,6 @@ public:
                 forces.segment<3>(k) = (core::spin_matrix(state.segment<3>(k)).transpose() * forces.segment<3>(k)).eval();
         return forces;
     }
-    /// What forces in space work along: displacements, and turns of sections.
-    static Vector way(const Vector& from, const Vector& to) {
-        Vector step = to - from;
-        if constexpr (turn)
-            for (Index k = 3; k < to.size(); k += 6)
-                step.segment<3>(k) =
-                    core::rotation_vector(core::rotation(to.segment<3>(k)) * core::rotation(from.segment<3>(k)).transpose());
-        return step;
-    }
 };
 
 }  // namespace fibrant::inertia

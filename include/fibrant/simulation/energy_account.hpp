@@ -70,7 +70,6 @@ public:
         if constexpr (Equilibrium::moves) equilibrium.terms().moving([&](const auto& term) {
             if (term.begins()) external_ = equilibrium.external() + equilibrium.reaction();  // what lets go is there from the start on
             balance_.kinetic = term.kinetic(to);
-            balance_.numerical += term.lost(from, to);
         });
         const Vector external = equilibrium.external() + equilibrium.reaction();
         if (step > 0.0 && !Equilibrium::moves) balance_.external += bend(way, external, leap ? 0.0 : step);
@@ -96,6 +95,12 @@ public:
         if (leap) balance_.released += balance_.error() - error_before;
     }
 
+    /// The balance of an increment of which all is booked. What a motion misses then is lost to the scheme that moves it.
+    template <bool Moves>
+    const EnergyBalance& closed() {
+        if constexpr (Moves) balance_.numerical += balance_.error();
+        return balance_;
+    }
     /// What the laws of sections have lost in an increment, and what work what drives them has done.
     void book_laws(double lost, double driven) { balance_.lost += lost, balance_.external += driven; }
 

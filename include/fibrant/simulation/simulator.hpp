@@ -165,7 +165,7 @@ private:
                 if (position_.progress == 0.0) energy_.turn();
                 energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again(), laws_.smooth ? progress - position_.progress : 0.0);
                 laws_.accept(mesh_, beam_, trial, energy_);
-                increment.energy = energy_.balance();
+                increment.energy = energy_.template closed<Equilibrium::moves>();
                 if (stage.damping_carried) motion_.learn(mesh_, state_, trial, change);
                 state_ = trial;
                 equilibrium_.ties().accept();

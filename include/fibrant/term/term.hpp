@@ -124,7 +124,7 @@ template <class T>
 concept Shown = requires(const T term, const Vector& state, observe::Snapshot& shot) { term.show(state, shot); };
 
 /// A term that makes a model move in time. Forces of the fibres are then those that it averages over a step; it is told how long that lasts,
-/// says what its scheme loses, and refuses a step that errs too much.
+/// and refuses a step that errs too much.
 template <class T>
 concept Moving = requires(T term, const T seen, const Vector& state, Vector& sum, double number) {
     term.last(number);                       // duration of the next increments; before `begin` [time]
@@ -134,7 +134,6 @@ concept Moving = requires(T term, const T seen, const Vector& state, Vector& sum
     { seen.rounding() } -> std::same_as<double>;            // norm of what rounding makes of its forces [force]
     { seen.begins() } -> std::same_as<bool>;                // the motion, with this step
     { seen.kinetic(state) } -> std::same_as<double>;        // [force length]
-    { seen.lost(state, state) } -> std::same_as<double>;    // from one state to the other [force length]
     { term.refusal(state) } -> std::same_as<std::string>;   // empty: none
     { seen.may_grow(number) } -> std::same_as<bool>;        // the next step, by a factor
 };
