@@ -5,9 +5,10 @@
 #include "load_file.hpp"
 #include "output.hpp"
 
-#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/with_law.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
+#include <fibrant/material/elastic.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/simulation/refined_state.hpp>
 #include <fibrant/solver/any_solver.hpp>
@@ -21,8 +22,10 @@ namespace cloth = compositions::weave;
 
 namespace {
 
-struct LoadedWeave {
-    using Beam = beam::DirectorBeam<>;
+/// @tparam Section  law of the sections of the fibres
+template <class Section>
+struct LoadedWeaveOf {
+    using Beam = beam::With<beam::DirectorBeam<>, Section>;
     using Proximity = proximity::GridSearch;
     using Normal = law::LimitedGap<law::RegularisedPenalty>;
     using Friction = law::RegularisedCoulomb;
@@ -31,8 +34,8 @@ struct LoadedWeave {
     using Connections = connection::RigidBodies;
 };
 
-bool solve(example::SceneReader& file, example::Output& output) {
-    const fabric_loading::LoadFile load = fabric_loading::read_load_file(file, output.scene.parent_path());
+template <simulation::Model LoadedWeave>
+bool run(const fabric_loading::LoadFile& load, example::SceneReader& file, example::Output& output) {
     const cloth::FabricParameters& fabric = load.scene.fabric;
     const double radius = cloth::smallest_radius(fabric);
 
@@ -41,7 +44,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const auto mesh_of = [&](const cloth::FabricParameters& of) {
         scene::Assembly fibres;
         cloth::add_flat_fibres(fibres, of);
-        return beam::Mesh<LoadedWeave::Beam>(fibres, LoadedWeave::Beam(parameters.beam));
+        return beam::Mesh<typename LoadedWeave::Beam>(fibres, typename LoadedWeave::Beam(parameters.beam));
     };
     const auto mesh = mesh_of(fabric);
     output.keep(file, "settled", "checkpoint", load.checkpoint);
@@ -95,6 +98,11 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const observe::JsonObject summary = example::write_summary(output, report, audit, radius, figures);
     example::write_report(output, "fabric_loading", summary, simulator.snapshot());
     return report.converged && audit.clean();
+}
+
+bool solve(example::SceneReader& file, example::Output& output) {
+    const fabric_loading::LoadFile load = fabric_loading::read_load_file(file, output.scene.parent_path());
+    return load.scene.transverse() ? run<LoadedWeaveOf<material::Elastic>>(load, file, output) : run<LoadedWeaveOf<beam::Isotropic>>(load, file, output);
 }
 
 }  // namespace

@@ -31,6 +31,17 @@ inline void check_transverse(const SceneReader& file, const std::string& section
         file.check(file.given(law, key) == (kind != "isotropic"), law, key, kind == "isotropic" ? "left out, for kind = \"isotropic\"" : "given, for kind = \"transversely_isotropic\"");
 }
 
+/// The same where the law of another section holds unless this one names its own: `across` comes in as that.
+inline void read_own_transverse(SceneReader& file, const std::string& section, std::string& kind, fibrant::scene::TransverseConstants& across) {
+    const std::string law = section + ".law";
+    for (const char* key : {"kind", "transverse_modulus", "transverse_poisson_ratio", "shear_modulus"})
+        if (file.given(law, key)) {
+            kind = "isotropic", across = {};
+            break;
+        }
+    read_transverse(file, section, kind, across);
+}
+
 /// Friction of fibres. @param which  and when, as a user is told
 inline void read_friction(SceneReader& file, double& coefficient, const char* which) {
     file.read("contact", "friction_coefficient", coefficient, friction(), "1", which);

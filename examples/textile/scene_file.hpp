@@ -32,6 +32,7 @@ struct Scene {
     cloth::Textile textile;
     cloth::SettleParameters settle;
     cloth::Fineness fineness;
+    bool transverse = false;  ///< fibres are softer across than along
     std::string linear_solver = "float_block_cholesky";
 };
 
@@ -267,6 +268,9 @@ inline Scene read_scene(SceneReader& file) {
                  "what is made; the section of this name has its numbers");
     detail::read_type(file, "yarn", true, yarn);
     example::read_material(file, "yarn", yarn.material);
+    std::string law = "isotropic";
+    example::read_transverse(file, "yarn", law, yarn.material.transverse);
+    scene.transverse = yarn.material.transverse.given();
     cloth::YarnType binder = yarn;
     const bool bound = file.describes() || file.given("binder", "radius") || file.given("binder", "fibres");
     if (bound) {
@@ -314,6 +318,7 @@ inline Scene read_scene(SceneReader& file) {
     }
     scene.textile = detail::generate(file, scene.generator, yarn, binder);
     if (file.describes()) file.complete();
+    example::check_transverse(file, "yarn", law);
     file.check(ends != "pulled" || tension > 0.0, "ends", "tension_strain", "> 0, where ends are pulled");
     for (cloth::Path& path : scene.textile.paths) {
         path.ends = ends == "held" ? cloth::Ends::held : ends == "pulled" ? cloth::Ends::pulled : cloth::Ends::free;

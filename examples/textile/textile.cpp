@@ -7,8 +7,9 @@
 #include "output.hpp"
 #include "scene_file.hpp"
 
-#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/with_law.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>
+#include <fibrant/material/elastic.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/any_solver.hpp>
 
@@ -16,8 +17,10 @@ using namespace fibrant;
 
 namespace {
 
-struct Yarns {
-    using Beam = beam::DirectorBeam<>;
+/// @tparam Section  law of the sections of the fibres
+template <class Section>
+struct YarnsOf {
+    using Beam = beam::With<beam::DirectorBeam<>, Section>;
     using Proximity = proximity::GridSearch;
     using Normal = law::LimitedGap<law::RegularisedPenalty>;
     using Friction = law::RegularisedCoulomb;
@@ -25,8 +28,8 @@ struct Yarns {
     using Connections = connection::RigidBodies;
 };
 
-bool solve(example::SceneReader& file, example::Output& output) {
-    const textile::Scene scene = textile::read_scene(file);
+template <simulation::Model Yarns>
+bool settle(const textile::Scene& scene, example::SceneReader& file, example::Output& output) {
     const double radius = scene.textile.smallest_radius();
     const textile::cloth::Assembled assembled = textile::cloth::assemble(scene.textile, scene.fineness);
     auto parameters = textile::cloth::model_parameters<Yarns>(scene.textile, scene.settle);
@@ -58,6 +61,11 @@ bool solve(example::SceneReader& file, example::Output& output) {
                                            "greatest_penetration_over_radius", "wall_seconds"}},
                           coloured);
     return report.converged && audit.clean() && topology.clean();
+}
+
+bool solve(example::SceneReader& file, example::Output& output) {
+    const textile::Scene scene = textile::read_scene(file);
+    return scene.transverse ? settle<YarnsOf<material::Elastic>>(scene, file, output) : settle<YarnsOf<beam::Isotropic>>(scene, file, output);
 }
 
 }  // namespace

@@ -28,6 +28,8 @@ namespace cloth = fibrant::compositions::weave;
 struct Scene {
     cloth::FabricParameters fabric;
     cloth::SettleParameters settle;
+    /// Fibres of one of the tows are softer across than along.
+    bool transverse() const { return fabric.warp.material.transverse.given() || fabric.weft.material.transverse.given(); }
     fibrant::solver::IterationParameters iteration;
     std::string linear_solver = "two_level_pcg";  ///< one of solver::AnySolver
     Index threads = 0;                            ///< 0: as many as the machine has
@@ -151,9 +153,14 @@ Scene read_fabric(SceneReader& file, const More& more) {
     scene::ElasticMaterial material;
     file.read("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2", "Young's modulus of the fibres");
     file.read("material", "poisson_ratio", material.poisson_ratio, example::poisson_ratio(), "1", "Poisson's ratio of the fibres");
+    std::string law = "isotropic";
+    example::read_transverse(file, "material", law, material.transverse);
+    std::string warp_law = law, weft_law = law;
     fabric.warp.material = material;
     detail::read_tow(file, "warp", true, fabric.warp);
     fabric.weft = fabric.warp;
+    example::read_own_transverse(file, "warp", warp_law, fabric.warp.material.transverse);
+    example::read_own_transverse(file, "weft", weft_law, fabric.weft.material.transverse);
     if (!std::isnan(material.young_modulus)) fabric.weft.material.young_modulus = material.young_modulus;
     if (!std::isnan(material.poisson_ratio)) fabric.weft.material.poisson_ratio = material.poisson_ratio;
     detail::read_tow(file, "weft", false, fabric.weft);
@@ -194,6 +201,9 @@ Scene read_fabric(SceneReader& file, const More& more) {
     more();
     file.complete();
 
+    example::check_transverse(file, "material", law);
+    example::check_transverse(file, "warp", file.given("warp.law", "kind") ? warp_law : "isotropic");
+    example::check_transverse(file, "weft", file.given("weft.law", "kind") ? weft_law : "isotropic");
     fabric.pattern = file.is_list("fabric", "pattern") ? cloth::Pattern::from_rows(rows) : cloth::Pattern::named(name);
     if (std::isnan(fabric.warp.material.young_modulus))
         file.refuse("material", "young_modulus", "given, here or as warp.young_modulus");

@@ -7,10 +7,11 @@
 #include "output.hpp"
 #include "scene_file.hpp"
 
-#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/with_law.hpp>
 #include <fibrant/compositions/weave/fabric_limits.hpp>
 #include <fibrant/compositions/weave/settle.hpp>
 #include <fibrant/law/frictionless.hpp>
+#include <fibrant/material/elastic.hpp>
 #include <fibrant/observe/vtk_writer.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/any_solver.hpp>
@@ -25,9 +26,10 @@ using namespace fibrant;
 
 namespace {
 
-template <law::FrictionLaw Law>
+/// @tparam Law, Section  of friction, and of the sections of the fibres
+template <law::FrictionLaw Law, class Section = beam::Isotropic>
 struct Weave {
-    using Beam = beam::DirectorBeam<>;
+    using Beam = beam::With<beam::DirectorBeam<>, Section>;
     using Proximity = proximity::GridSearch;
     using Normal = law::LimitedGap<law::RegularisedPenalty>;
     using Friction = Law;
@@ -87,6 +89,10 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
 
 bool solve(example::SceneReader& file, example::Output& output) {
     const weave::Scene scene = weave::read_fabric(file, [] {});
+    if (scene.transverse()) {
+        file.check(scene.settle.friction_coefficient > 0.0, "contact", "friction_coefficient", "> 0, for kind = \"transversely_isotropic\"");
+        return settle<Weave<law::RegularisedCoulomb, material::Elastic>>(scene, file, output);
+    }
     return scene.settle.friction_coefficient > 0.0 ? settle<Weave<law::RegularisedCoulomb>>(scene, file, output)
                                                    : settle<Weave<law::Frictionless>>(scene, file, output);
 }

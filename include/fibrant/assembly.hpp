@@ -12,4 +12,5 @@
 #include <fibrant/assembly/system_view.hpp>
 #include <fibrant/assembly/term_assembly.hpp>
 #include <fibrant/assembly/terms.hpp>
+#include <fibrant/assembly/vector_measures.hpp>
 #include <fibrant/assembly/visited_system.hpp>

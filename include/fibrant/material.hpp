@@ -4,6 +4,7 @@
 
 #include <fibrant/material/brittle.hpp>
 #include <fibrant/material/composed.hpp>
+#include <fibrant/material/damped.hpp>
 #include <fibrant/material/eigenstrain.hpp>
 #include <fibrant/material/elastic.hpp>
 #include <fibrant/material/viscoelastic.hpp>

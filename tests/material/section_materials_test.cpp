@@ -6,6 +6,7 @@
 
 #include <fibrant/material/brittle.hpp>
 #include <fibrant/material/composed.hpp>
+#include <fibrant/material/damped.hpp>
 #include <fibrant/material/eigenstrain.hpp>
 #include <fibrant/material/viscoelastic.hpp>
 #include <fibrant/material/wire.hpp>
@@ -48,6 +49,18 @@ TEST_CASE("every law's tangent is its derivative, its stress that of a potential
     SUBCASE("viscoelastic") {
         const material::Viscoelastic<2> law({.share = {0.3, 0.2}, .time = {1.0, 10.0}});
         test::check_section_material(law, section_of(law, carbon), 0.01, 0.1, 0.7);
+    }
+    SUBCASE("damped") {
+        const material::Damped<material::Elastic> law({.stretch = 0.3, .bending = 0.2, .turning = 0.5, .section = 0.1});
+        test::check_section_material(law, section_of(law, carbon, flat_section), 0.01, 0.1, 0.7);
+        // Bent at a constant rate: M = E I (kappa + beta kappa'), and the power is beta E I kappa'^2.
+        const auto section = section_of(law);
+        SectionStrains bent{};
+        bent[strain::b1] = 0.02;
+        const auto now = law.response(section, bent, law.fresh(section, {}), Drive{0.5, 0.0});
+        CHECK(now.stress[strain::b1] / section.diagonal[strain::b1] == test::near(0.02 + 0.2 * 0.02 / 0.5));
+        CHECK(now.dissipated / section.diagonal[strain::b1] == test::near(0.2 * 0.02 * 0.02 / 0.5));
+        CHECK(refusal([] { material::Damped<material::Elastic>({.bending = -1.0}); }).find("Damped.bending = -1") != std::string::npos);
     }
     SUBCASE("wire") {
         const material::Wire law({.yield_stress = 5.0, .hardening = 100.0});

@@ -25,7 +25,10 @@ struct TermScene {
           term{term::SiteOf<B>(assembly, mesh, channels, mesh.layout()), parameters} {
         begin(1.0);
     }
-    void begin(double amplitude) { term.begin(std::vector<double>(channels.names().size(), amplitude), mesh.start_state()); }
+    void begin(double amplitude) {
+        if constexpr (term::Moving<term::For<T, B>>) term.last(0.1);
+        term.begin(std::vector<double>(channels.names().size(), amplitude), mesh.start_state());
+    }
     Vector forces(const Vector& state) {
         term.evaluate(state);
         Vector sum = Vector::Zero(state.size());

@@ -6,6 +6,7 @@
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
 #include <fibrant/beam/rigid_section_rod.hpp>
+#include <fibrant/connection/fibre_bonds.hpp>
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/observe/snapshot.hpp>
@@ -80,6 +81,10 @@ TEST_CASE("terms of a user keep the contract, on cables and on rods whose sectio
         const Vector state = mesh.rest_state() + 0.05 * Vector::LinSpaced(mesh.rest_state().size(), -1.0, 1.0).array().sin().matrix();
         test::check_term<B, SoftBed>(assembly, {.stiffness = 3.0}, state);
         test::check_term<B, Tether>(assembly, {.stiffness = 0.7}, state);
+        // Fibres that are drawn apart, so that nothing of a bond's stiffness is left out.
+        Vector apart = state;
+        for (Index k = 0; k < mesh.node_count(1); ++k) apart[3 * mesh.node_vector(1, k, 0) + 1] += 0.3;
+        test::check_term<B, connection::FibreBonds>(assembly, {{{.i = {0, 0.4}, .j = {1, 0.5}, .stiffness = 0.7}, {.i = {0, 0.6}, .j = {1, 0.6}, .stiffness = 0.3, .span = 0.2}}}, apart);
     };
     check(std::type_identity<Cable>{});
     check(std::type_identity<beam::RigidSectionRod>{});
@@ -94,10 +99,11 @@ struct ModelWith {
     using Solver = solver::SparseCholesky;
     using Acts = List;
 };
-using Tied = ModelWith<term::List<Tether>>;
+using connection::FibreBonds;
+using Tied = ModelWith<term::List<Tether, FibreBonds>>;
 static_assert(simulation::Model<Tied>);
 // An empty list is nothing.
-static_assert(sizeof(simulation::Simulator<ModelWith<term::List<>>>::Equilibrium) + sizeof(Tether) == sizeof(simulation::Simulator<Tied>::Equilibrium));
+static_assert(sizeof(simulation::Simulator<ModelWith<term::List<>>>::Equilibrium) + sizeof(Tether) + sizeof(FibreBonds) == sizeof(simulation::Simulator<Tied>::Equilibrium));
 
 struct Forces {
     std::vector<double> shown;
@@ -106,7 +112,7 @@ struct Forces {
 
 /// Both fibres are held at their ends; those of the second move away.
 template <class Use>
-simulation::Report run(const simulation::Loading<Tied>& loading, double stiffness, const Use& use) {
+simulation::Report run(const simulation::Loading<Tied>& loading, double stiffness, const Use& use, const std::vector<FibreBonds::Bond>& bonds = {}) {
     scene::Assembly assembly = two_fibres();
     for (const Index f : {0, 1})
         for (const scene::Station at : {scene::first_end(f), scene::last_end(f)}) assembly.prescribe(at, f * Vec3(0, 0.2, 0));
@@ -114,6 +120,7 @@ simulation::Report run(const simulation::Loading<Tied>& loading, double stiffnes
     parameters.normal.regularisation_depth = 1e-5;
     parameters.contact.stiffness.allowed_penetration = 1e-4;
     parameters.acts.tether.stiffness = stiffness;
+    parameters.acts.bonds.bonds = bonds;
     simulation::Simulator<Tied> simulator(assembly, parameters);
     Forces forces;
     const simulation::Report report = simulator.run(loading, forces);
@@ -147,6 +154,32 @@ TEST_CASE("a tie of a user's own pulls two fibres alike, is shown, and goes thro
     simulation::Loading<Tied> rest{.increments = 6, .checkpoint = file, .resume = true};
     CHECK(run(rest, stiffness, [&](const auto& simulator, const auto&) { CHECK(simulator.state() == whole); }).converged);
     std::filesystem::remove(file);
+}
+
+TEST_CASE("bonds carry force until they break, one that is stronger holds, and the energy of both is told") {
+    // Middles of fibres that are far stiffer than the bonds move apart by 0.2: forces of 0.002 and 0.004 at the end.
+    const double k = 0.01;
+    const std::vector<FibreBonds::Bond> bonds{{.i = {0, 0.5}, .j = {1, 0.5}, .stiffness = k, .strength = 0.55 * 0.2 * k},
+                                              {.i = {0, 0.25}, .j = {1, 0.25}, .stiffness = 0.5 * k, .span = 0.1}};
+    const simulation::Report report = run({.increments = 20}, 1e-9, [&](const auto& simulator, const Forces&) {
+        const FibreBonds& term = simulator.equilibrium().terms().template get<FibreBonds>();
+        CHECK(term.broken(0));
+        CHECK(!term.broken(1));
+        const Vec3 force = term.force(1, simulator.state());
+        CHECK(term.force(0, simulator.state()).norm() == 0.0);
+        // The supports of the second fibre carry what its bond pulls it back by, residuals to 1e-4 of that.
+        const Vec3 held = simulator.reaction(scene::first_end(1)) + simulator.reaction(scene::last_end(1));
+        CHECK((held + force).norm() < 1e-3 * force.norm());
+        CHECK(force.y() < 0.0);
+    }, bonds);
+    REQUIRE_MESSAGE(report.converged, report.reason);
+    // It breaks in the increment that takes it over its strength: 0.55 to 0.6 of the way; 0.5 k u^2 is lost then.
+    const double least = 0.5 * k * std::pow(0.55 * 0.2, 2), most = 0.5 * k * std::pow(0.6 * 0.2, 2);
+    CHECK(report.energy.dissipated > 0.95 * least);
+    CHECK(report.energy.dissipated < 1.05 * most);
+    // Supports work by trapezia: in the increment of the leap by half of the force that is gone, F du/2 against F u/2.
+    CHECK(std::abs(report.energy.error()) < 0.1 * report.energy.dissipated);
+    CHECK_THROWS_WITH_AS(run({.increments = 1}, 1.0, [](const auto&, const auto&) {}, {{.i = {0, 0.5}, .j = {1, 0.5}}}), doctest::Contains("FibreBonds.Bond.stiffness = nan"), std::invalid_argument);
 }
 
 }  // namespace terms_test

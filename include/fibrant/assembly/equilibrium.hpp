@@ -3,6 +3,7 @@
 /// @file Equilibrium of a mesh with its contacts, terms and prescribed motion: residual, tangent, energies.
 
 #include <fibrant/assembly/solid_system.hpp>
+#include <fibrant/assembly/vector_measures.hpp>
 #include <fibrant/connection/connections.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/contact/contact_set.hpp>
@@ -48,6 +49,9 @@ public:
     static_assert(connection::Connection<Ties, B>);
     /// The force of an element in an iteration depends on the strains that it predicts.
     static constexpr bool iterated_strains = beam::IteratedStrains<B>;
+    /// A term makes it move in time.
+    static constexpr bool moves = Terms::moves;
+    static_assert(!moves || !has_solid, "solids have no inertia yet: a model that moves has no part Solid");
     static constexpr Index element_unknowns = beam::Mesh<B>::element_unknowns;
 
     Equilibrium(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const B& beam, Contacts& contacts,
@@ -93,7 +97,7 @@ public:
         ties_.begin(amplitudes);
         if constexpr (has_solid) solid_.hold(amplitudes, system_.layout().held, targets_);
         ties_.hold(system_.layout().held, targets_);
-        hold_images();
+        scene::hold_images(system_.layout(), targets_);
         if constexpr (has_solid) system_.share_held();
         reset_stresses(state);
     }
@@ -183,7 +187,12 @@ public:
 
     /// Adds the forces of fibres and solids in a state.
     /// @param iterated  as the iteration has them, whose strains are those of the state once it has converged
-    void add_internal_forces(const Vector& state, Vector& forces, [[maybe_unused]] bool iterated = false) {
+    void add_internal_forces(const Vector& state, Vector& forces, bool iterated = false) {
+        add_fibre_forces(state, forces, iterated);
+        if constexpr (has_solid) solid_.add_forces(state, forces);
+        terms_.template of<term::Role::structure>([&](const auto& term) { term.add_forces(state, forces); });
+    }
+    void add_fibre_forces(const Vector& state, Vector& forces, [[maybe_unused]] bool iterated) {
         core::parallel_for(mesh_->fibre_count(), [&](Index f) {
             for (Index e = 0; e < mesh_->fibre(f).elements; ++e) {
                 if constexpr (iterated_strains)
@@ -196,8 +205,6 @@ public:
                     beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e));
             }
         }, mesh_->grain());
-        if constexpr (has_solid) solid_.add_forces(state, forces);
-        terms_.template of<term::Role::structure>([&](const auto& term) { term.add_forces(state, forces); });
     }
 
     /// Residual of a state whose contacts have been evaluated.
@@ -209,12 +216,22 @@ public:
         terms_.template of<term::Role::interaction>(add);
         scene::fold_images(system_.layout(), residual);
         const double contact = norm(residual);
-        add_internal_forces(state, residual, true);
+        if constexpr (!moves) add_internal_forces(state, residual, true);
         terms_.template of<term::Role::aid>(add);
         scene::fold_images(system_.layout(), residual);
         external_.setZero(state.size());
         terms_.template of<term::Role::external>([&](const auto& term) { term.add_forces(state, external_); });
         scene::fold_images(system_.layout(), external_);
+        if constexpr (moves) terms_.moving([&](auto& term) {  // fibres and loads act by a mean over the step
+            terms_.template of<term::Role::structure>(add);
+            fibres_.setZero(state.size());
+            add_fibre_forces(state, fibres_, true);
+            fibres_ -= external_;
+            scene::fold_images(system_.layout(), fibres_);
+            term.add_averaged(state, fibres_, residual);
+            residual += external_;
+            scene::fold_images(system_.layout(), residual);
+        });
         if constexpr (core::Active<Ties>) {
             ties_.hold_forces(system_.layout(), residual - external_);
             ties_.add_forces(system_.layout(), external_);
@@ -225,11 +242,13 @@ public:
         reaction_ = residual;
         scene::project_free(system_.layout(), residual);
         reaction_ -= residual;
+        if constexpr (moves) add_left(state);
         ResidualFigures figures;
         figures.residual = norm(residual);
         figures.rounding = rounding_;
         const double reaction = std::sqrt(std::max(0.0, all * all - figures.residual * figures.residual));
         figures.scale = std::sqrt(contact * contact + load * load + reaction * reaction);
+        if constexpr (moves) terms_.moving([&](const auto& term) { figures.scale = std::hypot(figures.scale, norm(fibres_)), figures.rounding += term.rounding(); });
         return figures;
     }
 
@@ -238,11 +257,14 @@ public:
     /// @param shift         added on every vector, as a spring on positions [force / length]
     void linearise(const Vector& state, bool tension_only, double shift) {
         system_.place(state);
+        [[maybe_unused]] double share = 1.0;
+        if constexpr (moves) terms_.moving([&](const auto& term) { share = term.share(); });
         core::parallel_for(mesh_->fibre_count(), [&](Index f) {
             system_.clear(f);
             for (Index e = 0; e < mesh_->fibre(f).elements; ++e) {
                 const typename B::Stresses geometric = tension_only ? B::without_compression(stress(f, e)) : stress(f, e);
-                system_.add(f, e, beam_.tangent_stiffness(mesh_->rest(f, e), mesh_->element(state, f, e), geometric));
+                if constexpr (moves) system_.add(f, e, beam::ElementMatrix<B>(share * beam_.tangent_stiffness(mesh_->rest(f, e), mesh_->element(state, f, e), geometric)));
+                else system_.add(f, e, beam_.tangent_stiffness(mesh_->rest(f, e), mesh_->element(state, f, e), geometric));
             }
             contacts_->section_stiffness_terms(f, state, [&](Index first, const auto& weights, const Mat3& stiffness) {
                 system_.add_rank_one(f, first, weights, stiffness);
@@ -252,7 +274,10 @@ public:
         }, mesh_->grain());
         Sink sink{this, state};
         term::Bands bands(sink);
-        terms_.each([&](const auto& term) { term.add_bands(state, bands); });
+        terms_.each([&]<class One>(const One& term) {
+            if constexpr (moves) sink.factor = One::role == term::Role::external ? share : 1.0;
+            term.add_bands(state, bands);
+        });
         ties_.stiffen(system_.layout(), !tension_only);
         if constexpr (has_solid) {
             solid_.add_to_fibres([&](Index vector, const Mat3& stiffness) { system_.add_diagonal(vector, stiffness); });
@@ -297,41 +322,25 @@ public:
     Vector& reaction() noexcept { return reaction_; }
 
     /// Norm with forces on directors divided by the radius [force].
-    double norm(const Vector& forces) const {
-        const std::vector<double>& length = system_.layout().length;
-        return std::sqrt(core::ordered_sum(core::count(length), 0.0, [&](Index first, Index last) {
-            double sum = 0.0;
-            for (Index v = first; v < last; ++v) sum += forces.segment<3>(3 * v).squaredNorm() / (length[core::at(v)] * length[core::at(v)]);
-            return sum;
-        }));
-    }
+    double norm(const Vector& forces) const { return norm_of(system_.layout(), forces); }
     /// Greatest displacement of a step, directors counted at the surface [length].
-    double greatest(const Vector& step) const {
-        const std::vector<double>& length = system_.layout().length;
-        return std::sqrt(core::largest(core::count(length), 0.0, [&](Index v) {
-            return step.segment<3>(3 * v).squaredNorm() * length[core::at(v)] * length[core::at(v)];
-        }));
-    }
-
+    double greatest(const Vector& step) const { return greatest_of(system_.layout(), step); }
     /// Scalar product of the displacements of two steps, directors counted at the surface [length^2].
-    double product(const Vector& a, const Vector& b) const {
-        const std::vector<double>& length = system_.layout().length;
-        return core::ordered_sum(core::count(length), 0.0, [&](Index first, Index last) {
-            double sum = 0.0;
-            for (Index v = first; v < last; ++v) sum += a.segment<3>(3 * v).dot(b.segment<3>(3 * v)) * length[core::at(v)] * length[core::at(v)];
-            return sum;
-        });
-    }
+    double product(const Vector& a, const Vector& b) const { return product_of(system_.layout(), a, b); }
 
     /// Of each fibre the greatest displacement of a step, directors counted at the surface [length]; empty if the step is not finite.
-    std::vector<double> greatest_by_fibre(const Vector& step) const {
-        std::vector<double> greatest(step.size() > 0 && step.allFinite() ? core::at(mesh_->fibre_count()) : 0, 0.0);
-        for (Index f = 0; f < core::count(greatest); ++f)
-            scene::for_own_vectors(system_.layout(), f, [&](Index v, double length) { greatest[core::at(f)] = std::max(greatest[core::at(f)], length * step.segment<3>(3 * v).norm()); });
-        return greatest;
-    }
+    std::vector<double> greatest_by_fibre(const Vector& step) const { return greatest_of_chains(system_.layout(), mesh_->fibre_count(), step); }
 
 private:
+    /// Supports carry forces of the end of a step.
+    void add_left(const Vector& state) {
+        terms_.moving([&](const auto& term) {
+            const Vector left = term.left(state);
+            Vector free = left;
+            scene::project_free(system_.layout(), free);
+            reaction_ += left - free;
+        });
+    }
     static Solid taken(Solid solid, [[maybe_unused]] const scene::Assembly& assembly, [[maybe_unused]] const beam::Mesh<B>& mesh,
                        [[maybe_unused]] const connection::Channels& channels) {
         if constexpr (has_solid) solid.take(assembly, mesh, channels);
@@ -373,24 +382,19 @@ private:
         for (Index k = 0; k < core::count(contacts_->elements()); ++k)
             if (contacts_->slides(k) && contacts_->responses()[core::at(k)].slope != 0.0) system_.slides().push_back(contacts_->sliding(k, positive));
     }
-    /// Images are held, behind what holds and ties hold; where they go the sources say.
-    void hold_images() {
-        scene::DofLayout& layout = system_.layout();
-        if (layout.images.empty()) return;
-        std::vector<std::pair<scene::HeldVector, Vec3>> all;
-        for (std::size_t k = 0; k < layout.held.size(); ++k) all.emplace_back(layout.held[k], targets_[k]);
-        for (const scene::ImageVector& one : layout.images) all.emplace_back(scene::HeldVector{one.image, Mat3::Zero()}, Vec3::Zero());
-        std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first.vector < b.first.vector; });
-        layout.held.clear(), targets_.clear();
-        for (const auto& [one, target] : all) layout.held.push_back(one), targets_.push_back(target);
-    }
     /// What a term's stiffness goes into.
     struct Sink {
         Equilibrium* to;
         const Vector& state;
-        void add_diagonal(Index vector, const Mat3& stiffness) { to->system_.add_diagonal(vector, stiffness); }
+        [[no_unique_address]] std::conditional_t<moves, double, core::Inactive> factor{};  ///< on what is added to bands
+        void add_diagonal(Index vector, const Mat3& stiffness) {
+            if constexpr (moves) to->system_.add_diagonal(vector, Mat3(factor * stiffness));
+            else to->system_.add_diagonal(vector, stiffness);
+        }
         void add_element(Index f, Index e, const double* entries) {
-            to->system_.add(f, e, Eigen::Map<const beam::ElementMatrix<B>>(entries));
+            const Eigen::Map<const beam::ElementMatrix<B>> stiffness(entries);
+            if constexpr (moves) to->system_.add(f, e, beam::ElementMatrix<B>(factor * stiffness));
+            else to->system_.add(f, e, stiffness);
         }
         void add_coupling(const term::CentrePoint& i, const term::CentrePoint& j, const Mat3& stiffness) {
             to->system_.points().push_back({static_cast<std::int32_t>(3 * i.first_vector), static_cast<std::int32_t>(3 * j.first_vector),
@@ -431,6 +435,7 @@ private:
     contact::LearnedContacts learned_;
     std::vector<Vec3> targets_;
     Vector external_, reaction_;
+    [[no_unique_address]] std::conditional_t<moves, Vector, core::Inactive> fibres_;  // forces of the fibres
     double rounding_ = 0.0;
 };
 

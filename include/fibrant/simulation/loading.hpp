@@ -19,6 +19,7 @@ struct Ramp {
     std::string channel{};
     double to = 1.0;         ///< amplitude at the end of the stage
     bool geometric = false;  ///< by equal factors instead of equal steps; both ends must be > 0
+    bool at_once = false;    ///< from the first increment of the stage on, as a weight that nothing holds any more
 };
 
 /// In the place of a limit, where a law has none: it stays empty, and what sets it is refused.
@@ -45,7 +46,8 @@ template <Model M>
 struct Stage {
     std::string name = "loading";
     Index increments = 10;                      ///< that its ramps take when none is cut, >= 1
-    double duration = 0.0;                      ///< of its ramps, for laws with a rate, >= 0; what follows them takes no time [time]
+    /// Of its ramps, for laws with a rate and for inertia, >= 0; what follows them takes no time, but with inertia goes on in steps of it [time].
+    double duration = 0.0;
     std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
     GapLimitOf<typename M::Normal> gap_limit{};  ///< of a law that limits the gap [length], as std::optional; scaled down when cut
     bool gap_limit_when_cut = false;            ///< limited in increments that were cut alone: what Newton's method cannot solve at once is softer then
@@ -116,10 +118,10 @@ struct Loading {
         core::require_finite("Loading.growth", growth);
         core::require_at_least("Loading.most_rejected", most_rejected, 0);
         for (const double over : damping_of_fibres) core::require(over >= 1.0 && over < 1e12, "Loading.damping_of_fibres", over, ">= 1 and < 1e12");
-        const bool timed = law::FrictionWithRate<typename M::Friction>;
-        if (timed && stages.empty()) core::refuse("Loading.stages", "none", "at least one that has a duration: the law of friction has a rate");
+        const std::string timed = law::FrictionWithRate<typename M::Friction> ? "the law of friction has a rate" : MovesInTime<M> ? "fibres have inertia" : "";
+        if (!timed.empty() && stages.empty()) core::refuse("Loading.stages", "none", "at least one that has a duration: " + timed);
         for (const Stage<M>& stage : stages) {
-            if (timed) core::require(stage.duration > 0.0, "Stage.duration of stage " + stage.name, stage.duration, "> 0: the law of friction has a rate");
+            if (!timed.empty()) core::require(stage.duration > 0.0, "Stage.duration of stage " + stage.name, stage.duration, "> 0: " + timed);
             core::require_at_least("Stage.increments", stage.increments, 1);
             core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);
             core::require_at_least("Stage.enough_increments", stage.enough_increments, 1);

@@ -125,7 +125,13 @@ template <Model M>
 struct ConnectionsOf<M> {
     using Type = typename M::Connections;
 };
+template <class B, class... T>
+constexpr bool any_moves(const term::List<T...>&) { return (term::Moving<term::For<T, B>> || ...); }
 }  // namespace detail
+
+/// A model whose fibres move in time: one of its terms is inertia.
+template <class M>
+concept MovesInTime = Model<M> && detail::any_moves<typename M::Beam>(typename detail::ActsOf<M>::Type());
 
 /// Parameters of a model's parts, by the names of the parts.
 template <Model M>

@@ -45,6 +45,10 @@ struct Position {
         return ahead > 1.0 - 1e-9 ? 1.0 : ahead;
     }
 
+    /// Duration of an increment of a stage.
+    template <Model M>
+    double step(const Stage<M>& present) const noexcept { return present.duration * fraction / static_cast<double>(present.increments); }
+
     /// After an attempt that has failed. What stops increments is often one fibre, or two at the edge of a bundle: those that moved
     /// most in the last iteration or pass, if they are few, are held four times as hard, and the increment stays as it is. Else it
     /// is made smaller, and damping of all rises.
@@ -214,7 +218,7 @@ std::vector<double> amplitudes_at(const Stage<M>& stage, double progress, const 
     for (const Ramp& ramp : stage.ramps) {
         const std::size_t c = core::at(channels.find(ramp.channel));
         const double from = position.from[c];
-        amplitudes[c] = ramp.geometric ? from * std::pow(ramp.to / from, progress) : from + progress * (ramp.to - from);
+        amplitudes[c] = ramp.at_once ? ramp.to : ramp.geometric ? from * std::pow(ramp.to / from, progress) : from + progress * (ramp.to - from);
     }
     return amplitudes;
 }

@@ -17,12 +17,26 @@
 
 namespace fibrant::simulation {
 
-/// Tells a law of friction that has a rate how long an increment lasts; in one that takes no time what flows is at rest. @returns the duration
-template <class Contacts>
-double let_last([[maybe_unused]] Contacts& contacts, double duration) {
+/// Tells inertia and a law of friction that has a rate how long an increment lasts; in one that takes no time what flows is at rest. Where
+/// fibres move none takes no time: what follows the ramps of a stage goes on in steps of it. @returns the duration
+/// @param step  part of the stage that the increment is made for, if that is not over
+template <class Contacts, class Equilibrium>
+double let_last([[maybe_unused]] Contacts& contacts, [[maybe_unused]] Equilibrium& equilibrium, double duration, [[maybe_unused]] double step) {
+    if constexpr (Equilibrium::moves) {
+        if (!(duration > 0.0)) duration = step;
+        equilibrium.terms().moving([&](auto& term) { term.last(duration); });
+    }
     if constexpr (law::FrictionWithRate<std::decay_t<decltype(contacts.friction_law())>>)
         contacts.friction_law().last(duration > 0.0 ? duration : std::numeric_limits<double>::infinity());
     return duration;
+}
+
+/// Whether the next step of time may be longer than the last one, by a factor; without inertia any may.
+template <class Equilibrium>
+bool may_grow(const Equilibrium& equilibrium, double factor) {
+    bool all = true;
+    equilibrium.terms().moving([&](const auto& term) { all = term.may_grow(factor); });
+    return all;
 }
 
 /// Of a beam whose law has no memory: nothing.
@@ -35,6 +49,7 @@ public:
             if (const std::string& channel = assembly.fibres()[core::at(f)].law_channel; !channel.empty())
                 core::refuse(mesh.label(f) + ": law_channel", channel, "empty, for a beam without a law of its own");
     }
+    static constexpr bool smooth = false;
     static constexpr bool again() noexcept { return false; }
     static constexpr bool begin(const auto&, const Mesh&, const B&, const Vector&) noexcept { return false; }
     static void drive(const Mesh&, const std::vector<double>&, double) noexcept {}
@@ -54,6 +69,7 @@ class SectionLaws<B> {
 
 public:
     using Mesh = beam::Mesh<B>;
+    static constexpr bool smooth = true;       ///< forces bend over increments as points begin to flow, which the account of energy follows
     static constexpr double overshoot = 0.02;  ///< of a strength, at which an increment is still accepted [1]
 
     SectionLaws(const scene::Assembly& assembly, Mesh& mesh, const B& beam, const connection::Channels& channels) : channel_(core::at(mesh.fibre_count()), -1) {

@@ -25,7 +25,7 @@
 
 namespace fibrant::simulation {
 
-/// A scene in mechanical equilibrium, taken through a loading by quasi-static increments.
+/// A scene in mechanical equilibrium, taken through a loading by quasi-static increments; with `inertia::Inertia` in motion, by steps of time.
 template <Model M>
 class Simulator {
 public:
@@ -140,7 +140,7 @@ private:
             }
             Vector trial = state_;
             move_tools(amplitudes);
-            laws_.drive(mesh_, amplitudes, let_last(contacts_, stage.duration * (progress - position_.progress)));
+            laws_.drive(mesh_, amplitudes, let_last(contacts_, equilibrium_, stage.duration * (progress - position_.progress), position_.step(stage)));
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping / stride + position_.calming.springs,
                                position_.held_by_fibre(loading.damping_of_fibres));
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
@@ -159,6 +159,7 @@ private:
             if (attempt.converged) {
                 attempt.reason = clock_.time(core::Part::search, [&] { return refusal(mesh_, beam_, passage_, contacts_, state_, trial, stage.forced_orders, touching); });
                 if (attempt.reason.empty()) attempt.reason = laws_.refusal(mesh_, beam_, trial);
+                equilibrium_.terms().moving([&](auto& term) { if (attempt.reason.empty()) attempt.reason = term.refusal(trial); });
                 if (!attempt.reason.empty()) attempt.converged = false, attempt.unsettled.resize(0);  // whoever moved most is not at fault
             }
             // What nothing foretells would be held back: the first tells.
@@ -168,9 +169,10 @@ private:
                 continue;
             }
             if (attempt.converged) {
-                energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again());
+                if (position_.progress == 0.0) energy_.turn();
+                energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again(), laws_.smooth ? progress - position_.progress : 0.0);
                 laws_.accept(mesh_, beam_, trial, energy_);
-                increment.energy = energy_.balance();
+                increment.energy = energy_.template closed<Equilibrium::moves>();
                 if (stage.damping_carried) motion_.learn(mesh_, state_, trial, change);
                 state_ = trial;
                 equilibrium_.ties().accept();
@@ -210,7 +212,7 @@ private:
         if (!position_.calming.active()) position_.calming.none_taken();
         else position_.calming.soften_after(increment.unstable, increment.displacement / radius_, Calming::softest(mesh_));
         ++position_.accepted, position_.in_stage += position_.calming.resting ? 0 : 1;
-        position_.grow(stage, increment, loading.growth, effort);
+        if (may_grow(equilibrium_, loading.growth)) position_.grow(stage, increment, loading.growth, effort);
         increment.number = position_.accepted, increment.stage = stage.name, increment.stage_progress = position_.progress;
         increment.progress = part_done(stages, position_.stage, position_.progress);
         // At rest: what holds takes no more force than the balance may miss anyway.
@@ -312,10 +314,10 @@ Simulator<M>::Simulator(const scene::Assembly& assembly, const ModelParameters<M
     if constexpr (HasSolid<M>) state_ = equilibrium_.solid().with_rest(state_);
     else if (!assembly.solids().empty()) core::refuse("assembly.solids", std::to_string(assembly.solids().size()), "none, for a model without a part Solid");
     require_agreement(equilibrium_.motion(), mesh_, channels_);
-    loose_ = loose_direction(assembly, mesh_);
+    if constexpr (!Equilibrium::moves) loose_ = loose_direction(assembly, mesh_);
     radius_ = mesh_.fibre(0).section.radius();
     for (const beam::MeshFibre& fibre : mesh_.fibres()) radius_ = std::min(radius_, fibre.section.radius());
-    if (mesh_.start_state() != mesh_.rest_state()) energy_.start(equilibrium_, state_);
+    if (Equilibrium::moves || mesh_.start_state() != mesh_.rest_state()) energy_.start(equilibrium_, state_);
 }
 
 template <Model M>

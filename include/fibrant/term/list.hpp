@@ -58,6 +58,21 @@ public:
             if constexpr (One::role == role) body(one);
         });
     }
+    /// One of them makes the fibres move in time.
+    static constexpr bool moves = (Moving<For<T, B>> || ...);
+    /// With that one; nothing where there is none.
+    template <class Body>
+    void moving(const Body& body) {
+        each([&]<class One>(One& one) {
+            if constexpr (Moving<One>) body(one);
+        });
+    }
+    template <class Body>
+    void moving(const Body& body) const {
+        each([&]<class One>(const One& one) {
+            if constexpr (Moving<One>) body(one);
+        });
+    }
     template <class One>
     For<One, B>& get() noexcept { return static_cast<detail::Leaf<For<One, B>>&>(*this).term; }
     template <class One>

@@ -123,6 +123,21 @@ concept Remembering = requires(T term, const Vector& state, const SeeNumber& see
 template <class T>
 concept Shown = requires(const T term, const Vector& state, observe::Snapshot& shot) { term.show(state, shot); };
 
+/// A term that makes a model move in time. Forces of the fibres are then those that it averages over a step; it is told how long that lasts,
+/// and refuses a step that errs too much.
+template <class T>
+concept Moving = requires(T term, const T seen, const Vector& state, Vector& sum, double number) {
+    term.last(number);                       // duration of the next increments; before `begin` [time]
+    term.add_averaged(state, state, sum);    // state, forces of the fibres in it
+    { seen.share() } -> std::same_as<double>;               // of those in that average: factor on their stiffness
+    { seen.left(state) } -> std::same_as<Vector>;           // of them, what the average has not
+    { seen.rounding() } -> std::same_as<double>;            // norm of what rounding makes of its forces [force]
+    { seen.begins() } -> std::same_as<bool>;                // the motion, with this step
+    { seen.kinetic(state) } -> std::same_as<double>;        // [force length]
+    { term.refusal(state) } -> std::same_as<std::string>;   // empty: none
+    { seen.may_grow(number) } -> std::same_as<bool>;        // the next step, by a factor
+};
+
 /// Something that pushes on fibres.
 /// Owed beyond the syntax, and checked by tests/term/term_contract.hpp: internal forces are the derivative of what is stored, stiffness is
 /// that of forces, `restore` gives back what was accepted, `each` has all of it, and `largest_part` is in (0, 1].

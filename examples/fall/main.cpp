@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// A nest of fibres falls into a drum under its weight. Prints where its energy went.
+//   fall SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
+#include "../support/example.hpp"
+#include "../support/report_page.hpp"
+#include "../support/usual_keys.hpp"
+
+#include <fibrant/beam/with_law.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
+#include <fibrant/inertia/inertia.hpp>
+#include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/load/gravity.hpp>
+#include <fibrant/material/damped.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/simulation/simulator.hpp>
+#include <fibrant/solver/sparse_cholesky.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+using namespace fibrant;
+
+struct Nest {
+    using Beam = beam::With<beam::RigidSectionRod, material::Damped<material::Elastic>>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::RegularisedPenalty;
+    using Friction = law::RegularisedCoulomb;
+    using Solver = solver::SparseCholesky;
+    using Tools = contact::RigidTools;
+    using Acts = term::List<inertia::Inertia<>, load::Gravity>;
+};
+
+struct Shape {
+    Index fibres = 10, elements = 6;
+    double radius = core::unset, length = core::unset, spacing = 2.5, turn_deg = 137.5, height = core::unset, drum = core::unset;
+};
+
+/// Level fibres above each other, each turned against the one below; a floor (tool 0) and a drum around them (tool 1).
+scene::Assembly nest(const Shape& shape, const scene::ElasticMaterial& material) {
+    scene::Assembly assembly;
+    for (Index f = 0; f < shape.fibres; ++f) {
+        const double angle = static_cast<double>(f) * shape.turn_deg * std::numbers::pi / 180.0;
+        const Vec3 half = 0.5 * shape.length * Vec3(std::cos(angle), std::sin(angle), 0.0);
+        const Vec3 middle(0, 0, shape.radius + shape.height + shape.spacing * shape.radius * static_cast<double>(f));
+        assembly.add({.from = middle - half,
+                      .to = middle + half,
+                      .section = scene::circular(shape.radius),
+                      .material = material,
+                      .elements = shape.elements,
+                      .director = Vec3::UnitZ()});
+    }
+    scene::Tool floor, drum;
+    drum.shape = scene::ToolShape::cylinder, drum.radius = shape.drum, drum.hollow = true;
+    assembly.add(floor), assembly.add(drum);
+    return assembly;
+}
+
+bool solve(example::SceneReader& file, example::Output& output) {
+    Shape shape;
+    scene::ElasticMaterial material;
+    double density = core::unset, damping = 0.0, mu = 0.2, depth = 1e-2, gravity = core::unset, duration = core::unset,
+           error = 0.02;
+    Index steps = 100;
+    file.read("nest", "fibres", shape.fibres, example::between(1, 1000), "fibres, one above the other");
+    file.require("nest", "radius", shape.radius, example::positive(), "length", "radius of a fibre");
+    file.require("nest", "length", shape.length, example::positive(), "length", "length of the fibres");
+    file.read("nest", "elements", shape.elements, example::between(1, 10000), "elements along a fibre");
+    file.read("nest", "spacing_over_radius", shape.spacing, example::inside(2.0, 1000.0), "1",
+              "height of a fibre above the next one, centre to centre, over the radius");
+    file.read("nest", "turn_deg", shape.turn_deg, example::between(-180.0, 180.0), "degree",
+              "angle of a fibre to the one below it");
+    file.require("nest", "height", shape.height, example::not_negative(), "length", "height of the lowest fibre above the floor");
+    file.require("drum", "radius", shape.drum, example::positive(), "length", "radius of the drum, inside");
+    example::read_material(file, "material", material);
+    file.require("material", "density", density, example::positive(), "mass/length^3", "density of the fibres");
+    file.read("material", "damping", damping, example::not_negative(), "time",
+              "time over which strains resist their rate; a mode of angular frequency w is damped by w/2 of it");
+    example::read_friction(file, mu, "coefficient of friction of fibres on each other, on the floor and on the drum");
+    example::read_allowed_penetration(file, depth);
+    file.require("motion", "gravity", gravity, example::not_negative(), "length/time^2", "acceleration of gravity, downwards");
+    file.require("motion", "duration", duration, example::positive(), "time", "how long the fibres move");
+    file.read("motion", "steps", steps, example::increments(), "steps of time, if none is cut");
+    file.read("motion", "allowed_error_over_radius", error, example::above(0.0, 1.0), "1",
+              "local error of a step beyond which it is cut, over the radius");
+    file.complete();
+    material.validate();
+    const double reach = std::hypot(0.5 * shape.length, shape.radius);
+    file.check(shape.drum > reach, "drum", "radius", "> " + core::text(reach) + ", or the fibres are not in it");
+    example::require_element(file, "nest", shape.elements, shape.length, shape.radius);
+    example::require_room(file, "nest", "fibres", example::unknowns_of(shape.fibres, shape.elements), 6000.0);
+
+    simulation::ModelParameters<Nest> model;
+    model.beam.laws = {{.stretch = damping, .bending = damping, .turning = damping}};
+    model.normal.regularisation_depth = 0.5 * depth * shape.radius;
+    model.friction = {.friction_coefficient = mu, .reversible_displacement = 0.02 * shape.radius};
+    model.contact.stiffness.allowed_penetration = depth * shape.radius;
+    model.acts.inertia.density = density, model.acts.inertia.allowed_error = error * shape.radius;
+    model.acts.gravity.weight = Vec3(0, 0, -density * gravity);
+    simulation::Simulator<Nest> simulator(nest(shape, material), model);
+    output.open(file);
+    simulation::Loading<Nest> loading;
+    simulation::Stage<Nest> stage;
+    stage.name = "fall", stage.increments = steps, stage.duration = duration, stage.most_increments = 20 * steps;
+    stage.ramps = {{.channel = "gravity", .to = 1.0, .at_once = true}};
+    loading.stages = {stage};
+    loading.most_rejected = 10 * steps;
+    output.tell(loading);
+    const auto top = [&] {
+        double most = 0.0;
+        for (Index f = 0; f < shape.fibres; ++f)
+            for (const double at : {0.0, 0.5, 1.0}) most = std::max(most, simulator.value({f, at}).z());
+        return most;
+    };
+    const auto motion = [&] { return simulator.equilibrium().terms().get<inertia::Inertia<>>().motion(simulator.state()); };
+    example::Recorder recorder(output, shape.radius, [&]() -> std::vector<observe::Column> {
+        return {
+            {"top", top()}, {"kinetic", motion().kinetic}, {"floor_force", simulator.contacts().tools().reaction(0).force.z()}};
+    });
+    const simulation::Report report = simulator.run(loading, recorder);
+    example::write_pictures(output, simulator.snapshot(), -60.0, 25.0);
+    const simulation::Audit audit = example::audit(output, simulator, shape.radius);
+    const simulation::EnergyBalance& energy = report.energy;
+    const double weight =
+        density * gravity * std::numbers::pi * shape.radius * shape.radius * shape.length * static_cast<double>(shape.fibres);
+    const observe::JsonObject summary = example::write_summary(output, report, audit, shape.radius,
+                                                               {{"top", top()},
+                                                                {"kinetic_energy", motion().kinetic},
+                                                                {"weight", weight},
+                                                                {"work_of_gravity", energy.external},
+                                                                {"lost_in_the_fibres", energy.lost},
+                                                                {"dissipated", energy.dissipated},
+                                                                {"lost_to_the_scheme", energy.numerical},
+                                                                {"energy_error", energy.error()}});
+    example::write_report(output, "fall", summary, simulator.snapshot());
+    return report.converged && audit.clean();
+}
+
+int main(int argc, char** argv) { return example::run(argc, argv, "fall", "Lets a nest of fibres fall into a drum.", solve); }

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Inertia: a term of models whose fibres move in time.
+
+#include <fibrant/inertia/inertia.hpp>
+#include <fibrant/inertia/mass.hpp>
+#include <fibrant/inertia/time_integrator.hpp>

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: MIT
+// Fibres that move in time: what they weigh, fall, swing, spin, ring and hit as closed forms say, and that energy and momenta are
+// kept.
+#include <near.hpp>
+#include <refusal.hpp>
+#include <term/term_contract.hpp>
+
+#include <fibrant/beam/kirchhoff_cable.hpp>
+#include <fibrant/beam/with_law.hpp>
+#include <fibrant/fibrant.hpp>
+#include <fibrant/inertia.hpp>
+#include <fibrant/law/physical_normal.hpp>
+#include <fibrant/load/gravity.hpp>
+#include <fibrant/material/damped.hpp>
+
+#include <Eigen/Eigenvalues>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <type_traits>
+#include <vector>
+
+using namespace fibrant;
+
+namespace inertia_test {
+
+const double pi = std::numbers::pi;
+
+struct Falling {
+    using Beam = beam::DirectorBeam<3>;
+    using Proximity = proximity::GridSearch;
+    using Normal = law::RegularisedPenalty;
+    using Friction = law::Frictionless;
+    using Solver = solver::SparseCholesky;
+    using Acts = term::List<inertia::Inertia<>, load::Gravity>;
+};
+/// Rods that damp their strains, and a contact whose stiffness is a property.
+struct Hitting : Falling {
+    using Beam = beam::With<beam::RigidSectionRod, material::Damped<material::Elastic>>;
+    using Normal = law::PowerNormal;
+};
+struct Still : Falling {
+    using Acts = term::List<load::Gravity>;
+};
+static_assert(simulation::MovesInTime<Falling> && simulation::MovesInTime<Hitting> && !simulation::MovesInTime<Still>);
+
+scene::FibreSpecification along_x(double length, double radius, double young, Index elements) {
+    return {.from = {0, 0, 0},
+            .to = {length, 0, 0},
+            .section = scene::circular(radius),
+            .material = {young, 0.3},
+            .elements = elements,
+            .director = Vec3::UnitZ()};
+}
+template <class M>
+simulation::ModelParameters<M> parameters(double radius, double density, const Vec3& acceleration = Vec3::Zero()) {
+    simulation::ModelParameters<M> all;
+    if constexpr (std::is_same_v<M, Falling>)
+        all.normal.regularisation_depth = 1e-3 * radius;
+    else
+        all.normal = {.line_stiffness = 1.0, .line_exponent = 1.0, .crossing_stiffness = 1.0, .crossing_exponent = 1.0},
+        all.beam.laws.emplace_back();
+    all.contact.stiffness.allowed_penetration = 1e-2 * radius;
+    all.iteration.step_tolerance = 1e-9, all.iteration.residual_tolerance = 1e-9;
+    all.acts.inertia.density = density;
+    all.acts.gravity.weight = density * acceleration;
+    return all;
+}
+/// Weight acts in full from the start.
+template <class M>
+simulation::Loading<M> lasting(double duration, Index steps) {
+    simulation::Loading<M> loading;
+    loading.stages.push_back({.name = "move",
+                              .increments = steps,
+                              .duration = duration,
+                              .ramps = {{.channel = "gravity", .at_once = true}},
+                              .most_increments = 20 * steps});
+    return loading;
+}
+template <class M>
+struct Moved {
+    simulation::Simulator<M> simulator;
+    std::vector<inertia::Motion> motions;
+    std::vector<Vec3> tips, others;  // last end of the first fibre and of the last one
+    std::vector<double> lasted;      // progress of the stage
+    std::vector<double> contact;     // stored in contacts
+    simulation::Report report;
+
+    Moved(const scene::Assembly& assembly, const simulation::ModelParameters<M>& with) : simulator(assembly, with) {}
+    inertia::Motion motion() const {
+        return simulator.equilibrium().terms().template get<inertia::Inertia<>>().motion(simulator.state());
+    }
+    void reported(const simulation::IncrementReport& increment) {
+        motions.push_back(motion());
+        tips.push_back(simulator.value(scene::last_end(0)));
+        others.push_back(simulator.value(scene::last_end(simulator.mesh().fibre_count() - 1)));
+        lasted.push_back(increment.stage_progress);
+        contact.push_back(increment.energy.contact);
+    }
+    void run(double duration, Index steps) {
+        report = simulator.run(lasting<M>(duration, steps), *this);
+        REQUIRE_MESSAGE(report.converged, report.reason);
+    }
+};
+
+TEST_CASE("inertia keeps the contract of a term, on all beams") {
+    const auto check = []<class B>(std::type_identity<B>) {
+        scene::Assembly assembly;
+        assembly.add(along_x(2.0, 0.3, 1.0, 3));
+        const beam::Mesh<B> mesh(assembly, B());
+        const Vector state =
+            mesh.rest_state() + 0.05 * Vector::LinSpaced(mesh.rest_state().size(), -1.0, 1.0).array().sin().matrix();
+        test::check_term<B, inertia::Inertia<>>(
+            assembly, {.density = 3.0, .starts = {{.velocity = {1, 2, 3}, .spin = {0.5, -1, 2}}}}, state);
+    };
+    check(std::type_identity<beam::DirectorBeam<3>>{});
+    check(std::type_identity<beam::KirchhoffCable>{});
+    check(std::type_identity<beam::RigidSectionRod>{});
+}
+
+/// Bending frequencies of a cantilever over sqrt(EI/(rho A L^4)): the two lowest pairs.
+template <class B>
+std::array<double, 2> frequencies(double slenderness, Index elements) {
+    const double r = 1.0, L = slenderness * r, E = 1.0, density = 1.0;
+    scene::Assembly assembly;
+    assembly.add(along_x(L, r, E, elements));
+    test::TermScene<B, inertia::Inertia<>> scene(assembly, {.density = density});
+    // The first step has c^2 = dt^2/2.
+    const Vector rest = scene.mesh.rest_state();
+    Matrix mass = 0.5 * 0.1 * 0.1 * scene.stiffness(rest), stiffness = Matrix::Zero(rest.size(), rest.size());
+    constexpr Index size = B::nodes * B::dofs_per_node;
+    for (Index e = 0; e < elements; ++e) {
+        const Index first = scene.mesh.first_unknown(0, e);
+        stiffness.block<size, size>(first, first) += B().tangent_stiffness(scene.mesh.rest(0, e), scene.mesh.element(rest, 0, e));
+    }
+    const Index free = rest.size() - B::dofs_per_node;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes(stiffness.bottomRightCorner(free, free),
+                                                                 mass.bottomRightCorner(free, free));
+    const double unit = std::sqrt(E * 0.25 * r * r / density) / (L * L);
+    return {std::sqrt(modes.eigenvalues()[0]) / unit, std::sqrt(modes.eigenvalues()[2]) / unit};
+}
+
+TEST_CASE("a cantilever rings at the frequencies of Timoshenko's beam with rotary inertia, and of Euler's") {
+    // Matrix exponential of the beam with ks = 1, nu = 0.3: L/r = 20 and 100; the element converges to them from above.
+    const auto four = frequencies<beam::DirectorBeam<3>>(20.0, 4), eight = frequencies<beam::DirectorBeam<3>>(20.0, 8);
+    std::printf("director beam, L/r 20: %.6f %.6f (4 elements), %.6f %.6f (8)\n", four[0], four[1], eight[0], eight[1]);
+    CHECK(four[0] == test::near(3.498153, 1e-6));
+    CHECK(four[1] == test::near(21.350929, 1e-6));
+    CHECK(eight[0] == test::near(3.497826, 1e-6));
+    CHECK(eight[0] == test::near(3.497804, 1e-5));
+    CHECK(eight[1] == test::near(21.275059, 5e-4));
+    const auto rod = frequencies<beam::RigidSectionRod>(20.0, 16), cable = frequencies<beam::KirchhoffCable>(100.0, 8);
+    std::printf("rod, L/r 20, 16 elements: %.6f %.6f; cable, 8: %.6f %.6f\n", rod[0], rod[1], cable[0], cable[1]);
+    CHECK(rod[0] == test::near(3.497804, 2e-3));
+    CHECK(rod[1] == test::near(21.275059, 1e-2));
+    CHECK(cable[0] == test::near(3.516015, 1e-5));  // Euler and Bernoulli, no rotary inertia
+    CHECK(cable[1] == test::near(22.034492, 1e-4));
+}
+
+TEST_CASE("a thrown fibre falls as a body does, and keeps its momenta and, to the second order of the step, its energy") {
+    const double L = 1.0, r = 0.02, density = 2.0, T = 0.4, mass = density * pi * r * r * L;
+    const Vec3 g(0, 0, -9.81), v(1, 0, 3), spin(0, 2, 0), centre(0.5, 0, 0);
+    double lost[2], turned[2];
+    for (int fine = 0; fine < 2; ++fine) {
+        scene::Assembly assembly;
+        assembly.add(along_x(L, r, 1e5, 3));
+        auto with = parameters<Falling>(r, density, g);
+        with.acts.inertia.starts = {{.velocity = v, .spin = spin, .centre = centre}};
+        Moved<Falling> fall(assembly, with);
+        // Moment of inertia of a cylinder about a normal through its middle.
+        CHECK(fall.motion().angular_momentum.y() - (centre.cross(mass * v)).y() ==
+              test::near(spin.y() * mass * (L * L / 12.0 + r * r / 4.0), 1e-12));
+        CHECK(fall.motion().kinetic == test::near(0.5 * mass * (v.squaredNorm() + 4.0 * (L * L / 12.0 + r * r / 4.0)), 1e-12));
+        fall.run(T, fine == 0 ? 40 : 80);
+        const Vec3 end = centre + T * v + 0.5 * T * T * g, momentum = mass * (v + T * g);
+        const inertia::Motion motion = fall.motion();
+        CHECK((fall.simulator.value({0, 0.5}) - end).norm() < 1e-8);  // the scheme is exact for a constant force
+        CHECK((motion.momentum - momentum).norm() < 1e-8 * momentum.norm());
+        const double own = (motion.angular_momentum - end.cross(momentum)).y();
+        turned[fine] = std::abs(own / (spin.y() * mass * (L * L / 12.0 + r * r / 4.0)) - 1.0);
+        const simulation::EnergyBalance& energy = fall.report.energy;
+        lost[fine] = std::abs(energy.numerical) / energy.kinetic;
+        CHECK(std::abs(energy.error()) < 1e-12 * energy.kinetic);
+        std::printf("thrown: spin off by %.1e, lost %.1e of the kinetic energy\n", turned[fine], energy.numerical / energy.kinetic);
+    }
+    // Second order: a quarter with half of the step.
+    CHECK(lost[1] < 3e-5);
+    CHECK(lost[1] < 0.3 * lost[0]);
+    CHECK(turned[1] < 0.3 * turned[0]);
+}
+
+TEST_CASE("a pendulum of 90 degrees swings with the period of the closed form, in steps that follow its error") {
+    // Thin rod on a pivot: 1.180341 times 2 pi sqrt(2 L/3 g) sqrt(1 + 3 r^2/4 L^2).
+    const double L = 1.0, r = 0.01, g = 9.81,
+                 quarter = 0.25 * 1.180341 * 2.0 * pi * std::sqrt(2.0 * L / (3.0 * g) * (1.0 + 0.75 * r * r / (L * L)));
+    for (const bool controlled : {false, true}) {
+        scene::Assembly assembly;
+        assembly.add(along_x(L, r, 1e8, 4));
+        assembly.hold_position(scene::first_end(0));
+        auto with = parameters<Hitting>(r, 1.0, {0, 0, -g});
+        if (controlled) with.acts.inertia.allowed_error = 2e-6 * L;
+        Moved<Hitting> swing(assembly, with);
+        const double T = 1.1 * quarter;
+        swing.run(T, controlled ? 10 : 110);
+        double passed = 0.0;
+        for (std::size_t k = 1; k < swing.tips.size() && passed == 0.0; ++k)
+            if (swing.tips[k].x() <= 0.0)
+                passed = T * (swing.lasted[k - 1] + (swing.lasted[k] - swing.lasted[k - 1]) * swing.tips[k - 1].x() /
+                                                        (swing.tips[k - 1].x() - swing.tips[k].x()));
+        std::printf(
+            "pendulum: quarter period %.6f of %.6f, %zu steps, %td refused; numerical %.1e of the work\n",
+            passed, quarter, swing.tips.size(), swing.report.rejected_increments,
+            swing.report.energy.numerical / swing.report.energy.external);
+        CHECK(passed == test::near(quarter, 5e-4));
+        CHECK(std::abs(swing.report.energy.numerical) < 1e-3 * swing.report.energy.external);
+        CHECK((swing.report.rejected_increments > 0) == controlled);
+    }
+}
+
+TEST_CASE("two rods that meet exchange their velocities in the time of the closed form, and nothing damps a turn") {
+    const double L = 1.0, r = 0.02, density = 1.0, v = 0.4, K = 50.0, mass = density * pi * r * r * L;
+    scene::Assembly assembly;
+    for (const double y : {0.0, 2.0 * r + 0.002}) {
+        auto rod = along_x(L, r, 1e4, 2);
+        rod.from.y() = rod.to.y() = y;
+        assembly.add(rod);
+    }
+    auto with = parameters<Hitting>(r, density);
+    with.normal.line_stiffness = K;
+    with.beam.laws = {{.stretch = 1.0, .bending = 1.0, .turning = 1.0}};
+    const double lasts = pi * std::sqrt(mass / (2.0 * K * L)), T = 0.002 / v + 2.0 * lasts;
+    with.acts.inertia.starts = {{.fibre = 0, .velocity = {0, v, 0}}};
+    Moved<Hitting> hit(assembly, with);
+    const Index steps = static_cast<Index>(std::ceil(40.0 * T / lasts));
+    hit.run(T, steps);
+    double touching = 0.0;
+    for (const double stored : hit.contact) touching += (stored > 0.0 ? 1.0 : 0.0) * T / static_cast<double>(steps);
+    const Vec3 first = (hit.tips.back() - hit.tips[hit.tips.size() - 2]) * static_cast<double>(steps) / T,
+               second = (hit.others.back() - hit.others[hit.others.size() - 2]) * static_cast<double>(steps) / T;
+    std::printf("impact: lasts %.5f of %.5f, velocities %.4f and %.4f of %.1f\n", touching, lasts, first.y(), second.y(), v);
+    CHECK(touching == test::near(lasts, 0.03));
+    CHECK(second.y() == test::near(v, 0.03));  // contact is of first order: 40 steps in it keep 0.96 of the approach
+    CHECK(std::abs(first.y()) < 0.03 * v);
+    CHECK((hit.motion().momentum - mass * Vec3(0, v, 0)).norm() < 1e-8 * mass * v);
+    CHECK(hit.report.energy.numerical >= 0.0);
+    CHECK(hit.report.energy.lost < 1e-6 * hit.report.energy.kinetic);
+
+    // A damped rod that turns: strains do not change, but for what it is stretched by at first.
+    scene::Assembly one;
+    one.add(along_x(L, r, 1e4, 2));
+    auto turning = parameters<Hitting>(r, density);
+    turning.beam.laws = {{.stretch = 1.0, .bending = 1.0, .turning = 1.0}};
+    turning.acts.inertia.starts = {{.spin = {0, 0, 1.0}}};
+    Moved<Hitting> turn(one, turning);
+    const double before = turn.motion().kinetic;
+    turn.run(2.0, 40);
+    std::printf("turning by 2: kinetic energy off by %.1e, lost %.1e of it\n", turn.motion().kinetic / before - 1.0,
+                turn.report.energy.lost / before);
+    CHECK(turn.report.energy.lost < 1e-5 * before);  // of the stretch that the turn begins with
+    CHECK(turn.motion().kinetic == test::near(before, 1e-3));
+}
+
+TEST_CASE("a cantilever that is let go under its weight comes to rest at its deflection, and all of its energy is told") {
+    const double L = 1.0, r = 0.01, E = 1e6, density = 1.0, EI = E * 0.25 * pi * std::pow(r, 4), sag = 0.01 * L;
+    const double line = 8.0 * EI * sag / std::pow(L, 4), g = line / (density * pi * r * r);
+    const double omega = 3.516015 * std::sqrt(EI / (density * pi * r * r)) / (L * L);
+    scene::Assembly assembly;
+    assembly.add(along_x(L, r, E, 12));
+    assembly.clamp(scene::first_end(0));
+    auto with = parameters<Hitting>(r, density, {0, 0, -g});
+    with.beam.laws = {{.stretch = 1.0 / omega, .bending = 1.0 / omega, .turning = 1.0 / omega}};  // half of what is critical
+    Moved<Hitting> sink(assembly, with);
+    sink.run(4.0 * 2.0 * pi / omega, 300);
+    const simulation::EnergyBalance& energy = sink.report.energy;
+    std::printf("cantilever: sinks by %.6f of %.6f; kinetic %.1e, numerical %.1e of the work, lost %.4f\n",
+                -sink.tips.back().z(), sag, energy.kinetic / energy.external,
+                energy.numerical / energy.external, energy.lost / energy.external);
+    CHECK(-sink.tips.back().z() == test::near(sag, 5e-3));  // 12 elements of constant strain
+    CHECK(energy.kinetic < 1e-6 * energy.external);
+    CHECK(std::abs(energy.numerical) < 3e-3 * energy.external);
+    // A weight that acts at once does twice the work that is stored in the end.
+    CHECK(energy.lost + energy.numerical == test::near(0.5 * energy.external, 1e-2));
+
+    // What has no density or no duration is refused by name.
+    auto none = with;
+    none.acts.inertia.density = core::unset;
+    CHECK(test::refusal([&] { simulation::Simulator<Hitting>(assembly, none); }).find("Inertia.density of fibre 0 = nan") !=
+          std::string::npos);
+    simulation::Loading<Hitting> timeless;
+    timeless.stages.emplace_back();
+    CHECK(test::refusal([&] {
+              timeless.validate();
+          }).find("Stage.duration of stage loading = 0, but it must be > 0: fibres have inertia") != std::string::npos);
+}
+
+}  // namespace inertia_test
