@@ -44,7 +44,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const textile::cloth::TopologyAudit topology = textile::cloth::audit_topology(
         scene.textile, assembled, textile::cloth::lines_of(drawn), textile::cloth::lines_of(settled));
     textile::tell(scene.textile, topology);
-    textile::write_tables(output.folder, scene.textile, assembled, settled);
+    textile::write_tables(output.folder, scene.textile, assembled, settled, {scene.surfaces, scene.voxel_spacing, output.unit});
+    textile::write_moves(output.folder, assembled, drawn, settled, scene.file_curves);
     const observe::Snapshot coloured = textile::by_family(scene.textile, assembled, settled);
     textile::write_pictures(output, scene.textile, coloured);
     const observe::JsonObject summary = textile::write_summary(output, report, audit, topology, scene.textile, assembled, drawn, settled,

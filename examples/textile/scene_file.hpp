@@ -33,6 +33,9 @@ struct Scene {
     cloth::SettleParameters settle;
     cloth::Fineness fineness;
     std::string linear_solver = "float_block_cholesky";
+    bool surfaces = false;       ///< of yarns are written
+    double voxel_spacing = 0.0;  ///< [length]; 0: none are written
+    std::vector<fibrant::exchange::FileCurve> file_curves{};  ///< that the textile is of, as the file has them
 };
 
 inline const std::vector<std::string> generators{"flat_braid",     "tubular_braid", "levels", "leno",
@@ -64,8 +67,9 @@ inline void read_height(SceneReader& file, const std::string& section, double& h
 }
 
 /// Reads the section of the generator; all of them where there is no file.
+/// @param curves  gets those of a file, if it is one
 inline cloth::Textile generate(SceneReader& file, const std::string& generator, const cloth::YarnType& yarn,
-                               const cloth::YarnType& binder) {
+                               const cloth::YarnType& binder, std::vector<fibrant::exchange::FileCurve>& curves) {
     const bool all = file.describes();
     cloth::Textile made;
     const auto wanted = [&](const char* name) { return all || generator == name; };
@@ -232,7 +236,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         if (!all) {
             file.complete();
             const std::filesystem::path whole = std::filesystem::path(file.file()).parent_path() / path;
-            made = cloth::textile_of(fibrant::exchange::read_curves(whole, clean), yarn,
+            curves = fibrant::exchange::read_curves(whole, clean);
+            made = cloth::textile_of(curves, yarn,
                                      {fibrant::Vec3::UnitZ(), seen == "tube", fibrant::Vec3::Zero()}, smooth);
             if (seen == "none") made.crossings.clear();
         }
@@ -312,7 +317,10 @@ inline Scene read_scene(SceneReader& file) {
                                             "\", as the file has that section");
         file.complete();
     }
-    scene.textile = detail::generate(file, scene.generator, yarn, binder);
+    file.read("output", "surfaces", scene.surfaces, "write the yarns as closed surfaces, and their sections as a table");
+    file.read("output", "voxel_spacing", scene.voxel_spacing, example::not_negative(), "length",
+              "spacing of the voxels that are written, with an Abaqus mesh and maps of the fibre volume fraction; 0: none");
+    scene.textile = detail::generate(file, scene.generator, yarn, binder, scene.file_curves);
     if (file.describes()) file.complete();
     file.check(ends != "pulled" || tension > 0.0, "ends", "tension_strain", "> 0, where ends are pulled");
     for (cloth::Path& path : scene.textile.paths) {

@@ -30,6 +30,7 @@
 #include <fibrant/compositions/textile/strands.hpp>
 #include <fibrant/compositions/textile/textile.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
+#include <fibrant/compositions/textile/yarn_contacts.hpp>
 
 #include <fibrant/compositions/two_ply/two_ply.hpp>
 
