@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Settles a textile of any kind, braid, weave, knit, rope, net or mail, from the paths of its yarns, and audits what came of it.
+// Settles a textile of any kind, braid, weave, knit, rope, net or mail, from the paths of its yarns, audits what came of it, and loads it.
 //   textile SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
 #include "../support/report_page.hpp"
+#include "loading.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/any_solver.hpp>
 
@@ -19,6 +21,7 @@ struct Yarns {
     using Normal = law::LimitedGap<law::RegularisedPenalty>;
     using Friction = law::RegularisedCoulomb;
     using Solver = solver::AnySolver;
+    using Tools = contact::RigidTools;
     using Connections = connection::RigidBodies;
 };
 
@@ -31,6 +34,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     simulation::Simulator<Yarns> simulator(assembled.assembly, parameters);
     const observe::Snapshot drawn = simulation::snapshot_of(simulator.mesh(), simulator.mesh().start_state());
 
+    if (scene.load.wanted) output.parts = {output.folder / "loading"};
     output.open(file);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         return {{"greatest_move_over_radius", textile::greatest_move(drawn, simulator.snapshot()) / radius}};
@@ -55,7 +59,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
                                            "right_crossings", "greatest_move_over_radius", "least_gap_over_radius",
                                            "greatest_penetration_over_radius", "wall_seconds"}},
                           coloured);
-    return report.converged && audit.clean() && topology.clean();
+    const bool sound = report.converged && audit.clean() && topology.clean();
+    if (!sound || !scene.load.wanted || example::stopped()) return sound;
+    return textile::run_load_case(output, scene, assembled, simulator).second;
 }
 
 int main(int argc, char** argv) {

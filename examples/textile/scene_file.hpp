@@ -9,6 +9,7 @@
 #include <fibrant/compositions/textile/braids.hpp>
 #include <fibrant/compositions/textile/imported.hpp>
 #include <fibrant/compositions/textile/knits.hpp>
+#include <fibrant/compositions/textile/load_cases.hpp>
 #include <fibrant/compositions/textile/settle.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
@@ -26,6 +27,14 @@ using example::SceneReader;
 using fibrant::Index;
 namespace cloth = fibrant::compositions::textile;
 
+/// What is done to the settled textile.
+struct Load {
+    bool wanted = false;
+    cloth::LoadCaseParameters parameters{};
+    Index increments = 20, cycles = 0;
+    double damping = 1e-3, rest_damping = 0.1;  ///< over the stiffness of a node against moving aside
+};
+
 /// Everything that a run is told.
 struct Scene {
     std::string generator;
@@ -33,6 +42,7 @@ struct Scene {
     cloth::SettleParameters settle;
     cloth::Fineness fineness;
     std::string linear_solver = "float_block_cholesky";
+    Load load{};
     bool surfaces = false;       ///< of yarns are written
     double voxel_spacing = 0.0;  ///< [length]; 0: none are written
     std::vector<fibrant::exchange::FileCurve> file_curves{};  ///< that the textile is of, as the file has them
@@ -59,6 +69,32 @@ inline void read_type(SceneReader& file, const std::string& section, bool requir
               "free distance between fibres of a yarn at the start, over their diameter");
     file.read(section, "twist", type.twist, example::any_number(), "turn/length",
               "twist of the fibres of a yarn; positive is right-handed");
+}
+
+/// The section [loading], which may be left out.
+inline void read_load(SceneReader& file, Load& load) {
+    load.wanted = file.has_section("loading");
+    if (!load.wanted && !file.describes()) return;
+    const std::vector<std::string> axes{"x", "y", "z"};
+    std::string axis = "x", across = "z";
+    file.require("loading", "case", load.parameters.name, cloth::load_case_names(),
+                 "what is done to the settled textile: grips at both ends are pulled apart, moved aside or turned, or plates press it");
+    const bool plates = load.parameters.name == "compaction";
+    if (plates) axis = "z", across = "x";
+    file.read("loading", "axis", axis, axes, "from one grip to the other, or across the plates; left out: x, and z of plates");
+    if (axis == across) across = "x";
+    file.read("loading", "across", across, axes, "direction of a shear, or in which a bent sample rises; left out: z, and x where axis is z");
+    if (!plates || file.describes()) file.require("loading", "grip", load.parameters.grip, example::positive(), "length", "length of either grip along the axis");
+    file.require("loading", "amount", load.parameters.amount, example::between(-1e3, 1e3), "1",
+                 "strain of the length between the grips, tangent of the shear, angle between the grips [radian], or approach of the plates over their distance");
+    file.read("loading", "increments", load.increments, example::between(1, 100000), "increments that take the load to its amount");
+    file.read("loading", "cycles", load.cycles, example::between(0, 10000), "times there and back; 0: there only");
+    file.read("loading", "damping", load.damping, example::between(0.0, 1e6), "1", "stiffness of the damping, over that of a node against moving aside");
+    file.read("loading", "rest_damping", load.rest_damping, example::above(0.0, 1e6), "1", "the same until the sample is at rest in its grips");
+    load.parameters.axis = axis[0] - 'x', load.parameters.across = across[0] - 'x';
+    if (file.describes()) return;
+    file.check(axis != across, "loading", "across", "another axis than loading.axis");
+    load.parameters.validate();
 }
 
 inline void read_height(SceneReader& file, const std::string& section, double& height) {
@@ -236,7 +272,14 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         if (!all) {
             file.complete();
             const std::filesystem::path whole = std::filesystem::path(file.file()).parent_path() / path;
-            curves = fibrant::exchange::read_curves(whole, clean);
+            fibrant::exchange::CleanParameters own = clean;
+            if (smooth > 0.0) own.largest_turn_deg = 180.0;  // as they are smoothed
+            curves = fibrant::exchange::read_curves(whole, own);
+            if (smooth > 0.0) {
+                std::vector<fibrant::exchange::FileCurve> after = curves;
+                for (auto& curve : after) curve.points = cloth::smoothed(curve.points, smooth, curve.closed);
+                fibrant::exchange::require_turns(after, whole.string(), clean.largest_turn_deg);
+            }
             made = cloth::textile_of(curves, yarn,
                                      {fibrant::Vec3::UnitZ(), seen == "tube", fibrant::Vec3::Zero()}, smooth);
             if (seen == "none") made.crossings.clear();
@@ -262,7 +305,9 @@ inline Scene read_scene(SceneReader& file) {
                 {"ChainMail.", "chain_mail."},
                 {"Net.", "net."},
                 {"SettleParameters.", "settle."},
-                {"Fineness.", "yarn."}});
+                {"Fineness.", "yarn."},
+                {"LoadCaseParameters.name", "loading.case"},
+                {"LoadCaseParameters.", "loading."}});
     Scene scene;
     cloth::YarnType yarn;
     std::string ends = "held";
@@ -320,6 +365,7 @@ inline Scene read_scene(SceneReader& file) {
     file.read("output", "surfaces", scene.surfaces, "write the yarns as closed surfaces, and their sections as a table");
     file.read("output", "voxel_spacing", scene.voxel_spacing, example::not_negative(), "length",
               "spacing of the voxels that are written, with an Abaqus mesh and maps of the fibre volume fraction; 0: none");
+    detail::read_load(file, scene.load);
     scene.textile = detail::generate(file, scene.generator, yarn, binder, scene.file_curves);
     if (file.describes()) file.complete();
     file.check(ends != "pulled" || tension > 0.0, "ends", "tension_strain", "> 0, where ends are pulled");
