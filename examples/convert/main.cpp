@@ -57,15 +57,19 @@ int main(int argc, char** argv) {
     exchange::CleanParameters clean;
     CLI::App app{
         "Converts centrelines of fibres: .csv .txt .vtk .vtp .obj .bcc .inp .tg3 in, and .csv .vtk .vtp .obj .bcc .inp .tg3 .stl "
-        ".glb .vti .raw out; .voxels.inp .voxels.csv .map.csv .map.svg .profile.csv of voxels, .yarns.stl .yarns.vtp .yarns.csv of yarns as "
+        ".glb .vti .raw out; .voxels.inp .voxels.csv .map.csv .map.svg .profile.csv of voxels, .yarns.stl .yarns.vtp .yarns.csv "
+        "of yarns as "
         "bodies."};
     app.set_version_flag("--version", FIBRANT_VERSION);
     app.add_option("input", input, "file of centrelines")->required();
     app.add_option("--output", outputs, "file to write; may be given several times")->allow_extra_args(false);
     app.add_option("--voxels", spacing, "spacing of voxels, for .vti, .raw and what is made of voxels [length]");
-    app.add_option("--box", box, "low and high corner that voxels fill, a whole number of spacings; left out: all curves [length]")->expected(6);
+    app.add_option("--box", box,
+                   "low and high corner that voxels fill, a whole number of spacings; left out: all curves [length]")
+        ->expected(6);
     app.add_option("--map", along, "axis that maps look along")->check(CLI::IsMember({"x", "y", "z"}));
-    app.add_option("--stations", stations, "distance of sections of yarns; left out: twice the radius of a fibre [length]")->check(CLI::PositiveNumber);
+    app.add_option("--stations", stations, "distance of sections of yarns; left out: twice the radius of a fibre [length]")
+        ->check(CLI::PositiveNumber);
     app.add_option("--radius", radius, "of all fibres, in the place of what the file says [length]");
     app.add_option("--scale", clean.scale, "on all lengths of the file");
     app.add_option("--metre", metre, "one metre in the unit of lengths, for .glb");
@@ -89,19 +93,22 @@ int main(int argc, char** argv) {
             const std::string kind = exchange::kind_of(name);
             std::error_code same;
             if (std::filesystem::equivalent(name, input, same)) core::refuse("--output", name, "another file than the input");
-            const bool cells = exchange::is_one_of(kind, exchange::voxel_kinds()), bodies = exchange::is_one_of(kind, exchange::yarn_kinds());
+            const bool cells = exchange::is_one_of(kind, exchange::voxel_kinds()),
+                       bodies = exchange::is_one_of(kind, exchange::yarn_kinds());
             const bool thick = kind == "stl" || kind == "glb" || cells || bodies;
             for (std::size_t c = 0; thick && c < curves.size(); ++c)
                 if (std::isnan(curves[c].radius) && curves[c].radii.empty())
                     core::refuse("radius of curve " + std::to_string(c), "not given", "in the file, or --radius");
             if (cells && !voxels) {
                 core::require_positive("--voxels", spacing);
-                voxels = exchange::voxels_of(curves, box.empty() ? exchange::grid_around(curves, spacing)
-                                                                 : exchange::grid_in(Vec3(box[0], box[1], box[2]), Vec3(box[3], box[4], box[5]), spacing));
+                voxels = exchange::voxels_of(
+                    curves, box.empty() ? exchange::grid_around(curves, spacing)
+                                        : exchange::grid_in(Vec3(box[0], box[1], box[2]), Vec3(box[3], box[4], box[5]), spacing));
                 if (wanted)
-                    std::printf("voxels: %td x %td x %td, fibre volume %.9g, of that %.3g in overlaps, fibre volume fraction %.6f\n", voxels->grid.counts[0],
-                                voxels->grid.counts[1], voxels->grid.counts[2], voxels->volume, voxels->excess,
-                                voxels->volume / (spacing * spacing * spacing * static_cast<double>(voxels->grid.cells())));
+                    std::printf(
+                        "voxels: %td x %td x %td, fibre volume %.9g, of that %.3g in overlaps, fibre volume fraction %.6f\n",
+                        voxels->grid.counts[0], voxels->grid.counts[1], voxels->grid.counts[2], voxels->volume, voxels->excess,
+                        voxels->volume / (spacing * spacing * spacing * static_cast<double>(voxels->grid.cells())));
             }
             if (bodies && yarns.empty()) yarns = exchange::yarns_of(curves, stations);
             observe::write_file(name, cells    ? exchange::voxel_file_of(*voxels, kind, along[0] - 'x')

@@ -32,8 +32,10 @@ inline fibrant::simulation::LoadProgramme programme_of(const Scene& scene, const
     programme.largest_displacement = r, programme.calm = 0.15 * r;  // a fabric's, by trial
     programme.reversible_displacement = simulation::reversible_displacement(r, scene.settle.friction_coefficient, allowed);
     simulation::ProgrammeStage grip, load;
-    grip.name = "grip", grip.increments = 1, grip.rest = true, grip.damping = scene.load.rest_damping, grip.friction = scene.settle.friction_coefficient;
-    load.name = "load", load.increments = scene.load.increments, load.cycles = scene.load.cycles, load.damping = scene.load.damping;
+    grip.name = "grip", grip.increments = 1, grip.rest = true, grip.damping = scene.load.rest_damping,
+    grip.friction = scene.settle.friction_coefficient;
+    load.name = "load", load.increments = scene.load.increments, load.cycles = scene.load.cycles,
+    load.damping = scene.load.damping;
     load.ramps = {{cloth::load_channel, 1.0, false}};
     programme.stages = {grip, load};
     return programme;
@@ -42,7 +44,8 @@ inline fibrant::simulation::LoadProgramme programme_of(const Scene& scene, const
 /// Runs it in the folder "loading" of the results.
 /// @returns what summary.json is told, and whether it is sound
 template <class Model>
-std::pair<fibrant::observe::JsonObject, bool> run_load_case(const example::Output& whole, const Scene& scene, const cloth::Assembled& assembled,
+std::pair<fibrant::observe::JsonObject, bool> run_load_case(const example::Output& whole, const Scene& scene,
+                                                            const cloth::Assembled& assembled,
                                                             const fibrant::simulation::Simulator<Model>& settled_by) {
     namespace simulation = fibrant::simulation;
     const observe::Snapshot settled = settled_by.snapshot();
@@ -68,7 +71,8 @@ std::pair<fibrant::observe::JsonObject, bool> run_load_case(const example::Outpu
     const simulation::Report report = simulator.run(loading, recorder);
     const observe::Snapshot after = simulator.snapshot();
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    const cloth::TopologyAudit topology = cloth::audit_topology(scene.textile, assembled, cloth::lines_of(settled), cloth::lines_of(after));
+    const cloth::TopologyAudit topology =
+        cloth::audit_topology(scene.textile, assembled, cloth::lines_of(settled), cloth::lines_of(after));
     std::vector<std::pair<double, double>> curve = forth;
     if (load.parameters.name == "compaction")  // over the approach of the plates
         for (auto& [x, y] : curve) x = load.length - x;
@@ -77,14 +81,18 @@ std::pair<fibrant::observe::JsonObject, bool> run_load_case(const example::Outpu
     json.add("case", load.parameters.name).add("length", load.length).add("width", load.width).add("thickness", load.thickness);
     json.add("gripped_low", load.gripped[0]).add("gripped_high", load.gripped[1]);
     json.add(names.first, curve.empty() ? 0.0 : forth.back().first).add(names.second, curve.empty() ? 0.0 : forth.back().second);
-    json.add("initial_stiffness", curve.empty() ? 0.0 : cloth::initial_slope(curve)).add("fit", fit.coefficients).add("fit_misfit", fit.misfit);
+    json.add("initial_stiffness", curve.empty() ? 0.0 : cloth::initial_slope(curve))
+        .add("fit", fit.coefficients)
+        .add("fit_misfit", fit.misfit);
     json.add("topology_clean", topology.clean()).add("dissipated", report.energy.dissipated).add("damped", report.energy.damped);
     json.add("external_work", report.energy.external).add("energy_error", report.energy.error());
     example::write_summary(output, report, audit, radius, {}, json);
     if (output.pictures) {
         observe::PlotLine line{names.second, forth};
-        observe::write_file(output.folder / "curve.svg",
-                            observe::curves_svg({.title = load.parameters.name, .x_label = names.first, .y_label = names.second, .lines = {line}}));
+        observe::write_file(
+            output.folder / "curve.svg",
+            observe::curves_svg(
+                {.title = load.parameters.name, .x_label = names.first, .y_label = names.second, .lines = {line}}));
     }
     observe::write_file(output.folder / "centrelines.csv", fibrant::exchange::csv_of(cloth::curves_of(after, assembled.path_of)));
     return {json, report.converged && audit.clean() && topology.clean()};

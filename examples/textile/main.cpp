@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Settles a textile of any kind, braid, weave, knit, rope, net or mail, from the paths of its yarns, audits what came of it, and loads it.
+// Settles a textile of any kind, braid, weave, knit, rope, net or mail, from the paths of its yarns, audits what came of it, and
+// loads it.
 //   textile SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
 #include "../support/report_page.hpp"
@@ -52,13 +53,17 @@ bool solve(example::SceneReader& file, example::Output& output) {
     textile::write_moves(output.folder, assembled, drawn, settled, scene.file_curves);
     const observe::Snapshot coloured = textile::by_family(scene.textile, assembled, settled);
     textile::write_pictures(output, scene.textile, coloured);
-    const observe::JsonObject summary = textile::write_summary(output, report, audit, topology, scene.textile, assembled, drawn, settled,
-                                                               simulator.mesh().layout().unknowns());
-    example::write_report(output.folder, {"textile", output.unit, summary, {},
-                                          {"textile", "converged", "audit_clean", "topology_clean", "yarns", "fibres", "crossings",
-                                           "right_crossings", "greatest_move_over_radius", "least_gap_over_radius",
-                                           "greatest_penetration_over_radius", "wall_seconds"}},
-                          coloured);
+    const observe::JsonObject summary = textile::write_summary(output, report, audit, topology, scene.textile, assembled, drawn,
+                                                               settled, simulator.mesh().layout().unknowns());
+    example::write_report(
+        output.folder,
+        {"textile",
+         output.unit,
+         summary,
+         {},
+         {"textile", "converged", "audit_clean", "topology_clean", "yarns", "fibres", "crossings", "right_crossings",
+          "greatest_move_over_radius", "least_gap_over_radius", "greatest_penetration_over_radius", "wall_seconds"}},
+        coloured);
     const bool sound = report.converged && audit.clean() && topology.clean();
     if (!sound || !scene.load.wanted || example::stopped()) return sound;
     return textile::run_load_case(output, scene, assembled, simulator).second;

@@ -41,8 +41,8 @@ inline double greatest_move(const observe::Snapshot& from, const observe::Snapsh
 
 /// moves.csv: how far each fibre is from where it was drawn, and from the points of the file that it is of.
 /// @param file  curves as the file has them, of fibres one by one; or none
-inline void write_moves(const std::filesystem::path& folder, const cloth::Assembled& assembled, const observe::Snapshot& drawn, const observe::Snapshot& settled,
-                        const std::vector<fibrant::exchange::FileCurve>& file) {
+inline void write_moves(const std::filesystem::path& folder, const cloth::Assembled& assembled, const observe::Snapshot& drawn,
+                        const observe::Snapshot& settled, const std::vector<fibrant::exchange::FileCurve>& file) {
     observe::CsvWriter table(folder / "moves.csv");
     const std::vector<cloth::Moves> moves = cloth::moves_between(drawn, settled);
     for (std::size_t f = 0; f < moves.size(); ++f) {
@@ -74,7 +74,8 @@ inline void tell(const cloth::Textile& textile, const cloth::TopologyAudit& audi
                  audit.second_yarn < 0 ? "-" : textile.label(audit.second_yarn).c_str());
 }
 
-/// yarns.csv, pairs.csv and crossings.csv, and the fibres as centrelines.csv and fibres.glb; yarns as bodies where they are asked for.
+/// yarns.csv, pairs.csv and crossings.csv, and the fibres as centrelines.csv and fibres.glb; yarns as bodies where they are asked
+/// for.
 inline void write_tables(const std::filesystem::path& folder, const cloth::Textile& textile, const cloth::Assembled& assembled,
                          const observe::Snapshot& settled, const Wanted& wanted) {
     namespace exchange = fibrant::exchange;
@@ -154,8 +155,8 @@ inline void write_pictures(const example::Output& output, const cloth::Textile& 
 /// @returns what it wrote
 inline observe::JsonObject write_summary(const example::Output& output, const fibrant::simulation::Report& report,
                                          const fibrant::simulation::Audit& audit, const cloth::TopologyAudit& topology,
-                                         const cloth::Textile& textile, const cloth::Assembled& assembled, const observe::Snapshot& drawn,
-                                         const observe::Snapshot& settled, Index unknowns) {
+                                         const cloth::Textile& textile, const cloth::Assembled& assembled,
+                                         const observe::Snapshot& drawn, const observe::Snapshot& settled, Index unknowns) {
     const double radius = textile.smallest_radius();
     const std::vector<cloth::YarnFigures> figures = cloth::yarn_figures(textile, assembled, settled);
     std::vector<Index> families;

@@ -43,8 +43,8 @@ struct Scene {
     cloth::Fineness fineness;
     std::string linear_solver = "float_block_cholesky";
     Load load{};
-    bool surfaces = false;       ///< of yarns are written
-    double voxel_spacing = 0.0;  ///< [length]; 0: none are written
+    bool surfaces = false;                                    ///< of yarns are written
+    double voxel_spacing = 0.0;                               ///< [length]; 0: none are written
     std::vector<fibrant::exchange::FileCurve> file_curves{};  ///< that the textile is of, as the file has them
 };
 
@@ -77,20 +77,28 @@ inline void read_load(SceneReader& file, Load& load) {
     if (!load.wanted && !file.describes()) return;
     const std::vector<std::string> axes{"x", "y", "z"};
     std::string axis = "x", across = "z";
-    file.require("loading", "case", load.parameters.name, cloth::load_case_names(),
-                 "what is done to the settled textile: grips at both ends are pulled apart, moved aside or turned, or plates press it");
+    file.require(
+        "loading", "case", load.parameters.name, cloth::load_case_names(),
+        "what is done to the settled textile: grips at both ends are pulled apart, moved aside or turned, or plates press it");
     const bool plates = load.parameters.name == "compaction";
     if (plates) axis = "z", across = "x";
     file.read("loading", "axis", axis, axes, "from one grip to the other, or across the plates; left out: x, and z of plates");
     if (axis == across) across = "x";
-    file.read("loading", "across", across, axes, "direction of a shear, or in which a bent sample rises; left out: z, and x where axis is z");
-    if (!plates || file.describes()) file.require("loading", "grip", load.parameters.grip, example::positive(), "length", "length of either grip along the axis");
+    file.read("loading", "across", across, axes,
+              "direction of a shear, or in which a bent sample rises; left out: z, and x where axis is z");
+    if (!plates || file.describes())
+        file.require("loading", "grip", load.parameters.grip, example::positive(), "length",
+                     "length of either grip along the axis");
     file.require("loading", "amount", load.parameters.amount, example::between(-1e3, 1e3), "1",
-                 "strain of the length between the grips, tangent of the shear, angle between the grips [radian], or approach of the plates over their distance");
-    file.read("loading", "increments", load.increments, example::between(1, 100000), "increments that take the load to its amount");
+                 "strain of the length between the grips, tangent of the shear, angle between the grips [radian], or approach of "
+                 "the plates over their distance");
+    file.read("loading", "increments", load.increments, example::between(1, 100000),
+              "increments that take the load to its amount");
     file.read("loading", "cycles", load.cycles, example::between(0, 10000), "times there and back; 0: there only");
-    file.read("loading", "damping", load.damping, example::between(0.0, 1e6), "1", "stiffness of the damping, over that of a node against moving aside");
-    file.read("loading", "rest_damping", load.rest_damping, example::above(0.0, 1e6), "1", "the same until the sample is at rest in its grips");
+    file.read("loading", "damping", load.damping, example::between(0.0, 1e6), "1",
+              "stiffness of the damping, over that of a node against moving aside");
+    file.read("loading", "rest_damping", load.rest_damping, example::above(0.0, 1e6), "1",
+              "the same until the sample is at rest in its grips");
     load.parameters.axis = axis[0] - 'x', load.parameters.across = across[0] - 'x';
     if (file.describes()) return;
     file.check(axis != across, "loading", "across", "another axis than loading.axis");
@@ -115,7 +123,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         braid.type = yarn;
         file.require("flat_braid", "yarns", braid.yarns, example::between(3, 1000), "number of yarns");
         file.require("flat_braid", "half_width", braid.half_width, positive, "length", "distance from the middle to an edge");
-        file.require("flat_braid", "period", braid.period, positive, "length", "length in which a yarn goes to the other edge and back");
+        file.require("flat_braid", "period", braid.period, positive, "length",
+                     "length in which a yarn goes to the other edge and back");
         file.read("flat_braid", "periods", braid.periods, example::above(0.0, 1e4), "1", "number of periods");
         file.read("flat_braid", "over", braid.over, example::between(1, 2), "how many yarns in turn a yarn passes above");
         read_height(file, "flat_braid", braid.height_over_radius);
@@ -125,7 +134,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         cloth::TubularBraid braid;
         braid.type = yarn;
         file.require("tubular_braid", "carriers", braid.carriers, example::between(2, 1000), "number of yarns each way round");
-        file.require("tubular_braid", "radius", braid.radius, positive, "length", "radius of the tube, to the middle of the yarns");
+        file.require("tubular_braid", "radius", braid.radius, positive, "length",
+                     "radius of the tube, to the middle of the yarns");
         file.require("tubular_braid", "pitch", braid.pitch, positive, "length", "length of a full turn along the axis");
         file.read("tubular_braid", "turns", braid.turns, example::above(0.0, 1e4), "1", "number of turns");
         file.read("tubular_braid", "over", braid.over, example::between(1, 100),
@@ -139,15 +149,18 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         std::vector<std::string> rows, lifts;
         std::vector<std::string> kinds;
         plan.warp = plan.weft = yarn, plan.binder = binder;
-        file.read("levels", "levels", rows, "one text for each warp, a digit for each column: how many wefts of the column lie below the warp");
-        file.read(
-            "levels", "lifts", lifts,
-            "in place of levels: one text for each warp, a digit for each pick: 1 where the warp is up; picks go column by column, from the lowest layer up");
+        file.read("levels", "levels", rows,
+                  "one text for each warp, a digit for each column: how many wefts of the column lie below the warp");
+        file.read("levels", "lifts", lifts,
+                  "in place of levels: one text for each warp, a digit for each pick: 1 where the warp is up; picks go column by "
+                  "column, from the lowest layer up");
         file.read("levels", "kinds", kinds, "one text for each warp, warp or binder; left out: all warp");
         file.is_one_of_several_ways("levels", "levels"), file.is_one_of_several_ways("levels", "lifts");
         file.read("levels", "layers", plan.layers, example::between(1, 9), "number of layers of wefts");
-        file.read("levels", "columns", plan.columns, example::between(0, 10000), "number of columns of wefts; 0: as many as are drawn");
-        file.require("levels", "column_spacing", plan.column_spacing, positive, "length", "distance of neighbouring columns of wefts");
+        file.read("levels", "columns", plan.columns, example::between(0, 10000),
+                  "number of columns of wefts; 0: as many as are drawn");
+        file.require("levels", "column_spacing", plan.column_spacing, positive, "length",
+                     "distance of neighbouring columns of wefts");
         file.require("levels", "warp_spacing", plan.warp_spacing, positive, "length", "distance of neighbouring warps");
         file.read("levels", "layer_spacing", plan.layer_spacing, example::not_negative(), "length",
                   "distance of wefts in a column; 0: yarns just do not touch");
@@ -189,7 +202,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
     if (wanted("triaxial_weave")) {
         cloth::TriaxialWeave weave;
         weave.type = yarn;
-        file.require("triaxial_weave", "spacing", weave.spacing, positive, "length", "distance of neighbouring yarns of a family");
+        file.require("triaxial_weave", "spacing", weave.spacing, positive, "length",
+                     "distance of neighbouring yarns of a family");
         file.require("triaxial_weave", "radius", weave.radius, positive, "length", "radius of the round sample");
         read_height(file, "triaxial_weave", weave.height_over_radius);
         if (!all) file.complete(), made = cloth::triaxial_weave(weave);
@@ -197,7 +211,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
     if (wanted("weft_knit")) {
         cloth::WeftKnit knit;
         knit.type = yarn;
-        file.read("weft_knit", "stitches", knit.stitches, "one text for each course, a letter for each wale: f (face) or r (reverse); repeated both ways");
+        file.read("weft_knit", "stitches", knit.stitches,
+                  "one text for each course, a letter for each wale: f (face) or r (reverse); repeated both ways");
         file.require("weft_knit", "courses", knit.courses, example::between(1, 1000), "number of courses");
         file.require("weft_knit", "wales", knit.wales, example::between(1, 1000), "number of wales");
         file.require("weft_knit", "wale_spacing", knit.wale_spacing, positive, "length", "distance of neighbouring wales");
@@ -229,7 +244,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.read("plied", "strand_pitch", rope.strand_pitch, positive, "length",
                   "length of a full turn of the strands, which turn against the plies");
         file.require("plied", "length", rope.length, positive, "length", "length along the axis");
-        file.read("plied", "slack", rope.slack, example::between(0.0, 1.0), "1", "free distance of neighbours, over their thickness");
+        file.read("plied", "slack", rope.slack, example::between(0.0, 1.0), "1",
+                  "free distance of neighbours, over their thickness");
         if (!all) file.complete(), made = cloth::plied(rope);
     }
     if (wanted("chain_mail")) {
@@ -237,7 +253,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         mail.type = yarn;
         file.require("chain_mail", "rows", mail.rows, example::between(2, 100), "number of rows");
         file.require("chain_mail", "columns", mail.columns, example::between(2, 100), "number of rings in a row");
-        file.require("chain_mail", "ring_radius", mail.ring_radius, positive, "length", "radius of a ring, to the middle of its wire");
+        file.require("chain_mail", "ring_radius", mail.ring_radius, positive, "length",
+                     "radius of a ring, to the middle of its wire");
         file.read("chain_mail", "pitch", mail.pitch, positive, "length", "distance of rings in a row; left out: 2.6 ring radii");
         file.read("chain_mail", "row_pitch", mail.row_pitch, positive, "length", "distance of rows; left out: 0.9 ring radii");
         file.read("chain_mail", "tilt_deg", mail.tilt_deg, example::above(0.0, 80.0), "degree",
@@ -268,7 +285,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.read("file", "largest_turn_deg", clean.largest_turn_deg, example::above(0.0, 180.0), "degree",
                   "largest turn from one point to the next; more is refused");
         file.read("file", "crossings", seen, {"plane", "tube", "none"},
-                  "who is above is seen along z (plane), from the z axis outwards (tube), or not looked for (none): then links are compared");
+                  "who is above is seen along z (plane), from the z axis outwards (tube), or not looked for (none): then links "
+                  "are compared");
         if (!all) {
             file.complete();
             const std::filesystem::path whole = std::filesystem::path(file.file()).parent_path() / path;
@@ -280,8 +298,7 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
                 for (auto& curve : after) curve.points = cloth::smoothed(curve.points, smooth, curve.closed);
                 fibrant::exchange::require_turns(after, whole.string(), clean.largest_turn_deg);
             }
-            made = cloth::textile_of(curves, yarn,
-                                     {fibrant::Vec3::UnitZ(), seen == "tube", fibrant::Vec3::Zero()}, smooth);
+            made = cloth::textile_of(curves, yarn, {fibrant::Vec3::UnitZ(), seen == "tube", fibrant::Vec3::Zero()}, smooth);
             if (seen == "none") made.crossings.clear();
         }
     }
@@ -313,8 +330,7 @@ inline Scene read_scene(SceneReader& file) {
     std::string ends = "held";
     double tension = 0.0;
     bool straight = true;
-    file.require("textile", "generator", scene.generator, generators,
-                 "what is made; the section of this name has its numbers");
+    file.require("textile", "generator", scene.generator, generators, "what is made; the section of this name has its numbers");
     detail::read_type(file, "yarn", true, yarn);
     example::read_material(file, "yarn", yarn.material);
     cloth::YarnType binder = yarn;
@@ -334,10 +350,12 @@ inline Scene read_scene(SceneReader& file) {
         "fibres are straight when nothing acts on them; false: they are at rest as drawn. Left out: as the generator has it");
     cloth::SettleParameters& settle = scene.settle;
     example::read_friction(file, settle.friction_coefficient, "coefficient of friction, once yarns have parted");
-    example::read_allowed_penetration(file, settle.allowed_penetration_over_radius, "how deep a contact may be at the end, over the radius");
+    example::read_allowed_penetration(file, settle.allowed_penetration_over_radius,
+                                      "how deep a contact may be at the end, over the radius");
     file.read("settle", "gap_limit_over_radius", settle.gap_limit_over_radius, example::above(0.0, 1.0), "1",
               "how far fibres that start in each other part in an increment, over the radius");
-    file.read("settle", "tension_increments", settle.tension_increments, example::increments(), "increments in which the tension is raised");
+    file.read("settle", "tension_increments", settle.tension_increments, example::increments(),
+              "increments in which the tension is raised");
     file.read("settle", "separation_increments", settle.separation_increments, example::increments(),
               "most increments until no yarns overlap");
     file.read("settle", "rest_increments", settle.rest_increments, example::increments(),
@@ -348,7 +366,8 @@ inline Scene read_scene(SceneReader& file) {
               "when damping holds less than this part of the forces");
     file.read("settle", "softness", settle.softness, example::between(1.0, 20.0), "1",
               "penetration allowed on the way, over that at rest");
-    file.read("settle", "looseness", settle.looseness, example::looseness(), "1", "factor on the tolerances of passes on the way to rest");
+    file.read("settle", "looseness", settle.looseness, example::looseness(), "1",
+              "factor on the tolerances of passes on the way to rest");
     file.read("settle", "damping", settle.damping, example::between(1e-6, 1e6), "1",
               "factor on the damping that follows from tension, bending and the distance of crossings");
     file.read(

@@ -159,7 +159,8 @@ TEST_CASE("surfaces of fibres are closed, look outwards, and hold the volume of 
         const std::size_t n = curve.points.size();
         for (std::size_t k = 0; k + (curve.closed ? 0 : 1) < n; ++k)
             length += (curve.points[(k + 1) % n] - curve.points[k]).norm();
-        CHECK(surface.volume() == test::near(pi * curve.radius * curve.radius * length, curve.closed ? 0.02 : 1e-12));  // chords of a ring of 24
+        CHECK(surface.volume() ==
+              test::near(pi * curve.radius * curve.radius * length, curve.closed ? 0.02 : 1e-12));  // chords of a ring of 24
         // Each edge belongs to two triangles that go along it in opposite ways.
         std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
         for (const auto& t : surface.triangles)
@@ -260,7 +261,8 @@ TEST_CASE("a yarn's surface is closed and holds the hull of its fibres, whicheve
         if (fibre.points.front().x() > fibre.points.back().x()) std::reverse(fibre.points.begin(), fibre.points.end());
         for (Vec3& point : fibre.points) {
             const double a = -pi * point.x(), height = 0.2 * std::sin(point.x());
-            point = Vec3(point.x(), std::cos(a) * point.y() - std::sin(a) * point.z(), std::sin(a) * point.y() + std::cos(a) * point.z() + height);
+            point = Vec3(point.x(), std::cos(a) * point.y() - std::sin(a) * point.z(),
+                         std::sin(a) * point.y() + std::cos(a) * point.z() + height);
         }
     }
     const FileYarn wave = yarns_of(twisted)[0];
@@ -284,7 +286,8 @@ std::map<std::string, std::vector<std::vector<double>>> rows_of(const std::strin
         if (keyword == "*HEADING" || line.find_first_of("ABCDEFIRS") != std::string::npos) continue;
         std::vector<double> row;
         std::istringstream words(line);
-        for (std::string word; std::getline(words, word, ',');) row.push_back(word.find_first_not_of(' ') == std::string::npos ? 0.0 : std::stod(word));
+        for (std::string word; std::getline(words, word, ',');)
+            row.push_back(word.find_first_not_of(' ') == std::string::npos ? 0.0 : std::stod(word));
         sections[keyword].push_back(row);
     }
     return sections;
@@ -339,7 +342,9 @@ TEST_CASE("an Abaqus mesh of voxels fills its box with cubes, each in one set, w
     CHECK(sum == test::near(pi * 0.04 * 2.0, 1e-3));
     for (int axis = 0; axis < 3; ++axis) {
         const VolumeMap map = volume_map(voxels, axis);
-        CHECK(map.counts == (axis == 0 ? std::array<Index, 2>{16, 14} : axis == 1 ? std::array<Index, 2>{24, 14} : std::array<Index, 2>{24, 16}));
+        CHECK(map.counts == (axis == 0   ? std::array<Index, 2>{16, 14}
+                             : axis == 1 ? std::array<Index, 2>{24, 14}
+                                         : std::array<Index, 2>{24, 16}));
         double columns = 0.0;
         for (const double mean : map.mean) columns += mean * map.height * 0.01;
         CHECK(columns == test::near(sum, 1e-6));
@@ -349,7 +354,8 @@ TEST_CASE("an Abaqus mesh of voxels fills its box with cubes, each in one set, w
         if (line[0] == 'y') profile += std::stod(line.substr(line.rfind(',') + 1)) * 2.4 * 1.4 * 0.1;
     CHECK(profile == test::near(sum, 1e-6));
     CHECK(map_svg_of(volume_map(voxels)).find("fibre volume fraction along z: mean") != std::string::npos);
-    CHECK(refusal([] { grid_in(Vec3::Zero(), Vec3(1, 1, 1), 0.3); }).find("edge along x over the spacing = 3.33") != std::string::npos);
+    CHECK(refusal([] { grid_in(Vec3::Zero(), Vec3(1, 1, 1), 0.3); }).find("edge along x over the spacing = 3.33") !=
+          std::string::npos);
 }
 
 }  // namespace exchange_curves_test

@@ -60,7 +60,9 @@ inline void require_turns(const std::vector<FileCurve>& curves, const std::strin
             const Vec3 a = points[(k + 1) % n] - points[k], b = points[(k + 2) % n] - points[(k + 1) % n];
             const double turn = std::atan2(a.cross(b).norm(), a.dot(b)) * 57.29577951308232;
             if (turn > largest_deg)
-                refuse_file(file, "curve " + std::to_string(c) + (curve.name.empty() ? "" : " '" + curve.name + "'") + ", point " + std::to_string((k + 1) % n),
+                refuse_file(file,
+                            "curve " + std::to_string(c) + (curve.name.empty() ? "" : " '" + curve.name + "'") + ", point " +
+                                std::to_string((k + 1) % n),
                             "chords turn by " + core::text(turn) + " degrees, but it must be at most " + core::text(largest_deg) +
                                 ": smooth it, or take more points");
         }

@@ -128,9 +128,10 @@ inline std::string file_of(const std::vector<FileCurve>& curves, const std::stri
         data.point_scalars("radius", radii), data.cell_scalars("group", groups);
         return data.text();
     }
-    core::refuse("ending of the file", "." + kind,
-                 ".csv, .vtk, .vtp, .obj, .bcc, .inp, .stl, .glb, .vti, .raw, .voxels.inp, .voxels.csv, .map.csv, .map.svg, .profile.csv, "
-                 ".yarns.stl, .yarns.vtp, .yarns.csv, or .tg3 where there is pugixml");
+    core::refuse(
+        "ending of the file", "." + kind,
+        ".csv, .vtk, .vtp, .obj, .bcc, .inp, .stl, .glb, .vti, .raw, .voxels.inp, .voxels.csv, .map.csv, .map.svg, .profile.csv, "
+        ".yarns.stl, .yarns.vtp, .yarns.csv, or .tg3 where there is pugixml");
 }
 
 }  // namespace fibrant::exchange

@@ -71,8 +71,8 @@ inline LineFrames frames_of(const std::vector<Vec3>& points, bool closed) {
     return frames;
 }
 
-/// Adds a surface through rings of points, as many in each, that go round the line's tangent anticlockwise. The ends of an open one
-/// are closed by fans.
+/// Adds a surface through rings of points, as many in each, that go round the line's tangent anticlockwise. The ends of an open
+/// one are closed by fans.
 /// @param middles  of the first and the last ring
 inline void add_loft(Surface& surface, const std::vector<std::vector<Vec3>>& rings, bool closed,
                      const std::array<Vec3, 2>& middles) {

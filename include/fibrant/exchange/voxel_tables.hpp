@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Voxels for solvers and tables: an Abaqus mesh of cubes with orientations, all fields as CSV, maps and profiles of the fibre
-/// volume fraction.
+/// @file Voxels for solvers and tables: an Abaqus mesh of cubes with orientations, all fields as CSV, maps and profiles of the
+/// fibre volume fraction.
 
 #include <fibrant/exchange/voxels.hpp>
 #include <fibrant/observe/svg.hpp>
@@ -32,18 +32,21 @@ inline std::size_t cell_of(const VoxelGrid& grid, Index i, Index j, Index k) noe
     return core::at(i + grid.counts[0] * (j + grid.counts[1] * k));
 }
 inline Vec3 centre_of(const VoxelGrid& grid, Index i, Index j, Index k) noexcept {
-    return grid.origin + grid.spacing * Vec3(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5, static_cast<double>(k) + 0.5);
+    return grid.origin +
+           grid.spacing * Vec3(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5, static_cast<double>(k) + 0.5);
 }
 }  // namespace detail
 
-/// An Abaqus input file of cubes (C3D8R, x fastest): a set of elements a yarn (YARN_n) and one for what no fibre is in (MATRIX), sets of
-/// nodes on the six faces, and orientations element by element as a distribution: the first axis along the fibres, the second across.
-/// Materials, sections and steps are the user's. Volume fractions are in the table of `cells_csv_of`, by the number of the element.
+/// An Abaqus input file of cubes (C3D8R, x fastest): a set of elements a yarn (YARN_n) and one for what no fibre is in (MATRIX),
+/// sets of nodes on the six faces, and orientations element by element as a distribution: the first axis along the fibres, the
+/// second across. Materials, sections and steps are the user's. Volume fractions are in the table of `cells_csv_of`, by the
+/// number of the element.
 /// @throws std::invalid_argument for more than 2e7 cells, some 4 GB of text
 inline std::string voxel_inp_of(const Voxels& voxels) {
     const VoxelGrid& grid = voxels.grid;
     constexpr double most = 2e7;
-    core::require(static_cast<double>(grid.cells()) <= most, "VoxelGrid.counts: cells of an Abaqus file", static_cast<double>(grid.cells()), "<= 2e7");
+    core::require(static_cast<double>(grid.cells()) <= most, "VoxelGrid.counts: cells of an Abaqus file",
+                  static_cast<double>(grid.cells()), "<= 2e7");
     const auto [nx, ny, nz] = grid.counts;
     std::string text = "*HEADING\nfibres as cubes; the length is that of the curves\n*NODE\n";
     const auto node = [&, x = nx, y = ny](Index i, Index j, Index k) { return 1 + i + (x + 1) * (j + (y + 1) * k); };
@@ -68,8 +71,8 @@ inline std::string voxel_inp_of(const Voxels& voxels) {
             for (Index i = 0; i < nx; ++i) {
                 const std::size_t cell = detail::cell_of(grid, i, j, k);
                 text += std::to_string(cell + 1);
-                for (const Index n : {node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k), node(i, j, k + 1),
-                                      node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)})
+                for (const Index n : {node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k),
+                                      node(i, j, k + 1), node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)})
                     text += ", " + std::to_string(n);
                 text += "\n";
                 owners.emplace_back(voxels.yarn[cell], static_cast<Index>(cell) + 1);
@@ -83,21 +86,24 @@ inline std::string voxel_inp_of(const Voxels& voxels) {
     }
     static constexpr std::array names{"X_LOW", "X_HIGH", "Y_LOW", "Y_HIGH", "Z_LOW", "Z_HIGH"};
     for (std::size_t f = 0; f < faces.size(); ++f) detail::put_set(text, std::string("*NSET, NSET=") + names[f], faces[f]);
-    text += "*DISTRIBUTION TABLE, NAME=FIBRE_AXES_TABLE\nCOORD3D, COORD3D\n"
-            "*DISTRIBUTION, LOCATION=ELEMENT, TABLE=FIBRE_AXES_TABLE, NAME=FIBRE_AXES\n, 1., 0., 0., 0., 1., 0.\n";
+    text +=
+        "*DISTRIBUTION TABLE, NAME=FIBRE_AXES_TABLE\nCOORD3D, COORD3D\n"
+        "*DISTRIBUTION, LOCATION=ELEMENT, TABLE=FIBRE_AXES_TABLE, NAME=FIBRE_AXES\n, 1., 0., 0., 0., 1., 0.\n";
     for (std::size_t cell = 0; cell < voxels.yarn.size(); ++cell) {
         if (voxels.yarn[cell] < 0) continue;
         const auto& d = voxels.direction[cell];
         const Vec3 along = Vec3(static_cast<double>(d[0]), static_cast<double>(d[1]), static_cast<double>(d[2])).normalized();
         const Vec3 across = scene::any_perpendicular(along);
-        text += std::to_string(cell + 1) + ", " + detail::row({along.x(), along.y(), along.z(), across.x(), across.y(), across.z()}) + "\n";
+        text += std::to_string(cell + 1) + ", " +
+                detail::row({along.x(), along.y(), along.z(), across.x(), across.y(), across.z()}) + "\n";
     }
     return text + "*ORIENTATION, NAME=FIBRES, DEFINITION=COORDINATES, SYSTEM=RECTANGULAR\nFIBRE_AXES\n1, 0.\n";
 }
 
 /// All fields, a row a cell; elements are numbered as in `voxel_inp_of`.
 inline std::string cells_csv_of(const Voxels& voxels) {
-    std::string text = "element,x,y,z,yarn,fibre_volume_fraction,direction_x,direction_y,direction_z,a_xx,a_yy,a_zz,a_xy,a_yz,a_xz\n";
+    std::string text =
+        "element,x,y,z,yarn,fibre_volume_fraction,direction_x,direction_y,direction_z,a_xx,a_yy,a_zz,a_xy,a_yz,a_xz\n";
     const VoxelGrid& grid = voxels.grid;
     for (Index k = 0; k < grid.counts[2]; ++k)
         for (Index j = 0; j < grid.counts[1]; ++j)
@@ -106,7 +112,8 @@ inline std::string cells_csv_of(const Voxels& voxels) {
                 const Vec3 p = detail::centre_of(grid, i, j, k);
                 text += std::to_string(cell + 1);
                 for (const double x : p) text += "," + observe::shortest(x);
-                text += "," + std::to_string(voxels.yarn[cell]) + "," + observe::shortest(static_cast<double>(voxels.share[cell]));
+                text +=
+                    "," + std::to_string(voxels.yarn[cell]) + "," + observe::shortest(static_cast<double>(voxels.share[cell]));
                 for (const float x : voxels.direction[cell]) text += "," + observe::shortest(static_cast<double>(x));
                 for (const float x : voxels.orientation[cell]) text += "," + observe::shortest(static_cast<double>(x));
                 text += "\n";
@@ -114,15 +121,15 @@ inline std::string cells_csv_of(const Voxels& voxels) {
     return text;
 }
 
-/// The fibre volume fraction seen along an axis: of each column of cells its mean, and the thickness that its fibres would have if
-/// they were pressed to a solid.
+/// The fibre volume fraction seen along an axis: of each column of cells its mean, and the thickness that its fibres would have
+/// if they were pressed to a solid.
 struct VolumeMap {
-    int axis = 2;                  ///< that is looked along
-    std::array<int, 2> across{};   ///< the other two
+    int axis = 2;                 ///< that is looked along
+    std::array<int, 2> across{};  ///< the other two
     std::array<Index, 2> counts{};
-    Vec3 origin = Vec3::Zero();    ///< of the grid [length]
+    Vec3 origin = Vec3::Zero();          ///< of the grid [length]
     double spacing = 0.0, height = 0.0;  ///< of cells, and of a column [length]
-    std::vector<double> mean;      ///< of the columns, the first of `across` fastest [1]
+    std::vector<double> mean;            ///< of the columns, the first of `across` fastest [1]
 };
 
 /// @param axis  0, 1 or 2
@@ -140,22 +147,24 @@ inline VolumeMap volume_map(const Voxels& voxels, int axis = 2) {
         for (Index j = 0; j < grid.counts[1]; ++j)
             for (Index i = 0; i < grid.counts[0]; ++i) {
                 const std::array<Index, 3> at{i, j, k};
-                const Index column = at[static_cast<std::size_t>(map.across[0])] + map.counts[0] * at[static_cast<std::size_t>(map.across[1])];
-                map.mean[core::at(column)] += static_cast<double>(voxels.share[detail::cell_of(grid, i, j, k)]) / static_cast<double>(deep);
+                const Index column =
+                    at[static_cast<std::size_t>(map.across[0])] + map.counts[0] * at[static_cast<std::size_t>(map.across[1])];
+                map.mean[core::at(column)] +=
+                    static_cast<double>(voxels.share[detail::cell_of(grid, i, j, k)]) / static_cast<double>(deep);
             }
     return map;
 }
 
 inline std::string map_csv_of(const VolumeMap& map) {
     static constexpr std::array names{"x", "y", "z"};
-    std::string text = std::string(names[static_cast<std::size_t>(map.across[0])]) + "," + names[static_cast<std::size_t>(map.across[1])] +
-                       ",fibre_volume_fraction,fibre_thickness\n";
+    std::string text = std::string(names[static_cast<std::size_t>(map.across[0])]) + "," +
+                       names[static_cast<std::size_t>(map.across[1])] + ",fibre_volume_fraction,fibre_thickness\n";
     for (Index b = 0; b < map.counts[1]; ++b)
         for (Index a = 0; a < map.counts[0]; ++a) {
             const double mean = map.mean[core::at(a + map.counts[0] * b)];
             text += observe::shortest(map.origin[map.across[0]] + map.spacing * (static_cast<double>(a) + 0.5)) + "," +
-                    observe::shortest(map.origin[map.across[1]] + map.spacing * (static_cast<double>(b) + 0.5)) + "," + observe::shortest(mean) + "," +
-                    observe::shortest(mean * map.height) + "\n";
+                    observe::shortest(map.origin[map.across[1]] + map.spacing * (static_cast<double>(b) + 0.5)) + "," +
+                    observe::shortest(mean) + "," + observe::shortest(mean * map.height) + "\n";
         }
     return text;
 }
@@ -175,15 +184,17 @@ inline std::string map_svg_of(const VolumeMap& map, const std::string& unit = "m
             if (mean <= 0.0) continue;
             const double shade = 1.0 - 0.9 * std::min(1.0, mean);
             body += "<rect x=\"" + observe::rounded(margin + pixel * static_cast<double>(a), 2) + "\" y=\"" +
-                    observe::rounded(margin + pixel * (tall - 1.0 - static_cast<double>(b)), 2) + "\" width=\"" + observe::rounded(pixel, 2) + "\" height=\"" +
-                    observe::rounded(pixel, 2) + "\" fill=\"" + observe::Colour{shade, shade, 0.3 + 0.7 * shade}.text() + "\"/>\n";
+                    observe::rounded(margin + pixel * (tall - 1.0 - static_cast<double>(b)), 2) + "\" width=\"" +
+                    observe::rounded(pixel, 2) + "\" height=\"" + observe::rounded(pixel, 2) + "\" fill=\"" +
+                    observe::Colour{shade, shade, 0.3 + 0.7 * shade}.text() + "\"/>\n";
         }
     static constexpr std::array names{"x", "y", "z"};
-    const std::string title = "fibre volume fraction along " + std::string(names[static_cast<std::size_t>(map.axis)]) + ": mean " +
-                              observe::rounded(sum / static_cast<double>(map.mean.size()), 3) + ", " + observe::rounded(least, 3) + " to " +
-                              observe::rounded(most, 3);
-    body += observe::detail::svg_text(margin, 2.0 * margin + pixel * tall - 20.0,
-                                      observe::rounded(map.spacing * wide, 2) + " x " + observe::rounded(map.spacing * tall, 2) + " " + unit);
+    const std::string title = "fibre volume fraction along " + std::string(names[static_cast<std::size_t>(map.axis)]) +
+                              ": mean " + observe::rounded(sum / static_cast<double>(map.mean.size()), 3) + ", " +
+                              observe::rounded(least, 3) + " to " + observe::rounded(most, 3);
+    body += observe::detail::svg_text(
+        margin, 2.0 * margin + pixel * tall - 20.0,
+        observe::rounded(map.spacing * wide, 2) + " x " + observe::rounded(map.spacing * tall, 2) + " " + unit);
     return observe::detail::svg_page(2.0 * margin + pixel * wide, 2.0 * margin + pixel * tall, "", body, title);
 }
 
@@ -204,7 +215,8 @@ inline std::string profile_csv_of(const Voxels& voxels) {
         for (std::size_t k = 0; k < sums[a].size(); ++k)
             text += std::string(names[a]) + "," +
                     observe::shortest(grid.origin[static_cast<Index>(a)] + grid.spacing * (static_cast<double>(k) + 0.5)) + "," +
-                    observe::shortest(sums[a][k] * static_cast<double>(grid.counts[a]) / static_cast<double>(grid.cells())) + "\n";
+                    observe::shortest(sums[a][k] * static_cast<double>(grid.counts[a]) / static_cast<double>(grid.cells())) +
+                    "\n";
     return text;
 }
 

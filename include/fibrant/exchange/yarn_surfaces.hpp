@@ -19,16 +19,16 @@ namespace fibrant::exchange {
 
 /// A plane across the mean line of a yarn, and what it cuts.
 struct YarnStation {
-    double along = 0.0;        ///< arc of the mean line from its start [length]
-    Vec3 place = Vec3::Zero();  ///< of the mean line [length]
+    double along = 0.0;                                                        ///< arc of the mean line from its start [length]
+    Vec3 place = Vec3::Zero();                                                 ///< of the mean line [length]
     Vec3 tangent = Vec3::Zero(), first = Vec3::Zero(), second = Vec3::Zero();  ///< of the plane, orthonormal, right-handed
     observe::YarnSection section{};  ///< along `first` and `second`, about `place`; fibres in the order of the yarn's curves
 
     Vec3 at(const observe::Vec2& p) const noexcept { return place + p.x() * first + p.y() * second; }
     /// The direction in which the section is widest, unit.
     Vec3 widest() const noexcept {
-        const double angle = 0.5 * std::atan2(2.0 * section.second_moments(0, 1),
-                                              section.second_moments(0, 0) - section.second_moments(1, 1));
+        const double angle =
+            0.5 * std::atan2(2.0 * section.second_moments(0, 1), section.second_moments(0, 0) - section.second_moments(1, 1));
         return std::cos(angle) * first + std::sin(angle) * second;
     }
 };
@@ -51,8 +51,8 @@ inline std::vector<double> arcs_of(const FileCurve& curve) {
     return arc;
 }
 
-/// Where a line meets a plane, nearest along it to a share of its length, and its direction there. Beyond the ends of an open line it
-/// goes on straight.
+/// Where a line meets a plane, nearest along it to a share of its length, and its direction there. Beyond the ends of an open
+/// line it goes on straight.
 inline std::pair<Vec3, Vec3> crossing_of(const FileCurve& curve, double share, const Vec3& place, const Vec3& normal) {
     const std::vector<Vec3>& p = curve.points;
     const Index n = core::count(p), segments = n - (curve.closed ? 0 : 1);
@@ -77,8 +77,8 @@ inline std::pair<Vec3, Vec3> crossing_of(const FileCurve& curve, double share, c
 }  // namespace detail
 
 /// Yarns of curves: those of one group are one yarn, in the order of their numbers; a curve without a group is a yarn of its own.
-/// Sections are taken across the mean of the fibres' points at equal shares of their lengths. Fibres that go the other way are turned;
-/// a closed fibre of a yarn begins where it is nearest to the start of the first one.
+/// Sections are taken across the mean of the fibres' points at equal shares of their lengths. Fibres that go the other way are
+/// turned; a closed fibre of a yarn begins where it is nearest to the start of the first one.
 /// @param spacing  of sections [length]; 0: twice the radius of a fibre, of a sixteenth of the length at most
 /// @throws std::invalid_argument where a yarn has open and closed curves, or a radius is not known
 inline std::vector<FileYarn> yarns_of(const std::vector<FileCurve>& curves, double spacing = 0.0) {
@@ -89,11 +89,14 @@ inline std::vector<FileYarn> yarns_of(const std::vector<FileCurve>& curves, doub
     std::sort(order.begin(), order.end());
     std::vector<FileYarn> yarns;
     for (const auto& [group, c] : order) {
-        if (yarns.empty() || curves[c].group < 0 || yarns.back().group != group) yarns.push_back({curves[c].group, {}, curves[c].closed});
+        if (yarns.empty() || curves[c].group < 0 || yarns.back().group != group)
+            yarns.push_back({curves[c].group, {}, curves[c].closed});
         yarns.back().curves.push_back(c);
         if (curves[c].closed != yarns.back().closed)
-            core::refuse("curve " + std::to_string(c), curves[c].closed ? "closed" : "open", "as the other curves of yarn " + std::to_string(group));
-        core::require_positive("radius of curve " + std::to_string(c), curves[c].radii.empty() ? curves[c].radius : curves[c].radii.front());
+            core::refuse("curve " + std::to_string(c), curves[c].closed ? "closed" : "open",
+                         "as the other curves of yarn " + std::to_string(group));
+        core::require_positive("radius of curve " + std::to_string(c),
+                               curves[c].radii.empty() ? curves[c].radius : curves[c].radii.front());
     }
     constexpr Index least_stations = 16;
     for (FileYarn& yarn : yarns) {
@@ -104,13 +107,17 @@ inline std::vector<FileYarn> yarns_of(const std::vector<FileCurve>& curves, doub
             const std::size_t a = fibre.points.size() / 8, b = one.points.size() / 8;
             if (yarn.closed) {
                 const auto distance = [&](const Vec3& p) { return (p - one.points.front()).squaredNorm(); };
-                const auto nearest = std::min_element(fibre.points.begin(), fibre.points.end(), [&](const Vec3& p, const Vec3& q) { return distance(p) < distance(q); });
+                const auto nearest = std::min_element(fibre.points.begin(), fibre.points.end(),
+                                                      [&](const Vec3& p, const Vec3& q) { return distance(p) < distance(q); });
                 std::rotate(fibre.points.begin(), nearest, fibre.points.end());
-                if ((fibre.points[a] - fibre.points[0]).dot(one.points[b] - one.points[0]) < 0.0) std::reverse(fibre.points.begin() + 1, fibre.points.end());
+                if ((fibre.points[a] - fibre.points[0]).dot(one.points[b] - one.points[0]) < 0.0)
+                    std::reverse(fibre.points.begin() + 1, fibre.points.end());
                 fibre.radii.clear();  // one radius of a fibre is enough for its section
                 if (!curves[c].radii.empty()) fibre.radius = *std::max_element(curves[c].radii.begin(), curves[c].radii.end());
-            } else if ((fibre.points.front() - one.points.front()).squaredNorm() + (fibre.points.back() - one.points.back()).squaredNorm() >
-                       (fibre.points.front() - one.points.back()).squaredNorm() + (fibre.points.back() - one.points.front()).squaredNorm()) {
+            } else if ((fibre.points.front() - one.points.front()).squaredNorm() +
+                           (fibre.points.back() - one.points.back()).squaredNorm() >
+                       (fibre.points.front() - one.points.back()).squaredNorm() +
+                           (fibre.points.back() - one.points.front()).squaredNorm()) {
                 std::reverse(fibre.points.begin(), fibre.points.end()), std::reverse(fibre.radii.begin(), fibre.radii.end());
             }
             fibres.push_back(std::move(fibre));
@@ -146,13 +153,16 @@ inline std::vector<FileYarn> yarns_of(const std::vector<FileCurve>& curves, doub
             for (const FileCurve& fibre : fibres) {
                 const auto [at, along] = detail::crossing_of(fibre, share[m], station.place, station.tangent);
                 const auto flat = [&](const Vec3& v) { return observe::Vec2(v.dot(station.first), v.dot(station.second)); };
-                const auto near = std::min(fibre.points.size() - 1, static_cast<std::size_t>(share[m] * static_cast<double>(fibre.points.size() - 1) + 0.5));
+                const auto near =
+                    std::min(fibre.points.size() - 1,
+                             static_cast<std::size_t>(share[m] * static_cast<double>(fibre.points.size() - 1) + 0.5));
                 const double radius = fibre.radii.empty() ? fibre.radius : fibre.radii[near];
                 // A circle across a slanted line is longer where the line leans; no fibre of a yarn goes nearly across it.
                 constexpr double least_cosine = 0.2;
                 const double cosine = std::max(least_cosine, std::abs(along.dot(station.tangent)));
                 const observe::Vec2 lean = flat(along);
-                const observe::Vec2 e = lean.norm() > 1e-12 ? observe::Vec2(lean.normalized()) : observe::Vec2(observe::Vec2::UnitX());
+                const observe::Vec2 e =
+                    lean.norm() > 1e-12 ? observe::Vec2(lean.normalized()) : observe::Vec2(observe::Vec2::UnitX());
                 ellipses.push_back({flat(at - station.place), radius / cosine * e, radius * observe::Vec2(-e.y(), e.x())});
             }
             station.section = observe::section_of(std::move(ellipses), 64);
@@ -163,15 +173,17 @@ inline std::vector<FileYarn> yarns_of(const std::vector<FileCurve>& curves, doub
     return yarns;
 }
 
-/// Turns of a yarn's fibres about its mean line over its length, > 0 right-handed [1 / length]: from section to section the rotation that
-/// fits all fibres best. Right where they turn by less than half a turn from one section to the next; 0 of a single fibre.
+/// Turns of a yarn's fibres about its mean line over its length, > 0 right-handed [1 / length]: from section to section the
+/// rotation that fits all fibres best. Right where they turn by less than half a turn from one section to the next; 0 of a single
+/// fibre.
 inline double turns_of(const FileYarn& yarn) {
     if (yarn.curves.size() < 2) return 0.0;
     double turn = 0.0;
     const std::size_t n = yarn.stations.size();
     const auto middle = [](const observe::YarnSection& section) {
         observe::Vec2 sum = observe::Vec2::Zero();
-        for (const observe::SectionEllipse& fibre : section.fibres) sum += fibre.centre / static_cast<double>(section.fibres.size());
+        for (const observe::SectionEllipse& fibre : section.fibres)
+            sum += fibre.centre / static_cast<double>(section.fibres.size());
         return sum;
     };
     for (std::size_t k = 0; k + (yarn.closed ? 0 : 1) < n; ++k) {
@@ -221,8 +233,8 @@ inline std::vector<observe::Vec2> outline_of(const observe::YarnSection& section
     return outline;
 }
 
-/// Adds a yarn as one closed surface, the hull of its fibres' surfaces at each of its sections. Where a section is not convex the surface
-/// holds more than the yarn, and may reach into its neighbours.
+/// Adds a yarn as one closed surface, the hull of its fibres' surfaces at each of its sections. Where a section is not convex the
+/// surface holds more than the yarn, and may reach into its neighbours.
 inline void add_yarn(Surface& surface, const FileYarn& yarn, Index sides = 48) {
     std::vector<std::vector<Vec3>> rings;
     for (const YarnStation& station : yarn.stations) {
@@ -267,8 +279,8 @@ inline std::string csv_of(const std::vector<FileYarn>& yarns) {
             const YarnStation& s = yarns[y].stations[k];
             const double tilt = std::asin(std::min(1.0, std::abs(s.widest().z()))) * 180.0 / std::numbers::pi;
             text += std::to_string(yarns[y].group >= 0 ? yarns[y].group : static_cast<Index>(y)) + "," + std::to_string(k);
-            for (const double value : {s.along, s.place.x(), s.place.y(), s.place.z(), s.section.area, s.section.width, s.section.thickness, tilt,
-                                       s.section.fibre_volume_fraction})
+            for (const double value : {s.along, s.place.x(), s.place.y(), s.place.z(), s.section.area, s.section.width,
+                                       s.section.thickness, tilt, s.section.fibre_volume_fraction})
                 text += "," + observe::shortest(value);
             text += "\n";
         }

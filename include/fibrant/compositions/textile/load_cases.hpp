@@ -47,8 +47,13 @@ struct LoadCaseParameters {
         core::require_finite("LoadCaseParameters.amount", amount);
         if (name != "compaction") core::require_positive("LoadCaseParameters.grip", grip);
         const bool plates = name == "compaction", pulled = name == "tension";
-        core::require(plates ? amount > 0.0 && amount < 1.0 : pulled ? amount > -0.5 && amount != 0.0 : amount != 0.0, "LoadCaseParameters.amount", amount,
-                      plates ? "in (0, 1), of plates" : pulled ? "> -0.5 and not 0, of a tension" : "not 0");
+        core::require(plates   ? amount > 0.0 && amount < 1.0
+                      : pulled ? amount > -0.5 && amount != 0.0
+                               : amount != 0.0,
+                      "LoadCaseParameters.amount", amount,
+                      plates   ? "in (0, 1), of plates"
+                      : pulled ? "> -0.5 and not 0, of a tension"
+                               : "not 0");
     }
 };
 
@@ -78,14 +83,15 @@ inline std::pair<std::string, std::string> figure_names(const std::string& name)
     return {"distance", "force"};
 }
 
-/// The scene of a load case, which starts from a settled state of the same fibres. Of what held them while they settled nothing is
-/// left: every node within a grip goes with its body, as does the section of the outermost one; all other ends are free. Between
-/// plates, ends that were held or pulled keep their places along the plates. Grips are free along the axis in shear and bending.
+/// The scene of a load case, which starts from a settled state of the same fibres. Of what held them while they settled nothing
+/// is left: every node within a grip goes with its body, as does the section of the outermost one; all other ends are free.
+/// Between plates, ends that were held or pulled keep their places along the plates. Grips are free along the axis in shear and
+/// bending.
 /// @param settled   the settled fibres
 /// @param state     the same as the unknowns of their mesh
 /// @throws std::invalid_argument naming what is wrong: a grip that is too long, or has no fibre
-inline LoadCase load_case(const Textile& textile, const Assembled& assembled, const observe::Snapshot& settled, const Vector& state,
-                          const LoadCaseParameters& parameters) {
+inline LoadCase load_case(const Textile& textile, const Assembled& assembled, const observe::Snapshot& settled,
+                          const Vector& state, const LoadCaseParameters& parameters) {
     using scene::Coordinate;
     parameters.validate();
     LoadCase load;
@@ -103,7 +109,8 @@ inline LoadCase load_case(const Textile& textile, const Assembled& assembled, co
         }
     const Vec3 a = load.along(), b = load.aside(), extent = high - low;
     const int other = 3 - parameters.axis - parameters.across;
-    load.width = std::max(extent[parameters.across], extent[other]), load.thickness = std::min(extent[parameters.across], extent[other]);
+    load.width = std::max(extent[parameters.across], extent[other]);
+    load.thickness = std::min(extent[parameters.across], extent[other]);
     const auto last_node = [&](Index f) { return core::count(settled.fibres[core::at(f)].position) - 1; };
     if (parameters.name == "compaction") {
         load.length = extent[parameters.axis];
@@ -126,21 +133,31 @@ inline LoadCase load_case(const Textile& textile, const Assembled& assembled, co
         }
         return load;
     }
-    load.length = extent[parameters.axis] - 2.0 * parameters.grip;
-    core::require(load.length > 0.0, "LoadCaseParameters.grip", parameters.grip, "< half the length of the sample along the axis, " + core::text(0.5 * extent[parameters.axis]));
+    // Grips count from the outermost nodes: ends of fibres are flat.
+    double first = std::numeric_limits<double>::infinity(), last = -first;
+    for (const observe::FibreSnapshot& fibre : settled.fibres)
+        for (const Vec3& node : fibre.position)
+            first = std::min(first, node[parameters.axis]), last = std::max(last, node[parameters.axis]);
+    const double inside = parameters.grip * (1.0 + 1e-9);  // a node on the edge of a grip is in it
+    load.length = last - first - 2.0 * parameters.grip;
+    core::require(load.length > 0.0, "LoadCaseParameters.grip", parameters.grip,
+                  "< half the length of the sample along the axis, " + core::text(0.5 * (last - first)));
     for (const bool upper : {false, true}) {
         scene::RigidBody body;
         body.name = upper ? "high grip" : "low grip";
         body.position = 0.5 * (low + high);
-        body.position[parameters.axis] = upper ? high[parameters.axis] - parameters.grip : low[parameters.axis] + parameters.grip;
+        body.position[parameters.axis] = upper ? last - parameters.grip : first + parameters.grip;
         const double half = upper ? 0.5 : -0.5, whole = upper ? 1.0 : 0.0;
         const auto along = static_cast<std::size_t>(parameters.axis), aside = static_cast<std::size_t>(parameters.across);
-        if (parameters.name == "tension") body.translation[along] = Coordinate::held_at(half * parameters.amount * load.length, load_channel);
-        if (parameters.name == "shear") body.translation[aside] = Coordinate::held_at(whole * parameters.amount * load.length, load_channel);
+        if (parameters.name == "tension")
+            body.translation[along] = Coordinate::held_at(half * parameters.amount * load.length, load_channel);
+        if (parameters.name == "shear")
+            body.translation[aside] = Coordinate::held_at(whole * parameters.amount * load.length, load_channel);
         if (parameters.name == "bending") {
             // About the third axis; the sense is that in which the middle rises along `across` where the amount is positive.
             const double sense = a.cross(b)[other] > 0.0 ? -1.0 : 1.0;
-            body.rotation[static_cast<std::size_t>(other)] = Coordinate::held_at(sense * 2.0 * half * 0.5 * parameters.amount, load_channel);
+            body.rotation[static_cast<std::size_t>(other)] =
+                Coordinate::held_at(sense * half * parameters.amount, load_channel);
         }
         if (upper && parameters.name != "tension") body.translation[along] = Coordinate::loose();
         load.bodies[upper ? 1 : 0] = assembly.add(body);
@@ -148,11 +165,10 @@ inline LoadCase load_case(const Textile& textile, const Assembled& assembled, co
     std::vector<char> held(settled.fibres.size(), 0);
     for (const Index f : all) {
         const observe::FibreSnapshot& fibre = settled.fibres[core::at(f)];
-        const double radius = fibre.section.radius();
         std::array<bool, 2> clamped{};
         for (Index n = 0; n < last_node(f) + (fibre.closed ? 0 : 1); ++n) {
             const double x = fibre.position[core::at(n)][parameters.axis];
-            const bool lower = x - radius < low[parameters.axis] + parameters.grip, upper = x + radius > high[parameters.axis] - parameters.grip;
+            const bool lower = x <= first + inside, upper = x >= last - inside;
             if (!lower && !upper) continue;
             const std::size_t side = upper ? 1 : 0;
             const scene::Station at{f, static_cast<double>(n) / static_cast<double>(last_node(f))};
@@ -172,7 +188,9 @@ inline LoadCase load_case(const Textile& textile, const Assembled& assembled, co
     }
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}})
         if (load.gripped[side] == 0)
-            core::refuse("LoadCaseParameters.grip", core::text(parameters.grip), side == 0 ? "long enough to hold a node of a fibre at the low end" : "long enough to hold a node of a fibre at the high end");
+            core::refuse("LoadCaseParameters.grip", core::text(parameters.grip),
+                         side == 0 ? "long enough to hold a node of a fibre at the low end"
+                                   : "long enough to hold a node of a fibre at the high end");
     return load;
 }
 

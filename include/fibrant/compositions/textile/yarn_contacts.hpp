@@ -20,7 +20,8 @@ namespace fibrant::compositions::textile {
 /// Two yarns that touch, first < second.
 struct YarnPair {
     Index first = -1, second = -1;
-    /// Of the fibres of the first one, where a fibre of the second one is near; or, if that is more, the other way round [length].
+    /// Of the fibres of the first one, where a fibre of the second one is near; or, if that is more, the other way round
+    /// [length].
     double length = 0.0;
     Index contacts = 0;                               ///< contact elements that press
     double normal_force = 0.0, friction_force = 0.0;  ///< sums of their sizes [force]
@@ -92,8 +93,8 @@ inline Moves moves_from(const std::vector<Vec3>& points, const observe::FibreSna
     return Moves::of(distances);
 }
 
-/// Lengths along which fibres of different yarns are nearer to each other than a gap, whatever contact says, and what contacts say of
-/// forces. Two straight fibres of radius r at a right angle are so over 2 sqrt((2 r + g)^2 - 4 r^2) of each.
+/// Lengths along which fibres of different yarns are nearer to each other than a gap, whatever contact says, and what contacts
+/// say of forces. Two straight fibres of radius r at a right angle are so over 2 sqrt((2 r + g)^2 - 4 r^2) of each.
 /// @param near_over_radius  gap of surfaces over the radius of the thinner fibre [1], > 0
 /// Time linear in pieces that are near.
 inline YarnContacts yarn_contacts(const Textile& textile, const Assembled& assembled, const observe::Snapshot& snapshot,
