@@ -10,6 +10,7 @@
 #include <fibrant/compositions/textile/imported.hpp>
 #include <fibrant/compositions/textile/knits.hpp>
 #include <fibrant/compositions/textile/load_cases.hpp>
+#include <fibrant/compositions/textile/plies.hpp>
 #include <fibrant/compositions/textile/settle.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
@@ -48,9 +49,9 @@ struct Scene {
     std::vector<fibrant::exchange::FileCurve> file_curves{};  ///< that the textile is of, as the file has them
 };
 
-inline const std::vector<std::string> generators{"flat_braid",     "tubular_braid", "levels", "leno",
-                                                 "triaxial_weave", "weft_knit",     "tricot", "plied",
-                                                 "chain_mail",     "net",           "file"};
+inline const std::vector<std::string> generators{"flat_braid",     "tubular_braid", "levels",   "leno",
+                                                 "triaxial_weave", "weft_knit",     "tricot",   "plied",
+                                                 "chain_mail",     "net",           "stitched", "file"};
 
 namespace detail {
 
@@ -273,6 +274,27 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         read_height(file, "net", net.height_over_radius);
         if (!all) file.complete(), made = cloth::net(net);
     }
+    if (wanted("stitched")) {
+        cloth::StitchedPlies plies;
+        plies.yarn = yarn, plies.thread = binder;
+        std::vector<std::string> angles;
+        file.read("stitched", "angles_deg", angles,
+                  "a text for each ply, from the lowest up: the angle of its yarns to x in degrees; threads go along x");
+        file.require("stitched", "yarn_spacing", plies.yarn_spacing, positive, "length",
+                     "distance of neighbouring yarns of a ply");
+        file.require("stitched", "length", plies.length, positive, "length", "length of the sample along x");
+        file.require("stitched", "width", plies.width, positive, "length", "width of the sample along y");
+        file.require("stitched", "stitch_length", plies.stitch_length, positive, "length",
+                     "from one place where a thread goes through to the next, counted from the middle, where no yarn lies");
+        file.require("stitched", "row_spacing", plies.row_spacing, positive, "length", "distance of neighbouring threads");
+        if (!all) {
+            file.complete();
+            for (const std::string& angle : angles)
+                plies.angles_deg.push_back(
+                    fibrant::exchange::detail::number<double>(angle, file.file(), "stitched.angles_deg", "an angle"));
+            made = cloth::stitched(plies);
+        }
+    }
     if (wanted("file")) {
         std::string path, seen = "plane";
         double smooth = 0.0;
@@ -321,6 +343,7 @@ inline Scene read_scene(SceneReader& file) {
                 {"Plied.", "plied."},
                 {"ChainMail.", "chain_mail."},
                 {"Net.", "net."},
+                {"StitchedPlies.", "stitched."},
                 {"SettleParameters.", "settle."},
                 {"Fineness.", "yarn."},
                 {"LoadCaseParameters.name", "loading.case"},
