@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,13 +58,16 @@ std::pair<fibrant::observe::JsonObject, bool> run_load_case(const example::Outpu
     simulator.start_from(whole.checkpoint());
     example::Output output = whole;
     output.folder = whole.folder / "loading";
+    output.resume = false;  // it begins at the settled state, which a run that resumes has
+    std::filesystem::create_directories(output.folder);
     std::vector<std::pair<double, double>> forth;
     const auto names = cloth::figure_names(load.parameters.name);
     double stretch = 0.0;
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const cloth::LoadFigures figures = cloth::load_figures(load, simulator);
         const double amplitude = simulator.amplitude(cloth::load_channel);
-        if (amplitude >= stretch) forth.emplace_back(figures.measure, figures.effort), stretch = amplitude;
+        if (amplitude == 0.0 && stretch == 0.0) forth.clear();  // at rest in the grips, and not on the way there
+        if (forth.empty() || amplitude > stretch) forth.emplace_back(figures.measure, figures.effort), stretch = amplitude;
         return {{"load", amplitude}, {names.first, figures.measure}, {names.second, figures.effort}};
     });
     simulation::Loading<Model> loading = simulation::loading_of<Model>(programme_of(scene, assembled));
@@ -84,8 +88,17 @@ std::pair<fibrant::observe::JsonObject, bool> run_load_case(const example::Outpu
     json.add("initial_stiffness", curve.empty() ? 0.0 : cloth::initial_slope(curve))
         .add("fit", fit.coefficients)
         .add("fit_misfit", fit.misfit);
-    json.add("topology_clean", topology.clean()).add("dissipated", report.energy.dissipated).add("damped", report.energy.damped);
-    json.add("external_work", report.energy.external).add("energy_error", report.energy.error());
+    // Since the sample was at rest in its grips: the account goes on from that of the settling.
+    simulation::EnergyBalance before = report.energy;
+    for (const simulation::IncrementReport& increment : report.increments) {
+        if (increment.stage != "grip") break;
+        before = increment.energy;
+    }
+    const double work = report.energy.external - before.external, damped = report.energy.damped - before.damped;
+    json.add("topology_clean", topology.clean())
+        .add("work", work)
+        .add("lost_to_friction", report.energy.dissipated - before.dissipated);
+    json.add("lost_to_damping", damped).add("missing_energy", report.energy.error() - before.error());
     example::write_summary(output, report, audit, radius, {}, json);
     if (output.pictures) {
         observe::PlotLine line{names.second, forth};

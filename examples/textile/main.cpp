@@ -14,6 +14,9 @@
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/any_solver.hpp>
 
+#include <cstdio>
+#include <stdexcept>
+
 using namespace fibrant;
 
 struct Yarns {
@@ -28,6 +31,13 @@ struct Yarns {
 
 bool solve(example::SceneReader& file, example::Output& output) {
     const textile::Scene scene = textile::read_scene(file);
+    if (scene.generator == "file" && !scene.textile.crossings.empty()) {
+        try {
+            textile::cloth::require_holding(scene.textile);
+        } catch (const std::invalid_argument& loose) {  // ends may hold it
+            std::fprintf(stderr, "textile: note: %s; nothing but held ends and friction keeps it\n", loose.what());
+        }
+    }
     const double radius = scene.textile.smallest_radius();
     const textile::cloth::Assembled assembled = textile::cloth::assemble(scene.textile, scene.fineness);
     auto parameters = textile::cloth::model_parameters<Yarns>(scene.textile, scene.settle);

@@ -33,7 +33,7 @@ struct Load {
     bool wanted = false;
     cloth::LoadCaseParameters parameters{};
     Index increments = 20, cycles = 0;
-    double damping = 1e-3, rest_damping = 0.1;  ///< over the stiffness of a node against moving aside
+    double damping = 1e-4, rest_damping = 0.1;  ///< over the stiffness of a node against moving aside
 };
 
 /// Everything that a run is told.

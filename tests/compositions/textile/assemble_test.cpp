@@ -242,8 +242,8 @@ TEST_CASE("grips hold the nodes within them, and what they cannot hold is refuse
     CHECK(pulled.length == test::near(2.0, 1e-12));
     CHECK(pulled.width == test::near(3.0 + 2.0 * r, 1e-12));
     CHECK(pulled.gripped == std::array<Index, 2>{2, 2});
-    // Three nodes of two fibres in each of two grips, and two directors of the outermost one.
-    CHECK(pulled.assembly.averages().size() == 2u * 2u * (3u + 2u));
+    // Three nodes of two fibres in each of two grips, each with two directors.
+    CHECK(pulled.assembly.averages().size() == 2u * 2u * 3u * 3u);
     CHECK(pulled.assembly.holds().size() == 2);  // the third fibre does not turn about itself
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
         const scene::RigidBody& grip = pulled.assembly.bodies()[core::at(pulled.bodies[side])];

@@ -84,7 +84,7 @@ inline std::pair<std::string, std::string> figure_names(const std::string& name)
 }
 
 /// The scene of a load case, which starts from a settled state of the same fibres. Of what held them while they settled nothing
-/// is left: every node within a grip goes with its body, as does the section of the outermost one; all other ends are free.
+/// is left: every section within a grip goes with its body; all other ends are free.
 /// Between plates, ends that were held or pulled keep their places along the plates. Grips are free along the axis in shear and
 /// bending.
 /// @param settled   the settled fibres
@@ -172,17 +172,14 @@ inline LoadCase load_case(const Textile& textile, const Assembled& assembled, co
             if (!lower && !upper) continue;
             const std::size_t side = upper ? 1 : 0;
             const scene::Station at{f, static_cast<double>(n) / static_cast<double>(last_node(f))};
-            if (clamped[side]) {
-                assembly.connect({.ends = {at}, .body = load.bodies[side]});
-                continue;
-            }
             Mat3 section;
             section.col(0) = fibre.director_1[core::at(n)].normalized();
             const Vec3& g = fibre.director_2[core::at(n)];
             section.col(1) = (g - g.dot(section.col(0)) * section.col(0)).normalized();
             section.col(2) = section.col(0).cross(section.col(1));
             assembly.clamp_to(load.bodies[side], at, section);
-            clamped[side] = true, held[core::at(f)] = 1, ++load.gripped[side];
+            load.gripped[side] += clamped[side] ? 0 : 1;
+            clamped[side] = true, held[core::at(f)] = 1;
         }
         if (held[core::at(f)] == 0) assembly.hold_axial_rotation(fibre.closed ? scene::first_end(f) : scene::Station{f, 0.5});
     }
