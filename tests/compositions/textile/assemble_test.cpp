@@ -244,7 +244,11 @@ TEST_CASE("grips hold the nodes within them, and what they cannot hold is refuse
     CHECK(pulled.gripped == std::array<Index, 2>{2, 2});
     // Three nodes of two fibres in each of two grips, each with two directors.
     CHECK(pulled.assembly.averages().size() == 2u * 2u * 3u * 3u);
-    CHECK(pulled.assembly.holds().size() == 2);  // the third fibre does not turn about itself
+    // The third fibre does not turn about itself, and its ends stay where they are but along x.
+    REQUIRE(pulled.assembly.holds().size() == 4);
+    CHECK((pulled.assembly.holds().back().directions - Mat3(Vec3(0, 1, 1).asDiagonal())).norm() == 0.0);
+    parameters.guided = false;
+    CHECK(load_case(textile, assembled, state, unknowns, parameters).assembly.holds().size() == 2);
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
         const scene::RigidBody& grip = pulled.assembly.bodies()[core::at(pulled.bodies[side])];
         CHECK(grip.position.x() == test::near(side == 0 ? 1.0 : 3.0, 1e-12));

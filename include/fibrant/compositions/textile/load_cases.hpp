@@ -36,6 +36,9 @@ struct LoadCaseParameters {
     /// Tension: change of the free length over it. Shear: displacement of a grip over the free length. Bending: angle between the
     /// grips [radian]. Compaction: approach of the plates over their distance.
     double amount = core::unset;
+    /// Ends of open yarns that no grip holds, and that were held or pulled while they settled, keep their places across the axis in
+    /// tension, along the third axis in shear and bending, as in a selvedge; else they are free.
+    bool guided = true;
 
     void validate() const {
         const auto& names = load_case_names();
@@ -84,7 +87,7 @@ inline std::pair<std::string, std::string> figure_names(const std::string& name)
 }
 
 /// The scene of a load case, which starts from a settled state of the same fibres. Of what held them while they settled nothing
-/// is left: every section within a grip goes with its body; all other ends are free.
+/// is left: every section within a grip goes with its body.
 /// Between plates, ends that were held or pulled keep their places along the plates. Grips are free along the axis in shear and
 /// bending.
 /// @param settled   the settled fibres
@@ -162,7 +165,7 @@ inline LoadCase load_case(const Textile& textile, const Assembled& assembled, co
         if (upper && parameters.name != "tension") body.translation[along] = Coordinate::loose();
         load.bodies[upper ? 1 : 0] = assembly.add(body);
     }
-    std::vector<char> held(settled.fibres.size(), 0);
+    std::vector<char> held(settled.fibres.size(), 0);  // by a grip
     for (const Index f : all) {
         const observe::FibreSnapshot& fibre = settled.fibres[core::at(f)];
         std::array<bool, 2> clamped{};
@@ -181,7 +184,14 @@ inline LoadCase load_case(const Textile& textile, const Assembled& assembled, co
             load.gripped[side] += clamped[side] ? 0 : 1;
             clamped[side] = true, held[core::at(f)] = 1;
         }
-        if (held[core::at(f)] == 0) assembly.hold_axial_rotation(fibre.closed ? scene::first_end(f) : scene::Station{f, 0.5});
+        if (held[core::at(f)] != 0) continue;
+        assembly.hold_axial_rotation(fibre.closed ? scene::first_end(f) : scene::Station{f, 0.5});
+        const Path& path = textile.paths[core::at(assembled.path_of[core::at(f)])];
+        if (!parameters.guided || path.kind != PathKind::open || path.ends == Ends::free) continue;
+        const Vec3 third = Vec3::Unit(other);
+        const Mat3 kept =
+            parameters.name == "tension" ? Mat3(Mat3::Identity() - a * a.transpose()) : Mat3(third * third.transpose());
+        for (const scene::Station& end : {scene::first_end(f), scene::last_end(f)}) assembly.hold_position(end, kept);
     }
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}})
         if (load.gripped[side] == 0)
