@@ -51,19 +51,25 @@ inline std::vector<double> arcs_of(const FileCurve& curve) {
     return arc;
 }
 
-/// Where a line meets a plane, nearest along it to a share of its length, and its direction there. Beyond the ends of an open
+/// Segment of a line that holds an arc from its start.
+inline std::size_t segment_at(const std::vector<double>& arcs, double arc) {
+    return static_cast<std::size_t>(std::upper_bound(arcs.begin() + 1, arcs.end() - 1, arc) - arcs.begin()) - 1;
+}
+
+/// Where a line meets a plane, nearest along it to a segment, and its direction there. Beyond the ends of an open
 /// line it goes on straight.
-inline std::pair<Vec3, Vec3> crossing_of(const FileCurve& curve, double share, const Vec3& place, const Vec3& normal) {
+inline std::pair<Vec3, Vec3> crossing_of(const FileCurve& curve, Index start, const Vec3& place, const Vec3& normal) {
     const std::vector<Vec3>& p = curve.points;
     const Index n = core::count(p), segments = n - (curve.closed ? 0 : 1);
-    const auto start = std::min(static_cast<Index>(share * static_cast<double>(segments)), segments - 1);
     const auto point = [&](Index k) -> const Vec3& { return p[core::at(((k % n) + n) % n)]; };
     const auto height = [&](Index k) { return (point(k) - place).dot(normal); };
-    for (Index d = 0; d < segments; ++d)
+    // Not far along it: a line that comes back, as that of a loop, meets the plane again.
+    const Index far = std::max<Index>(4, segments / 4);
+    for (Index d = 0; d < std::min(far, segments); ++d)
         for (const Index k : {start + d, start - d}) {
             if (!curve.closed && (k < 0 || k >= segments)) continue;
-            const double a = height(k), b = height(k + 1);
-            if ((a > 0.0) == (b > 0.0) || a == b) continue;
+            const double a = height(k), b = height(k + 1), rounding = 1e-9 * (point(k + 1) - point(k)).norm();
+            if (std::abs(a - b) <= rounding || std::min(a, b) > rounding || std::max(a, b) < -rounding) continue;
             return {point(k) + a / (a - b) * (point(k + 1) - point(k)), (point(k + 1) - point(k)).normalized()};
         }
     const bool at_start = std::abs(height(0)) < std::abs(height(n - 1));
@@ -138,8 +144,7 @@ inline std::vector<FileYarn> yarns_of(const std::vector<FileCurve>& curves, doub
             Vec3 sum = Vec3::Zero();
             for (std::size_t f = 0; f < fibres.size(); ++f) {
                 const double s = share.back() * arcs[f].back();
-                const auto after = std::upper_bound(arcs[f].begin() + 1, arcs[f].end() - 1, s);
-                const auto k = static_cast<std::size_t>(after - arcs[f].begin());
+                const std::size_t k = detail::segment_at(arcs[f], s) + 1;
                 const Vec3 &p = fibres[f].points[k - 1], &q = fibres[f].points[k % fibres[f].points.size()];
                 sum += p + (s - arcs[f][k - 1]) / (arcs[f][k] - arcs[f][k - 1]) * (q - p);
             }
@@ -150,12 +155,11 @@ inline std::vector<FileYarn> yarns_of(const std::vector<FileCurve>& curves, doub
             if (m > 0) yarn.length += (middle[m] - middle[m - 1]).norm();
             YarnStation station{yarn.length, middle[m], frames.tangent[m], frames.first[m], frames.second[m]};
             std::vector<observe::SectionEllipse> ellipses;
-            for (const FileCurve& fibre : fibres) {
-                const auto [at, along] = detail::crossing_of(fibre, share[m], station.place, station.tangent);
+            for (std::size_t f = 0; f < fibres.size(); ++f) {
+                const FileCurve& fibre = fibres[f];
+                const std::size_t near = detail::segment_at(arcs[f], share[m] * arcs[f].back());
+                const auto [at, along] = detail::crossing_of(fibre, static_cast<Index>(near), station.place, station.tangent);
                 const auto flat = [&](const Vec3& v) { return observe::Vec2(v.dot(station.first), v.dot(station.second)); };
-                const auto near =
-                    std::min(fibre.points.size() - 1,
-                             static_cast<std::size_t>(share[m] * static_cast<double>(fibre.points.size() - 1) + 0.5));
                 const double radius = fibre.radii.empty() ? fibre.radius : fibre.radii[near];
                 // A circle across a slanted line is longer where the line leans; no fibre of a yarn goes nearly across it.
                 constexpr double least_cosine = 0.2;
