@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Converts centrelines of fibres between files of other programs, and to surfaces and voxels.
-//   convert IN [--output FILE]... [--voxels SPACING] [--radius R] [--scale S] [--metre M] [--largest-turn DEGREES] [--report]
+//   convert IN [--output FILE]... [--voxels SPACING] [--box X0 Y0 Z0 X1 Y1 Z1] [--map x|y|z] [--stations SPACING] [--radius R]
+//           [--scale S] [--metre M] [--largest-turn DEGREES] [--report]
 #include <fibrant/exchange/files.hpp>
-#include <fibrant/exchange/voxels.hpp>
 #include <fibrant/observe/json.hpp>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -49,15 +50,26 @@ int main(int argc, char** argv) {
     std::string input;
     std::vector<std::string> outputs;
     double spacing = 0.0, radius = core::unset, metre = 1000.0;
+    double stations = 0.0;
+    std::vector<double> box;
+    std::string along = "z";
     bool wanted = false;
     exchange::CleanParameters clean;
     CLI::App app{
         "Converts centrelines of fibres: .csv .txt .vtk .vtp .obj .bcc .inp .tg3 in, and .csv .vtk .vtp .obj .bcc .inp .tg3 .stl "
-        ".glb .vti .raw out."};
+        ".glb .vti .raw out; .voxels.inp .voxels.csv .map.csv .map.svg .profile.csv of voxels, .yarns.stl .yarns.vtp .yarns.csv "
+        "of yarns as "
+        "bodies."};
     app.set_version_flag("--version", FIBRANT_VERSION);
     app.add_option("input", input, "file of centrelines")->required();
     app.add_option("--output", outputs, "file to write; may be given several times")->allow_extra_args(false);
-    app.add_option("--voxels", spacing, "spacing of voxels, for .vti and .raw [length]");
+    app.add_option("--voxels", spacing, "spacing of voxels, for .vti, .raw and what is made of voxels [length]");
+    app.add_option("--box", box,
+                   "low and high corner that voxels fill, a whole number of spacings; left out: all curves [length]")
+        ->expected(6);
+    app.add_option("--map", along, "axis that maps look along")->check(CLI::IsMember({"x", "y", "z"}));
+    app.add_option("--stations", stations, "distance of sections of yarns; left out: twice the radius of a fibre [length]")
+        ->check(CLI::PositiveNumber);
     app.add_option("--radius", radius, "of all fibres, in the place of what the file says [length]");
     app.add_option("--scale", clean.scale, "on all lengths of the file");
     app.add_option("--metre", metre, "one metre in the unit of lengths, for .glb");
@@ -75,25 +87,34 @@ int main(int argc, char** argv) {
             for (exchange::FileCurve& curve : curves) curve.radius = radius, curve.radii.clear();
         }
         if (outputs.empty() && !wanted) core::refuse("--output", "not given", "given, or --report");
+        std::optional<exchange::Voxels> voxels;
+        std::vector<exchange::FileYarn> yarns;
         for (const std::string& name : outputs) {
-            const std::string kind = exchange::ending(name);
+            const std::string kind = exchange::kind_of(name);
             std::error_code same;
             if (std::filesystem::equivalent(name, input, same)) core::refuse("--output", name, "another file than the input");
-            const bool thick = kind == "stl" || kind == "glb" || kind == "vti" || kind == "raw";
+            const bool cells = exchange::is_one_of(kind, exchange::voxel_kinds()),
+                       bodies = exchange::is_one_of(kind, exchange::yarn_kinds());
+            const bool thick = kind == "stl" || kind == "glb" || cells || bodies;
             for (std::size_t c = 0; thick && c < curves.size(); ++c)
-                if (std::isnan(curves[c].radius))
+                if (std::isnan(curves[c].radius) && curves[c].radii.empty())
                     core::refuse("radius of curve " + std::to_string(c), "not given", "in the file, or --radius");
-            if (kind == "vti" || kind == "raw") {
+            if (cells && !voxels) {
                 core::require_positive("--voxels", spacing);
-                const exchange::Voxels voxels = exchange::voxels_of(curves, exchange::grid_around(curves, spacing));
-                observe::write_file(name, kind == "vti" ? exchange::vti_of(voxels) : exchange::raw_of(voxels));
-                if (kind == "raw") observe::write_file(name + ".json", exchange::raw_head_of(voxels));
+                voxels = exchange::voxels_of(
+                    curves, box.empty() ? exchange::grid_around(curves, spacing)
+                                        : exchange::grid_in(Vec3(box[0], box[1], box[2]), Vec3(box[3], box[4], box[5]), spacing));
                 if (wanted)
-                    std::printf("voxels: %td x %td x %td, fibre volume %.9g, of that %.3g in overlaps\n", voxels.grid.counts[0],
-                                voxels.grid.counts[1], voxels.grid.counts[2], voxels.volume, voxels.excess);
-            } else {
-                observe::write_file(name, exchange::file_of(curves, kind, metre));
+                    std::printf(
+                        "voxels: %td x %td x %td, fibre volume %.9g, of that %.3g in overlaps, fibre volume fraction %.6f\n",
+                        voxels->grid.counts[0], voxels->grid.counts[1], voxels->grid.counts[2], voxels->volume, voxels->excess,
+                        voxels->volume / (spacing * spacing * spacing * static_cast<double>(voxels->grid.cells())));
             }
+            if (bodies && yarns.empty()) yarns = exchange::yarns_of(curves, stations);
+            observe::write_file(name, cells    ? exchange::voxel_file_of(*voxels, kind, along[0] - 'x')
+                                      : bodies ? exchange::yarn_file_of(yarns, kind)
+                                               : exchange::file_of(curves, kind, metre));
+            if (kind == "raw") observe::write_file(name + ".json", exchange::raw_head_of(*voxels));
         }
         if (wanted) std::fputs(report(curves).c_str(), stdout);
         return 0;

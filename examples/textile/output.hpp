@@ -6,9 +6,11 @@
 
 #include <fibrant/compositions/textile/audit.hpp>
 #include <fibrant/compositions/textile/imported.hpp>
+#include <fibrant/compositions/textile/yarn_contacts.hpp>
 #include <fibrant/exchange/files.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
@@ -21,6 +23,13 @@ using fibrant::Index;
 namespace cloth = fibrant::compositions::textile;
 namespace observe = fibrant::observe;
 
+/// Files that a scene asks for beside the usual ones.
+struct Wanted {
+    bool surfaces = false;       ///< yarns as bodies
+    double voxel_spacing = 0.0;  ///< [length]; 0: no voxels
+    std::string unit = "mm";
+};
+
 /// Greatest distance of a node from where it began [length].
 inline double greatest_move(const observe::Snapshot& from, const observe::Snapshot& to) {
     double most = 0.0;
@@ -28,6 +37,29 @@ inline double greatest_move(const observe::Snapshot& from, const observe::Snapsh
         for (std::size_t k = 0; k < from.fibres[f].position.size(); ++k)
             most = std::max(most, (to.fibres[f].position[k] - from.fibres[f].position[k]).norm());
     return most;
+}
+
+/// moves.csv: how far each fibre is from where it was drawn, and from the points of the file that it is of.
+/// @param file  curves as the file has them, of fibres one by one; or none
+inline void write_moves(const std::filesystem::path& folder, const cloth::Assembled& assembled, const observe::Snapshot& drawn,
+                        const observe::Snapshot& settled, const std::vector<fibrant::exchange::FileCurve>& file) {
+    observe::CsvWriter table(folder / "moves.csv");
+    const std::vector<cloth::Moves> moves = cloth::moves_between(drawn, settled);
+    for (std::size_t f = 0; f < moves.size(); ++f) {
+        const double radius = settled.fibres[f].section.radius();
+        std::vector<observe::Column> row{{"fibre", f},
+                                         {"yarn", assembled.path_of[f]},
+                                         {"mean_move_over_radius", moves[f].mean / radius},
+                                         {"rms_move_over_radius", moves[f].root_mean_square / radius},
+                                         {"greatest_move_over_radius", moves[f].greatest / radius}};
+        if (!file.empty()) {
+            const cloth::Moves own = cloth::moves_from(file[f].points, settled.fibres[f]);
+            row.push_back({"mean_from_file_over_radius", own.mean / radius});
+            row.push_back({"rms_from_file_over_radius", own.root_mean_square / radius});
+            row.push_back({"greatest_from_file_over_radius", own.greatest / radius});
+        }
+        table.row(row);
+    }
 }
 
 /// Says what is wrong with the topology.
@@ -42,17 +74,33 @@ inline void tell(const cloth::Textile& textile, const cloth::TopologyAudit& audi
                  audit.second_yarn < 0 ? "-" : textile.label(audit.second_yarn).c_str());
 }
 
-/// yarns.csv and crossings.csv, and the fibres as centrelines.csv and fibres.glb.
+/// yarns.csv, pairs.csv and crossings.csv, and the fibres as centrelines.csv and fibres.glb; yarns as bodies where they are asked
+/// for.
 inline void write_tables(const std::filesystem::path& folder, const cloth::Textile& textile, const cloth::Assembled& assembled,
-                         const observe::Snapshot& settled) {
-    const std::vector<fibrant::exchange::FileCurve> curves = cloth::curves_of(settled, assembled.path_of);
-    observe::write_file(folder / "centrelines.csv", fibrant::exchange::csv_of(curves));
-    observe::write_file(folder / "fibres.glb", fibrant::exchange::glb_of(curves));
+                         const observe::Snapshot& settled, const Wanted& wanted) {
+    namespace exchange = fibrant::exchange;
+    const std::vector<exchange::FileCurve> curves = cloth::curves_of(settled, assembled.path_of);
+    observe::write_file(folder / "centrelines.csv", exchange::csv_of(curves));
+    observe::write_file(folder / "fibres.glb", exchange::glb_of(curves));
+    const std::vector<exchange::FileYarn> bodies = exchange::yarns_of(curves);
+    if (wanted.surfaces)
+        for (const std::string& kind : exchange::yarn_kinds())
+            observe::write_file(folder / ("tows." + kind), exchange::yarn_file_of(bodies, kind));
+    if (wanted.voxel_spacing > 0.0) {
+        const exchange::Voxels voxels = exchange::voxels_of(curves, exchange::grid_around(curves, wanted.voxel_spacing));
+        for (const std::string& kind : exchange::voxel_kinds())
+            observe::write_file(folder / ("cells." + kind), exchange::voxel_file_of(voxels, kind, 2, wanted.unit));
+        observe::write_file(folder / "cells.raw.json", exchange::raw_head_of(voxels));
+    }
     observe::CsvWriter yarns(folder / "yarns.csv");
     const std::vector<cloth::YarnFigures> figures = cloth::yarn_figures(textile, assembled, settled);
+    const cloth::YarnContacts contacts = cloth::yarn_contacts(textile, assembled, settled);
     for (Index p = 0; p < fibrant::core::count(textile.paths); ++p) {
         const cloth::Path& path = textile.paths[fibrant::core::at(p)];
         const cloth::YarnFigures& yarn = figures[fibrant::core::at(p)];
+        double pressing = 0.0;
+        for (const cloth::YarnPair& pair : contacts.pairs)
+            if (pair.first == p || pair.second == p) pressing += pair.normal_force;
         yarns.row({{"yarn", p},
                    {"name", path.name},
                    {"family", path.family},
@@ -61,8 +109,19 @@ inline void write_tables(const std::filesystem::path& folder, const cloth::Texti
                    {"crimp", yarn.crimp},
                    {"strain", yarn.strain},
                    {"greatest_curvature", yarn.greatest_curvature},
-                   {"mean_angle_deg", yarn.mean_angle * 180.0 / std::numbers::pi}});
+                   {"mean_angle_deg", yarn.mean_angle * 180.0 / std::numbers::pi},
+                   {"twist", exchange::turns_of(bodies[fibrant::core::at(p)])},
+                   {"contact_length", contacts.length[fibrant::core::at(p)]},
+                   {"normal_force", pressing}});
     }
+    observe::CsvWriter pairs(folder / "pairs.csv");
+    for (const cloth::YarnPair& pair : contacts.pairs)
+        pairs.row({{"first", pair.first},
+                   {"second", pair.second},
+                   {"contact_length", pair.length},
+                   {"contacts", pair.contacts},
+                   {"normal_force", pair.normal_force},
+                   {"friction_force", pair.friction_force}});
     if (textile.crossings.empty()) return;
     observe::CsvWriter crossings(folder / "crossings.csv");
     for (const cloth::Crossing& crossing : textile.crossings)
@@ -96,8 +155,8 @@ inline void write_pictures(const example::Output& output, const cloth::Textile& 
 /// @returns what it wrote
 inline observe::JsonObject write_summary(const example::Output& output, const fibrant::simulation::Report& report,
                                          const fibrant::simulation::Audit& audit, const cloth::TopologyAudit& topology,
-                                         const cloth::Textile& textile, const cloth::Assembled& assembled, const observe::Snapshot& drawn,
-                                         const observe::Snapshot& settled, Index unknowns) {
+                                         const cloth::Textile& textile, const cloth::Assembled& assembled,
+                                         const observe::Snapshot& drawn, const observe::Snapshot& settled, Index unknowns) {
     const double radius = textile.smallest_radius();
     const std::vector<cloth::YarnFigures> figures = cloth::yarn_figures(textile, assembled, settled);
     std::vector<Index> families;
@@ -122,6 +181,11 @@ inline observe::JsonObject write_summary(const example::Output& output, const fi
         .add("fibres", fibrant::core::count(settled.fibres))
         .add("dofs", unknowns);
     json.add("greatest_move_over_radius", greatest_move(drawn, settled) / radius);
+    double mean = 0.0, square = 0.0;
+    for (const cloth::Moves& move : cloth::moves_between(drawn, settled))
+        mean += move.mean, square += move.root_mean_square * move.root_mean_square;
+    const auto fibres = static_cast<double>(settled.fibres.size());
+    json.add("mean_move_over_radius", mean / fibres / radius).add("rms_move_over_radius", std::sqrt(square / fibres) / radius);
     json.add("crossings", topology.crossings.right + topology.crossings.wrong).add("right_crossings", topology.crossings.right);
     json.add("wrong_crossings", topology.crossings.wrong)
         .add("missing_crossings", topology.crossings.missing)

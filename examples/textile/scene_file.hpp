@@ -9,6 +9,8 @@
 #include <fibrant/compositions/textile/braids.hpp>
 #include <fibrant/compositions/textile/imported.hpp>
 #include <fibrant/compositions/textile/knits.hpp>
+#include <fibrant/compositions/textile/load_cases.hpp>
+#include <fibrant/compositions/textile/plies.hpp>
 #include <fibrant/compositions/textile/settle.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
@@ -26,6 +28,14 @@ using example::SceneReader;
 using fibrant::Index;
 namespace cloth = fibrant::compositions::textile;
 
+/// What is done to the settled textile.
+struct Load {
+    bool wanted = false;
+    cloth::LoadCaseParameters parameters{};
+    Index increments = 20, cycles = 0;
+    double damping = 1e-4, rest_damping = 0.1;  ///< over the stiffness of a node against moving aside
+};
+
 /// Everything that a run is told.
 struct Scene {
     std::string generator;
@@ -34,11 +44,15 @@ struct Scene {
     cloth::Fineness fineness;
     bool transverse = false;  ///< fibres are softer across than along
     std::string linear_solver = "float_block_cholesky";
+    Load load{};
+    bool surfaces = false;                                    ///< of yarns are written
+    double voxel_spacing = 0.0;                               ///< [length]; 0: none are written
+    std::vector<fibrant::exchange::FileCurve> file_curves{};  ///< that the textile is of, as the file has them
 };
 
-inline const std::vector<std::string> generators{"flat_braid",     "tubular_braid", "levels", "leno",
-                                                 "triaxial_weave", "weft_knit",     "tricot", "plied",
-                                                 "chain_mail",     "net",           "file"};
+inline const std::vector<std::string> generators{"flat_braid",     "tubular_braid", "levels",   "leno",
+                                                 "triaxial_weave", "weft_knit",     "tricot",   "plied",
+                                                 "chain_mail",     "net",           "stitched", "file"};
 
 namespace detail {
 
@@ -59,14 +73,52 @@ inline void read_type(SceneReader& file, const std::string& section, bool requir
               "twist of the fibres of a yarn; positive is right-handed");
 }
 
+/// The section [loading], which may be left out.
+inline void read_load(SceneReader& file, Load& load) {
+    load.wanted = file.has_section("loading");
+    if (!load.wanted && !file.describes()) return;
+    const std::vector<std::string> axes{"x", "y", "z"};
+    std::string axis = "x", across = "z";
+    file.require(
+        "loading", "case", load.parameters.name, cloth::load_case_names(),
+        "what is done to the settled textile: grips at both ends are pulled apart, moved aside or turned, or plates press it");
+    const bool plates = load.parameters.name == "compaction";
+    if (plates) axis = "z", across = "x";
+    file.read("loading", "axis", axis, axes, "from one grip to the other, or across the plates; left out: x, and z of plates");
+    if (axis == across) across = "x";
+    file.read("loading", "across", across, axes,
+              "direction of a shear, or in which a bent sample rises; left out: z, and x where axis is z");
+    if (!plates || file.describes())
+        file.require("loading", "grip", load.parameters.grip, example::positive(), "length",
+                     "length of either grip along the axis");
+    file.require("loading", "amount", load.parameters.amount, example::between(-1e3, 1e3), "1",
+                 "strain of the length between the grips, tangent of the shear, angle between the grips [radian], or approach of "
+                 "the plates over their distance");
+    file.read("loading", "guided", load.parameters.guided,
+              "ends that no grip holds, but that were held or pulled, keep their places across the axis in tension, along the third "
+              "axis in shear and bending; false: they are free");
+    file.read("loading", "increments", load.increments, example::between(1, 100000),
+              "increments that take the load to its amount");
+    file.read("loading", "cycles", load.cycles, example::between(0, 10000), "times there and back; 0: there only");
+    file.read("loading", "damping", load.damping, example::between(0.0, 1e6), "1",
+              "stiffness of the damping, over that of a node against moving aside");
+    file.read("loading", "rest_damping", load.rest_damping, example::above(0.0, 1e6), "1",
+              "the same until the sample is at rest in its grips");
+    load.parameters.axis = axis[0] - 'x', load.parameters.across = across[0] - 'x';
+    if (file.describes()) return;
+    file.check(axis != across, "loading", "across", "another axis than loading.axis");
+    load.parameters.validate();
+}
+
 inline void read_height(SceneReader& file, const std::string& section, double& height) {
     file.read(section, "height_over_radius", height, example::above(0.0, 10.0), "1",
               "height of yarns at crossings above the middle surface, over their half width; below 1 they start in each other");
 }
 
 /// Reads the section of the generator; all of them where there is no file.
+/// @param curves  gets those of a file, if it is one
 inline cloth::Textile generate(SceneReader& file, const std::string& generator, const cloth::YarnType& yarn,
-                               const cloth::YarnType& binder) {
+                               const cloth::YarnType& binder, std::vector<fibrant::exchange::FileCurve>& curves) {
     const bool all = file.describes();
     cloth::Textile made;
     const auto wanted = [&](const char* name) { return all || generator == name; };
@@ -76,7 +128,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         braid.type = yarn;
         file.require("flat_braid", "yarns", braid.yarns, example::between(3, 1000), "number of yarns");
         file.require("flat_braid", "half_width", braid.half_width, positive, "length", "distance from the middle to an edge");
-        file.require("flat_braid", "period", braid.period, positive, "length", "length in which a yarn goes to the other edge and back");
+        file.require("flat_braid", "period", braid.period, positive, "length",
+                     "length in which a yarn goes to the other edge and back");
         file.read("flat_braid", "periods", braid.periods, example::above(0.0, 1e4), "1", "number of periods");
         file.read("flat_braid", "over", braid.over, example::between(1, 2), "how many yarns in turn a yarn passes above");
         read_height(file, "flat_braid", braid.height_over_radius);
@@ -86,7 +139,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         cloth::TubularBraid braid;
         braid.type = yarn;
         file.require("tubular_braid", "carriers", braid.carriers, example::between(2, 1000), "number of yarns each way round");
-        file.require("tubular_braid", "radius", braid.radius, positive, "length", "radius of the tube, to the middle of the yarns");
+        file.require("tubular_braid", "radius", braid.radius, positive, "length",
+                     "radius of the tube, to the middle of the yarns");
         file.require("tubular_braid", "pitch", braid.pitch, positive, "length", "length of a full turn along the axis");
         file.read("tubular_braid", "turns", braid.turns, example::above(0.0, 1e4), "1", "number of turns");
         file.read("tubular_braid", "over", braid.over, example::between(1, 100),
@@ -100,15 +154,18 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         std::vector<std::string> rows, lifts;
         std::vector<std::string> kinds;
         plan.warp = plan.weft = yarn, plan.binder = binder;
-        file.read("levels", "levels", rows, "one text for each warp, a digit for each column: how many wefts of the column lie below the warp");
-        file.read(
-            "levels", "lifts", lifts,
-            "in place of levels: one text for each warp, a digit for each pick: 1 where the warp is up; picks go column by column, from the lowest layer up");
+        file.read("levels", "levels", rows,
+                  "one text for each warp, a digit for each column: how many wefts of the column lie below the warp");
+        file.read("levels", "lifts", lifts,
+                  "in place of levels: one text for each warp, a digit for each pick: 1 where the warp is up; picks go column by "
+                  "column, from the lowest layer up");
         file.read("levels", "kinds", kinds, "one text for each warp, warp or binder; left out: all warp");
         file.is_one_of_several_ways("levels", "levels"), file.is_one_of_several_ways("levels", "lifts");
         file.read("levels", "layers", plan.layers, example::between(1, 9), "number of layers of wefts");
-        file.read("levels", "columns", plan.columns, example::between(0, 10000), "number of columns of wefts; 0: as many as are drawn");
-        file.require("levels", "column_spacing", plan.column_spacing, positive, "length", "distance of neighbouring columns of wefts");
+        file.read("levels", "columns", plan.columns, example::between(0, 10000),
+                  "number of columns of wefts; 0: as many as are drawn");
+        file.require("levels", "column_spacing", plan.column_spacing, positive, "length",
+                     "distance of neighbouring columns of wefts");
         file.require("levels", "warp_spacing", plan.warp_spacing, positive, "length", "distance of neighbouring warps");
         file.read("levels", "layer_spacing", plan.layer_spacing, example::not_negative(), "length",
                   "distance of wefts in a column; 0: yarns just do not touch");
@@ -150,7 +207,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
     if (wanted("triaxial_weave")) {
         cloth::TriaxialWeave weave;
         weave.type = yarn;
-        file.require("triaxial_weave", "spacing", weave.spacing, positive, "length", "distance of neighbouring yarns of a family");
+        file.require("triaxial_weave", "spacing", weave.spacing, positive, "length",
+                     "distance of neighbouring yarns of a family");
         file.require("triaxial_weave", "radius", weave.radius, positive, "length", "radius of the round sample");
         read_height(file, "triaxial_weave", weave.height_over_radius);
         if (!all) file.complete(), made = cloth::triaxial_weave(weave);
@@ -158,7 +216,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
     if (wanted("weft_knit")) {
         cloth::WeftKnit knit;
         knit.type = yarn;
-        file.read("weft_knit", "stitches", knit.stitches, "one text for each course, a letter for each wale: f (face) or r (reverse); repeated both ways");
+        file.read("weft_knit", "stitches", knit.stitches,
+                  "one text for each course, a letter for each wale: f (face) or r (reverse); repeated both ways");
         file.require("weft_knit", "courses", knit.courses, example::between(1, 1000), "number of courses");
         file.require("weft_knit", "wales", knit.wales, example::between(1, 1000), "number of wales");
         file.require("weft_knit", "wale_spacing", knit.wale_spacing, positive, "length", "distance of neighbouring wales");
@@ -190,7 +249,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.read("plied", "strand_pitch", rope.strand_pitch, positive, "length",
                   "length of a full turn of the strands, which turn against the plies");
         file.require("plied", "length", rope.length, positive, "length", "length along the axis");
-        file.read("plied", "slack", rope.slack, example::between(0.0, 1.0), "1", "free distance of neighbours, over their thickness");
+        file.read("plied", "slack", rope.slack, example::between(0.0, 1.0), "1",
+                  "free distance of neighbours, over their thickness");
         if (!all) file.complete(), made = cloth::plied(rope);
     }
     if (wanted("chain_mail")) {
@@ -198,7 +258,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         mail.type = yarn;
         file.require("chain_mail", "rows", mail.rows, example::between(2, 100), "number of rows");
         file.require("chain_mail", "columns", mail.columns, example::between(2, 100), "number of rings in a row");
-        file.require("chain_mail", "ring_radius", mail.ring_radius, positive, "length", "radius of a ring, to the middle of its wire");
+        file.require("chain_mail", "ring_radius", mail.ring_radius, positive, "length",
+                     "radius of a ring, to the middle of its wire");
         file.read("chain_mail", "pitch", mail.pitch, positive, "length", "distance of rings in a row; left out: 2.6 ring radii");
         file.read("chain_mail", "row_pitch", mail.row_pitch, positive, "length", "distance of rows; left out: 0.9 ring radii");
         file.read("chain_mail", "tilt_deg", mail.tilt_deg, example::above(0.0, 80.0), "degree",
@@ -217,6 +278,27 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         read_height(file, "net", net.height_over_radius);
         if (!all) file.complete(), made = cloth::net(net);
     }
+    if (wanted("stitched")) {
+        cloth::StitchedPlies plies;
+        plies.yarn = yarn, plies.thread = binder;
+        std::vector<std::string> angles;
+        file.read("stitched", "angles_deg", angles,
+                  "a text for each ply, from the lowest up: the angle of its yarns to x in degrees; threads go along x");
+        file.require("stitched", "yarn_spacing", plies.yarn_spacing, positive, "length",
+                     "distance of neighbouring yarns of a ply");
+        file.require("stitched", "length", plies.length, positive, "length", "length of the sample along x");
+        file.require("stitched", "width", plies.width, positive, "length", "width of the sample along y");
+        file.require("stitched", "stitch_length", plies.stitch_length, positive, "length",
+                     "from one place where a thread goes through to the next, counted from the middle, where no yarn lies");
+        file.require("stitched", "row_spacing", plies.row_spacing, positive, "length", "distance of neighbouring threads");
+        if (!all) {
+            file.complete();
+            for (const std::string& angle : angles)
+                plies.angles_deg.push_back(
+                    fibrant::exchange::detail::number<double>(angle, file.file(), "stitched.angles_deg", "an angle"));
+            made = cloth::stitched(plies);
+        }
+    }
     if (wanted("file")) {
         std::string path, seen = "plane";
         double smooth = 0.0;
@@ -229,12 +311,20 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.read("file", "largest_turn_deg", clean.largest_turn_deg, example::above(0.0, 180.0), "degree",
                   "largest turn from one point to the next; more is refused");
         file.read("file", "crossings", seen, {"plane", "tube", "none"},
-                  "who is above is seen along z (plane), from the z axis outwards (tube), or not looked for (none): then links are compared");
+                  "who is above is seen along z (plane), from the z axis outwards (tube), or not looked for (none): then links "
+                  "are compared");
         if (!all) {
             file.complete();
             const std::filesystem::path whole = std::filesystem::path(file.file()).parent_path() / path;
-            made = cloth::textile_of(fibrant::exchange::read_curves(whole, clean), yarn,
-                                     {fibrant::Vec3::UnitZ(), seen == "tube", fibrant::Vec3::Zero()}, smooth);
+            fibrant::exchange::CleanParameters own = clean;
+            if (smooth > 0.0) own.largest_turn_deg = 180.0;  // as they are smoothed
+            curves = fibrant::exchange::read_curves(whole, own);
+            if (smooth > 0.0) {
+                std::vector<fibrant::exchange::FileCurve> after = curves;
+                for (auto& curve : after) curve.points = cloth::smoothed(curve.points, smooth, curve.closed);
+                fibrant::exchange::require_turns(after, whole.string(), clean.largest_turn_deg);
+            }
+            made = cloth::textile_of(curves, yarn, {fibrant::Vec3::UnitZ(), seen == "tube", fibrant::Vec3::Zero()}, smooth);
             if (seen == "none") made.crossings.clear();
         }
     }
@@ -257,15 +347,17 @@ inline Scene read_scene(SceneReader& file) {
                 {"Plied.", "plied."},
                 {"ChainMail.", "chain_mail."},
                 {"Net.", "net."},
+                {"StitchedPlies.", "stitched."},
                 {"SettleParameters.", "settle."},
-                {"Fineness.", "yarn."}});
+                {"Fineness.", "yarn."},
+                {"LoadCaseParameters.name", "loading.case"},
+                {"LoadCaseParameters.", "loading."}});
     Scene scene;
     cloth::YarnType yarn;
     std::string ends = "held";
     double tension = 0.0;
     bool straight = true;
-    file.require("textile", "generator", scene.generator, generators,
-                 "what is made; the section of this name has its numbers");
+    file.require("textile", "generator", scene.generator, generators, "what is made; the section of this name has its numbers");
     detail::read_type(file, "yarn", true, yarn);
     example::read_material(file, "yarn", yarn.material);
     std::string law = "isotropic";
@@ -288,10 +380,12 @@ inline Scene read_scene(SceneReader& file) {
         "fibres are straight when nothing acts on them; false: they are at rest as drawn. Left out: as the generator has it");
     cloth::SettleParameters& settle = scene.settle;
     example::read_friction(file, settle.friction_coefficient, "coefficient of friction, once yarns have parted");
-    example::read_allowed_penetration(file, settle.allowed_penetration_over_radius, "how deep a contact may be at the end, over the radius");
+    example::read_allowed_penetration(file, settle.allowed_penetration_over_radius,
+                                      "how deep a contact may be at the end, over the radius");
     file.read("settle", "gap_limit_over_radius", settle.gap_limit_over_radius, example::above(0.0, 1.0), "1",
               "how far fibres that start in each other part in an increment, over the radius");
-    file.read("settle", "tension_increments", settle.tension_increments, example::increments(), "increments in which the tension is raised");
+    file.read("settle", "tension_increments", settle.tension_increments, example::increments(),
+              "increments in which the tension is raised");
     file.read("settle", "separation_increments", settle.separation_increments, example::increments(),
               "most increments until no yarns overlap");
     file.read("settle", "rest_increments", settle.rest_increments, example::increments(),
@@ -302,7 +396,8 @@ inline Scene read_scene(SceneReader& file) {
               "when damping holds less than this part of the forces");
     file.read("settle", "softness", settle.softness, example::between(1.0, 20.0), "1",
               "penetration allowed on the way, over that at rest");
-    file.read("settle", "looseness", settle.looseness, example::looseness(), "1", "factor on the tolerances of passes on the way to rest");
+    file.read("settle", "looseness", settle.looseness, example::looseness(), "1",
+              "factor on the tolerances of passes on the way to rest");
     file.read("settle", "damping", settle.damping, example::between(1e-6, 1e6), "1",
               "factor on the damping that follows from tension, bending and the distance of crossings");
     file.read(
@@ -316,7 +411,11 @@ inline Scene read_scene(SceneReader& file) {
                                             "\", as the file has that section");
         file.complete();
     }
-    scene.textile = detail::generate(file, scene.generator, yarn, binder);
+    file.read("output", "surfaces", scene.surfaces, "write the yarns as closed surfaces, and their sections as a table");
+    file.read("output", "voxel_spacing", scene.voxel_spacing, example::not_negative(), "length",
+              "spacing of the voxels that are written, with an Abaqus mesh and maps of the fibre volume fraction; 0: none");
+    detail::read_load(file, scene.load);
+    scene.textile = detail::generate(file, scene.generator, yarn, binder, scene.file_curves);
     if (file.describes()) file.complete();
     example::check_transverse(file, "yarn", law);
     file.check(ends != "pulled" || tension > 0.0, "ends", "tension_strain", "> 0, where ends are pulled");

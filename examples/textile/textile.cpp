@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Settles a textile of any kind, braid, weave, knit, rope, net or mail, from the paths of its yarns, and audits what came of it.
+// Settles a textile of any kind, braid, weave, knit, rope, net or mail, from the paths of its yarns, audits what came of it, and
+// loads it.
 //   textile SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
 #include "../support/program.hpp"
 #include "../support/report_page.hpp"
+#include "loading.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
 
 #include <fibrant/beam/with_law.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/material/elastic.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/any_solver.hpp>
+
+#include <cstdio>
+#include <stdexcept>
 
 using namespace fibrant;
 
@@ -25,6 +31,7 @@ struct YarnsOf {
     using Normal = law::LimitedGap<law::RegularisedPenalty>;
     using Friction = law::RegularisedCoulomb;
     using Solver = solver::AnySolver;
+    using Tools = contact::RigidTools;
     using Connections = connection::RigidBodies;
 };
 
@@ -37,6 +44,7 @@ bool settle(const textile::Scene& scene, example::SceneReader& file, example::Ou
     simulation::Simulator<Yarns> simulator(assembled.assembly, parameters);
     const observe::Snapshot drawn = simulation::snapshot_of(simulator.mesh(), simulator.mesh().start_state());
 
+    if (scene.load.wanted) output.parts = {output.folder / "loading"};
     output.open(file);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         return {{"greatest_move_over_radius", textile::greatest_move(drawn, simulator.snapshot()) / radius}};
@@ -50,21 +58,35 @@ bool settle(const textile::Scene& scene, example::SceneReader& file, example::Ou
     const textile::cloth::TopologyAudit topology = textile::cloth::audit_topology(
         scene.textile, assembled, textile::cloth::lines_of(drawn), textile::cloth::lines_of(settled));
     textile::tell(scene.textile, topology);
-    textile::write_tables(output.folder, scene.textile, assembled, settled);
+    textile::write_tables(output.folder, scene.textile, assembled, settled, {scene.surfaces, scene.voxel_spacing, output.unit});
+    textile::write_moves(output.folder, assembled, drawn, settled, scene.file_curves);
     const observe::Snapshot coloured = textile::by_family(scene.textile, assembled, settled);
     textile::write_pictures(output, scene.textile, coloured);
-    const observe::JsonObject summary = textile::write_summary(output, report, audit, topology, scene.textile, assembled, drawn, settled,
-                                                               simulator.mesh().layout().unknowns());
-    example::write_report(output, {"textile", output.unit, summary, {},
-                                          {"textile", "converged", "audit_clean", "topology_clean", "yarns", "fibres", "crossings",
-                                           "right_crossings", "greatest_move_over_radius", "least_gap_over_radius",
-                                           "greatest_penetration_over_radius", "wall_seconds"}},
-                          coloured);
-    return report.converged && audit.clean() && topology.clean();
+    const observe::JsonObject summary = textile::write_summary(output, report, audit, topology, scene.textile, assembled, drawn,
+                                                               settled, simulator.mesh().layout().unknowns());
+    example::write_report(
+        output,
+        {"textile",
+         output.unit,
+         summary,
+         {},
+         {"textile", "converged", "audit_clean", "topology_clean", "yarns", "fibres", "crossings", "right_crossings",
+          "greatest_move_over_radius", "least_gap_over_radius", "greatest_penetration_over_radius", "wall_seconds"}},
+        coloured);
+    const bool sound = report.converged && audit.clean() && topology.clean();
+    if (!sound || !scene.load.wanted || example::stopped()) return sound;
+    return textile::run_load_case(output, scene, assembled, simulator).second;
 }
 
 bool solve(example::SceneReader& file, example::Output& output) {
     const textile::Scene scene = textile::read_scene(file);
+    if (scene.generator == "file" && !scene.textile.crossings.empty()) {
+        try {
+            textile::cloth::require_holding(scene.textile);
+        } catch (const std::invalid_argument& loose) {  // ends may hold it
+            std::fprintf(stderr, "textile: note: %s; nothing but held ends and friction keeps it\n", loose.what());
+        }
+    }
     return scene.transverse ? settle<YarnsOf<material::Elastic>>(scene, file, output) : settle<YarnsOf<beam::Isotropic>>(scene, file, output);
 }
 

@@ -26,10 +26,13 @@
 #include <fibrant/compositions/textile/imported.hpp>
 #include <fibrant/compositions/textile/interlaced.hpp>
 #include <fibrant/compositions/textile/knits.hpp>
+#include <fibrant/compositions/textile/load_cases.hpp>
+#include <fibrant/compositions/textile/plies.hpp>
 #include <fibrant/compositions/textile/settle.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
 #include <fibrant/compositions/textile/textile.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
+#include <fibrant/compositions/textile/yarn_contacts.hpp>
 
 #include <fibrant/compositions/two_ply/two_ply.hpp>
 

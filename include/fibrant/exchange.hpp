@@ -7,4 +7,6 @@
 #include <fibrant/exchange/files.hpp>
 #include <fibrant/exchange/text_curves.hpp>
 #include <fibrant/exchange/tubes.hpp>
+#include <fibrant/exchange/voxel_tables.hpp>
 #include <fibrant/exchange/voxels.hpp>
+#include <fibrant/exchange/yarn_surfaces.hpp>

@@ -23,3 +23,4 @@
 #include <fibrant/observe/svg_view.hpp>
 #include <fibrant/observe/text_file.hpp>
 #include <fibrant/observe/vtk_writer.hpp>
+#include <fibrant/observe/yarn_section.hpp>

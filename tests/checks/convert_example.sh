@@ -35,6 +35,31 @@ done
 for file in a.glb a.stl a.bcc a.vti a.raw a.raw.json; do
   [ -s "$out/$file" ] || fail "there is no $file"
 done
+"$program" "$out/given.csv" --voxels 0.05 --box -0.2 -1.2 -0.2 1.2 1.2 0.3 --output "$out/b.vti" --output "$out/b.voxels.inp" \
+  --output "$out/b.voxels.csv" --output "$out/b.map.csv" --output "$out/b.map.svg" --output "$out/b.profile.csv" --map y \
+  --output "$out/b.yarns.stl" --output "$out/b.yarns.vtp" --output "$out/b.yarns.csv" || fail "what is made of voxels and yarns"
+[ "$(wc -l < "$out/b.voxels.csv")" -eq 13441 ] || fail "the table of voxels has not a row for each of 28 x 48 x 10 cells"
+# Readers that are not ours, where they are installed.
+if python3 -c "import meshio" 2>/dev/null; then
+  python3 - "$out" <<'END' || fail "meshio reads otherwise"
+import sys
+import meshio
+import numpy
+mesh = meshio.read(sys.argv[1] + "/b.voxels.inp")
+(cells,) = mesh.cells
+assert cells.type == "hexahedron" and len(cells.data) == 28 * 48 * 10
+p = mesh.points[cells.data]
+edges = [p[:, k] - p[:, 0] for k in (1, 3, 4)]
+assert numpy.allclose(numpy.einsum("ij,ij->i", numpy.cross(edges[0], edges[1]), edges[2]), 0.05**3)
+assert {"MATRIX", "YARN_0", "YARN_1"} <= set(mesh.cell_sets) and {"X_LOW", "Z_HIGH"} <= set(mesh.point_sets)
+assert sum(len(part) for name in ("MATRIX", "YARN_0", "YARN_1") for part in mesh.cell_sets[name]) == len(cells.data)
+surface = meshio.read(sys.argv[1] + "/b.yarns.stl")
+t = surface.cells_dict["triangle"]
+p = surface.points
+volume = numpy.einsum("ij,ij->i", p[t[:, 0]], numpy.cross(p[t[:, 1]], p[t[:, 2]])).sum() / 6
+assert abs(volume / (numpy.pi * 0.05**2 * (1.1060 + 2.1003)) - 1) < 0.01, volume  # chords of the two lines
+END
+fi
 grep -q '"curves": 2' "$out/report" || fail "the report does not count the curves"
 printf 'fibre,x,y,z\n0,0,0,0\n0,1,oops,0\n' > "$out/wrong.csv"
 text=$("$program" "$out/wrong.csv" --output "$out/b.vtk" 2>&1)

@@ -11,12 +11,12 @@ fail() {
   echo "textile_example: $*"
   exit 1
 }
-for name in braid_flat braid_tube interlock knit_plain tricot net chain_mail from_csv from_texgen; do
+for name in braid_flat braid_tube interlock knit_plain tricot net stitched chain_mail from_csv from_texgen; do
   text=$("$program" "$scenes/$name.toml" --output "$out/$name" --quiet --set output.paraview=false 2>&1) || {
     case $text in *"needs pugixml"*) continue ;; esac  # built without it
     fail "$name did not settle: $text"
   }
-  for file in summary.json increments.csv yarns.csv centrelines.csv fibres.glb view.svg report.html; do
+  for file in summary.json increments.csv yarns.csv pairs.csv moves.csv centrelines.csv fibres.glb view.svg report.html; do
     [ -s "$out/$name/$file" ] || fail "$name: there is no $file"
   done
   for key in converged audit_clean topology_clean; do
@@ -25,6 +25,34 @@ for name in braid_flat braid_tube interlock knit_plain tricot net chain_mail fro
 done
 for name in $(sed -n 's/^  "\([a-z_]*\)":.*/\1/p' "$out/tricot/summary.json") $(head -1 "$out/tricot/increments.csv" | tr ',' ' '); do
   grep -q "\`$name\`" "$(dirname "$0")/../../docs/reference/files.md" || fail "docs/reference/files.md has no $name"
+done
+# Seven straight fibres apart, in grips that end on nodes: a sample is as stiff as rods are. Pulled, E A each; moved aside, 12 E I / L^3;
+# turned, E I + E A z^2, z being their height.
+awk 'BEGIN { print "fibre,x,y,z"; for (f = 0; f < 7; ++f) for (k = 0; k <= 24; ++k) printf "%d,%.6f,%.6f,%.6f\n", f, 0.15 * k, 0.3 * (f % 3), 0.3 * int(f / 3) }' > "$out/straight.csv"
+cat > "$out/straight.toml" <<'END'
+textile.generator = "file"
+file = { path = "straight.csv", crossings = "none" }
+yarn = { radius = 0.05, young_modulus = 3000.0, poisson_ratio = 0.3 }
+ends.kind = "free"
+loading = { case = "tension", grip = 0.6, amount = 0.001, increments = 4 }
+output = { surfaces = true, voxel_spacing = 0.1 }
+END
+# usage: stiffness CASE AMOUNT EXPRESSION [ACROSS]
+stiffness() {
+  "$program" "$out/straight.toml" --output "$out/$1" --quiet --set output.paraview=false --set "loading.case=$1" --set "loading.amount=$2" \
+    --set "loading.across=${4:-z}" || fail "$1 of straight fibres"
+  awk -v expression="$3" 'BEGIN { pi = atan2(0, -1); ea = 3000 * pi * 0.05 ^ 2; ei = 3000 * pi * 0.05 ^ 4 / 4; L = 2.4
+      value["tension"] = 7 * ea; value["shear"] = 7 * 12 * ei / L ^ 2
+      # heights 0 (3 fibres), 0.3 (3) and 0.6 (1) about their mean
+      m = 1.5 / 7; value["bending"] = 7 * ei + ea * (3 * m ^ 2 + 3 * (0.3 - m) ^ 2 + (0.6 - m) ^ 2); want = value[expression] }
+    /"initial_stiffness"/ { gsub(/[,"]/, ""); found = 1; if ($2 / want > 1.005 || $2 / want < 0.995) { print expression, $2, "instead of", want; exit 1 } }
+    END { if (!found) exit 1 }' "$out/$1/loading/summary.json" || fail "the stiffness of straight fibres in $1"
+}
+stiffness tension 0.001 tension
+stiffness shear 0.002 shear
+stiffness bending 0.001 bending
+for file in tows.yarns.stl tows.yarns.vtp tows.yarns.csv cells.vti cells.voxels.inp cells.voxels.csv cells.map.svg cells.profile.csv; do
+  [ -s "$out/tension/$file" ] || fail "there is no $file"
 done
 refused() {
   text=$("$program" "$scenes/$1.toml" --output "$out/refused" --set "$2" 2>&1)
@@ -38,4 +66,6 @@ refused braid_flat contact.frction=1 contact.frction
 refused interlock 'levels.levels=["333333","012321"]' "comes apart"
 refused interlock levels.column_spacing=0.1 levels.column_spacing
 refused from_csv file.path=nowhere.csv nowhere.csv
+refused knit_plain weft_knit.loop_height=0.41 "weft_knit.wale_spacing, course_spacing, loop_height"
+refused stitched stitched.row_spacing=0.7 "distance of thread"
 exit 0

@@ -6,7 +6,8 @@
 #include <fibrant/exchange/binary_curves.hpp>
 #include <fibrant/exchange/text_curves.hpp>
 #include <fibrant/exchange/tubes.hpp>
-#include <fibrant/exchange/voxels.hpp>
+#include <fibrant/exchange/voxel_tables.hpp>
+#include <fibrant/exchange/yarn_surfaces.hpp>
 #if __has_include(<pugixml.hpp>) && defined(FIBRANT_WITH_PUGIXML)
 #include <fibrant/exchange/xml_curves.hpp>
 #endif
@@ -14,7 +15,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -157,7 +160,8 @@ TEST_CASE("surfaces of fibres are closed, look outwards, and hold the volume of 
         const std::size_t n = curve.points.size();
         for (std::size_t k = 0; k + (curve.closed ? 0 : 1) < n; ++k)
             length += (curve.points[(k + 1) % n] - curve.points[k]).norm();
-        CHECK(surface.volume() == test::near(pi * curve.radius * curve.radius * length, curve.closed ? 0.02 : 1e-12));  // chords of a ring of 24
+        CHECK(surface.volume() ==
+              test::near(pi * curve.radius * curve.radius * length, curve.closed ? 0.02 : 1e-12));  // chords of a ring of 24
         // Each edge belongs to two triangles that go along it in opposite ways.
         std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
         for (const auto& t : surface.triangles)
@@ -267,6 +271,152 @@ TEST_CASE("voxels hold the volume of fibres to a thousandth at half a radius, an
     CHECK(std::abs(around.volume / (pi * 0.04 * 2.0 * pi) - 1.0) < 1e-3);
     CHECK((orientation_of({ring}) - Mat3(Vec3(0.5, 0.5, 0.0).asDiagonal())).norm() < 1e-6);
     CHECK(vti_of(around).find("fibre_volume_fraction") != std::string::npos);
+}
+
+/// Seven fibres that touch, about a line: straight along x, or a ring about z.
+std::vector<FileCurve> seven(double radius, double size, bool ring) {
+    std::vector<FileCurve> tow;
+    for (int f = 0; f < 7; ++f) {
+        FileCurve fibre;
+        const double angle = pi / 3.0 * f, off = f == 0 ? 0.0 : 2.0 * radius;
+        const double y = off * std::cos(angle), z = off * std::sin(angle);
+        for (Index k = 0; k < 121 - (ring ? 1 : 0); ++k) {
+            const double t = static_cast<double>(k) / 120.0, a = 2.0 * pi * t;
+            fibre.points.push_back(ring ? Vec3((size + y) * std::cos(a), (size + y) * std::sin(a), z) : Vec3(size * t, y, z));
+        }
+        if (f % 2 == 1 && !ring) std::reverse(fibre.points.begin(), fibre.points.end());
+        if (ring) std::rotate(fibre.points.begin(), fibre.points.begin() + 10 * f, fibre.points.end());
+        fibre.radius = radius, fibre.group = 5, fibre.closed = ring;
+        tow.push_back(fibre);
+    }
+    return tow;
+}
+
+TEST_CASE("a yarn's surface is closed and holds the hull of its fibres, whichever way they are listed") {
+    const double r = 0.1, hull = (6.0 * std::sqrt(3.0) + 12.0 + pi) * r * r;  // a hexagon of side 2 r, and a rim as wide as r
+    for (const bool ring : {false, true}) {
+        CAPTURE(ring);
+        const std::vector<FileYarn> yarns = yarns_of(seven(r, 2.0, ring));
+        REQUIRE(yarns.size() == 1);
+        const FileYarn& yarn = yarns[0];
+        const double length = ring ? 4.0 * pi : 2.0;
+        CHECK(yarn.length == test::near(length, 1e-3));
+        for (const YarnStation& station : yarn.stations) {
+            CHECK(station.section.area == test::near(hull, 2e-3));  // polygons of 64 sides
+            CHECK(station.section.fibre_volume_fraction == test::near(7.0 * pi * r * r / hull, 3e-3));
+        }
+        Surface surface;
+        add_yarn(surface, yarn);
+        CHECK(surface.volume() == test::near(hull * length, 3e-3));  // Pappus
+        std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+        for (const auto& t : surface.triangles)
+            for (std::size_t k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
+        for (const auto& [edge, count] : edges) CHECK((count == 1 && edges.count({edge.second, edge.first}) == 1));
+        CHECK(surface.points.size() + surface.triangles.size() == edges.size() / 2 + (ring ? 0 : 2));  // Euler
+        const std::string table = csv_of(yarns);
+        CHECK(std::count(table.begin(), table.end(), '\n') == core::count(yarn.stations) + 1);
+    }
+    // Half a turn a length, left-handed, about a wave: it is told whatever the line does in its plane.
+    std::vector<FileCurve> twisted = seven(0.02, 4.0, false);
+    for (FileCurve& fibre : twisted) {
+        if (fibre.points.front().x() > fibre.points.back().x()) std::reverse(fibre.points.begin(), fibre.points.end());
+        for (Vec3& point : fibre.points) {
+            const double a = -pi * point.x(), height = 0.2 * std::sin(point.x());
+            point = Vec3(point.x(), std::cos(a) * point.y() - std::sin(a) * point.z(),
+                         std::sin(a) * point.y() + std::cos(a) * point.z() + height);
+        }
+    }
+    const FileYarn wave = yarns_of(twisted)[0];
+    CHECK(turns_of(wave) * wave.length == test::near(-2.0, 0.01));
+    CHECK(turns_of(yarns_of(seven(r, 2.0, true))[0]) == 0.0);
+    std::vector<FileCurve> mixed = seven(r, 2.0, false);
+    mixed[3].closed = true;
+    CHECK(refusal([&] { yarns_of(mixed); }) == "curve 3 = closed, but it must be as the other curves of yarn 5");
+}
+
+/// Rows of numbers of an Abaqus file by their keyword line, read without anything that wrote them.
+std::map<std::string, std::vector<std::vector<double>>> rows_of(const std::string& text) {
+    std::map<std::string, std::vector<std::vector<double>>> sections;
+    std::istringstream lines(text);
+    std::string line, keyword;
+    while (std::getline(lines, line)) {
+        if (line[0] == '*') {
+            keyword = line;
+            continue;
+        }
+        if (keyword == "*HEADING" || line.find_first_of("ABCDEFIRS") != std::string::npos) continue;
+        std::vector<double> row;
+        std::istringstream words(line);
+        for (std::string word; std::getline(words, word, ',');)
+            row.push_back(word.find_first_not_of(' ') == std::string::npos ? 0.0 : std::stod(word));
+        sections[keyword].push_back(row);
+    }
+    return sections;
+}
+
+TEST_CASE("an Abaqus mesh of voxels fills its box with cubes, each in one set, with the fibre's direction") {
+    FileCurve one;
+    const Vec3 along = Vec3(2, 1, 0.5).normalized();
+    for (Index k = 0; k <= 20; ++k) one.points.push_back(0.1 * static_cast<double>(k) * along);
+    one.radius = 0.2, one.group = 3;
+    const Voxels voxels = voxels_of({one}, grid_in(Vec3(-0.4, -0.4, -0.4), Vec3(2.0, 1.2, 1.0), 0.1));
+    const auto parts = rows_of(voxel_inp_of(voxels));
+    const auto& nodes = parts.at("*NODE");
+    const auto& cells = parts.at("*ELEMENT, TYPE=C3D8R, ELSET=ALL_CELLS");
+    REQUIRE(nodes.size() == 25u * 17u * 15u);
+    REQUIRE(cells.size() == 24u * 16u * 14u);
+    const auto place = [&](double n) {
+        const auto& row = nodes.at(static_cast<std::size_t>(n) - 1);
+        return Vec3(row[1], row[2], row[3]);
+    };
+    for (const auto& cell : cells) {  // anticlockwise below, then above: Abaqus's order
+        const Vec3 a = place(cell[2]) - place(cell[1]), b = place(cell[4]) - place(cell[1]), c = place(cell[5]) - place(cell[1]);
+        CHECK(a.cross(b).dot(c) == test::near(1e-3, 1e-9));
+        CHECK((place(cell[7]) - place(cell[1]) - a - b - c).norm() < 1e-12);
+    }
+    std::size_t yarn = 0, matrix = 0;
+    for (const auto& row : parts.at("*ELSET, ELSET=YARN_3")) yarn += row.size();
+    for (const auto& row : parts.at("*ELSET, ELSET=MATRIX")) matrix += row.size();
+    const auto filled = static_cast<std::size_t>(std::count(voxels.yarn.begin(), voxels.yarn.end(), 3));
+    CHECK(yarn >= filled);  // a comma at the end of a line that goes on
+    CHECK(filled > 200);
+    CHECK(matrix > cells.size() - filled - 1);
+    const auto& axes = parts.at("*DISTRIBUTION, LOCATION=ELEMENT, TABLE=FIBRE_AXES_TABLE, NAME=FIBRE_AXES");
+    REQUIRE(axes.size() == filled + 1);
+    CHECK(axes[0] == std::vector<double>{0, 1, 0, 0, 0, 1, 0});
+    for (std::size_t k = 1; k < axes.size(); ++k) {
+        const Vec3 first(axes[k][1], axes[k][2], axes[k][3]), second(axes[k][4], axes[k][5], axes[k][6]);
+        CHECK((first - along).norm() < 1e-6);  // single precision
+        CHECK(std::abs(first.dot(second)) < 1e-12);
+        CHECK(second.norm() == test::near(1.0, 1e-12));
+    }
+    // The table's shares are the fibre's volume; so are those of maps along any axis and of profiles.
+    std::istringstream table(cells_csv_of(voxels));
+    std::string line;
+    double sum = 0.0, profile = 0.0;
+    for (std::getline(table, line); std::getline(table, line);) {
+        std::istringstream words(line);
+        std::string word;
+        for (int k = 0; k < 6; ++k) std::getline(words, word, ',');
+        sum += std::stod(word) * 1e-3;
+    }
+    CHECK(sum == test::near(pi * 0.04 * 2.0, 1e-3));
+    for (int axis = 0; axis < 3; ++axis) {
+        const VolumeMap map = volume_map(voxels, axis);
+        CHECK(map.counts == (axis == 0   ? std::array<Index, 2>{16, 14}
+                             : axis == 1 ? std::array<Index, 2>{24, 14}
+                                         : std::array<Index, 2>{24, 16}));
+        double columns = 0.0;
+        for (const double mean : map.mean) columns += mean * map.height * 0.01;
+        CHECK(columns == test::near(sum, 1e-6));
+    }
+    std::istringstream slices(profile_csv_of(voxels));
+    for (std::getline(slices, line); std::getline(slices, line);)
+        if (line[0] == 'y') profile += std::stod(line.substr(line.rfind(',') + 1)) * 2.4 * 1.4 * 0.1;
+    CHECK(profile == test::near(sum, 1e-6));
+    CHECK(map_svg_of(volume_map(voxels)).find("fibre volume fraction along z: mean") != std::string::npos);
+    CHECK(refusal([] { grid_in(Vec3::Zero(), Vec3(1, 1, 1), 0.3); }).find("edge along x over the spacing = 3.33") !=
+          std::string::npos);
 }
 
 }  // namespace exchange_curves_test

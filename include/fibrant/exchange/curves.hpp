@@ -50,6 +50,25 @@ struct CleanParameters {
     }
 };
 
+/// @throws std::invalid_argument naming curve and point, where neighbouring chords turn by more than an angle [degree]
+inline void require_turns(const std::vector<FileCurve>& curves, const std::string& file, double largest_deg) {
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+        const FileCurve& curve = curves[c];
+        const std::vector<Vec3>& points = curve.points;
+        const std::size_t n = points.size(), turns = curve.closed ? n : std::max<std::size_t>(n, 2) - 2;
+        for (std::size_t k = 0; k < turns; ++k) {
+            const Vec3 a = points[(k + 1) % n] - points[k], b = points[(k + 2) % n] - points[(k + 1) % n];
+            const double turn = std::atan2(a.cross(b).norm(), a.dot(b)) * 57.29577951308232;
+            if (turn > largest_deg)
+                refuse_file(file,
+                            "curve " + std::to_string(c) + (curve.name.empty() ? "" : " '" + curve.name + "'") + ", point " +
+                                std::to_string((k + 1) % n),
+                            "chords turn by " + core::text(turn) + " degrees, but it must be at most " + core::text(largest_deg) +
+                                ": smooth it, or take more points");
+        }
+    }
+}
+
 /// Curves as they can be laid: scaled, points that repeat the one before them taken out, closure found.
 /// @throws std::invalid_argument naming curve and point: not finite, too few, a turn that no smooth fibre makes
 inline std::vector<FileCurve> cleaned(std::vector<FileCurve> curves, const std::string& file,
@@ -90,19 +109,11 @@ inline std::vector<FileCurve> cleaned(std::vector<FileCurve> curves, const std::
             refuse_file(file, place,
                         std::to_string(points.size()) + " points that differ, but it must have at least " +
                             std::to_string(parameters.least_points));
-        const std::size_t n = points.size(), turns = curve.closed ? n : n - 2;
-        for (std::size_t k = 0; k < turns; ++k) {
-            const Vec3 a = points[(k + 1) % n] - points[k], b = points[(k + 2) % n] - points[(k + 1) % n];
-            const double turn = std::atan2(a.cross(b).norm(), a.dot(b)) * 57.29577951308232;
-            if (turn > parameters.largest_turn_deg)
-                refuse_file(file, place + ", point " + std::to_string((k + 1) % n),
-                            "chords turn by " + core::text(turn) + " degrees, but it must be at most " +
-                                core::text(parameters.largest_turn_deg) + ": smooth it, or take more points");
-        }
         curve.points = std::move(points), curve.radii = std::move(radii);
         if (!std::isnan(curve.radius)) curve.radius *= parameters.scale;
         curve.period *= parameters.scale;
     }
+    require_turns(curves, file, parameters.largest_turn_deg);
     return curves;
 }
 

@@ -6,6 +6,8 @@
 #include <fibrant/exchange/binary_curves.hpp>
 #include <fibrant/exchange/text_curves.hpp>
 #include <fibrant/exchange/tubes.hpp>
+#include <fibrant/exchange/voxel_tables.hpp>
+#include <fibrant/exchange/yarn_surfaces.hpp>
 #include <fibrant/observe/poly_data.hpp>
 #if defined(FIBRANT_WITH_PUGIXML)
 #include <fibrant/exchange/xml_curves.hpp>
@@ -24,6 +26,43 @@ inline std::string ending(const std::filesystem::path& path) {
     std::string text = path.extension().string();
     std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return text.empty() ? text : text.substr(1);
+}
+
+/// What a file to be written is: its ending, with the one before it where that says of what: yarns.stl, voxels.inp, map.svg.
+inline std::string kind_of(const std::filesystem::path& path) {
+    const std::string before = ending(path.stem());
+    const bool derived = before == "yarns" || before == "voxels" || before == "map" || before == "profile";
+    return derived ? before + "." + ending(path) : ending(path);
+}
+inline const std::vector<std::string>& voxel_kinds() {
+    static const std::vector<std::string> kinds{"vti", "raw", "voxels.inp", "voxels.csv", "map.csv", "map.svg", "profile.csv"};
+    return kinds;
+}
+inline const std::vector<std::string>& yarn_kinds() {
+    static const std::vector<std::string> kinds{"yarns.stl", "yarns.vtp", "yarns.csv"};
+    return kinds;
+}
+inline bool is_one_of(const std::string& kind, const std::vector<std::string>& kinds) {
+    return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
+
+/// A file of voxels. @param kind  one of `voxel_kinds()` @param axis  that a map looks along: 0, 1 or 2
+inline std::string voxel_file_of(const Voxels& voxels, const std::string& kind, int axis = 2, const std::string& unit = "mm") {
+    if (kind == "vti") return vti_of(voxels);
+    if (kind == "raw") return raw_of(voxels);
+    if (kind == "voxels.inp") return voxel_inp_of(voxels);
+    if (kind == "voxels.csv") return cells_csv_of(voxels);
+    if (kind == "map.csv") return map_csv_of(volume_map(voxels, axis));
+    if (kind == "map.svg") return map_svg_of(volume_map(voxels, axis), unit);
+    if (kind == "profile.csv") return profile_csv_of(voxels);
+    core::refuse("ending of the file", "." + kind, ".vti, .raw, .voxels.inp, .voxels.csv, .map.csv, .map.svg or .profile.csv");
+}
+/// A file of yarns as bodies. @param kind  one of `yarn_kinds()`
+inline std::string yarn_file_of(const std::vector<FileYarn>& yarns, const std::string& kind) {
+    if (kind == "yarns.stl") return stl_of(yarns);
+    if (kind == "yarns.vtp") return vtp_of(yarns);
+    if (kind == "yarns.csv") return csv_of(yarns);
+    core::refuse("ending of the file", "." + kind, ".yarns.stl, .yarns.vtp or .yarns.csv");
 }
 
 /// Reads .csv, .txt, .vtk, .obj, .bcc, .inp, and .vtp and .tg3 where there is pugixml.
@@ -89,8 +128,10 @@ inline std::string file_of(const std::vector<FileCurve>& curves, const std::stri
         data.point_scalars("radius", radii), data.cell_scalars("group", groups);
         return data.text();
     }
-    core::refuse("ending of the file", "." + kind,
-                 ".csv, .vtk, .vtp, .obj, .bcc, .inp, .stl, .glb, or .tg3 where there is pugixml");
+    core::refuse(
+        "ending of the file", "." + kind,
+        ".csv, .vtk, .vtp, .obj, .bcc, .inp, .stl, .glb, .vti, .raw, .voxels.inp, .voxels.csv, .map.csv, .map.svg, .profile.csv, "
+        ".yarns.stl, .yarns.vtp, .yarns.csv, or .tg3 where there is pugixml");
 }
 
 }  // namespace fibrant::exchange

@@ -31,18 +31,23 @@ struct Surface {
     }
 };
 
-/// Adds a curve as a tube of so many sides, whose polygon has the area of its circle; ends are flat. Sections are carried along
-/// by the least turn from chord to chord, and round a closed curve the turn that is left over is shared out evenly.
-/// @param sides  >= 3
-inline void add_tube(Surface& surface, const FileCurve& curve, Index sides) {
-    core::require_at_least("add_tube.sides", sides, 3);
-    core::require_positive("FileCurve.radius", curve.radii.empty() ? curve.radius : curve.radii.front());
-    const std::vector<Vec3>& p = curve.points;
+/// Unit tangents of a polyline, and directions across it.
+struct LineFrames {
+    std::vector<Vec3> tangent{}, first{}, second{};
+};
+
+/// Frames at the points of a line: carried along by the least turn from point to point; round a closed line the turn that is left
+/// over is shared out evenly.
+/// @param points  >= 2, neighbours apart
+inline LineFrames frames_of(const std::vector<Vec3>& points, bool closed) {
+    const std::vector<Vec3>& p = points;
     const std::size_t n = p.size();
-    std::vector<Vec3> tangent(n), g(n);
+    core::require_at_least("frames_of.points", core::count(p), 2);
+    LineFrames frames{std::vector<Vec3>(n), std::vector<Vec3>(n), std::vector<Vec3>(n)};
+    std::vector<Vec3> &tangent = frames.tangent, &g = frames.first;
     for (std::size_t k = 0; k < n; ++k) {
-        const Vec3 before = k > 0 ? p[k] - p[k - 1] : curve.closed ? p[0] - p[n - 1] : p[1] - p[0];
-        const Vec3 after = k + 1 < n ? p[k + 1] - p[k] : curve.closed ? p[0] - p[k] : p[k] - p[k - 1];
+        const Vec3 before = k > 0 ? p[k] - p[k - 1] : closed ? p[0] - p[n - 1] : p[1] - p[0];
+        const Vec3 after = k + 1 < n ? p[k + 1] - p[k] : closed ? p[0] - p[k] : p[k] - p[k - 1];
         tangent[k] = (before.normalized() + after.normalized()).normalized();
     }
     const auto carried = [](const Vec3& v, const Vec3& from, const Vec3& to) {
@@ -53,32 +58,37 @@ inline void add_tube(Surface& surface, const FileCurve& curve, Index sides) {
     g[0] = scene::any_perpendicular(tangent[0]);
     for (std::size_t k = 1; k < n; ++k) g[k] = carried(g[k - 1], tangent[k - 1], tangent[k]).normalized();
     double turn = 0.0;
-    if (curve.closed) {
+    if (closed) {
         const Vec3 end = carried(g[n - 1], tangent[n - 1], tangent[0]);
         turn = std::atan2(tangent[0].dot(end.cross(g[0])), end.dot(g[0])) / static_cast<double>(n);
     }
-    const double m = static_cast<double>(sides), full = 2.0 * std::numbers::pi;
-    const double wider = std::sqrt(full / m / std::sin(full / m));  // circle over inscribed polygon, by area
-    const auto first = static_cast<std::uint32_t>(surface.points.size()), s = static_cast<std::uint32_t>(sides),
-               rings = static_cast<std::uint32_t>(n);
     for (std::size_t k = 0; k < n; ++k) {
-        const Vec3 h = tangent[k].cross(g[k]);
-        const double radius = wider * (curve.radii.empty() ? curve.radius : curve.radii[k]);
-        for (Index a = 0; a < sides; ++a) {
-            const double angle = full * static_cast<double>(a) / m + turn * static_cast<double>(k);
-            surface.points.push_back(p[k] + radius * (std::cos(angle) * g[k] + std::sin(angle) * h));
-        }
+        const Vec3 across = tangent[k].cross(g[k]);
+        const double angle = turn * static_cast<double>(k);
+        if (closed) g[k] = Vec3(std::cos(angle) * g[k] + std::sin(angle) * across);
+        frames.second[k] = tangent[k].cross(g[k]);
     }
-    for (std::uint32_t k = 0; k + (curve.closed ? 0 : 1) < rings; ++k)
+    return frames;
+}
+
+/// Adds a surface through rings of points, as many in each, that go round the line's tangent anticlockwise. The ends of an open
+/// one are closed by fans.
+/// @param middles  of the first and the last ring
+inline void add_loft(Surface& surface, const std::vector<std::vector<Vec3>>& rings, bool closed,
+                     const std::array<Vec3, 2>& middles) {
+    const auto first = static_cast<std::uint32_t>(surface.points.size()), s = static_cast<std::uint32_t>(rings.front().size()),
+               count = static_cast<std::uint32_t>(rings.size());
+    for (const std::vector<Vec3>& ring : rings) surface.points.insert(surface.points.end(), ring.begin(), ring.end());
+    for (std::uint32_t k = 0; k + (closed ? 0 : 1) < count; ++k)
         for (std::uint32_t a = 0; a < s; ++a) {
-            const std::uint32_t i = first + k * s, j = first + (k + 1) % rings * s, b = (a + 1) % s;
+            const std::uint32_t i = first + k * s, j = first + (k + 1) % count * s, b = (a + 1) % s;
             surface.triangles.push_back({i + a, i + b, j + b}), surface.triangles.push_back({i + a, j + b, j + a});
         }
-    if (curve.closed) return;
+    if (closed) return;
     for (const bool last : {false, true}) {
         const auto middle = static_cast<std::uint32_t>(surface.points.size());
-        surface.points.push_back(last ? p.back() : p.front());
-        const std::uint32_t i = first + (last ? rings - 1 : 0) * s;
+        surface.points.push_back(middles[last ? 1 : 0]);
+        const std::uint32_t i = first + (last ? count - 1 : 0) * s;
         for (std::uint32_t a = 0; a < s; ++a) {
             const std::uint32_t b = (a + 1) % s;
             if (last)
@@ -87,6 +97,26 @@ inline void add_tube(Surface& surface, const FileCurve& curve, Index sides) {
                 surface.triangles.push_back({middle, i + b, i + a});
         }
     }
+}
+
+/// Adds a curve as a tube of so many sides, whose polygon has the area of its circle; ends are flat.
+/// @param sides  >= 3
+inline void add_tube(Surface& surface, const FileCurve& curve, Index sides) {
+    core::require_at_least("add_tube.sides", sides, 3);
+    core::require_positive("FileCurve.radius", curve.radii.empty() ? curve.radius : curve.radii.front());
+    const LineFrames frames = frames_of(curve.points, curve.closed);
+    const double m = static_cast<double>(sides), full = 2.0 * std::numbers::pi;
+    const double wider = std::sqrt(full / m / std::sin(full / m));  // circle over inscribed polygon, by area
+    std::vector<std::vector<Vec3>> rings(curve.points.size());
+    for (std::size_t k = 0; k < rings.size(); ++k) {
+        const double radius = wider * (curve.radii.empty() ? curve.radius : curve.radii[k]);
+        for (Index a = 0; a < sides; ++a) {
+            const double angle = full * static_cast<double>(a) / m;
+            const Vec3 across = std::cos(angle) * frames.first[k] + std::sin(angle) * frames.second[k];
+            rings[k].push_back(curve.points[k] + radius * across);
+        }
+    }
+    add_loft(surface, rings, curve.closed, {curve.points.front(), curve.points.back()});
 }
 
 namespace detail {
@@ -98,9 +128,7 @@ void put(std::string& bytes, Number value) {
 }  // namespace detail
 
 /// Binary STL: single precision.
-inline std::string stl_of(const std::vector<FileCurve>& curves, Index sides = 12) {
-    Surface surface;
-    for (const FileCurve& curve : curves) add_tube(surface, curve, sides);
+inline std::string stl_of(const Surface& surface) {
     std::string bytes = "binary STL of fibres";
     bytes.resize(80, ' ');
     detail::put(bytes, static_cast<std::uint32_t>(surface.triangles.size()));
@@ -112,6 +140,11 @@ inline std::string stl_of(const std::vector<FileCurve>& curves, Index sides = 12
         detail::put(bytes, std::uint16_t{0});
     }
     return bytes;
+}
+inline std::string stl_of(const std::vector<FileCurve>& curves, Index sides = 12) {
+    Surface surface;
+    for (const FileCurve& curve : curves) add_tube(surface, curve, sides);
+    return stl_of(surface);
 }
 
 /// glTF 2.0 in one file (Khronos 2021): a mesh a group of curves, with a colour of its own; y is up, lengths are metres.

@@ -54,6 +54,23 @@ inline VoxelGrid grid_around(const std::vector<FileCurve>& curves, double spacin
     return grid;
 }
 
+/// The grid of a spacing that fills a box.
+/// @throws std::invalid_argument where an edge is no whole number of spacings, to a millionth
+inline VoxelGrid grid_in(const Vec3& low, const Vec3& high, double spacing) {
+    core::require_positive("grid_in.spacing", spacing);
+    VoxelGrid grid{low, spacing, {}};
+    for (int k = 0; k < 3; ++k) {
+        static constexpr std::array names{"grid_in: edge along x over the spacing", "grid_in: edge along y over the spacing",
+                                          "grid_in: edge along z over the spacing"};
+        const double count = (high[k] - low[k]) / spacing;
+        core::require(std::isfinite(count) && count > 0.5 && count < 1e9 && std::abs(count - std::round(count)) <= 1e-6 * count,
+                      names[static_cast<std::size_t>(k)], count, "a whole number, >= 1");
+        grid.counts[static_cast<std::size_t>(k)] = static_cast<Index>(std::round(count));
+    }
+    grid.validate();
+    return grid;
+}
+
 /// Fields of the cells, x fastest.
 struct Voxels {
     VoxelGrid grid;

@@ -17,7 +17,7 @@
 
 namespace fibrant::observe {
 
-/// Points, polylines and vertices with named values, written as appended raw binary.
+/// Points, polylines, vertices and triangles with named values, written as appended raw binary.
 class PolyData {
 public:
     Index add_point(const Vec3& point) {
@@ -32,6 +32,10 @@ public:
         line_ends_.push_back(core::count(line_points_));
     }
     void add_vertex(Index point) { vertex_points_.push_back(point); }
+    /// Anticlockwise as seen from outside. Triangles are numbered after lines.
+    void add_triangle(Index a, Index b, Index c) {
+        for (const Index point : {a, b, c}) triangle_points_.push_back(point);
+    }
 
     /// Values of the points or cells, one for each in their order, in the precision of the file (single).
     void point_scalars(std::string name, std::span<const double> values) { add(point_data_, std::move(name), values); }
@@ -41,13 +45,13 @@ public:
     /// The file's content. Throws std::invalid_argument if an array's length is not that of the points or cells.
     std::string text() const {
         static_assert(std::endian::native == std::endian::little, "the header states little endian");
-        const std::size_t cells = vertex_points_.size() + line_ends_.size();
+        const std::size_t cells = vertex_points_.size() + line_ends_.size() + triangle_points_.size() / 3;
         std::string head =
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
             "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"" +
             std::to_string(points_.size()) + "\" NumberOfVerts=\"" + std::to_string(vertex_points_.size()) +
             "\" NumberOfLines=\"" + std::to_string(line_ends_.size()) +
-            "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
+            "\" NumberOfStrips=\"0\" NumberOfPolys=\"" + std::to_string(triangle_points_.size() / 3) + "\">\n";
         std::string data;
         data.reserve(bytes() + 8192);  // and the header
         write_arrays(head, data, "PointData", point_data_, points_.size());
@@ -60,6 +64,11 @@ public:
         for (std::size_t k = 0; k < vertex_points_.size(); ++k) ends.push_back(static_cast<std::int64_t>(k + 1));
         write_cells(head, data, "Verts", vertex_points_, ends);
         write_cells(head, data, "Lines", line_points_, line_ends_);
+        if (!triangle_points_.empty()) {
+            ends.clear();
+            for (std::size_t k = 3; k <= triangle_points_.size(); k += 3) ends.push_back(static_cast<std::int64_t>(k));
+            write_cells(head, data, "Polys", triangle_points_, ends);
+        }
         head += "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
         data.insert(0, head);
         return data += "\n</AppendedData>\n</VTKFile>\n";
@@ -74,7 +83,7 @@ private:
 
     /// Of all arrays.
     std::size_t bytes() const noexcept {
-        std::size_t sum = 24 * points_.size() + 8 * (2 * vertex_points_.size() + line_points_.size() + line_ends_.size()) + 64;
+        std::size_t sum = 24 * points_.size() + 8 * (2 * vertex_points_.size() + line_points_.size() + line_ends_.size() + triangle_points_.size() * 4 / 3) + 64;
         for (const auto* arrays : {&point_data_, &cell_data_})
             for (const Array& array : *arrays) sum += 4 * array.values.size() + 8;
         return sum;
@@ -128,7 +137,7 @@ private:
     }
 
     std::vector<Vec3> points_;
-    std::vector<std::int64_t> vertex_points_, line_points_, line_ends_;
+    std::vector<std::int64_t> vertex_points_, line_points_, line_ends_, triangle_points_;
     std::vector<Array> point_data_, cell_data_;
 };
 

@@ -7,8 +7,10 @@
 #include <fibrant/compositions/textile/audit.hpp>
 #include <fibrant/compositions/textile/braids.hpp>
 #include <fibrant/compositions/textile/imported.hpp>
+#include <fibrant/compositions/textile/load_cases.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
+#include <fibrant/compositions/textile/yarn_contacts.hpp>
 #include <fibrant/exchange/files.hpp>
 
 #include <doctest/doctest.h>
@@ -154,6 +156,133 @@ TEST_CASE("a textile that was written and read again has the same paths and cros
     for (std::size_t k = 0; k < noisy.size(); ++k) before += noisy[k].y() * noisy[k].y(), after += smooth[k].y() * smooth[k].y();
     CHECK(after < before / 9.0);
     CHECK((smooth.front() - noisy.front()).norm() < 1e-12);
+}
+
+/// A state of straight fibres, nine nodes each, with directors across them.
+observe::Snapshot straight(const std::vector<std::pair<Vec3, Vec3>>& ends, double radius) {
+    observe::Snapshot state;
+    for (const auto& [from, to] : ends) {
+        observe::FibreSnapshot fibre;
+        const Vec3 along = (to - from).normalized(), first = scene::any_perpendicular(along);
+        for (Index k = 0; k <= 8; ++k) {
+            fibre.position.push_back(from + 0.125 * static_cast<double>(k) * (to - from));
+            fibre.director_1.push_back(first), fibre.director_2.push_back(along.cross(first)), fibre.curvature.push_back(0.0);
+        }
+        fibre.section = scene::circular(radius);
+        state.fibres.push_back(fibre);
+    }
+    return state;
+}
+/// Straight yarns of one fibre, and their scene.
+std::pair<Textile, Assembled> straight_yarns(const std::vector<std::pair<Vec3, Vec3>>& ends, double radius) {
+    Textile textile;
+    textile.types = {yarn(1, radius)};
+    for (const auto& [from, to] : ends) {
+        Path path;
+        path.curve = [from = from, to = to](double t) { return Vec3((1.0 - t) * from + t * to); };
+        textile.paths.push_back(path);
+    }
+    Fineness fineness;
+    fineness.element_over_radius = 100.0, fineness.least_elements = 4;
+    return {textile, assemble(textile, fineness)};
+}
+
+TEST_CASE("contact lengths of yarns are those of cylinders, and moves are told fibre by fibre") {
+    const double r = 0.1, near = 0.05;
+    // Two side by side over their lengths, a third across both, just touching; a fourth far off.
+    const std::vector<std::pair<Vec3, Vec3>> ends{{Vec3(-1, 0, 0), Vec3(1, 0, 0)},
+                                                  {Vec3(-1, 2 * r, 0), Vec3(1, 2 * r, 0)},
+                                                  {Vec3(0, -1, 2 * r), Vec3(0, 1, 2 * r)},
+                                                  {Vec3(0, 0, 5), Vec3(1, 0, 5)}};
+    const auto [textile, assembled] = straight_yarns(ends, r);
+    observe::Snapshot state = straight(ends, r);
+    state.contacts.push_back({.fibre_i = 0, .fibre_j = 2, .reaction = 3.0, .friction = Vec3(0.3, 0.4, 0)});
+    state.contacts.push_back({.fibre_i = 1, .fibre_j = 2, .reaction = 2.0});
+    state.contacts.push_back({.fibre_i = 1, .fibre_j = 2, .reaction = 1.0});
+    state.contacts.push_back({.fibre_i = 0, .fibre_j = 1, .reaction = 0.0});
+    const YarnContacts contacts = yarn_contacts(textile, assembled, state, near);
+    const double reach = 2.0 * std::sqrt(std::pow(2.0 * r + near * r, 2) - 4.0 * r * r), step = 2.0 / 64.0;
+    REQUIRE(contacts.pairs.size() == 3);
+    CHECK(contacts.pairs[0].length == test::near(2.0, 1e-9));
+    CHECK(std::abs(contacts.pairs[1].length - reach) <= 2.0 * step);  // by samples
+    CHECK(contacts.length[0] == test::near(2.0, 1e-9));
+    CHECK(std::abs(contacts.length[2] - (2.0 * r + reach)) <=
+          4.0 * step);  // from one axis to the other, or two pieces of `reach`
+    CHECK(contacts.length[3] == 0.0);
+    CHECK(contacts.pairs[1].normal_force == 3.0);
+    CHECK(contacts.pairs[1].friction_force == test::near(0.5, 1e-12));
+    CHECK(contacts.pairs[2].contacts == 2);
+    CHECK(contacts.pairs[2].normal_force == 3.0);
+    CHECK(contacts.pairs[0].contacts == 0);
+    observe::Snapshot moved = state;
+    for (Vec3& point : moved.fibres[2].position) point.z() += 0.03;
+    moved.fibres[3].position[4].x() += 0.09;
+    const std::vector<Moves> moves = moves_between(state, moved);
+    CHECK(moves[0].greatest == 0.0);
+    CHECK(moves[2].mean == test::near(0.03, 1e-12));
+    CHECK(moves[2].root_mean_square == test::near(0.03, 1e-12));
+    CHECK(moves[3].mean == test::near(0.01, 1e-9));
+    CHECK(moves[3].root_mean_square == test::near(0.03, 1e-9));
+    // Points of a file beside the fibre, one of them beyond its end.
+    const Moves own = moves_from({Vec3(-0.93, 0.02, 0), Vec3(0.61, 0, -0.04), Vec3(1.03, 0, 0)}, state.fibres[0]);
+    CHECK(own.mean == test::near(0.03, 1e-9));
+    CHECK(own.greatest == test::near(0.04, 1e-9));
+}
+
+TEST_CASE("grips hold the nodes within them, and what they cannot hold is refused") {
+    const double r = 0.05;
+    const std::vector<std::pair<Vec3, Vec3>> ends{
+        {Vec3(0, 0, 0), Vec3(4, 0, 0)}, {Vec3(0, 1, 0), Vec3(4, 1, 0)}, {Vec3(2, -1, 0.1), Vec3(2, 2, 0.1)}};
+    const auto [textile, assembled] = straight_yarns(ends, r);
+    const observe::Snapshot state = straight(ends, r);
+    const Vector unknowns = Vector::Zero(0);
+    LoadCaseParameters parameters;
+    parameters.grip = 1.0, parameters.amount = 0.1;
+    const LoadCase pulled = load_case(textile, assembled, state, unknowns, parameters);
+    CHECK(pulled.length == test::near(2.0, 1e-12));
+    CHECK(pulled.width == test::near(3.0 + 2.0 * r, 1e-12));
+    CHECK(pulled.gripped == std::array<Index, 2>{2, 2});
+    // Three nodes of two fibres in each of two grips, each with two directors.
+    CHECK(pulled.assembly.averages().size() == 2u * 2u * 3u * 3u);
+    // The third fibre does not turn about itself, and its ends stay where they are but along x.
+    REQUIRE(pulled.assembly.holds().size() == 4);
+    CHECK((pulled.assembly.holds().back().directions - Mat3(Vec3(0, 1, 1).asDiagonal())).norm() == 0.0);
+    parameters.guided = false;
+    CHECK(load_case(textile, assembled, state, unknowns, parameters).assembly.holds().size() == 2);
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+        const scene::RigidBody& grip = pulled.assembly.bodies()[core::at(pulled.bodies[side])];
+        CHECK(grip.position.x() == test::near(side == 0 ? 1.0 : 3.0, 1e-12));
+        CHECK(grip.translation[0].value == test::near(side == 0 ? -0.1 : 0.1, 1e-12));
+    }
+    parameters.name = "bending", parameters.across = 2;
+    const LoadCase bent = load_case(textile, assembled, state, unknowns, parameters);
+    CHECK(bent.assembly.bodies()[0].rotation[1].value == test::near(-0.05, 1e-12));  // what lies between rises
+    CHECK(bent.assembly.bodies()[1].translation[0].free);
+    parameters.name = "compaction", parameters.axis = 2, parameters.across = 0, parameters.amount = 0.25;
+    const LoadCase pressed = load_case(textile, assembled, state, unknowns, parameters);
+    CHECK(pressed.length == test::near(0.2, 1e-12));
+    CHECK(pressed.assembly.tools()[0].displacement.z() == test::near(0.025, 1e-12));
+    CHECK(pressed.assembly.bodies().empty());
+    parameters.name = "tension", parameters.axis = 0, parameters.across = 1, parameters.grip = 2.0;
+    CHECK(refusal([&] {
+              load_case(textile, assembled, state, unknowns, parameters);
+          }).find("LoadCaseParameters.grip = 2, but it must be < half the length") == 0);
+    parameters.across = 0;
+    CHECK(refusal([&] { parameters.validate(); }).find("another axis than axis") != std::string::npos);
+    parameters.across = 1, parameters.amount = -0.7;
+    CHECK(refusal([&] { parameters.validate(); }).find("> -0.5 and not 0") != std::string::npos);
+
+    std::vector<std::pair<double, double>> cubic;
+    for (int k = 0; k <= 10; ++k)
+        cubic.emplace_back(0.02 * k, 3.0 * (0.02 * k) - 200.0 * std::pow(0.02 * k, 2) + 5000.0 * std::pow(0.02 * k, 3));
+    const CurveFit fit = fit_curve(cubic);
+    REQUIRE(fit.coefficients.size() == 4);
+    CHECK(fit.coefficients[1] == test::near(3.0, 1e-9));
+    CHECK(fit.coefficients[3] == test::near(5000.0, 1e-9));
+    CHECK(fit.misfit < 1e-12);
+    const CurveFit line = fit_curve({{0.0, 0.0}, {1.0, 1.0}, {2.0, 4.0}}, 1);  // 2 x - 1/3
+    CHECK(line.misfit == test::near(2.0 / 3.0 / 4.0, 1e-9));
+    CHECK(initial_slope({{0.0, 1.0}, {1.0, 3.0}, {2.0, 5.0}, {3.0, 100.0}}) == test::near(2.0, 1e-12));
 }
 
 }  // namespace textile_assemble_test

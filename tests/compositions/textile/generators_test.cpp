@@ -5,6 +5,7 @@
 
 #include <fibrant/compositions/textile/braids.hpp>
 #include <fibrant/compositions/textile/knits.hpp>
+#include <fibrant/compositions/textile/plies.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
 #include <fibrant/observe/linking.hpp>
@@ -351,6 +352,80 @@ TEST_CASE("yarns of a net clasp each other at every turn: two crossings, one abo
         CHECK(below == 2);
     }
     CHECK(refusal([&] { require_holding(meshes); }).empty());
+}
+
+/// Words of who is above along thread `name`: a for the thread, b for what it crosses.
+std::string thread_word(const Textile& textile, Index thread) {
+    std::vector<std::pair<double, char>> seen;
+    for (const Crossing& c : textile.crossings) {
+        if (c.above == thread) seen.emplace_back(c.at_above, 'a');
+        if (c.below == thread) seen.emplace_back(c.at_below, 'b');
+    }
+    std::sort(seen.begin(), seen.end());
+    std::string word;
+    for (const auto& [at, letter] : seen) word += letter;
+    return word;
+}
+
+TEST_CASE("stitched plies lie on each other, and threads are over all of them for a stitch and under all for the next") {
+    const double r = 0.05;
+    // Two plies at a right angle, 8 yarns along x and 12 along y: between two places where threads go through lie 3 yarns.
+    const StitchedPlies two{.angles_deg = {0.0, 90.0},
+                            .yarn_spacing = 0.3,
+                            .length = 3.6,
+                            .width = 2.4,
+                            .stitch_length = 0.9,
+                            .row_spacing = 0.6,
+                            .yarn = yarn(r),
+                            .thread = yarn(0.6 * r)};
+    const Textile cloth = stitched(two);
+    REQUIRE(cloth.paths.size() == 8 + 12 + 3);
+    CHECK(core::count(cloth.crossings) == 8 * 12 + 3 * 12);
+    for (const Crossing& c : cloth.crossings)
+        if (c.above < 20 && c.below < 20) CHECK((c.above >= 8 && c.below < 8));
+    CHECK(thread_word(cloth, 20) == "aaabbbaaabbb");
+    CHECK(thread_word(cloth, 21) == "bbbaaabbbaaa");
+    CHECK(refusal([&] { validate(cloth); }).empty());
+    CHECK(refusal([&] { require_holding(cloth); }).empty());
+    for (Index p = 20; p < 23; ++p)  // nothing lies in a thread
+        for (Index q = 0; q < 20; ++q)
+            for (Index k = 0; k <= 400; ++k) {
+                const Vec3 at = cloth.paths[core::at(p)].curve(static_cast<double>(k) / 400.0),
+                           from = cloth.paths[core::at(q)].curve(0.0), chord = cloth.paths[core::at(q)].curve(1.0) - from;
+                if ((at - from).cross(chord).norm() / chord.norm() < 1.6 * r * 0.98) FAIL_CHECK("thread ", p, " in yarn ", q);
+            }
+    // Slanted plies: lines of 45 degrees meet the places at whole multiples of their spacing.
+    StitchedPlies slanted = two;
+    slanted.angles_deg = {45.0, -45.0}, slanted.stitch_length = 0.6 * std::sqrt(2.0),
+    slanted.row_spacing = 0.6 * std::sqrt(2.0);
+    const Textile biaxial = stitched(slanted);
+    CHECK(refusal([&] { require_holding(biaxial); }).empty());
+    for (const Crossing& c : biaxial.crossings) {
+        const Index a = biaxial.paths[core::at(c.above)].family, b = biaxial.paths[core::at(c.below)].family;
+        CHECK((a == 2 || b == 2 || a > b));
+    }
+    slanted.row_spacing = 0.7;
+    CHECK(refusal([&] { stitched(slanted); }).find("from a yarn of ply 0 where it goes through, at x = ") != std::string::npos);
+    slanted.yarn_spacing = 0.1;
+    CHECK(refusal([&] { stitched(slanted); }).find("StitchedPlies.yarn_spacing = 0.1, but it must be >= 0.16") == 0);
+}
+
+TEST_CASE("loops, ends and rings that do not reach each other, or reach too far, are refused before work") {
+    const double r = 0.05;
+    WeftKnit knit{
+        .courses = 3, .wales = 3, .wale_spacing = 12.0 * r, .course_spacing = 9.0 * r, .loop_height = 4.6 * r, .type = yarn(r)};
+    CHECK(refusal([&] { weft_knit(knit); }).find("crossings, but it must be 24: four of each loop with that above it") !=
+          std::string::npos);
+    Tricot warp{.needles = 4,
+                .courses = 4,
+                .needle_spacing = 20.0 * r,
+                .course_spacing = 16.0 * r,
+                .loop_height = 40.0 * r,
+                .type = yarn(r)};
+    CHECK(refusal([&] { tricot(warp); }).find("crossings, but it must be 36: four of each loop") != std::string::npos);
+    CHECK(refusal([&] {
+              chain_mail({.rows = 2, .columns = 2, .ring_radius = 1.0, .pitch = 4.5, .row_pitch = 1.9, .type = yarn(r)});
+          }).find("links of yarn 0 'ring 0.0' with yarn 2 'ring 1.0' = 0, but it must be 1 or -1") != std::string::npos);
 }
 
 }  // namespace textile_generators_test

@@ -283,4 +283,14 @@ inline CrossingAudit audit_crossings(std::vector<Crossing> asked, std::vector<Cr
     return audit;
 }
 
+/// Refuses a textile that crosses itself more or less often than its generator says: loops that do not reach each other hold nothing,
+/// and those that reach too far lie in their neighbours.
+/// @param fields  that the crossings follow from
+/// @param why     so many
+/// @throws std::invalid_argument
+inline void require_crossings(const Textile& textile, Index asked, const std::string& fields, const std::string& why) {
+    const Index found = core::count(textile.crossings);
+    if (found != asked) core::refuse(fields, std::to_string(found) + " crossings", std::to_string(asked) + ": " + why);
+}
+
 }  // namespace fibrant::compositions::textile

@@ -104,6 +104,8 @@ inline Textile weft_knit(const WeftKnit& knit) {
         textile.paths.push_back(std::move(path));
     }
     textile.crossings = crossings_of(textile);
+    require_crossings(textile, 4 * knit.wales * (knit.courses - 1), "WeftKnit.wale_spacing, course_spacing, loop_height, bulge",
+                      "four of each loop with that above it");
     return textile;
 }
 
@@ -166,6 +168,8 @@ inline Textile tricot(const Tricot& knit) {
         textile.paths.push_back(std::move(path));
     }
     textile.crossings = crossings_of(textile);
+    require_crossings(textile, 4 * (knit.needles - 1) * (knit.courses - 1), "Tricot.needle_spacing, course_spacing, loop_height",
+                      "four of each loop with that drawn through it");
     return textile;
 }
 

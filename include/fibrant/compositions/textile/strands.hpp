@@ -3,6 +3,7 @@
 /// @file Plied yarns, ropes, rings of chain mail and nets.
 
 #include <fibrant/compositions/textile/interlaced.hpp>
+#include <fibrant/observe/linking.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -125,6 +126,18 @@ inline Textile chain_mail(const ChainMail& mail) {
             };
             textile.paths.push_back(std::move(path));
         }
+    const std::vector<Line> lines = lines_of(textile);
+    for (Index j = 0; j + 1 < mail.rows; ++j)
+        for (Index i = 0; i < mail.columns; ++i)
+            for (const Index k : {i + (j % 2 == 0 ? -1 : 0), i + (j % 2 == 0 ? 0 : 1)}) {
+                if (k < 0 || k >= mail.columns) continue;
+                const Index one = i + mail.columns * j, two = k + mail.columns * (j + 1);
+                const Index links = observe::linking_number(lines[core::at(one)].points, lines[core::at(two)].points);
+                if (links * links != 1)
+                    core::refuse("ChainMail.ring_radius, pitch, row_pitch, tilt_deg: links of " + textile.label(one) + " with " +
+                                     textile.label(two),
+                                 std::to_string(links), "1 or -1, or the rings come apart");
+            }
     return textile;
 }
 

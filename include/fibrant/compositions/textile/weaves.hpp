@@ -213,6 +213,8 @@ inline Textile leno(const LenoWeave& weave) {
         textile.paths.push_back(std::move(path));
     }
     textile.crossings = crossings_of(textile);
+    require_crossings(textile, weave.pairs * (3 * weave.picks - 1), "LenoWeave.pick_spacing, pair_spacing, aside",
+                      "two of each pair of ends with a weft, and one between two wefts");
     return textile;
 }
 

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file A load case of the settled textile: its programme, its curve, and what it comes to.
+
+#include "../support/example.hpp"
+#include "scene_file.hpp"
+
+#include <fibrant/compositions/textile/audit.hpp>
+#include <fibrant/compositions/textile/load_cases.hpp>
+#include <fibrant/observe/svg_curves.hpp>
+#include <fibrant/simulation/programme.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace textile {
+
+namespace observe = fibrant::observe;
+
+/// Lets the sample come to rest in its grips, and takes it to the amount and, in cycles, back.
+inline fibrant::simulation::LoadProgramme programme_of(const Scene& scene, const cloth::Assembled& assembled) {
+    namespace simulation = fibrant::simulation;
+    const double r = scene.textile.smallest_radius(), allowed = scene.settle.allowed_penetration_over_radius * r;
+    const simulation::SettlingScales scales = cloth::scales_of(scene.textile, assembled);
+    simulation::LoadProgramme programme;
+    programme.damping = scales.slack;
+    programme.rest_motion = scene.settle.rest_motion_over_radius * r, programme.rest_share = scene.settle.rest_share;
+    programme.rest_penetration = 2.0 * allowed;
+    programme.largest_displacement = r, programme.calm = 0.15 * r;  // a fabric's, by trial
+    programme.reversible_displacement = simulation::reversible_displacement(r, scene.settle.friction_coefficient, allowed);
+    simulation::ProgrammeStage grip, load;
+    grip.name = "grip", grip.increments = 1, grip.rest = true, grip.damping = scene.load.rest_damping,
+    grip.friction = scene.settle.friction_coefficient;
+    load.name = "load", load.increments = scene.load.increments, load.cycles = scene.load.cycles,
+    load.damping = scene.load.damping;
+    load.ramps = {{cloth::load_channel, 1.0, false}};
+    programme.stages = {grip, load};
+    return programme;
+}
+
+/// Runs it in the folder "loading" of the results.
+/// @returns what summary.json is told, and whether it is sound
+template <class Model>
+std::pair<fibrant::observe::JsonObject, bool> run_load_case(const example::Output& whole, const Scene& scene,
+                                                            const cloth::Assembled& assembled,
+                                                            const fibrant::simulation::Simulator<Model>& settled_by) {
+    namespace simulation = fibrant::simulation;
+    const observe::Snapshot settled = settled_by.snapshot();
+    const double radius = scene.textile.smallest_radius();
+    const cloth::LoadCase load = cloth::load_case(scene.textile, assembled, settled, settled_by.state(), scene.load.parameters);
+    auto parameters = cloth::model_parameters<Model>(scene.textile, scene.settle);
+    parameters.solver.strategy = scene.linear_solver;
+    simulation::Simulator<Model> simulator(load.assembly, parameters);
+    simulator.start_from(whole.checkpoint());
+    example::Output output = whole;
+    output.folder = whole.folder / "loading";
+    output.resume = false;  // it begins at the settled state, which a run that resumes has
+    std::filesystem::create_directories(output.folder);
+    std::vector<std::pair<double, double>> forth;
+    const auto names = cloth::figure_names(load.parameters.name);
+    double stretch = 0.0;
+    example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
+        const cloth::LoadFigures figures = cloth::load_figures(load, simulator);
+        const double amplitude = simulator.amplitude(cloth::load_channel);
+        if (amplitude == 0.0 && stretch == 0.0) forth.clear();  // at rest in the grips, and not on the way there
+        if (forth.empty() || amplitude > stretch) forth.emplace_back(figures.measure, figures.effort), stretch = amplitude;
+        return {{"load", amplitude}, {names.first, figures.measure}, {names.second, figures.effort}};
+    });
+    simulation::Loading<Model> loading = simulation::loading_of<Model>(programme_of(scene, assembled));
+    output.tell(loading, 20.0);
+    const simulation::Report report = simulator.run(loading, recorder);
+    const observe::Snapshot after = simulator.snapshot();
+    const simulation::Audit audit = example::audit(output, simulator, radius);
+    const cloth::TopologyAudit topology =
+        cloth::audit_topology(scene.textile, assembled, cloth::lines_of(settled), cloth::lines_of(after));
+    std::vector<std::pair<double, double>> curve = forth;
+    if (load.parameters.name == "compaction")  // over the approach of the plates
+        for (auto& [x, y] : curve) x = load.length - x;
+    const cloth::CurveFit fit = cloth::fit_curve(curve, 3);
+    observe::JsonObject json;
+    json.add("case", load.parameters.name).add("length", load.length).add("width", load.width).add("thickness", load.thickness);
+    json.add("gripped_low", load.gripped[0]).add("gripped_high", load.gripped[1]);
+    json.add(names.first, curve.empty() ? 0.0 : forth.back().first).add(names.second, curve.empty() ? 0.0 : forth.back().second);
+    json.add("initial_stiffness", curve.empty() ? 0.0 : cloth::initial_slope(curve))
+        .add("fit", fit.coefficients)
+        .add("fit_misfit", fit.misfit);
+    // Since the sample was at rest in its grips: the account goes on from that of the settling.
+    simulation::EnergyBalance before = report.energy;
+    for (const simulation::IncrementReport& increment : report.increments) {
+        if (increment.stage != "grip") break;
+        before = increment.energy;
+    }
+    const double work = report.energy.external - before.external, damped = report.energy.damped - before.damped;
+    json.add("topology_clean", topology.clean())
+        .add("work", work)
+        .add("lost_to_friction", report.energy.dissipated - before.dissipated);
+    json.add("lost_to_damping", damped).add("missing_energy", report.energy.error() - before.error());
+    example::write_summary(output, report, audit, radius, {}, json);
+    if (output.pictures) {
+        observe::PlotLine line{names.second, forth};
+        observe::write_file(
+            output.folder / "curve.svg",
+            observe::curves_svg(
+                {.title = load.parameters.name, .x_label = names.first, .y_label = names.second, .lines = {line}}));
+    }
+    observe::write_file(output.folder / "centrelines.csv", fibrant::exchange::csv_of(cloth::curves_of(after, assembled.path_of)));
+    return {json, report.converged && audit.clean() && topology.clean()};
+}
+
+}  // namespace textile

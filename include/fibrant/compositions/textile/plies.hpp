@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file Layers of straight yarns in any directions, stitched through their thickness.
+
+#include <fibrant/compositions/textile/interlaced.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fibrant::compositions::textile {
+
+/// Plies of parallel yarns on each other, and threads that go along x, over all plies for a stitch and under all of them for the
+/// next.
+///
+/// Rows of stitches and the places where threads go through count from the middle of the sample, where no yarn lies: yarns of a
+/// ply are at odd multiples of half their spacing from it.
+struct StitchedPlies {
+    std::vector<double> angles_deg{};    ///< of the yarns of each ply to x, from the lowest ply up [degree]
+    double yarn_spacing = core::unset;   ///< of a ply, across its yarns [length], > 0
+    double length = core::unset;         ///< of the sample along x [length], > 0
+    double width = core::unset;          ///< and along y [length], > 0
+    double stitch_length = core::unset;  ///< from one place where a thread goes through to the next [length], > 0
+    double row_spacing = core::unset;    ///< of neighbouring threads [length], > 0
+    YarnType yarn{}, thread{};
+
+    void validate() const {
+        if (angles_deg.empty()) core::refuse("StitchedPlies.angles_deg", "none", "at least one ply");
+        for (const double angle : angles_deg) core::require_finite("StitchedPlies.angles_deg", angle);
+        core::require_positive("StitchedPlies.length", length);
+        core::require_positive("StitchedPlies.width", width);
+        core::require_positive("StitchedPlies.stitch_length", stitch_length);
+        core::require_positive("StitchedPlies.row_spacing", row_spacing);
+        yarn.validate(), thread.validate();
+        const double room = 2.0 * (half_width(yarn) + half_width(thread));
+        core::require(std::isfinite(yarn_spacing) && yarn_spacing >= room, "StitchedPlies.yarn_spacing", yarn_spacing,
+                      ">= " + core::text(room) + ", for threads to pass between yarns");
+        core::require(length >= 2.0 * stitch_length, "StitchedPlies.length", length, ">= two stitches");
+        core::require(width >= row_spacing, "StitchedPlies.width", width, ">= row_spacing");
+    }
+    /// From one ply to the next: a twentieth more than their thickness [length].
+    double pitch() const { return 2.1 * half_width(yarn); }
+};
+
+/// Nothing overlaps. Each ply lies above those below it, and a thread above all plies or below all of them; neighbouring threads
+/// take turns. One crossing for each two lines of a view from above that meet.
+/// @throws std::invalid_argument naming ply, thread and distance, where a thread would go through a yarn
+inline Textile stitched(const StitchedPlies& plies) {
+    plies.validate();
+    Textile textile;
+    textile.name = "stitched plies";
+    textile.types = {plies.yarn, plies.thread};
+    const double s = plies.yarn_spacing, overhang = 0.75 * s, reach = half_width(plies.yarn) + half_width(plies.thread);
+    const auto half_extent = [&](int axis) { return 0.5 * (axis == 0 ? plies.length : plies.width); };
+    const double middle = 0.5 * static_cast<double>(plies.angles_deg.size() - 1);
+    double steepest = 0.0;  // sine of the angle of yarns to the threads
+    for (std::size_t k = 0; k < plies.angles_deg.size(); ++k) {
+        const double angle = plies.angles_deg[k] * std::numbers::pi / 180.0,
+                     z = plies.pitch() * (static_cast<double>(k) - middle);
+        const Vec3 along(std::cos(angle), std::sin(angle), 0.0), across(-along.y(), along.x(), 0.0);
+        constexpr double none = 1e-9;  // sine below which a line is parallel to an edge
+        if (std::abs(along.y()) > none) steepest = std::max(steepest, std::abs(along.y()));
+        const auto most = static_cast<Index>(std::ceil(std::hypot(plies.length, plies.width) / s));
+        for (Index n = -most; n < most; ++n) {
+            const double d = s * (static_cast<double>(n) + 0.5);
+            double from = -std::numeric_limits<double>::infinity(), to = -from;
+            for (int axis = 0; axis < 2; ++axis) {
+                const double start = d * across[axis], half = half_extent(axis);
+                if (std::abs(along[axis]) <= none) {
+                    if (std::abs(start) > half) to = from;
+                    continue;
+                }
+                const double a = (-half - start) / along[axis], b = (half - start) / along[axis];
+                from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
+            }
+            if (!(to - from >= 2.0 * s)) continue;  // too short in a corner to be held by anything
+            Path path;
+            path.name = "ply " + std::to_string(k) + " yarn " + std::to_string(n + most);
+            path.family = static_cast<Index>(k), path.upward = Vec3::UnitZ();
+            const Vec3 first = d * across + (from - overhang) * along + z * Vec3::UnitZ();
+            const double size = to - from + 2.0 * overhang;
+            path.curve = [=](double t) { return Vec3(first + size * t * along); };
+            textile.paths.push_back(std::move(path));
+        }
+    }
+    const double high = plies.pitch() * middle + 1.05 * reach, size = plies.length + 2.0 * overhang;
+    const double turn = steepest > 0.0 ? 0.5 * s / steepest : 2.0 * high;  // half of the length in which a thread goes through
+    core::require(plies.stitch_length >= 2.0 * turn, "StitchedPlies.stitch_length", plies.stitch_length,
+                  ">= " + core::text(2.0 * turn) + ", for threads to come up again");
+    const auto rows = static_cast<Index>(std::floor(0.5 * plies.width / plies.row_spacing - 1e-9)),
+               stitches = static_cast<Index>(std::floor(0.5 * plies.length / plies.stitch_length - 1e-9));
+    for (Index row = -rows; row <= rows; ++row) {
+        const double y = plies.row_spacing * static_cast<double>(row);
+        const std::string name = "thread " + std::to_string(row + rows);
+        std::vector<std::pair<double, double>> knots;
+        double side = (row % 2 == 0) == (stitches % 2 == 0) ? 1.0 : -1.0;
+        for (Index m = -stitches; m <= stitches; ++m, side = -side) {
+            const double x = plies.stitch_length * static_cast<double>(m);
+            for (std::size_t k = 0; k < plies.angles_deg.size(); ++k) {
+                const double angle = plies.angles_deg[k] * std::numbers::pi / 180.0,
+                             d = -std::sin(angle) * x + std::cos(angle) * y;
+                const double off = std::abs(d / s - std::floor(d / s) - 0.5) * s;
+                core::require(off >= reach * (1.0 - 1e-9),
+                              "StitchedPlies.stitch_length, row_spacing: distance of " + name + " from a yarn of ply " +
+                                  std::to_string(k) + " where it goes through, at x = " + core::text(x),
+                              off, ">= " + core::text(reach) + ": the half thicknesses of both");
+            }
+            knots.emplace_back((x - turn + 0.5 * size) / size, side * high),
+                knots.emplace_back((x + turn + 0.5 * size) / size, -side * high);
+        }
+        Path path;
+        path.name = name, path.type = 1, path.family = core::count(plies.angles_deg), path.upward = Vec3::UnitZ();
+        path.curve =
+            detail::raised([=](double t) { return Vec3(size * (t - 0.5), y, 0.0); }, std::move(knots), false, textile.view);
+        textile.paths.push_back(std::move(path));
+    }
+    textile.crossings = crossings_of(textile);
+    return textile;
+}
+
+}  // namespace fibrant::compositions::textile
