@@ -2,6 +2,7 @@
 // A nest of fibres falls into a drum under its weight. Prints where its energy went.
 //   fall SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/program.hpp"
 #include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
@@ -21,6 +22,8 @@
 #include <string>
 
 using namespace fibrant;
+
+namespace {
 
 struct Nest {
     using Beam = beam::With<beam::RigidSectionRod, material::Damped<material::Elastic>>;
@@ -137,4 +140,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     return report.converged && audit.clean();
 }
 
-int main(int argc, char** argv) { return example::run(argc, argv, "fall", "Lets a nest of fibres fall into a drum.", solve); }
+}  // namespace
+
+example::Program fall_program() {
+    return {"fall", "Lets a nest of fibres fall into a drum.", solve};
+}
