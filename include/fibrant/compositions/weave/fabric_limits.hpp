@@ -42,8 +42,8 @@ inline std::vector<std::string> doubts(const FabricParameters& fabric) {
     const double nearly = 0.9, settles = 0.85;
     if (const double jam = jamming(fabric); jam > nearly) {
         const double diameter = 2.0 * std::max(fabric.warp.fibre_radius, fabric.weft.fibre_radius);
-        said.push_back("single fibres so close jam (" + core::text(jam) + " by Peirce's measure, 1 where round fibres jam): they are pressed" +
-                       " flat, or it does not settle; equal ones jam at a spacing of " + core::text(std::sqrt(3.0) * diameter) +
+        said.push_back("single fibres so close jam (" + core::text(jam) + " by Peirce's measure, 1 where round fibres jam): " +
+                       "they are pressed flat, or it does not settle; equal ones jam at a spacing of " + core::text(std::sqrt(3.0) * diameter) +
                        " and settle from " + core::text(std::sqrt(4.0 - settles * settles) * diameter) + " on");
     }
     for (const Family family : {Family::warp, Family::weft}) {
