@@ -67,8 +67,7 @@ struct Position {
         const bool damped = present.damping > 0.0 && damping < 1.0 / least_damping;
         if (progress < 1.0 || !damped) fraction *= 0.5;
         damping_floor = 2.0 * damping;
-        const double harder = attempts > 2 ? 16.0 : 4.0;  // what has failed three times is far from what it takes
-        damping = std::clamp(harder * damping, least_damping, 1.0 / least_damping);
+        damping = std::clamp(4.0 * damping, least_damping, 1.0 / least_damping);
     }
 
     /// An attempt has failed: the other way of finding places is tried before anything else is, once at a size of increment. Where that fails

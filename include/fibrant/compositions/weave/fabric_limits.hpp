@@ -38,9 +38,14 @@ inline double expected_crimp(const FabricParameters& fabric, Family family) {
 /// What is to be said before a fabric is settled: each a sentence with the figure, the bound and the remedy. Empty where nothing is in doubt.
 inline std::vector<std::string> doubts(const FabricParameters& fabric) {
     std::vector<std::string> said;
-    if (const double jam = jamming(fabric); jam > 1.0)
-        said.push_back("single fibres so close jam (" + core::text(jam) + " by Peirce's measure, 1 where round fibres jam): they are pressed flat, or it does not settle; equal ones need a spacing of " +
-                       core::text(std::sqrt(3.0) * 2.0 * std::max(fabric.warp.fibre_radius, fabric.weft.fibre_radius)));
+    // By trial: stiff fibres settle at 0.85, and do not at 0.97, where they would have to bend about a radius of their own size.
+    const double nearly = 0.9, settles = 0.85;
+    if (const double jam = jamming(fabric); jam > nearly) {
+        const double diameter = 2.0 * std::max(fabric.warp.fibre_radius, fabric.weft.fibre_radius);
+        said.push_back("single fibres so close jam (" + core::text(jam) + " by Peirce's measure, 1 where round fibres jam): " +
+                       "they are pressed flat, or it does not settle; equal ones jam at a spacing of " + core::text(std::sqrt(3.0) * diameter) +
+                       " and settle from " + core::text(std::sqrt(4.0 - settles * settles) * diameter) + " on");
+    }
     for (const Family family : {Family::warp, Family::weft}) {
         // Ends draw in by the crimp of half a fibre; a tow spreads by about a tenth while it parts from the others.
         const Family across = family == Family::warp ? Family::weft : Family::warp;
