@@ -29,6 +29,7 @@
 #include <fibrant/contact/section_gap.hpp>
 #include <fibrant/contact/seen_touch.hpp>
 #include <fibrant/contact/side_index.hpp>
+#include <fibrant/contact/slid_pair.hpp>
 #include <fibrant/contact/sliding_place.hpp>
 #include <fibrant/contact/station_pairs.hpp>
 #include <fibrant/contact/support.hpp>

@@ -5,8 +5,7 @@
 #include <fibrant/contact/closest_places.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
-#include <fibrant/contact/oval_place.hpp>
-#include <fibrant/contact/sliding_place.hpp>
+#include <fibrant/contact/slid_pair.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
 #include <fibrant/core/symmetric_eigen.hpp>
 
@@ -42,11 +41,6 @@ public:
     /// Crossings that are followed go on as one contact element until bent around each other so much that the angle between them is, but for
     /// this part of what it is elsewhere, that of fibres side by side [1].
     static double angle_share(const Zone& zone) noexcept { return zone.followed ? 0.2 : 1.0; }
-    /// Whether a section of two fibres is not round.
-    static bool oval(const beam::Mesh<B>& mesh, Index i, Index j) noexcept {
-        const auto not_round = [&](Index f) { return mesh.fibre(f).section.semi_axis_1 != mesh.fibre(f).section.semi_axis_2; };
-        return not_round(i) || not_round(j);
-    }
     /// Of a contact element, or of a pair of stations.
     static bool follows(const auto& pair, const Zone& zone) noexcept {
         return zone.followed && !zone.forced && pair.crossing && !pair.end_i && !pair.end_j;
@@ -100,7 +94,7 @@ public:
     void follow(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
         const Vec3 before = element.normal;
         if constexpr (beam::DeformableSections<B>) {
-            if (oval(mesh, element.fibre_i, element.fibre_j)) {
+            if (oval_pair(mesh, element.fibre_i, element.fibre_j)) {
                 Held& one = held_[core::at(element.place)];
                 if (!stand(mesh, element, one)) renew(mesh, state, element);
                 follow_oval(mesh, state, element.fibre_i, element.fibre_j, one.i, one.j, slide_of(mesh, zone, element.slide), element.u_i, element.u_j, element.normal);
@@ -153,7 +147,7 @@ public:
         one.plane = element.normal;
         if constexpr (beam::DeformableSections<B>) {
             if (!before.stands) return turn;
-            if (oval(mesh, i, j)) {
+            if (oval_pair(mesh, i, j)) {
                 const auto turned = [&](Index f, double u, double v, double around) {
                     const auto was = mean_directors(mesh, state, f, u, around), is = mean_directors(mesh, state, f, v, around);
                     return std::max(turn_between(was[0], is[0]), turn_between(was[1], is[1]));
@@ -201,32 +195,6 @@ private:
         return {Slide::along, {-std::sin(valley) / mesh.fibre(zone.span.fibre_i).element_length, std::cos(valley) / mesh.fibre(zone.span.fibre_j).element_length}};
     }
 
-    /// What two places are to each other.
-    struct Seen {
-        PairGeometry pair;
-        Eigen::Matrix2d closeness;  ///< second variation of their distance by both arc lengths, times it [1]
-        double gap;                 ///< [length]
-    };
-    /// The same of a pair of stations that slides to where it is closest.
-    /// @param normal  of sections that are not round; in: of the side that they are on
-    static Seen slid(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, const Slide& slide, StationPair& at, [[maybe_unused]] Vec3& normal) {
-        if constexpr (beam::DeformableSections<B>) {
-            if (oval(mesh, i, j)) {
-                Eigen::Matrix2d closeness;
-                double gap = 0.0;
-                for (int pass = 0; pass < 2; ++pass) {  // sections where the first one has led
-                    const OvalGap found = follow_oval(mesh, state, i, j, {at.u_i, Eigen::Vector2d::UnitX(), true}, {at.u_j, Eigen::Vector2d::UnitX(), true}, slide, at.u_i, at.u_j, normal);
-                    closeness = found.closeness, gap = found.gap;
-                }
-                return {pair_geometry(mesh, state, i, j, at.u_i, at.u_j), closeness, gap};
-            }
-        }
-        if (slide.kind == Slide::freely) follow_closest(mesh, state, i, j, at.u_i, at.u_j);
-        if (slide.kind == Slide::along) follow_along(mesh, state, i, j, slide, at.u_i, at.u_j);
-        const PairGeometry pair = pair_geometry(mesh, state, i, j, at.u_i, at.u_j);
-        return {pair, pair.closeness, pair.centres.norm() - (mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius())};
-    }
-
     /// Stations of one closest place. Where the fibres are nearly as close beside it, as fibres are that hang in each other at a slant or are bent around each
     /// other by a touching distance, they touch along a line: then there are stations along this valley too. These slide across it only, and stay where they are
     /// from one detection to the next, so that no contact hops; what touches in two places after it did in one does so on stations that were there before.
@@ -238,7 +206,7 @@ private:
         if (!known.empty()) middle.u_i = median(known, 0), middle.u_j = median(known, 1);
         const double touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
         Vec3 normal = unit_or(pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j).centres, Vec3::UnitZ());
-        Seen seen = slid(mesh, state, i, j, {Slide::nowhere, {}}, middle, normal);
+        SlidPair seen = slid(mesh, state, i, j, {Slide::nowhere, {}}, middle, normal);
         if (known.size() < 3 || least(seen.closeness) > held) seen = slid(mesh, state, i, j, {}, middle, normal);
         const PairGeometry& pair = seen.pair;
         const Eigen::Matrix2d& closeness = seen.closeness;
@@ -293,29 +261,32 @@ private:
                 }
             }
         };
-        if (least(closeness) < flat) {
+        // Wide faces are close beside a place without being bent, and would make stations that pass one reaction to and fro.
+        const bool not_round = oval_pair(mesh, i, j);
+        const double weak = not_round ? flat_of_ovals : flat, stuck = not_round ? -1e9 : held;
+        if (least(closeness) < weak) {
             const bool upright = std::abs(closeness(0, 1)) < square;
             const Eigen::Vector2d of_i(1.0, 0.0), of_j(0.0, 1.0);
             if (upright) {
-                const bool weak_i = closeness(0, 0) < flat, weak_j = closeness(1, 1) < flat;
+                const bool weak_i = closeness(0, 0) < weak, weak_j = closeness(1, 1) < weak;
                 if (weak_i) line(of_i, on_j);
                 if (weak_j) line(of_j, on_i);
-                const bool held_i = closeness(0, 0) < held, held_j = closeness(1, 1) < held;
-                middle.slide = held_i && held_j ? fixed : held_i ? on_j : held_j ? on_i : free;
+                const bool stuck_i = closeness(0, 0) < stuck, stuck_j = closeness(1, 1) < stuck;
+                middle.slide = stuck_i && stuck_j ? fixed : stuck_i ? on_j : stuck_j ? on_i : free;
             } else {
                 const core::SymmetricEigen<2> parts(closeness);
                 const Eigen::Vector2d way = parts.vectors().col(0);
                 const auto across = static_cast<std::int8_t>(across_valley + static_cast<int>(place));
                 zone.valleys[place] = std::atan2(way[1], way[0]);
                 line(way, across);
-                middle.slide = parts.values()[0] < held ? across : free;
+                middle.slide = parts.values()[0] < stuck ? across : free;
             }
         }
         pairs.push_back(middle);
     }
 
     bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before) const {
-        if (!beam::DeformableSections<B> && oval(mesh, zone.span.fibre_i, zone.span.fibre_j)) return false;  // centrelines say too little of where they touch
+        if (!beam::DeformableSections<B> && oval_pair(mesh, zone.span.fibre_i, zone.span.fibre_j)) return false;  // centrelines say too little of where they touch
         if (places_ != Places::as_needed || all_) return places_ != Places::renewed;
         return bend_around(mesh, state, zone.span) > loop - (before && before->followed ? hysteresis : 0.0) || clasped(mesh, state, zone.span);
     }
@@ -336,6 +307,7 @@ private:
     /// Second variation of the closest distance, over the distance, below which there are stations beside a place, and below which it does not slide
     /// along its valley. Hooks that are pulled apart at 30 to 90 degrees hold most often with these, of 0.02 to 0.1 and spacings of 0.25 to 0.5 [1].
     static constexpr double flat = 0.4, held = 0.05;
+    static constexpr double flat_of_ovals = 0.1;  ///< the same of sections that are not round
     static constexpr double spacing = valley_spacing, clear = 0.1;  ///< of stations in a valley, and gap beyond which there are none [touching distance]
     static constexpr double near_valley = 2.0;          ///< of a station that stays, across [touching distance]
     static constexpr int most_beside = 8;  ///< stations to each side that are placed whatever the zone; more of them as far as it goes
@@ -354,7 +326,7 @@ private:
         const Index i = element.fibre_i, j = element.fibre_j;
         const Slide slide = slide_of(mesh, zone, element.slide);
         if constexpr (beam::DeformableSections<B>)
-            if (oval(mesh, i, j)) {
+            if (oval_pair(mesh, i, j)) {
                 const OvalGap gap = oval_gap(mesh, pair_geometry(mesh, state, i, j, element.u_i, element.u_j), i, j, standing_directors(mesh, state, i, j, one.i, one.j), element.normal);
                 return oval_place(mesh, state, i, j, element.u_i, element.u_j, one.i, one.j, gap, slide);
             }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file The place of a crossing of fibres whose sections are not round, as a function of the state: the saddle point of their true gap.
+/// @file The place of a crossing of fibres whose sections are not round, as a function of the state: the saddle point of their
+/// true gap.
 
 #include <fibrant/contact/sliding_place.hpp>
 
@@ -11,16 +12,18 @@
 
 namespace fibrant::contact {
 
-/// A section that stands while a place slides, as the normal of a pair sees it. With c the components of the normal along the directors its half extent
-/// is h = |A c| / s, s the part of the normal that lies in the section: the surface of a fibre knows nothing of a normal that leans along it.
+/// A section that stands while a place slides, as the normal of a pair sees it. With c the components of the normal along the
+/// directors its half extent is h = |A c| / s, s the part of the normal that lies in the section: the surface of a fibre knows
+/// nothing of a normal that leans along it.
 struct SeenSection {
-    Vec3 out = Vec3::Zero();                         ///< normal of the section, unit
-    Eigen::Vector2d c, particle;                     ///< normal along the directors; material coordinates of the particle furthest along it [length]
+    Vec3 out = Vec3::Zero();  ///< normal of the section, unit
+    Eigen::Vector2d c;         ///< normal along the directors [1]
+    Eigen::Vector2d particle;  ///< material coordinates of the particle furthest along it [length]
     Eigen::Vector2d line = Eigen::Vector2d::Zero();  ///< of the part of the normal that lies in the section
-    Vec3 furthest, turning;                          ///< that particle from the centre [length]; how c turns in the section with the normal [1]
+    Vec3 furthest, turning;  ///< that particle from the centre [length]; how c turns in the section with the normal [1]
     std::array<Vec3, 2> reciprocal{Vec3::Zero(), Vec3::Zero()};
-    double size = 0.0, bend = 0.0;                   ///< |A c|, a^2 b^2 / |A c|^3 [length]
-    double tilt = 0.0, lengthened = 1.0;             ///< cosine of `out` and the normal; 1 / s [1]
+    double size = 0.0, bend = 0.0;        ///< |A c|, a^2 b^2 / |A c|^3 [length]
+    double tilt = 0.0, lengthened = 1.0;  ///< cosine of `out` and the normal; 1 / s [1]
 
     SeenSection(const std::array<Vec3, 2>& directors, const scene::CrossSection& section, const Vec3& normal) noexcept {
         const double a = section.semi_axis_1, b = section.semi_axis_2;
@@ -37,13 +40,15 @@ struct SeenSection {
         line = {reciprocal[0].dot(normal), reciprocal[1].dot(normal)};
     }
     double extent() const noexcept { return size * lengthened; }
-    double leaning() const noexcept { return size * tilt * lengthened * lengthened * lengthened; }  ///< slope of the extent by the tilt [length]
-    Vec3 slope() const noexcept { return lengthened * furthest + leaning() * out; }                 ///< and by the normal [length]
+    /// Slope of the extent by the tilt [length].
+    double leaning() const noexcept { return size * tilt * lengthened * lengthened * lengthened; }
+    Vec3 slope() const noexcept { return lengthened * furthest + leaning() * out; }  ///< of the extent by the normal [length]
 };
 
-/// Second derivative of a section's extent by eight numbers: normal along two directions e and f across it, motion of the furthest particle along e, f and the
-/// normal, turn of the section's components of the normal in its plane, and motion of its material out of it, by both directors (2). What the section's normal
-/// turns of second order is left out, of a normal that leans only.
+/// Second derivative of a section's extent by eight numbers: normal along two directions e and f across it, motion of the
+/// furthest particle along e, f and the normal, turn of the section's components of the normal in its plane, and motion of its
+/// material out of it, by both directors (2). What the section's normal turns of second order is left out, of a normal that
+/// leans only.
 using ExtentBending = Eigen::Matrix<double, 8, 8>;
 inline ExtentBending extent_bending(const SeenSection& seen, const Vec3& e, const Vec3& f) noexcept {
     using Form = Eigen::Matrix<double, 8, 1>;
@@ -58,7 +63,8 @@ inline ExtentBending extent_bending(const SeenSection& seen, const Vec3& e, cons
     Form turning = along(seen.turning), tilting = along(seen.out), size = along(seen.furthest);
     turning[turn] += 1.0, tilting[out_1] -= seen.line[0], tilting[out_2] -= seen.line[1], size[press_n] += 1.0;
     ExtentBending sum = one * seen.bend * turning * turning.transpose();
-    sum += tau * cube * (size * tilting.transpose() + tilting * size.transpose()) + seen.size * (cube + 3.0 * tau * tau * fifth) * tilting * tilting.transpose();
+    sum += tau * cube * (size * tilting.transpose() + tilting * size.transpose()) +
+           seen.size * (cube + 3.0 * tau * tau * fifth) * tilting * tilting.transpose();
     for (const auto& [normal, press] : {std::pair<Index, Index>{by_e, press_e}, {by_f, press_f}}) {
         sum(normal, press) += one, sum(press, normal) += one;
         sum(normal, normal) -= one * seen.size + seen.size * tau * tau * cube;
@@ -71,20 +77,27 @@ inline ExtentBending extent_bending(const SeenSection& seen, const Vec3& e, cons
     return sum;
 }
 
-/// Gap of two fibres at two places along a normal, G = n . (x_j - x_i) - h_i(n) - h_j(n), and its derivatives by both and by arc lengths.
+/// Gap of two fibres at two places along a normal, G = n . (x_j - x_i) - h_i(n) - h_j(n), and its derivatives by both and by
+/// arc lengths.
 struct OvalGap {
-    Vec3 normal, e, f;           ///< unit, across each other
+    Vec3 normal, e, f;  ///< unit, across each other
     SeenSection i, j;
     ExtentBending bending_i, bending_j;
-    double gap, distance;        ///< G; n . (x_j - x_i), at least a part of both extents [length]
-    Eigen::Vector2d by_normal;   ///< along e and f [length]
-    Eigen::Matrix2d flat;        ///< minus the second derivative by the normal, positive [length]
-    Eigen::Vector2d by_arc;      ///< [1]
-    Eigen::Matrix2d mixed;       ///< by the normal, and by both arc lengths [1]
-    Eigen::Matrix2d closeness;   ///< second derivatives by both arc lengths with the normal turning, times the distance [1]
+    double gap, distance;       ///< G; n . (x_j - x_i), at least a part of both extents [length]
+    Eigen::Vector2d by_normal;  ///< along e and f [length]
+    Eigen::Matrix2d flat;       ///< minus the second derivative by the normal, positive [length]
+    Eigen::Vector2d by_arc;     ///< [1]
+    Eigen::Matrix2d mixed;      ///< by the normal, and by both arc lengths [1]
+    Eigen::Matrix2d closeness;  ///< second derivatives by both arc lengths with the normal turning, times the distance [1]
 
     OvalGap(const PairGeometry& pair, const SeenSection& of_i, const SeenSection& of_j, const Vec3& n) noexcept
-        : normal{n}, e{n.unitOrthogonal()}, f{n.cross(e)}, i{of_i}, j{of_j}, bending_i{extent_bending(i, e, f)}, bending_j{extent_bending(j, e, f)} {
+        : normal{n},
+          e{n.unitOrthogonal()},
+          f{n.cross(e)},
+          i{of_i},
+          j{of_j},
+          bending_i{extent_bending(i, e, f)},
+          bending_j{extent_bending(j, e, f)} {
         const double along = pair.centres.dot(n);
         gap = along - i.extent() - j.extent();
         distance = std::max(along, 0.1 * (i.extent() + j.extent()));
@@ -100,10 +113,11 @@ struct OvalGap {
 };
 
 template <class B>
-PatchSide<B> oval_side(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, const StandingSection& section_at, double half, double speed,
-                       const SeenSection& seen, const Vec3& normal) noexcept {
+PatchSide<B> oval_side(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, const StandingSection& section_at,
+                       double half, double speed, const SeenSection& seen, const Vec3& normal) noexcept {
     return line_side(mesh, state, fibre, u, section_at, half, speed, [&](PatchSide<B>& side, const auto& g_1, const auto& g_2) {
-        side.extent = seen.extent(), side.across = side.aside = normal, side.out = seen.out, side.lengthened = seen.lengthened, side.tilt = seen.leaning();
+        side.extent = seen.extent(), side.across = side.aside = normal, side.out = seen.out, side.lengthened = seen.lengthened,
+        side.tilt = seen.leaning();
         for (std::size_t a = 0; a < side.count; ++a) {
             side.press[a] = seen.lengthened * (seen.particle[0] * g_1[a] + seen.particle[1] * g_2[a]);
             side.beside[a] = seen.c[0] * g_2[a] - seen.c[1] * g_1[a];
@@ -115,20 +129,24 @@ PatchSide<B> oval_side(const beam::Mesh<B>& mesh, const Vector& state, Index fib
 
 /// Means of the directors of both sections that stand.
 template <class B>
-std::array<std::array<Vec3, 2>, 2> standing_directors(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, const StandingSection& at_i,
-                                                      const StandingSection& at_j) noexcept {
-    return {mean_directors(mesh, state, i, at_i.u, half_of_patch(mesh, i, j, i)), mean_directors(mesh, state, j, at_j.u, half_of_patch(mesh, i, j, j))};
+std::array<std::array<Vec3, 2>, 2> standing_directors(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j,
+                                                      const StandingSection& at_i, const StandingSection& at_j) noexcept {
+    return {mean_directors(mesh, state, i, at_i.u, half_of_patch(mesh, i, j, i)),
+            mean_directors(mesh, state, j, at_j.u, half_of_patch(mesh, i, j, j))};
 }
 template <class B>
-OvalGap oval_gap(const beam::Mesh<B>& mesh, const PairGeometry& pair, Index i, Index j, const std::array<std::array<Vec3, 2>, 2>& directors, const Vec3& normal) noexcept {
-    return {pair, SeenSection(directors[0], mesh.fibre(i).section, normal), SeenSection(directors[1], mesh.fibre(j).section, normal), normal};
+OvalGap oval_gap(const beam::Mesh<B>& mesh, const PairGeometry& pair, Index i, Index j,
+                 const std::array<std::array<Vec3, 2>, 2>& directors, const Vec3& normal) noexcept {
+    return {pair, SeenSection(directors[0], mesh.fibre(i).section, normal),
+            SeenSection(directors[1], mesh.fibre(j).section, normal), normal};
 }
 
-/// Moves a pair of places to where the gap is least along its fibres, as far as they may slide, and greatest among normals, from nearby, by Newton's method.
+/// Moves a pair of places to where the gap is least along its fibres, as far as they may slide, and greatest among normals,
+/// from nearby, by Newton's method.
 /// @param normal  from i to j; in: of the side that they are on
 template <class B>
-OvalGap follow_oval(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, const StandingSection& at_i, const StandingSection& at_j, const Slide& slide,
-                    double& u_i, double& u_j, Vec3& normal) noexcept {
+OvalGap follow_oval(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, const StandingSection& at_i,
+                    const StandingSection& at_j, const Slide& slide, double& u_i, double& u_j, Vec3& normal) noexcept {
     const auto directors = standing_directors(mesh, state, i, j, at_i, at_j);
     const auto [low_i, high_i] = mesh.bounds(i);
     const auto [low_j, high_j] = mesh.bounds(j);
@@ -146,7 +164,8 @@ OvalGap follow_oval(const beam::Mesh<B>& mesh, const Vector& state, Index i, Ind
         normal = (normal + turn[0] * gap.e + turn[1] * gap.f).normalized();
         step[0] /= pair.speed_i, step[1] /= pair.speed_j;
         const double largest = std::max(std::abs(step[0]), std::abs(step[1]));
-        step *= std::min(largest > most_step ? most_step / largest : 1.0, iteration > 8 ? 0.5 : 1.0);  // bends jump where a patch comes to another element
+        step *= std::min(largest > most_step ? most_step / largest : 1.0,
+                         iteration > 8 ? 0.5 : 1.0);  // bends jump where a patch comes to another element
         u_i = std::clamp(u_i + step[0], low_i, high_i), u_j = std::clamp(u_j + step[1], low_j, high_j);
         pair = pair_geometry(mesh, state, i, j, u_i, u_j);
         if (largest < 1e-11 && turn.norm() < 1e-11) break;
@@ -157,13 +176,15 @@ OvalGap follow_oval(const beam::Mesh<B>& mesh, const Vector& state, Index i, Ind
 
 /// A followed crossing of sections that are not round.
 ///
-/// By the theorem of the envelope its force is that of the particles that are furthest along the normal. The gap's second derivative is that with places and normal
-/// held, less what both take: with y these four and q the state, G_qq - G_qy G_yy^-1 G_yq. It is a form of sixteen numbers: the motion of centre j less that of
-/// centre i across the normal (2), the turns of both tangents towards it (2), and of each section six of those of extent_bending.
+/// By the theorem of the envelope its force is that of the particles that are furthest along the normal. The gap's second
+/// derivative is that with places and normal held, less what both take: with y these four and q the state, G_qq - G_qy G_yy^-1
+/// G_yq. It is a form of sixteen numbers: the motion of centre j less that of centre i across the normal (2), the turns of both
+/// tangents towards it (2), and of each section six of those of extent_bending.
 /// @param gap  of follow_oval
 template <class B>
-SlidingPlace<B> oval_place(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, double u_i, double u_j, const StandingSection& at_i, const StandingSection& at_j,
-                           const OvalGap& gap, const Slide& slide) noexcept {
+SlidingPlace<B> oval_place(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, double u_i, double u_j,
+                           const StandingSection& at_i, const StandingSection& at_j, const OvalGap& gap,
+                           const Slide& slide) noexcept {
     const PairGeometry pair = pair_geometry(mesh, state, i, j, u_i, u_j);
     SlidingPlace<B> place;
     place.oval = true, place.gap = gap.gap, place.distance = gap.distance;
@@ -182,14 +203,16 @@ SlidingPlace<B> oval_place(const beam::Mesh<B>& mesh, const Vector& state, Index
     place.bending += by_normal.transpose() * flatter * by_normal;
     const bool held_i = u_i <= mesh.bounds(i).first || u_i >= mesh.bounds(i).second;  // at an end
     const bool held_j = u_j <= mesh.bounds(j).first || u_j >= mesh.bounds(j).second;
-    if (!held_i && !held_j) place.bending -= gap.distance * by_arc.transpose() * slide.slack(pair, gap.closeness, least_closeness) * by_arc;
+    if (!held_i && !held_j)
+        place.bending -= gap.distance * by_arc.transpose() * slide.slack(pair, gap.closeness, least_closeness) * by_arc;
     return place;
 }
 
 /// Its stiffness.
 /// @param positive  without the negative part of what the curvature of the gap makes of the reaction
 template <class B>
-SlidingStiffness oval_stiffness(const SlidingPlace<B>& place, const Vec3& normal, double reaction, double slope, bool positive) {
+SlidingStiffness oval_stiffness(const SlidingPlace<B>& place, const Vec3& normal, double reaction, double slope,
+                                bool positive) {
     const Vec3 e = normal.unitOrthogonal(), f = normal.cross(e);
     SlidingStiffness sum{{}, Matrix::Zero(17, 3 * static_cast<Index>(place.i.count + place.j.count)), Matrix::Zero(17, 17)};
     for (const double sign : {-1.0, 1.0}) {
@@ -203,7 +226,8 @@ SlidingStiffness oval_stiffness(const SlidingPlace<B>& place, const Vec3& normal
             row(1, sign * side.place[a] * e), row(2, sign * side.place[a] * f);
             row(turn, side.slope[a] * normal);
             const double press = side.press[a] / side.lengthened;
-            row(section, press * e), row(section + 1, press * f), row(section + 2, press * normal), row(section + 3, side.beside[a] * normal);
+            row(section, press * e), row(section + 1, press * f), row(section + 2, press * normal),
+                row(section + 3, side.beside[a] * normal);
             row(section + 4, side.directors[0][a] * side.out), row(section + 5, side.directors[1][a] * side.out);
         }
     }
