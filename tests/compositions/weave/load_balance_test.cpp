@@ -101,8 +101,8 @@ struct Bundles {
 /// @param damped     some bodies are free where nothing holds them
 /// @param tows       of each family
 /// @param outer      stretch of the outermost warp tows at the start, over that of all
-Bundles bundles(const std::string& name, const std::vector<simulation::Ramp>& ramps, Index increments, double stretched = 1.0, bool damped = false,
-                Index tows = 2, double outer = 1.0) {
+Bundles bundles(const std::string& name, const std::vector<simulation::Ramp>& ramps, Index increments,
+                double stretched = 1.0, bool damped = false, Index tows = 2, double outer = 1.0) {
     cloth::FabricParameters fabric = test::small_fabric();
     fabric.warp_tows = fabric.weft_tows = tows;
     const std::string file = (std::filesystem::temp_directory_path() / "fibrant_bundles_test.bin").string();
@@ -166,7 +166,8 @@ TEST_CASE("bundles of straight fibres are drawn, sheared and bent by what their 
         const double tighter = 1.001, drawn_outer = stretch * tighter;
         const Bundles drawn = bundles("equibiaxial", {{cloth::strain_channel, strain}}, 1, 1.0, false, 4, tighter);
         const double outer = EA * 0.5 * (drawn_outer * drawn_outer - 1.0) * drawn_outer;
-        CHECK(drawn["inner_tow_force"] == test::near(tow, 2e-3));  // ends are drawn by the strain of the edge, which outer tows move out
+        // Ends are drawn by the strain of the edge, which outer tows move out.
+        CHECK(drawn["inner_tow_force"] == test::near(tow, 2e-3));
         CHECK(drawn["middle_tow_force"] == test::near(tow, 2e-3));
         CHECK(drawn["force"] == test::near(2.0 * tow + 2.0 * outer, 2e-3));
         CHECK(outer > 1.4 * tow);
