@@ -69,6 +69,10 @@ int main(int argc, char** argv) {
         return app.exit(error) == 0 ? 0 : 2;
     }
     try {
+        core::require_positive("--scale", clean.scale);
+        core::require_positive("--metre", metre);
+        core::require(clean.largest_turn_deg > 0.0 && clean.largest_turn_deg <= 180.0, "--largest-turn", clean.largest_turn_deg,
+                      "> 0 and <= 180");
         std::vector<exchange::FileCurve> curves = exchange::read_curves(input, clean);
         if (app.count("--radius") > 0) {
             core::require_positive("--radius", radius);
@@ -85,7 +89,14 @@ int main(int argc, char** argv) {
                     core::refuse("radius of curve " + std::to_string(c), "not given", "in the file, or --radius");
             if (kind == "vti" || kind == "raw") {
                 core::require_positive("--voxels", spacing);
-                const exchange::Voxels voxels = exchange::voxels_of(curves, exchange::grid_around(curves, spacing));
+                const exchange::VoxelGrid grid = [&] {
+                    try {
+                        return exchange::grid_around(curves, spacing);
+                    } catch (const std::invalid_argument& error) {
+                        core::refuse("--voxels", core::text(spacing), "larger: " + std::string(error.what()));
+                    }
+                }();
+                const exchange::Voxels voxels = exchange::voxels_of(curves, grid);
                 observe::write_file(name, kind == "vti" ? exchange::vti_of(voxels) : exchange::raw_of(voxels));
                 if (kind == "raw") observe::write_file(name + ".json", exchange::raw_head_of(voxels));
                 if (wanted)
