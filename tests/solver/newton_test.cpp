@@ -34,7 +34,7 @@ struct Bounded {
         Index node_count(Index) const { return 0; }
         const Fibre& fibre(Index) const { return only; }
     };
-    System own{{.chains = {{.nodes = 1, .vectors_per_node = 1}}, .kind = {scene::VectorKind::position}, .value = {Vec3::Zero()}, .length = {1.0}, .held = {}, .ties = {}, .motions = {}}, 0.0};
+    System own{{.chains = {{.nodes = 1, .vectors_per_node = 1}}, .kind = {scene::VectorKind::position}, .value = {Vec3::Zero()}, .length = {1.0}, .held = {}, .images = {}, .ties = {}, .motions = {}}, 0.0};
     Mesh fibres;
     Vector stiffness;
     const System& system() const { return own; }
