@@ -81,6 +81,10 @@ int main(int argc, char** argv) {
         return app.exit(error) == 0 ? 0 : 2;
     }
     try {
+        core::require_positive("--scale", clean.scale);
+        core::require_positive("--metre", metre);
+        core::require(clean.largest_turn_deg > 0.0 && clean.largest_turn_deg <= 180.0, "--largest-turn", clean.largest_turn_deg,
+                      "> 0 and <= 180");
         std::vector<exchange::FileCurve> curves = exchange::read_curves(input, clean);
         if (app.count("--radius") > 0) {
             core::require_positive("--radius", radius);
@@ -101,9 +105,15 @@ int main(int argc, char** argv) {
                     core::refuse("radius of curve " + std::to_string(c), "not given", "in the file, or --radius");
             if (cells && !voxels) {
                 core::require_positive("--voxels", spacing);
-                voxels = exchange::voxels_of(
-                    curves, box.empty() ? exchange::grid_around(curves, spacing)
-                                        : exchange::grid_in(Vec3(box[0], box[1], box[2]), Vec3(box[3], box[4], box[5]), spacing));
+                const auto grid = [&] {
+                    if (!box.empty()) return exchange::grid_in(Vec3(box[0], box[1], box[2]), Vec3(box[3], box[4], box[5]), spacing);
+                    try {
+                        return exchange::grid_around(curves, spacing);
+                    } catch (const std::invalid_argument& error) {
+                        core::refuse("--voxels", core::text(spacing), "larger: " + std::string(error.what()));
+                    }
+                };
+                voxels = exchange::voxels_of(curves, grid());
                 if (wanted)
                     std::printf(
                         "voxels: %td x %td x %td, fibre volume %.9g, of that %.3g in overlaps, fibre volume fraction %.6f\n",

@@ -145,7 +145,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
         wires, radius, lay_angle, alternate, lay == "equal_angle" ? strand::Lay::equal_angle : strand::Lay::equal_pitch);
     const double pitch = parameters.pitch(parameters.layers.size() - 1);
     file.check(pitch <= 1e5 * radius, "strand", "lay_angle_deg",
-               "larger: the outer layer goes round once on " + core::text(pitch) + ", and may on <= 100000 strand.radius = " + core::text(1e5 * radius));
+               "larger: the outer layer goes round once on " + core::text(pitch) +
+                   ", and may on <= 100000 strand.radius = " + core::text(1e5 * radius));
     parameters.material = material;
     parameters.length = length > 0.0 ? length : turns * pitch;
     // Sixteen a turn follow a helix; wires of opposite hands cross each other every two diameters, and hardly bend in between.

@@ -98,7 +98,8 @@ private:
     int file_ = -1;
 };
 
-/// Whether a run in the folder was ended before its first checkpoint: there is no summary, and no more than the first row of a table.
+/// Whether a run in the folder was ended before its first checkpoint: there is no summary, and no more than the first
+/// row of a table.
 inline bool hardly_begun(const std::filesystem::path& folder) {
     if (std::filesystem::exists(folder / "summary.json")) return false;
     for (const char* name : {"increments.csv", "levels.csv"}) {

@@ -210,7 +210,8 @@ Scene read_fabric(SceneReader& file, const More& more) {
     if (std::isnan(fabric.warp.material.poisson_ratio))
         file.refuse("material", "poisson_ratio", "given, here or as warp.poisson_ratio");
     const double unknowns = 9.0 * static_cast<double>(fabric.nodes());
-    const bool fine = std::max(fabric.elements, fabric.weft_elements) > 100, many = fabric.warp_tows > 100 || fabric.weft_tows > 100;
+    const bool fine = std::max(fabric.elements, fabric.weft_elements) > 100,
+               many = fabric.warp_tows > 100 || fabric.weft_tows > 100;
     const char* blamed = many ? fabric.warp_tows > fabric.weft_tows ? "warp_tows" : "weft_tows"
                          : fabric.weft_elements > fabric.elements ? "weft_elements"
                                                                   : "elements";
@@ -226,13 +227,15 @@ Scene read_fabric(SceneReader& file, const More& more) {
                                                    : "weft_spacing",
                    "<= 10000 radii of a " + std::string(section) + " fibre = " + fibrant::core::text(1e4 * r));
     }
-    // Springs hold the families by what each resists with: far from each other, one of them would be held by nothing or not at all.
+    // Springs hold the families by what each resists with: far from each other, one of them would be held by nothing or
+    // not at all.
     constexpr double most_stiff = 1e6;
     const double warp = fabric.warp.material.young_modulus, weft = fabric.weft.material.young_modulus;
     if (std::max(warp, weft) > most_stiff * std::min(warp, weft)) {
         const bool own = file.given("weft", "young_modulus"), softer = (own ? weft : warp) < (own ? warp : weft);
         file.refuse(own ? "weft" : "warp", "young_modulus",
-                    (softer ? ">= a millionth of " : "<= 1000000 times ") + std::string(own ? "that of the warp, " : "that of the weft, ") +
+                    (softer ? ">= a millionth of " : "<= 1000000 times ") +
+                        std::string(own ? "that of the warp, " : "that of the weft, ") +
                         fibrant::core::text(own ? warp : weft));
     }
     file.check(settle.allowed_penetration_over_radius <= settle.gap_limit_over_radius, "contact",

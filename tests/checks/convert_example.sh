@@ -68,4 +68,16 @@ case $text in
   *"wrong.csv:3: y = oops"*) ;;
   *) fail "the refusal does not name line and value: $text" ;;
 esac
+# Options that cannot be, by their own names.
+for option in "--scale=0" "--scale=nan" "--metre=-1" "--largest-turn=200" "--voxels=0" "--voxels=1e-9" "--radius=inf"; do
+  other=--voxels=0.05
+  [ "${option#--voxels}" = "$option" ] || other=--report
+  text=$("$program" "$out/given.csv" --output "$out/c.vti" "$other" "$option" 2>&1)
+  [ $? -eq 2 ] || fail "$option was not refused"
+  case $text in
+    *"${option%%=*} = ${option#*=}, but it must be"* | *"${option%%=*} = 1e-09, but it must be larger"*) ;;
+    *) fail "the refusal of $option does not name it: $text" ;;
+  esac
+  [ ! -e "$out/c.vti" ] || fail "$option left a file"
+done
 exit 0

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# A run that is killed and told to stop in turns, at times spread over its length, and resumed each time ends at the same bits as one that
-# is left alone: every increment but for its clock, and the picture of the end.
+# A run that is killed and told to stop in turns, at times spread over its length, and resumed each time ends at the same bits
+# as one that is left alone: every increment but for its clock, and the picture of the end.
 # usage: kills.sh <the program> <scene file> <scratch folder> <kills> [--set section.key=value]...
 program=$1
 scene=$2
@@ -43,7 +43,8 @@ while [ "$done" -lt "$kills" ]; do
   esac
   done=$((done + 1))
 done
-"$program" "$scene" --output "$out/parts" --quiet --resume "$@" 2> "$out/message" || fail "the last of its parts: status $?: $(cat "$out/message")"
+"$program" "$scene" --output "$out/parts" --quiet --resume "$@" 2> "$out/message" ||
+  fail "the last of its parts: status $?: $(cat "$out/message")"
 increments "$out/whole" > "$out/whole.txt"
 increments "$out/parts" > "$out/parts.txt"
 cmp "$out/whole.txt" "$out/parts.txt" || fail "other increments after $ended kills"

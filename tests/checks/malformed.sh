@@ -132,8 +132,8 @@ every_key() {
       print section "." key "|" substr($0, RSTART + 1, RLENGTH - 1)
     }'
 }
-# A section in capitals stands for those that the user names: the table says "stands: STAGE for NAME". One that the scene has no use
-# for is refused whole.
+# A section in capitals stands for those that the user names: the table says "stands: STAGE for NAME". One that the scene has no
+# use for is refused whole.
 section_known() {  # by the program in this scene
   case $("$program" "$scene" --output "$out/results" --quiet --set "$1.no_such_key=1" 2>&1) in
     *"$1.no_such_key = 1"*) ;;

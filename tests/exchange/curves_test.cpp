@@ -202,7 +202,8 @@ TEST_CASE("a tube that tapers is a frustum, and one around a knot is no more twi
     const std::size_t n = 200, sides = 8;
     for (std::size_t k = 0; k < n; ++k) {
         const double t = 2.0 * pi * static_cast<double>(k) / static_cast<double>(n);
-        trefoil.points.emplace_back(std::sin(t) + 2.0 * std::sin(2.0 * t), std::cos(t) - 2.0 * std::cos(2.0 * t), -std::sin(3.0 * t));
+        trefoil.points.emplace_back(std::sin(t) + 2.0 * std::sin(2.0 * t), std::cos(t) - 2.0 * std::cos(2.0 * t),
+                                    -std::sin(3.0 * t));
     }
     trefoil.radius = 0.3, trefoil.closed = true;
     Surface knot;
@@ -240,24 +241,30 @@ TEST_CASE("voxels hold the volume of fibres to a thousandth at half a radius, an
               1e-6);  // single precision
     }
     CHECK(sum * std::pow(0.05, 3) == test::near(fine.volume, 1e-6));
-    // Drawn twice it is too much wherever a cell is more than half full, and a cell is of the yarn that fills most of it.
+    // Drawn twice it is too much wherever a cell is more than half full, and a cell is of the yarn that fills most of
+    // it.
     const Voxels twice = voxels_of({slanted, slanted}, fine.grid);
     double excess = 0.0;
-    for (const float share : fine.share) excess += std::max(0.0, 2.0 * static_cast<double>(share) - 1.0) * std::pow(0.05, 3);
+    for (const float share : fine.share)
+        excess += std::max(0.0, 2.0 * static_cast<double>(share) - 1.0) * std::pow(0.05, 3);
     CHECK(twice.excess == test::near(excess, 1e-6));
     FileCurve thin = slanted;
     thin.radius = 0.05, thin.group = 3;
     for (const std::vector<FileCurve>& both : {std::vector{slanted, thin}, std::vector{thin, slanted}})
         CHECK(voxels_of(both, grid_around(both, 3.0), 40).yarn == std::vector<std::int32_t>{7});
-    CHECK((orientation_of({FileCurve{.points = {Vec3(0, 0, 0), Vec3(3, 0, 0)}, .radius = 2.0}, FileCurve{.points = {Vec3(0, 0, 0), Vec3(0, 4, 0)}, .radius = 1.0}}) -
-           Mat3(Vec3(0.75, 0.25, 0.0).asDiagonal())).norm() < 1e-15);  // by volume
-    // The middle of a cone is nearer to its thick end: (1 + 2 q + 3 q^2) / (1 + q + q^2) / 4 of the way, q = 3 times as thick there.
+    CHECK((orientation_of({FileCurve{.points = {Vec3(0, 0, 0), Vec3(3, 0, 0)}, .radius = 2.0},
+                           FileCurve{.points = {Vec3(0, 0, 0), Vec3(0, 4, 0)}, .radius = 1.0}}) -
+           Mat3(Vec3(0.75, 0.25, 0.0).asDiagonal()))
+              .norm() < 1e-15);  // by volume
+    // The middle of a cone is nearer to its thick end: (1 + 2 q + 3 q^2) / (1 + q + q^2) / 4 of the way, q = 3 times as
+    // thick there.
     FileCurve cone{{Vec3(0, 0, 0), Vec3(2, 0, 0)}};
     cone.radius = 0.3, cone.radii = {0.1, 0.3};
     const Voxels tapered = voxels_of({cone}, grid_around({cone}, 0.05));
     double middle = 0.0, filled = 0.0;
     for (std::size_t k = 0; k < tapered.share.size(); ++k) {
-        const double x = tapered.grid.origin.x() + 0.05 * (static_cast<double>(static_cast<Index>(k) % tapered.grid.counts[0]) + 0.5);
+        const double x = tapered.grid.origin.x() +
+                         0.05 * (static_cast<double>(static_cast<Index>(k) % tapered.grid.counts[0]) + 0.5);
         filled += static_cast<double>(tapered.share[k]), middle += static_cast<double>(tapered.share[k]) * x;
     }
     CHECK(middle / filled == test::near(2.0 * (1.0 + 6.0 + 27.0) / (1.0 + 3.0 + 9.0) / 4.0, 1e-3));

@@ -282,15 +282,23 @@ TEST_CASE("strengths are Weibull's, bending is weighed by flaws, and a bundle ho
     CHECK(law.response(section, e, memory, {}).stress[strain::e33] / (1e-6 * section.diagonal[strain::e33] * e[strain::e33]) == test::near(1.0));
 }
 
-TEST_CASE("a free fibre has the strains of its shape, what drives a held one does the work that it stores, and it breaks by what it is strained beyond") {
+TEST_CASE(
+    "a free fibre has the strains of its shape, what drives a held one does the work that it stores, and it breaks by "
+    "what it is strained beyond") {
     using Law = material::Eigenstrain<material::Brittle>;
-    const Law law({.base = {.strength = 1.0, .modulus = 5.0, .reference_length = 1.0}, .along = 0.02, .across = -0.01, .curvature_1 = 0.3, .curvature_2 = -0.2, .twist = 0.5});
+    const Law law({.base = {.strength = 1.0, .modulus = 5.0, .reference_length = 1.0},
+                   .along = 0.02,
+                   .across = -0.01,
+                   .curvature_1 = 0.3,
+                   .curvature_2 = -0.2,
+                   .twist = 0.5});
     const auto section = section_of(law, isotropic, flat_section);
     const double a = 0.7, l = 1.0 + 0.02 * a, m = 1.0 - 0.01 * a;
     const SectionStrains free = law.free(section, a);
     CHECK(free[strain::e33] == test::near(0.5 * (l * l - 1.0), 1e-12));
     // Widths count from those of a fibre that contracts as it is drawn.
-    for (const int c : {strain::e11, strain::e22}) CHECK(free[core::at(c)] - 0.3 * free[strain::e33] == test::near(0.5 * (m * m - 1.0), 1e-12));
+    for (const int c : {strain::e11, strain::e22})
+        CHECK(free[core::at(c)] - 0.3 * free[strain::e33] == test::near(0.5 * (m * m - 1.0), 1e-12));
     CHECK(free[strain::b1] == test::near(-l * m * a * 0.3, 1e-12));
     CHECK(free[strain::b2] == test::near(l * m * a * 0.2, 1e-12));
     CHECK(free[strain::c21] == test::near(m * m * a * 0.5, 1e-12));
@@ -304,7 +312,8 @@ TEST_CASE("a free fibre has the strains of its shape, what drives a held one doe
     CHECK(law.utilisation(section, drawn, held.history) == test::near(0.999, 1e-9));
     // Memories go over to other points in proportion.
     const auto mean = Law::History::between(held.history, {}, 0.25);
-    for (std::size_t c = 0; c < free.size(); ++c) CHECK(mean.stress[c] == test::near(0.75 * held.history.stress[c], 1e-12));
+    for (std::size_t c = 0; c < free.size(); ++c)
+        CHECK(mean.stress[c] == test::near(0.75 * held.history.stress[c], 1e-12));
     material::Viscoelastic<2>::History slow;
     slow.branch[1][strain::e33] = 0.4;
     CHECK(material::Viscoelastic<2>::History::between(slow, {}, 0.25).branch[1][strain::e33] == test::near(0.3, 1e-12));

@@ -34,7 +34,7 @@ struct Bounded {
         Index node_count(Index) const { return 0; }
         const Fibre& fibre(Index) const { return only; }
     };
-    System own{{.chains = {{.nodes = 1, .vectors_per_node = 1}}, .kind = {scene::VectorKind::position}, .value = {Vec3::Zero()}, .length = {1.0}, .held = {}, .ties = {}, .motions = {}}, 0.0};
+    System own{{.chains = {{.nodes = 1, .vectors_per_node = 1}}, .kind = {scene::VectorKind::position}, .value = {Vec3::Zero()}, .length = {1.0}, .held = {}, .images = {}, .ties = {}, .motions = {}}, 0.0};
     Mesh fibres;
     Vector stiffness;
     const System& system() const { return own; }
@@ -111,7 +111,9 @@ TEST_CASE("a step that ends where the energy rises is cut, and Newton's method g
     }
 }
 
-TEST_CASE("a step is cut until the energy rises at its end by no more than half of the slope at which it fell, and what was cut is no end") {
+TEST_CASE(
+    "a step is cut until the energy rises at its end by no more than half of the slope at which it fell, and what was "
+    "cut is no end") {
     const auto solved = [](Vector& x, double tolerance, Index limit) {
         Bounded problem;
         Untouched contacts;
@@ -173,7 +175,9 @@ struct Definite {
     }
 };
 
-TEST_CASE("an indefinite tangent is met without compression, then by shifts that are four times the last, and the next one begins a step below") {
+TEST_CASE(
+    "an indefinite tangent is met without compression, then by shifts that are four times the last, and the next one "
+    "begins a step below") {
     Wells problem;
     Untouched contacts;
     Definite linear{&problem};
@@ -183,7 +187,8 @@ TEST_CASE("an indefinite tangent is met without compression, then by shifts that
     solver::Newton<Wells, Untouched, Definite> newton(problem, contacts, linear, parameters, 1.0, clock);
     solver::IterationCounts counts;
     Vector x = Vec3(0.1, 0.1, 0.1);
-    REQUIRE(newton.solve(x, 1e-4, x, std::numeric_limits<double>::infinity(), counts).status == solver::NewtonStatus::converged);
+    REQUIRE(newton.solve(x, 1e-4, x, std::numeric_limits<double>::infinity(), counts).status ==
+            solver::NewtonStatus::converged);
     CHECK((x - Vec3::Ones()).norm() < 1e-5);
     const std::vector<Wells::Asked>& first = problem.asked.front();
     REQUIRE(first.size() == 10);  // the tangent is -0.97 of the mean stiffness, and the last shift 1.64 of it

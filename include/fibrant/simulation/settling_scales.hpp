@@ -53,6 +53,16 @@ struct SettledFibre {
     double span = core::unset;     ///< from crossing to crossing [length], > 0
 };
 
+/// What a fibre of an assembly resists with: in bending about its softer axis.
+/// @param length  of it where the run begins [length], > 0
+/// @param span    from crossing to crossing [length], > 0
+/// @param pull    along it, at an amplitude of 1 [force], >= 0
+inline SettledFibre settled_fibre(const scene::FibreSpecification& fibre, double length, double span, double pull = 0.0) {
+    const double moment = std::min(fibre.section.second_moment_1(), fibre.section.second_moment_2());
+    return {fibre.section.radius(), pull, length / static_cast<double>(fibre.elements), fibre.material.young_modulus * moment,
+            span};
+}
+
 /// What a settling goes by.
 struct SettlingScales {
     double radius = core::unset;       ///< of the thinnest fibre [length], > 0
@@ -165,9 +175,7 @@ SettlingScales scales_of(const scene::Assembly& assembly, const Pull& pull, cons
     bool straightened = false;
     const double span = crossing_span(assembly, search);
     for (const scene::FibreSpecification& fibre : assembly.fibres()) {
-        const double moment = std::min(fibre.section.second_moment_1(), fibre.section.second_moment_2());
-        const double element = detail::start_length(fibre) / static_cast<double>(fibre.elements);
-        fibres.push_back({fibre.section.radius(), 0.0, element, fibre.material.young_modulus * moment, span});
+        fibres.push_back(settled_fibre(fibre, detail::start_length(fibre), span));
         straightened = straightened || fibre.start;
     }
     for (const scene::DeadForce& force : assembly.forces())

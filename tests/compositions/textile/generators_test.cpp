@@ -263,7 +263,8 @@ TEST_CASE(
         }
         CHECK(refusal([&] { validate(knit); }).empty());
         // The first course is held by its feet between wales, the last one by its heads.
-        for (const auto& [course, guides, y] : {std::tuple{std::size_t{0}, std::size_t{2}, -8.0 * r}, {std::size_t{3}, std::size_t{3}, 3.0 * 9.0 * r + 8.0 * r}}) {
+        for (const auto& [course, guides, y] : {std::tuple{std::size_t{0}, std::size_t{2}, -8.0 * r},
+                                                {std::size_t{3}, std::size_t{3}, 3.0 * 9.0 * r + 8.0 * r}}) {
             const Path& path = knit.paths[course];
             REQUIRE(path.guides.size() == guides);
             for (const auto& guide : path.guides) CHECK(std::abs(path.curve(guide.at).y() - y) < 0.05 * r);
@@ -305,12 +306,15 @@ TEST_CASE("plies lie on helices as long as their angle says, and do not touch") 
             least = std::min(least, (yarn3.paths[0].curve(static_cast<double>(k) / 400.0) -
                                      yarn3.paths[1].curve(static_cast<double>(l) / 400.0))
                                         .norm());
-    CHECK(least == test::near(1.05 * 2.0 * r, 0.02));  // the slack that is taken where none is given; ellipses are a little more than what touches
+    // The slack that is taken where none is given; ellipses are a little more than what touches.
+    CHECK(least == test::near(1.05 * 2.0 * r, 0.02));
     const Textile rope =
         plied({.plies = 3, .pitch = pitch, .strands = 3, .strand_pitch = 100.0 * r, .length = length, .type = yarn(r)});
     CHECK(core::count(rope.paths) == 9);
     // Strands go round the other way than their plies, and keep clear of each other.
-    const auto middle = [&](double t) { return Vec3((rope.paths[0].curve(t) + rope.paths[1].curve(t) + rope.paths[2].curve(t)) / 3.0); };
+    const auto middle = [&](double t) {
+        return Vec3((rope.paths[0].curve(t) + rope.paths[1].curve(t) + rope.paths[2].curve(t)) / 3.0);
+    };
     const auto turns = [](const Vec3& from, const Vec3& to) { return from.cross(to).z(); };
     CHECK(turns(middle(0.0), middle(0.01)) < 0.0);
     CHECK(turns(rope.paths[0].curve(0.0) - middle(0.0), rope.paths[0].curve(0.01) - middle(0.01)) > 0.0);

@@ -99,17 +99,24 @@ struct Bundles {
 
 /// @param stretched  of all fibres at the start
 /// @param damped     some bodies are free where nothing holds them
-Bundles bundles(const std::string& name, const std::vector<simulation::Ramp>& ramps, Index increments, double stretched = 1.0, bool damped = false) {
-    const cloth::FabricParameters fabric = test::small_fabric();
+/// @param tows       of each family
+/// @param outer      stretch of the outermost warp tows at the start, over that of all
+Bundles bundles(const std::string& name, const std::vector<simulation::Ramp>& ramps, Index increments,
+                double stretched = 1.0, bool damped = false, Index tows = 2, double outer = 1.0) {
+    cloth::FabricParameters fabric = test::small_fabric();
+    fabric.warp_tows = fabric.weft_tows = tows;
     const std::string file = (std::filesystem::temp_directory_path() / "fibrant_bundles_test.bin").string();
     scene::Assembly fibres;
     cloth::add_flat_fibres(fibres, fabric);
     const beam::Mesh<Loaded::Beam> mesh(fibres, Loaded::Beam(Loaded::Beam::Parameters{}));
     Vector state = mesh.rest_state();
     const Index weft = mesh.first_unknown(fabric.fibre(cloth::Family::weft, 0, 0), 0) / 3;
+    const auto first_of = [&](Index tow) { return mesh.first_unknown(fabric.fibre(cloth::Family::warp, tow, 0), 0) / 3; };
+    const Index inner = first_of(1), after = first_of(tows - 1);
     for (Index v = 0; v < state.size() / 3; ++v)
         if (mesh.layout().kind[core::at(v)] == scene::VectorKind::position) {
             state.segment<2>(3 * v) *= stretched;
+            if (v < inner || (v >= after && v < weft)) state[3 * v] *= outer;
             if (v >= weft) state[3 * v + 2] += 0.5;
         }
     simulation::write_state<Loaded>(file, mesh, {.state = state});
@@ -153,6 +160,17 @@ TEST_CASE("bundles of straight fibres are drawn, sheared and bent by what their 
         const double given = 2.0 * stored + (both ? 2.0 * stored : across * pull * L / 2.0);
         CHECK(drawn.energy.elastic == test::near(given, both ? 1e-6 : 1e-3));
         CHECK(drawn.energy.external == test::near(given, 2e-3));  // the trapezium's error, of two increments
+    }
+    {
+        // Outermost tows of a sample of four count for the edges, and not for what an inner tow carries.
+        const double tighter = 1.001, drawn_outer = stretch * tighter;
+        const Bundles drawn = bundles("equibiaxial", {{cloth::strain_channel, strain}}, 1, 1.0, false, 4, tighter);
+        const double outer = EA * 0.5 * (drawn_outer * drawn_outer - 1.0) * drawn_outer;
+        // Ends are drawn by the strain of the edge, which outer tows move out.
+        CHECK(drawn["inner_tow_force"] == test::near(tow, 2e-3));
+        CHECK(drawn["middle_tow_force"] == test::near(tow, 2e-3));
+        CHECK(drawn["force"] == test::near(2.0 * tow + 2.0 * outer, 2e-3));
+        CHECK(outer > 1.4 * tow);
     }
     {
         // Weft tows are strings between two bars: what shears them is their pull times the tangent of the angle.

@@ -30,12 +30,9 @@ inline simulation::SettlingScales scales_of(const Textile& textile, const Assemb
     for (std::size_t f = 0; f < assembled.path_of.size(); ++f) {
         const Path& path = textile.paths[core::at(assembled.path_of[f])];
         const scene::FibreSpecification& fibre = assembled.assembly.fibres()[f];
-        const double young_modulus = fibre.material.young_modulus;
         const bool pulled = path.kind == PathKind::open && path.ends == Ends::pulled;
-        const double element = scene::length_of(path.curve, 64) / static_cast<double>(fibre.elements);
-        const double pull = pulled ? path.tension_strain * young_modulus * fibre.section.area() : 0.0;
-        const double bending = young_modulus * fibre.section.second_moment_1();
-        fibres.push_back({fibre.section.radius(), pull, element, bending, assembled.longest_spacing});
+        const double pull = pulled ? path.tension_strain * fibre.material.young_modulus * fibre.section.area() : 0.0;
+        fibres.push_back(simulation::settled_fibre(fibre, scene::length_of(path.curve, 64), assembled.longest_spacing, pull));
     }
     simulation::SettlingScales scales = simulation::scales_of(fibres, false);
     scales.ordered = !assembled.assembly.orders().empty();
