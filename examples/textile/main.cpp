@@ -62,7 +62,8 @@ bool settle(const textile::Scene& scene, example::SceneReader& file, example::Ou
 
 bool solve(example::SceneReader& file, example::Output& output) {
     const textile::Scene scene = textile::read_scene(file);
-    return scene.transverse ? settle<YarnsOf<material::Elastic>>(scene, file, output) : settle<YarnsOf<beam::Isotropic>>(scene, file, output);
+    return scene.transverse ? settle<YarnsOf<material::Elastic>>(scene, file, output)
+                            : settle<YarnsOf<beam::Isotropic>>(scene, file, output);
 }
 
 int main(int argc, char** argv) {

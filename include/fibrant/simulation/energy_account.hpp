@@ -61,14 +61,15 @@ public:
 
     /// An increment that has converged; contacts are evaluated at its end, before and after.
     /// @param leap  it starts from an overlap that is imposed: it has no balance to check
-    /// @param step  part of a stage that it is, if forces bend within it as they did in the one before, > 0; else 0: fibres that flow are softer
-    ///              from increment to increment, and the trapezium misses what that is [1]
+    /// @param step  part of a stage that it is, if forces bend within it as they did in the one before, > 0; else 0: fibres that
+    ///              flow are softer from increment to increment, and the trapezium misses what that is [1]
     template <class Equilibrium, class Contacts>
     void book(const Equilibrium& equilibrium, Contacts& contacts, const Vector& from, const Vector& to, bool leap, double step = 0.0) {
         const double error_before = balance_.error();
         const Vector way = to - from;
         if constexpr (Equilibrium::moves) equilibrium.terms().moving([&](const auto& term) {
-            if (term.begins()) external_ = equilibrium.external() + equilibrium.reaction();  // what lets go is there from the start on
+            // What lets go is there from the start on.
+            if (term.begins()) external_ = equilibrium.external() + equilibrium.reaction();
             balance_.kinetic = term.kinetic(to);
         });
         const Vector external = equilibrium.external() + equilibrium.reaction();
@@ -134,7 +135,8 @@ private:
         if (step > 0.0 && step_ > 0.0 && earlier_.size() == force.size() && external_.size() == force.size()) {
             const Vector change = force - external_;
             const double both = step + step_;
-            const Vector bent_force = (change / step - (external_ - earlier_) / step_) / both, bent_way = (way / step - last_way_ / step_) / both;
+            const Vector bent_force = (change / step - (external_ - earlier_) / step_) / both;
+            const Vector bent_way = (way / step - last_way_ / step_) / both;
             work = step * step / 6.0 * (change.dot(bent_way) - way.dot(bent_force));
         }
         earlier_ = external_, last_way_ = way, step_ = step;
