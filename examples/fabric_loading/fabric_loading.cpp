@@ -102,7 +102,8 @@ bool run(const fabric_loading::LoadFile& load, example::SceneReader& file, examp
 
 bool solve(example::SceneReader& file, example::Output& output) {
     const fabric_loading::LoadFile load = fabric_loading::read_load_file(file, output.scene.parent_path());
-    return load.scene.transverse() ? run<LoadedWeaveOf<material::Elastic>>(load, file, output) : run<LoadedWeaveOf<beam::Isotropic>>(load, file, output);
+    return load.scene.transverse() ? run<LoadedWeaveOf<material::Elastic>>(load, file, output)
+                                   : run<LoadedWeaveOf<beam::Isotropic>>(load, file, output);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include <fibrant/beam/with_law.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/inertia/inertia.hpp>
+#include <fibrant/law/physical_normal.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/load/gravity.hpp>
 #include <fibrant/material/damped.hpp>
 #include <fibrant/proximity/grid_search.hpp>
@@ -28,7 +28,7 @@ namespace {
 struct Nest {
     using Beam = beam::With<beam::RigidSectionRod, material::Damped<material::Elastic>>;
     using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
+    using Normal = law::PowerNormal;
     using Friction = law::RegularisedCoulomb;
     using Solver = solver::SparseCholesky;
     using Tools = contact::RigidTools;
@@ -63,8 +63,8 @@ scene::Assembly nest(const Shape& shape, const scene::ElasticMaterial& material)
 bool solve(example::SceneReader& file, example::Output& output) {
     Shape shape;
     scene::ElasticMaterial material;
-    double density = core::unset, damping = 0.0, mu = 0.2, depth = 1e-2, gravity = core::unset, duration = core::unset,
-           error = 0.02;
+    double density = core::unset, damping = 0.0, mu = 0.2, depth = 0.1, line = core::unset, crossing = core::unset,
+           gravity = core::unset, duration = core::unset, error = 0.02;
     Index steps = 100;
     file.read("nest", "fibres", shape.fibres, example::between(1, 1000), "fibres, one above the other");
     file.require("nest", "radius", shape.radius, example::positive(), "length", "radius of a fibre");
@@ -81,7 +81,11 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("material", "damping", damping, example::not_negative(), "time",
               "time over which strains resist their rate; a mode of angular frequency w is damped by w/2 of it");
     example::read_friction(file, mu, "coefficient of friction of fibres on each other, on the floor and on the drum");
-    example::read_allowed_penetration(file, depth);
+    file.require("contact", "line_stiffness", line, example::positive(), "force/length^2",
+                 "reaction over depth of fibres along each other, on the floor and on the drum, a unit of length");
+    file.require("contact", "crossing_stiffness", crossing, example::positive(), "force/length",
+                 "reaction over depth of fibres that cross, and of ends");
+    example::read_allowed_penetration(file, depth, "how deep fibres may be in each other at the end, over the radius");
     file.require("motion", "gravity", gravity, example::not_negative(), "length/time^2", "acceleration of gravity, downwards");
     file.require("motion", "duration", duration, example::positive(), "time", "how long the fibres move");
     file.read("motion", "steps", steps, example::increments(), "steps of time, if none is cut");
@@ -96,7 +100,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
 
     simulation::ModelParameters<Nest> model;
     model.beam.laws = {{.stretch = damping, .bending = damping, .turning = damping}};
-    model.normal.regularisation_depth = 0.5 * depth * shape.radius;
+    model.normal = {.line_stiffness = line, .line_exponent = 1.0, .crossing_stiffness = crossing, .crossing_exponent = 1.0};
     model.friction = {.friction_coefficient = mu, .reversible_displacement = 0.02 * shape.radius};
     model.contact.stiffness.allowed_penetration = depth * shape.radius;
     model.acts.inertia.density = density, model.acts.inertia.allowed_error = error * shape.radius;

@@ -87,7 +87,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
             std::fprintf(stderr, "textile: note: %s; nothing but held ends and friction keeps it\n", loose.what());
         }
     }
-    return scene.transverse ? settle<YarnsOf<material::Elastic>>(scene, file, output) : settle<YarnsOf<beam::Isotropic>>(scene, file, output);
+    return scene.transverse ? settle<YarnsOf<material::Elastic>>(scene, file, output)
+                            : settle<YarnsOf<beam::Isotropic>>(scene, file, output);
 }
 
 }  // namespace

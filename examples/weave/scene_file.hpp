@@ -160,10 +160,10 @@ Scene read_fabric(SceneReader& file, const More& more) {
     detail::read_tow(file, "warp", true, fabric.warp);
     fabric.weft = fabric.warp;
     example::read_own_transverse(file, "warp", warp_law, fabric.warp.material.transverse);
-    example::read_own_transverse(file, "weft", weft_law, fabric.weft.material.transverse);
     if (!std::isnan(material.young_modulus)) fabric.weft.material.young_modulus = material.young_modulus;
     if (!std::isnan(material.poisson_ratio)) fabric.weft.material.poisson_ratio = material.poisson_ratio;
     detail::read_tow(file, "weft", false, fabric.weft);
+    example::read_own_transverse(file, "weft", weft_law, fabric.weft.material.transverse);
 
     cloth::SettleParameters& settle = scene.settle;
     file.read("settle", "tension_strain", settle.tension_strain, example::above(0.0, 0.2), "1",

@@ -38,7 +38,6 @@ public:
         external_ = contact_.size() == state.size() ? contact_ : Vector(Vector::Zero(state.size()));
         equilibrium.add_internal_forces(state, external_);
         damping_.resize(0);
-        step_ = 0.0;
     }
     /// The same with contacts that stand there. @param before  the state as they know it, the first part of `state`
     template <class Equilibrium, class Contacts>
@@ -61,19 +60,16 @@ public:
 
     /// An increment that has converged; contacts are evaluated at its end, before and after.
     /// @param leap  it starts from an overlap that is imposed: it has no balance to check
-    /// @param step  part of a stage that it is, if forces bend within it as they did in the one before, > 0; else 0: fibres that flow are softer
-    ///              from increment to increment, and the trapezium misses what that is [1]
     template <class Equilibrium, class Contacts>
-    void book(const Equilibrium& equilibrium, Contacts& contacts, const Vector& from, const Vector& to, bool leap, double step = 0.0) {
+    void book(const Equilibrium& equilibrium, Contacts& contacts, const Vector& from, const Vector& to, bool leap) {
         const double error_before = balance_.error();
         const Vector way = to - from;
         if constexpr (Equilibrium::moves) equilibrium.terms().moving([&](const auto& term) {
-            if (term.begins()) external_ = equilibrium.external() + equilibrium.reaction();  // what lets go is there from the start on
+            // What lets go is there from the start on.
+            if (term.begins()) external_ = equilibrium.external() + equilibrium.reaction();
             balance_.kinetic = term.kinetic(to);
         });
-        const Vector external = equilibrium.external() + equilibrium.reaction();
-        if (step > 0.0 && !Equilibrium::moves) balance_.external += bend(way, external, leap ? 0.0 : step);
-        balance_.external += trapezium(way, external_, external);
+        balance_.external += trapezium(way, external_, equilibrium.external() + equilibrium.reaction());
         balance_.damped += trapezium(way, damping_, equilibrium.damping_force(to));
         if constexpr (requires { contacts.tools(); }) balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(true);
         const contact::ContactFigures end = contacts.figures(to);
@@ -113,33 +109,13 @@ public:
     /// Follows vectors that are told in another way from now on. @param reaction  what else does
     template <class Mesh>
     void rewind(const Mesh& mesh, Vector& state, Vector& reaction) {
-        if (step_ > 0.0 && last_way_.size() == state.size()) {
-            const Vector told = state;
-            mesh.rewind(state, {&external_, &damping_, &contact_, &reaction});
-            if (told != state) step_ = 0.0;  // the last way was told in the old one
-        } else {
-            mesh.rewind(state, {&external_, &damping_, &contact_, &reaction});
-        }
+        mesh.rewind(state, {&external_, &damping_, &contact_, &reaction});
     }
 
     /// All that a checkpoint needs: vectors first.
-    void each(auto&& see) { see(external_), see(damping_), see(contact_), see(earlier_), see(last_way_), see(step_), see(balance_); }
-    /// What comes does not go on as the last increment did: a new stage.
-    void turn() noexcept { step_ = 0.0; }
+    void each(auto&& see) { see(external_), see(damping_), see(contact_), see(balance_); }
 
 private:
-    /// What the trapezium misses of the work of forces and ways that are parabolas over the last two increments.
-    double bend(const Vector& way, const Vector& force, double step) {
-        double work = 0.0;
-        if (step > 0.0 && step_ > 0.0 && earlier_.size() == force.size() && external_.size() == force.size()) {
-            const Vector change = force - external_;
-            const double both = step + step_;
-            const Vector bent_force = (change / step - (external_ - earlier_) / step_) / both, bent_way = (way / step - last_way_ / step_) / both;
-            work = step * step / 6.0 * (change.dot(bent_way) - way.dot(bent_force));
-        }
-        earlier_ = external_, last_way_ = way, step_ = step;
-        return work;
-    }
     /// Half of the work of a force on a way, and of that which it was before. @param last  becomes the force
     static double trapezium(const Vector& way, Vector& last, const Vector& force) {
         if (last.size() != force.size()) last = Vector::Zero(force.size());
@@ -150,8 +126,6 @@ private:
 
     EnergyBalance balance_;
     Vector external_, damping_, contact_;  ///< forces at the end of the last increment [force]
-    Vector earlier_, last_way_;            ///< external force at its start, and its way; none unless they are asked for
-    double step_ = 0.0;                    ///< of that increment; 0: not to be gone on with
 };
 
 }  // namespace fibrant::simulation

@@ -46,7 +46,7 @@ template <Model M>
 struct Stage {
     std::string name = "loading";
     Index increments = 10;                      ///< that its ramps take when none is cut, >= 1
-    /// Of its ramps, for laws with a rate and for inertia, >= 0; what follows them takes no time, but with inertia goes on in steps of it [time].
+    /// Of its ramps, for laws with a rate and for inertia, >= 0; what follows them takes no time, with inertia steps of it [time].
     double duration = 0.0;
     std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
     GapLimitOf<typename M::Normal> gap_limit{};  ///< of a law that limits the gap [length], as std::optional; scaled down when cut
@@ -118,8 +118,11 @@ struct Loading {
         core::require_finite("Loading.growth", growth);
         core::require_at_least("Loading.most_rejected", most_rejected, 0);
         for (const double over : damping_of_fibres) core::require(over >= 1.0 && over < 1e12, "Loading.damping_of_fibres", over, ">= 1 and < 1e12");
-        const std::string timed = law::FrictionWithRate<typename M::Friction> ? "the law of friction has a rate" : MovesInTime<M> ? "fibres have inertia" : "";
-        if (!timed.empty() && stages.empty()) core::refuse("Loading.stages", "none", "at least one that has a duration: " + timed);
+        const std::string timed = law::FrictionWithRate<typename M::Friction> ? "the law of friction has a rate"
+                                  : MovesInTime<M>                            ? "fibres have inertia"
+                                                                              : "";
+        if (!timed.empty() && stages.empty())
+            core::refuse("Loading.stages", "none", "at least one that has a duration: " + timed);
         for (const Stage<M>& stage : stages) {
             if (!timed.empty()) core::require(stage.duration > 0.0, "Stage.duration of stage " + stage.name, stage.duration, "> 0: " + timed);
             core::require_at_least("Stage.increments", stage.increments, 1);

@@ -49,7 +49,6 @@ public:
             if (const std::string& channel = assembly.fibres()[core::at(f)].law_channel; !channel.empty())
                 core::refuse(mesh.label(f) + ": law_channel", channel, "empty, for a beam without a law of its own");
     }
-    static constexpr bool smooth = false;
     static constexpr bool again() noexcept { return false; }
     static constexpr bool begin(const auto&, const Mesh&, const B&, const Vector&) noexcept { return false; }
     static void drive(const Mesh&, const std::vector<double>&, double) noexcept {}
@@ -69,7 +68,6 @@ class SectionLaws<B> {
 
 public:
     using Mesh = beam::Mesh<B>;
-    static constexpr bool smooth = true;       ///< forces bend over increments as points begin to flow, which the account of energy follows
     static constexpr double overshoot = 0.02;  ///< of a strength, at which an increment is still accepted [1]
 
     SectionLaws(const scene::Assembly& assembly, Mesh& mesh, const B& beam, const connection::Channels& channels) : channel_(core::at(mesh.fibre_count()), -1) {

@@ -169,8 +169,7 @@ private:
                 continue;
             }
             if (attempt.converged) {
-                if (position_.progress == 0.0) energy_.turn();
-                energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again(), laws_.smooth ? progress - position_.progress : 0.0);
+                energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again());
                 laws_.accept(mesh_, beam_, trial, energy_);
                 increment.energy = energy_.template closed<Equilibrium::moves>();
                 if (stage.damping_carried) motion_.learn(mesh_, state_, trial, change);

@@ -2,12 +2,13 @@
 #pragma once
 /// @file A state as a file that another scene may start from: what is not the run's but the fibres' and the contacts'.
 
+#include <fibrant/simulation/energy_account.hpp>
 #include <fibrant/simulation/model.hpp>
-#include <fibrant/simulation/report.hpp>
 #include <fibrant/simulation/state_file.hpp>
 
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace fibrant::simulation {
@@ -27,8 +28,11 @@ template <Model M>
 StoredState<M> read_state(const std::string& path, const beam::Mesh<typename M::Beam>& mesh) {
     CheckpointReader file = read_from_state(path, mesh);
     StoredState<M> stored{.state = get_state(file, mesh.rest_state().size())};
-    for (int k = 0; k < 3; ++k) file.get_vector();  // forces of the last increment
-    file.get<EnergyBalance>();
+    EnergyAccount before;
+    before.each([&]<class Value>(Value& value) {
+        if constexpr (std::is_same_v<Value, Vector>) value = file.get_vector();
+        else value = file.get<Value>();
+    });
     get_memory(file, stored.records, stored.zones, mesh.fibre_count());
     stored.laws = file.get_vector();
     return stored;
@@ -42,8 +46,7 @@ void write_state(const std::string& path, const beam::Mesh<typename M::Beam>& me
     file.put(outline_identity(mesh)), file.put(fibre_identity(mesh));
     for (int k = 0; k < 2; ++k) file.put(std::uint64_t{0});
     file.put(stored.state);
-    for (int k = 0; k < 3; ++k) file.put(Vector(Vector::Zero(stored.state.size())));
-    file.put(EnergyBalance{});
+    EnergyAccount().each([&](const auto& value) { file.put(value); });
     put_memory(file, stored.records, stored.zones);
     file.put(stored.laws);
     file.write(path);
