@@ -68,4 +68,5 @@ refused interlock levels.column_spacing=0.1 levels.column_spacing
 refused from_csv file.path=nowhere.csv nowhere.csv
 refused knit_plain weft_knit.loop_height=0.41 "weft_knit.wale_spacing, course_spacing, loop_height"
 refused stitched stitched.row_spacing=0.7 "distance of thread"
+refused stitched stitched.sideways=0 "comes apart"
 exit 0
