@@ -340,8 +340,8 @@ std::string thread_word(const Textile& textile, Index thread) {
 
 TEST_CASE("stitched plies lie on each other, and threads are over all of them for a stitch and under all for the next") {
     const double r = 0.05;
-    // Two plies at a right angle, 6 yarns along x and 12 along y. Between two places where threads go through lie 3 yarns along y, and
-    // threads go sideways over or under 2 along x.
+    // Two plies at a right angle, 6 yarns along x and 12 along y. Between two places where threads go through lie 3 yarns along
+    // y, and threads go sideways over or under 2 along x.
     const StitchedPlies two{.angles_deg = {0.0, 90.0},
                             .yarn_spacing = 0.3,
                             .length = 3.6,
@@ -370,13 +370,18 @@ TEST_CASE("stitched plies lie on each other, and threads are over all of them fo
                            from = cloth.paths[core::at(q)].curve(0.0), chord = cloth.paths[core::at(q)].curve(1.0) - from;
                 if ((at - from).cross(chord).norm() / chord.norm() < 1.6 * r * 0.98) FAIL_CHECK("thread ", p, " in yarn ", q);
             }
-    // Slanted plies: lines of 45 degrees meet the places at whole multiples of their spacing.
+    // Slanted plies: lines of 45 degrees meet the places at whole multiples of their spacing. With stitches twice as long a yarn
+    // lies below all that it crosses.
     StitchedPlies slanted = two;
-    slanted.angles_deg = {45.0, -45.0}, slanted.stitch_length = 0.6 * std::sqrt(2.0),
+    slanted.angles_deg = {45.0, -45.0}, slanted.stitch_length = 0.3 * std::sqrt(2.0),
     slanted.row_spacing = 0.6 * std::sqrt(2.0);
     slanted.sideways = 0.0, slanted.width = 3.6;
     const Textile biaxial = stitched(slanted);
-    CHECK(refusal([&] { require_holding(biaxial); }) == "");
+    CHECK(refusal([&] { require_holding(biaxial); }).empty());
+    StitchedPlies long_stitches = slanted;
+    long_stitches.stitch_length *= 2.0;
+    CHECK(refusal([&] { require_holding(stitched(long_stitches)); }).find("'ply 0 yarn 13' lies below all that it crosses") !=
+          std::string::npos);
     for (const Crossing& c : biaxial.crossings) {
         const Index a = biaxial.paths[core::at(c.above)].family, b = biaxial.paths[core::at(c.below)].family;
         CHECK((a == 2 || b == 2 || a > b));
