@@ -11,7 +11,7 @@ fail() {
   echo "textile_example: $*"
   exit 1
 }
-for name in braid_flat braid_tube interlock knit_plain tricot net stitched chain_mail from_csv from_texgen; do
+for name in braid_flat braid_tube interlock knit_plain tricot net chain_mail from_csv from_texgen; do
   text=$("$program" "$scenes/$name.toml" --output "$out/$name" --quiet --set output.paraview=false 2>&1) || {
     case $text in *"needs pugixml"*) continue ;; esac  # built without it
     fail "$name did not settle: $text"
