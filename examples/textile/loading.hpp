@@ -3,6 +3,7 @@
 /// @file A load case of the settled textile: its programme, its curve, and what it comes to.
 
 #include "../support/example.hpp"
+#include "output.hpp"
 #include "scene_file.hpp"
 
 #include <fibrant/compositions/textile/audit.hpp>
@@ -77,6 +78,7 @@ std::pair<fibrant::observe::JsonObject, bool> run_load_case(const example::Outpu
     const simulation::Audit audit = example::audit(output, simulator, radius);
     const cloth::TopologyAudit topology =
         cloth::audit_topology(scene.textile, assembled, cloth::lines_of(settled), cloth::lines_of(after));
+    tell(scene.textile, topology);
     std::vector<std::pair<double, double>> curve = forth;
     if (load.parameters.name == "compaction")  // over the approach of the plates
         for (auto& [x, y] : curve) x = load.length - x;

@@ -291,6 +291,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.require("stitched", "stitch_length", plies.stitch_length, positive, "length",
                      "from one place where a thread goes through to the next, counted from the middle, where no yarn lies");
         file.require("stitched", "row_spacing", plies.row_spacing, positive, "length", "distance of neighbouring threads");
+        file.read("stitched", "sideways", plies.sideways, example::not_negative(), "length",
+                  "by which threads go to and fro across from stitch to stitch: so they hold yarns along x");
         if (!all) {
             file.complete();
             for (const std::string& angle : angles)

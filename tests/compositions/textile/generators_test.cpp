@@ -373,37 +373,48 @@ std::string thread_word(const Textile& textile, Index thread) {
 
 TEST_CASE("stitched plies lie on each other, and threads are over all of them for a stitch and under all for the next") {
     const double r = 0.05;
-    // Two plies at a right angle, 8 yarns along x and 12 along y: between two places where threads go through lie 3 yarns.
+    // Two plies at a right angle, 6 yarns along x and 12 along y. Between two places where threads go through lie 3 yarns along
+    // y, and threads go sideways over or under 2 along x.
     const StitchedPlies two{.angles_deg = {0.0, 90.0},
                             .yarn_spacing = 0.3,
                             .length = 3.6,
-                            .width = 2.4,
+                            .width = 1.8,
                             .stitch_length = 0.9,
                             .row_spacing = 0.6,
+                            .sideways = 0.6,
                             .yarn = yarn(r),
                             .thread = yarn(0.6 * r)};
     const Textile cloth = stitched(two);
-    REQUIRE(cloth.paths.size() == 8 + 12 + 3);
-    CHECK(core::count(cloth.crossings) == 8 * 12 + 3 * 12);
+    REQUIRE(cloth.paths.size() == 6 + 12 + 3);
+    CHECK(core::count(cloth.crossings) == 6 * 12 + 3 * (12 + 2 * 2));
     for (const Crossing& c : cloth.crossings)
-        if (c.above < 20 && c.below < 20) CHECK((c.above >= 8 && c.below < 8));
-    CHECK(thread_word(cloth, 20) == "aaabbbaaabbb");
-    CHECK(thread_word(cloth, 21) == "bbbaaabbbaaa");
+        if (c.above < 18 && c.below < 18) CHECK((c.above >= 6 && c.below < 6));
+    CHECK(thread_word(cloth, 18) == "aaabbbbbaaaaabbb");
+    CHECK(thread_word(cloth, 19) == "bbbaaaaabbbbbaaa");
     CHECK(refusal([&] { validate(cloth); }).empty());
     CHECK(refusal([&] { require_holding(cloth); }).empty());
-    for (Index p = 20; p < 23; ++p)  // nothing lies in a thread
-        for (Index q = 0; q < 20; ++q)
+    StitchedPlies loose = two;  // threads along yarns do not hold them
+    loose.sideways = 0.0;
+    CHECK(refusal([&] { require_holding(stitched(loose)); }).find("an interlacing that comes apart") != std::string::npos);
+    for (Index p = 18; p < 21; ++p)  // nothing lies in a thread
+        for (Index q = 0; q < 18; ++q)
             for (Index k = 0; k <= 400; ++k) {
                 const Vec3 at = cloth.paths[core::at(p)].curve(static_cast<double>(k) / 400.0),
                            from = cloth.paths[core::at(q)].curve(0.0), chord = cloth.paths[core::at(q)].curve(1.0) - from;
                 if ((at - from).cross(chord).norm() / chord.norm() < 1.6 * r * 0.98) FAIL_CHECK("thread ", p, " in yarn ", q);
             }
-    // Slanted plies: lines of 45 degrees meet the places at whole multiples of their spacing.
+    // Slanted plies: lines of 45 degrees meet the places at whole multiples of their spacing. With stitches twice as long a yarn
+    // lies below all that it crosses.
     StitchedPlies slanted = two;
-    slanted.angles_deg = {45.0, -45.0}, slanted.stitch_length = 0.6 * std::sqrt(2.0),
+    slanted.angles_deg = {45.0, -45.0}, slanted.stitch_length = 0.3 * std::sqrt(2.0),
     slanted.row_spacing = 0.6 * std::sqrt(2.0);
+    slanted.sideways = 0.0, slanted.width = 3.6;
     const Textile biaxial = stitched(slanted);
     CHECK(refusal([&] { require_holding(biaxial); }).empty());
+    StitchedPlies long_stitches = slanted;
+    long_stitches.stitch_length *= 2.0;
+    CHECK(refusal([&] { require_holding(stitched(long_stitches)); }).find("'ply 0 yarn 13' lies below all that it crosses") !=
+          std::string::npos);
     for (const Crossing& c : biaxial.crossings) {
         const Index a = biaxial.paths[core::at(c.above)].family, b = biaxial.paths[core::at(c.below)].family;
         CHECK((a == 2 || b == 2 || a > b));

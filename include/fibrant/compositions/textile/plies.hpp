@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -26,6 +27,7 @@ struct StitchedPlies {
     double width = core::unset;          ///< and along y [length], > 0
     double stitch_length = core::unset;  ///< from one place where a thread goes through to the next [length], > 0
     double row_spacing = core::unset;    ///< of neighbouring threads [length], > 0
+    double sideways = 0.0;               ///< by which threads go to and fro across from stitch to stitch [length], in [0, row_spacing]
     YarnType yarn{}, thread{};
 
     void validate() const {
@@ -35,6 +37,7 @@ struct StitchedPlies {
         core::require_positive("StitchedPlies.width", width);
         core::require_positive("StitchedPlies.stitch_length", stitch_length);
         core::require_positive("StitchedPlies.row_spacing", row_spacing);
+        core::require(sideways >= 0.0 && sideways <= row_spacing, "StitchedPlies.sideways", sideways, "in [0, row_spacing]");
         yarn.validate(), thread.validate();
         const double room = 2.0 * (half_width(yarn) + half_width(thread));
         core::require(std::isfinite(yarn_spacing) && yarn_spacing >= room, "StitchedPlies.yarn_spacing", yarn_spacing,
@@ -47,7 +50,8 @@ struct StitchedPlies {
 };
 
 /// Nothing overlaps. Each ply lies above those below it, and a thread above all plies or below all of them; neighbouring threads
-/// take turns. One crossing for each two lines of a view from above that meet.
+/// take turns. In corners yarns that would not cross two threads are left out: nothing would hold them. Yarns along x are held by threads
+/// that go sideways over and under them. One crossing for each two lines of a view from above that meet.
 /// @throws std::invalid_argument naming ply, thread and distance, where a thread would go through a yarn
 inline Textile stitched(const StitchedPlies& plies) {
     plies.validate();
@@ -77,7 +81,8 @@ inline Textile stitched(const StitchedPlies& plies) {
                 const double a = (-half - start) / along[axis], b = (half - start) / along[axis];
                 from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
             }
-            if (!(to - from >= 2.0 * s)) continue;  // too short in a corner to be held by anything
+            const double rise = (to - from) * std::abs(along.y());
+            if (!(to - from >= 2.0 * s) || (std::abs(along.y()) > none && rise < 2.0 * plies.row_spacing)) continue;
             Path path;
             path.name = "ply " + std::to_string(k) + " yarn " + std::to_string(n + most);
             path.family = static_cast<Index>(k), path.upward = Vec3::UnitZ();
@@ -89,33 +94,36 @@ inline Textile stitched(const StitchedPlies& plies) {
     }
     const double high = plies.pitch() * middle + 1.05 * reach, size = plies.length + 2.0 * overhang;
     const double turn = steepest > 0.0 ? 0.5 * s / steepest : 2.0 * high;  // half of the length in which a thread goes through
-    core::require(plies.stitch_length >= 2.0 * turn, "StitchedPlies.stitch_length", plies.stitch_length,
+    core::require(plies.stitch_length >= 2.0 * turn * (1.0 - 1e-9), "StitchedPlies.stitch_length", plies.stitch_length,
                   ">= " + core::text(2.0 * turn) + ", for threads to come up again");
     const auto rows = static_cast<Index>(std::floor(0.5 * plies.width / plies.row_spacing - 1e-9)),
                stitches = static_cast<Index>(std::floor(0.5 * plies.length / plies.stitch_length - 1e-9));
     for (Index row = -rows; row <= rows; ++row) {
         const double y = plies.row_spacing * static_cast<double>(row);
         const std::string name = "thread " + std::to_string(row + rows);
-        std::vector<std::pair<double, double>> knots;
+        std::vector<std::pair<double, double>> knots, aside;
         double side = (row % 2 == 0) == (stitches % 2 == 0) ? 1.0 : -1.0;
         for (Index m = -stitches; m <= stitches; ++m, side = -side) {
-            const double x = plies.stitch_length * static_cast<double>(m);
+            const double x = plies.stitch_length * static_cast<double>(m), off_row = (m % 2 == 0 ? 0.5 : -0.5) * plies.sideways;
             for (std::size_t k = 0; k < plies.angles_deg.size(); ++k) {
                 const double angle = plies.angles_deg[k] * std::numbers::pi / 180.0,
-                             d = -std::sin(angle) * x + std::cos(angle) * y;
+                             d = -std::sin(angle) * x + std::cos(angle) * (y + off_row);
                 const double off = std::abs(d / s - std::floor(d / s) - 0.5) * s;
                 core::require(off >= reach * (1.0 - 1e-9),
                               "StitchedPlies.stitch_length, row_spacing: distance of " + name + " from a yarn of ply " +
                                   std::to_string(k) + " where it goes through, at x = " + core::text(x),
                               off, ">= " + core::text(reach) + ": the half thicknesses of both");
             }
-            knots.emplace_back((x - turn + 0.5 * size) / size, side * high),
-                knots.emplace_back((x + turn + 0.5 * size) / size, -side * high);
+            for (const double sense : {-1.0, 1.0}) {
+                knots.emplace_back((x + sense * turn + 0.5 * size) / size, -sense * side * high);
+                aside.emplace_back(knots.back().first, off_row);
+            }
         }
         Path path;
         path.name = name, path.type = 1, path.family = core::count(plies.angles_deg), path.upward = Vec3::UnitZ();
-        path.curve =
-            detail::raised([=](double t) { return Vec3(size * (t - 0.5), y, 0.0); }, std::move(knots), false, textile.view);
+        const auto ways = std::make_shared<const detail::HeightLine>(std::move(aside), false);
+        path.curve = detail::raised([=](double t) { return Vec3(size * (t - 0.5), y + (*ways)(t), 0.0); }, std::move(knots), false,
+                                    textile.view);
         textile.paths.push_back(std::move(path));
     }
     textile.crossings = crossings_of(textile);
