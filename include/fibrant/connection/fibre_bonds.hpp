@@ -28,7 +28,7 @@ class FibreBonds : public term::NoDrive,
 public:
     static constexpr auto role = term::Role::interaction;
     struct Bond {
-        scene::Station i{}, j{};
+        scene::Station i{}, j{};  ///< places of the two fibres
         double stiffness = core::unset;                                    ///< of each spring [force / length], > 0
         double span = 0.0;                                                 ///< along either fibre at rest [length], >= 0
         double strength = std::numeric_limits<double>::infinity();         ///< [force], > 0
@@ -41,7 +41,7 @@ public:
         }
     };
     struct Parameters {
-        std::vector<Bond> bonds{};
+        std::vector<Bond> bonds{};  ///< all that there are
         void validate() const {
             for (const Bond& bond : bonds) bond.validate();
         }
