@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Load cases of a dry woven fabric, from the settled state that `weave` has written.
 //   fabric_loading CASE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
+#include "../support/loaded_fibres.hpp"
 #include "../support/program.hpp"
 #include "load_file.hpp"
 #include "output.hpp"
 
-#include <fibrant/beam/with_law.hpp>
-#include <fibrant/connection/rigid_bodies.hpp>
-#include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/material/elastic.hpp>
-#include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/simulation/refined_state.hpp>
-#include <fibrant/solver/any_solver.hpp>
 
 #include <optional>
 #include <stdexcept>
@@ -21,18 +17,6 @@ using namespace fibrant;
 namespace cloth = compositions::weave;
 
 namespace {
-
-/// @tparam Section  law of the sections of the fibres
-template <class Section>
-struct LoadedWeaveOf {
-    using Beam = beam::With<beam::DirectorBeam<>, Section>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::LimitedGap<law::RegularisedPenalty>;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::AnySolver;
-    using Tools = contact::RigidTools;
-    using Connections = connection::RigidBodies;
-};
 
 template <simulation::Model LoadedWeave>
 bool run(const fabric_loading::LoadFile& load, example::SceneReader& file, example::Output& output) {
@@ -102,8 +86,8 @@ bool run(const fabric_loading::LoadFile& load, example::SceneReader& file, examp
 
 bool solve(example::SceneReader& file, example::Output& output) {
     const fabric_loading::LoadFile load = fabric_loading::read_load_file(file, output.scene.parent_path());
-    return load.scene.transverse() ? run<LoadedWeaveOf<material::Elastic>>(load, file, output)
-                                   : run<LoadedWeaveOf<beam::Isotropic>>(load, file, output);
+    return load.scene.transverse() ? run<example::LoadedFibres<material::Elastic>>(load, file, output)
+                                   : run<example::LoadedFibres<beam::Isotropic>>(load, file, output);
 }
 
 }  // namespace

@@ -3,18 +3,14 @@
 // loads it.
 //   textile SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
+#include "../support/loaded_fibres.hpp"
 #include "../support/program.hpp"
 #include "../support/report_page.hpp"
 #include "loading.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
 
-#include <fibrant/beam/with_law.hpp>
-#include <fibrant/connection/rigid_bodies.hpp>
-#include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/material/elastic.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/any_solver.hpp>
 
 #include <cstdio>
 #include <stdexcept>
@@ -22,18 +18,6 @@
 using namespace fibrant;
 
 namespace {
-
-/// @tparam Section  law of the sections of the fibres
-template <class Section>
-struct YarnsOf {
-    using Beam = beam::With<beam::DirectorBeam<>, Section>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::LimitedGap<law::RegularisedPenalty>;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::AnySolver;
-    using Tools = contact::RigidTools;
-    using Connections = connection::RigidBodies;
-};
 
 template <simulation::Model Yarns>
 bool settle(const textile::Scene& scene, example::SceneReader& file, example::Output& output) {
@@ -87,8 +71,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
             std::fprintf(stderr, "textile: note: %s; nothing but held ends and friction keeps it\n", loose.what());
         }
     }
-    return scene.transverse ? settle<YarnsOf<material::Elastic>>(scene, file, output)
-                            : settle<YarnsOf<beam::Isotropic>>(scene, file, output);
+    return scene.transverse ? settle<example::LoadedFibres<material::Elastic>>(scene, file, output)
+                            : settle<example::LoadedFibres<beam::Isotropic>>(scene, file, output);
 }
 
 }  // namespace

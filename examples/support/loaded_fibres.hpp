@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file The model of textiles that are settled and loaded: bodies and plates at their edges, friction, any solver.
+
+#include <fibrant/beam/with_law.hpp>
+#include <fibrant/connection/rigid_bodies.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
+#include <fibrant/law/limited_gap.hpp>
+#include <fibrant/law/regularised_coulomb.hpp>
+#include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/solver/any_solver.hpp>
+
+namespace example {
+
+/// @tparam Section  law of the sections of the fibres
+template <class Section>
+struct LoadedFibres {
+    using Beam = fibrant::beam::With<fibrant::beam::DirectorBeam<>, Section>;
+    using Proximity = fibrant::proximity::GridSearch;
+    using Normal = fibrant::law::LimitedGap<fibrant::law::RegularisedPenalty>;
+    using Friction = fibrant::law::RegularisedCoulomb;
+    using Solver = fibrant::solver::AnySolver;
+    using Tools = fibrant::contact::RigidTools;
+    using Connections = fibrant::connection::RigidBodies;
+};
+
+}  // namespace example
