@@ -94,9 +94,10 @@ inline void read_load(SceneReader& file, Load& load) {
     file.require("loading", "amount", load.parameters.amount, example::between(-1e3, 1e3), "1",
                  "strain of the length between the grips, tangent of the shear, angle between the grips [radian], or approach of "
                  "the plates over their distance");
-    file.read("loading", "guided", load.parameters.guided,
-              "ends that no grip holds, but that were held or pulled, keep their places across the axis in tension, along the third "
-              "axis in shear and bending; false: they are free");
+    file.read(
+        "loading", "guided", load.parameters.guided,
+        "ends that no grip holds, but that were held or pulled, keep their places across the axis in tension, along the third "
+        "axis in shear and bending; false: they are free");
     file.read("loading", "increments", load.increments, example::between(1, 100000),
               "increments that take the load to its amount");
     file.read("loading", "cycles", load.cycles, example::between(0, 10000), "times there and back; 0: there only");

@@ -283,8 +283,8 @@ inline CrossingAudit audit_crossings(std::vector<Crossing> asked, std::vector<Cr
     return audit;
 }
 
-/// Refuses a textile that crosses itself more or less often than its generator says: loops that do not reach each other hold nothing,
-/// and those that reach too far lie in their neighbours.
+/// Refuses a textile that crosses itself more or less often than its generator says: loops that do not reach each other hold
+/// nothing, and those that reach too far lie in their neighbours.
 /// @param fields  that the crossings follow from
 /// @param why     so many
 /// @throws std::invalid_argument

@@ -36,8 +36,8 @@ struct LoadCaseParameters {
     /// Tension: change of the free length over it. Shear: displacement of a grip over the free length. Bending: angle between the
     /// grips [radian]. Compaction: approach of the plates over their distance.
     double amount = core::unset;
-    /// Ends of open yarns that no grip holds, and that were held or pulled while they settled, keep their places across the axis in
-    /// tension, along the third axis in shear and bending, as in a selvedge; else they are free.
+    /// Ends of open yarns that no grip holds, and that were held or pulled while they settled, keep their places across the axis
+    /// in tension, along the third axis in shear and bending, as in a selvedge; else they are free.
     bool guided = true;
 
     void validate() const {

@@ -50,8 +50,8 @@ struct StitchedPlies {
 };
 
 /// Nothing overlaps. Each ply lies above those below it, and a thread above all plies or below all of them; neighbouring threads
-/// take turns. In corners yarns that would not cross two threads are left out: nothing would hold them. Yarns along x are held by threads
-/// that go sideways over and under them. One crossing for each two lines of a view from above that meet.
+/// take turns. In corners yarns that would not cross two threads are left out: nothing would hold them. Yarns along x are held by
+/// threads that go sideways over and under them. One crossing for each two lines of a view from above that meet.
 /// @throws std::invalid_argument naming ply, thread and distance, where a thread would go through a yarn
 inline Textile stitched(const StitchedPlies& plies) {
     plies.validate();
@@ -122,8 +122,8 @@ inline Textile stitched(const StitchedPlies& plies) {
         Path path;
         path.name = name, path.type = 1, path.family = core::count(plies.angles_deg), path.upward = Vec3::UnitZ();
         const auto ways = std::make_shared<const detail::HeightLine>(std::move(aside), false);
-        path.curve = detail::raised([=](double t) { return Vec3(size * (t - 0.5), y + (*ways)(t), 0.0); }, std::move(knots), false,
-                                    textile.view);
+        path.curve = detail::raised([=](double t) { return Vec3(size * (t - 0.5), y + (*ways)(t), 0.0); }, std::move(knots),
+                                    false, textile.view);
         textile.paths.push_back(std::move(path));
     }
     textile.crossings = crossings_of(textile);
