@@ -23,7 +23,9 @@ int main(int argc, char** argv) {
         contact::FrictionBound bound;
         bool unsymmetric;
     };
-    std::printf("friction_coefficient,bound,tangent,converged,increments,rejected,normal_passes,newton,linear_iterations,indefinite,seconds,crimp,why\n");
+    std::printf(
+        "friction_coefficient,bound,tangent,converged,increments,rejected,normal_passes,newton,linear_iterations,indefinite,"
+        "seconds,crimp,why\n");
     for (const double coefficient : {0.15, 0.5}) {
         for (const Variant& variant : {Variant{"held,symmetric", contact::FrictionBound::held, false},
                                        Variant{"following,symmetric part", contact::FrictionBound::following, false},

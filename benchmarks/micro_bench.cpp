@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What does one call of each part cost: an element of each beam, a law, a search, a contact element in each of its loops, a product with the
-// tangent and its preconditioner? Google Benchmark; items are elements, contacts, segments or unknowns.
-// usage: benchmark_micro_bench [--benchmark_filter=REGEX] [--benchmark_out=FILE.json] ... (its own options)
+// What does one call of each part cost: an element of each beam, a law, a search, a contact element in each of its loops, a
+// product with the tangent and its preconditioner? Google Benchmark; items are elements, contacts, segments or unknowns. usage:
+// benchmark_micro_bench [--benchmark_filter=REGEX] [--benchmark_out=FILE.json] ... (its own options)
 #include "../tests/support/fabric_system.hpp"
 #include "chapter_fabric.hpp"
 #include "search/scene_file.hpp"
@@ -40,7 +40,11 @@ struct BentFibre {
     }
     static scene::Assembly assembly() {
         scene::Assembly assembly;
-        assembly.add({.from = {0, 0, 0}, .to = {25.6, 0, 0}, .section = scene::circular(0.0201), .material = {7300.0, 0.3}, .elements = elements});
+        assembly.add({.from = {0, 0, 0},
+                      .to = {25.6, 0, 0},
+                      .section = scene::circular(0.0201),
+                      .material = {7300.0, 0.3},
+                      .elements = elements});
         return assembly;
     }
 };
@@ -50,7 +54,8 @@ void beam_energy(benchmark::State& state) {
     const BentFibre<B> fibre;
     for (auto _ : state) {
         double sum = 0.0;
-        for (Index e = 0; e < fibre.elements; ++e) sum += fibre.beam.energy(fibre.mesh.rest(0, e), fibre.mesh.element(fibre.state, 0, e));
+        for (Index e = 0; e < fibre.elements; ++e)
+            sum += fibre.beam.energy(fibre.mesh.rest(0, e), fibre.mesh.element(fibre.state, 0, e));
         benchmark::DoNotOptimize(sum);
     }
     count_items(state, fibre.elements);
@@ -67,20 +72,22 @@ template <beam::BeamElement B>
 void beam_force_and_tangent(benchmark::State& state) {
     const BentFibre<B> fibre;
     std::vector<typename B::Stresses> stresses;
-    for (Index e = 0; e < fibre.elements; ++e) stresses.push_back(fibre.beam.stresses(fibre.mesh.rest(0, e), fibre.mesh.element(fibre.state, 0, e)));
+    for (Index e = 0; e < fibre.elements; ++e)
+        stresses.push_back(fibre.beam.stresses(fibre.mesh.rest(0, e), fibre.mesh.element(fibre.state, 0, e)));
     beam::ElementVector<B> force;
     beam::ElementMatrix<B> tangent;
     for (auto _ : state)
         for (Index e = 0; e < fibre.elements; ++e) {
-            fibre.beam.residual_and_tangent(fibre.mesh.rest(0, e), fibre.mesh.element(fibre.state, 0, e), stresses[core::at(e)], force, tangent);
+            fibre.beam.residual_and_tangent(fibre.mesh.rest(0, e), fibre.mesh.element(fibre.state, 0, e), stresses[core::at(e)],
+                                            force, tangent);
             benchmark::DoNotOptimize(force);
             benchmark::DoNotOptimize(tangent);
         }
     count_items(state, fibre.elements);
 }
-#define FIBRANT_BENCHMARK_BEAM(...)            \
-    BENCHMARK(beam_energy<__VA_ARGS__>);       \
-    BENCHMARK(beam_force<__VA_ARGS__>);        \
+#define FIBRANT_BENCHMARK_BEAM(...)      \
+    BENCHMARK(beam_energy<__VA_ARGS__>); \
+    BENCHMARK(beam_force<__VA_ARGS__>);  \
     BENCHMARK(beam_force_and_tangent<__VA_ARGS__>)
 FIBRANT_BENCHMARK_BEAM(beam::DirectorBeam<3>);
 FIBRANT_BENCHMARK_BEAM(beam::DirectorBeam<2>);
@@ -101,19 +108,23 @@ void normal_law(benchmark::State& state, const Law& law) {
 }
 BENCHMARK_CAPTURE(normal_law, RegularisedPenalty, law::RegularisedPenalty({.regularisation_depth = 1e-4}));
 BENCHMARK_CAPTURE(normal_law, LinearPenalty, law::LinearPenalty());
-BENCHMARK_CAPTURE(normal_law, LimitedGap, law::LimitedGap<law::RegularisedPenalty>({.law = {.regularisation_depth = 1e-4}, .limit = 5e-3}));
+BENCHMARK_CAPTURE(normal_law, LimitedGap,
+                  law::LimitedGap<law::RegularisedPenalty>({.law = {.regularisation_depth = 1e-4}, .limit = 5e-3}));
 
 template <law::FrictionLaw Law>
 void friction_law(benchmark::State& state, const Law& law) {
     std::vector<Vec3> slips;
-    for (Index k = 0; k < contacts; ++k) slips.emplace_back(1e-3 * std::sin(0.37 * static_cast<double>(k)), 1e-3 * std::cos(0.21 * static_cast<double>(k)), 0.0);
+    for (Index k = 0; k < contacts; ++k)
+        slips.emplace_back(1e-3 * std::sin(0.37 * static_cast<double>(k)), 1e-3 * std::cos(0.21 * static_cast<double>(k)), 0.0);
     const typename Law::History history{};
     for (auto _ : state)
         for (const Vec3& slip : slips) benchmark::DoNotOptimize(law.response(slip, 0.01, history));
     count_items(state, contacts);
 }
-BENCHMARK_CAPTURE(friction_law, RegularisedCoulomb, law::RegularisedCoulomb({.friction_coefficient = 0.15, .reversible_displacement = 4e-4}));
-BENCHMARK_CAPTURE(friction_law, SmoothCoulomb, law::SmoothCoulomb({.friction_coefficient = 0.15, .reversible_displacement = 4e-4}));
+BENCHMARK_CAPTURE(friction_law, RegularisedCoulomb,
+                  law::RegularisedCoulomb({.friction_coefficient = 0.15, .reversible_displacement = 4e-4}));
+BENCHMARK_CAPTURE(friction_law, SmoothCoulomb,
+                  law::SmoothCoulomb({.friction_coefficient = 0.15, .reversible_displacement = 4e-4}));
 BENCHMARK_CAPTURE(friction_law, Frictionless, law::Frictionless());
 
 // ---- searches: random mats ----
@@ -127,9 +138,21 @@ void search(benchmark::State& state) {
     count_items(state, static_cast<Index>(scene.segments()));
     state.SetComplexityN(state.range(0));
 }
-BENCHMARK(search<proximity::GridSearch>)->RangeMultiplier(4)->Range(1 << 12, 1 << 18)->Unit(benchmark::kMillisecond)->Complexity(benchmark::oN);
-BENCHMARK(search<proximity::BvhSearch>)->RangeMultiplier(4)->Range(1 << 12, 1 << 18)->Unit(benchmark::kMillisecond)->Complexity(benchmark::oNLogN);
-BENCHMARK(search<proximity::KdTreeSearch>)->RangeMultiplier(4)->Range(1 << 12, 1 << 18)->Unit(benchmark::kMillisecond)->Complexity(benchmark::oNLogN);
+BENCHMARK(search<proximity::GridSearch>)
+    ->RangeMultiplier(4)
+    ->Range(1 << 12, 1 << 18)
+    ->Unit(benchmark::kMillisecond)
+    ->Complexity(benchmark::oN);
+BENCHMARK(search<proximity::BvhSearch>)
+    ->RangeMultiplier(4)
+    ->Range(1 << 12, 1 << 18)
+    ->Unit(benchmark::kMillisecond)
+    ->Complexity(benchmark::oNLogN);
+BENCHMARK(search<proximity::KdTreeSearch>)
+    ->RangeMultiplier(4)
+    ->Range(1 << 12, 1 << 18)
+    ->Unit(benchmark::kMillisecond)
+    ->Complexity(benchmark::oNLogN);
 
 // ---- contact elements and the tangent: a weave of 76 fibres whose tows are parting ----
 

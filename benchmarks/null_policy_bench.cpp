@@ -58,8 +58,8 @@ Figures measure(const cloth::FabricParameters& fabric, const cloth::SettleParame
     Vector residual = Vector::Zero(state.size());
     figures.forces = each * median_seconds(repeats, [&] { contacts.add_forces(residual); });
     figures.element_bytes = sizeof(typename Contacts::Element);
-    figures.response_bytes = sizeof(contact::ContactResponse) +
-                             (core::Active<Law> ? sizeof(law::FrictionResponse<typename Law::History>) : 0);
+    figures.response_bytes =
+        sizeof(contact::ContactResponse) + (core::Active<Law> ? sizeof(law::FrictionResponse<typename Law::History>) : 0);
     figures.record_bytes = sizeof(contact::ContactRecord<law::RegularisedPenalty, Law>);
     return figures;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What do the tables of the other benchmarks look like? Reads those that are there of a folder's search.csv, growth.csv, solver.csv and
-// scaling.csv, as `benchmarks/run.sh` leaves them, and writes plots beside them.
-// usage: benchmark_plots FOLDER
+// What do the tables of the other benchmarks look like? Reads those that are there of a folder's search.csv, growth.csv,
+// solver.csv and scaling.csv, as `benchmarks/run.sh` leaves them, and writes plots beside them. usage: benchmark_plots FOLDER
 #include <fibrant/observe/svg_plot.hpp>
 
 #include <algorithm>
@@ -32,8 +31,10 @@ struct Table {
             std::vector<std::string> cells;
             std::stringstream text(line);
             for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
-            if (header.empty()) header = std::move(cells);
-            else if (cells.size() + 1 >= header.size()) rows.push_back(std::move(cells)), rows.back().resize(header.size());
+            if (header.empty())
+                header = std::move(cells);
+            else if (cells.size() + 1 >= header.size())
+                rows.push_back(std::move(cells)), rows.back().resize(header.size());
         }
         if (header.empty()) throw std::runtime_error(path.string() + " has no header");
     }
@@ -49,11 +50,13 @@ double number(const std::string& cell) { return std::strtod(cell.c_str(), nullpt
 /// A line for each name, its points by x.
 using Lines = std::map<std::string, std::vector<std::pair<double, double>>>;
 
-void write(const std::filesystem::path& path, const std::string& title, const std::string& x, const std::string& y, Lines lines, bool orders) {
+void write(const std::filesystem::path& path, const std::string& title, const std::string& x, const std::string& y, Lines lines,
+           bool orders) {
     observe::LogLogPlot plot{.title = title, .x_label = x, .y_label = y, .lines = {}};
     for (auto& [name, points] : lines) {
         std::sort(points.begin(), points.end());
-        plot.lines.push_back({orders && points.size() > 1 ? name + " ~ " + observe::rounded(observe::fitted_order(points), 2) : name, points});
+        plot.lines.push_back(
+            {orders && points.size() > 1 ? name + " ~ " + observe::rounded(observe::fitted_order(points), 2) : name, points});
     }
     std::ofstream(path) << observe::log_log_svg(plot);
     std::printf("%s\n", path.string().c_str());
@@ -79,12 +82,16 @@ void plot_growth(const std::filesystem::path& folder) {
 /// One plot a system: the error that is reached against the time that it takes.
 void plot_solvers(const std::filesystem::path& folder) {
     const Table table(folder / "solver.csv");
-    const std::size_t scene = table.column("scene"), unknowns = table.column("dofs"), name = table.column("strategy"), error = table.column("error"), prepare = table.column("prepare_s"), solve = table.column("solve_s");
+    const std::size_t scene = table.column("scene"), unknowns = table.column("dofs"), name = table.column("strategy"),
+                      error = table.column("error"), prepare = table.column("prepare_s"), solve = table.column("solve_s");
     std::map<std::string, Lines> systems;
     for (const auto& row : table.rows)
-        if (!row[name].starts_with("product")) systems[row[scene] + "_" + row[unknowns]][row[name]].emplace_back(number(row[prepare]) + number(row[solve]), number(row[error]));
+        if (!row[name].starts_with("product"))
+            systems[row[scene] + "_" + row[unknowns]][row[name]].emplace_back(number(row[prepare]) + number(row[solve]),
+                                                                              number(row[error]));
     for (auto& [system, lines] : systems)
-        write(folder / ("solver_" + system + ".svg"), "Linear solvers: " + system + " unknowns", "preparing and solving [s]", "error in energy", std::move(lines), false);
+        write(folder / ("solver_" + system + ".svg"), "Linear solvers: " + system + " unknowns", "preparing and solving [s]",
+              "error in energy", std::move(lines), false);
 }
 
 void plot_scaling(const std::filesystem::path& folder) {

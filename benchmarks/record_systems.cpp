@@ -21,7 +21,8 @@ struct Printer {
     Index solves = 0;
     void reported(const simulation::IncrementReport& increment) {
         solves += increment.counts.linear_solves;
-        std::printf("%td,%s,%td,%td,%.3g\n", increment.number, increment.stage.c_str(), solves, increment.contact.active, increment.residual);
+        std::printf("%td,%s,%td,%td,%.3g\n", increment.number, increment.stage.c_str(), solves, increment.contact.active,
+                    increment.residual);
         std::fflush(stdout);
         if (increment.number >= most) std::exit(0);
     }
@@ -35,8 +36,8 @@ int main(int argc, char** argv) {
         return 2;
     }
     using Weave = benchmarks::SettledWeave<solver::RecordingSolver<solver::TwoLevelPcg>>;
-    const cloth::FabricParameters fabric =
-        benchmarks::chapter_fabric(argc > 3 ? argv[3] : "plain", argc > 4 ? std::atol(argv[4]) : 4, argc > 5 ? std::atol(argv[5]) : 76);
+    const cloth::FabricParameters fabric = benchmarks::chapter_fabric(
+        argc > 3 ? argv[3] : "plain", argc > 4 ? std::atol(argv[4]) : 4, argc > 5 ? std::atol(argv[5]) : 76);
     const cloth::SettleParameters settle;
     auto parameters = cloth::model_parameters<Weave>(fabric, settle);
     parameters.solver.folder = argv[1];

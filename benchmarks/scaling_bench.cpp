@@ -28,8 +28,9 @@ int main(int argc, char** argv) {
     for (int k = 2; k < argc; ++k) sizes.push_back(std::atol(argv[k]));
     if (sizes.empty()) sizes = {2, 3, 4, 6};
     std::vector<std::pair<double, double>> seconds, each, linear, bytes;  // by unknowns
-    std::printf("tows,fibres,unknowns,contact_elements,converged,wrong_crossings,least_gap_over_radius,increments,rejected,"
-                "newton,linear_iterations_a_solve,seconds,seconds_a_newton,peak_bytes\n");
+    std::printf(
+        "tows,fibres,unknowns,contact_elements,converged,wrong_crossings,least_gap_over_radius,increments,rejected,"
+        "newton,linear_iterations_a_solve,seconds,seconds_a_newton,peak_bytes\n");
     bool sound = true;
     for (const Index tows : sizes) {
         const cloth::FabricParameters fabric = benchmarks::chapter_fabric("plain", tows, fibres);
@@ -52,7 +53,9 @@ int main(int argc, char** argv) {
         sound = sound && report.converged;
     }
     if (seconds.size() > 1)
-        std::printf("# exponents over unknowns: seconds %.2f, seconds a Newton iteration %.2f, iterations a solve %.2f, bytes %.2f\n",
-                    observe::fitted_order(seconds), observe::fitted_order(each), observe::fitted_order(linear), observe::fitted_order(bytes));
+        std::printf(
+            "# exponents over unknowns: seconds %.2f, seconds a Newton iteration %.2f, iterations a solve %.2f, bytes %.2f\n",
+            observe::fitted_order(seconds), observe::fitted_order(each), observe::fitted_order(linear),
+            observe::fitted_order(bytes));
     return sound ? 0 : 1;
 }

@@ -4,8 +4,8 @@
 //
 // search_bench [options] FILE...      prints CSV, one line a scene and search; `search_bench --help` tells the options
 // Times are of the processor for one thread (set OMP_NUM_THREADS=1 and pin it), else on the wall. Ratios are to nanoflann
-// used directly in the same run and to the floor: the vertices read once and the filter on the wanted pairs. `bytes` are those that a
-// search keeps, without the pairs, over the segments.
+// used directly in the same run and to the floor: the vertices read once and the filter on the wanted pairs. `bytes` are those
+// that a search keeps, without the pairs, over the segments.
 
 #include "search/growth.hpp"
 #include "search/motion.hpp"
@@ -42,14 +42,16 @@ struct Row {
 
 template <class Search>
 Row halved(const std::string& name, Search& search, std::span<const proximity::Centreline> lines, double reach) {
-    return {name, [&search, lines, reach] {
+    return {name,
+            [&search, lines, reach] {
                 const proximity::detail::SegmentTable table(lines, reach);
                 search.build(table);
                 Call call{.built = time_now()};
                 call.pairs = search.search(table);
                 call.bytes = search.bytes();
                 return call;
-            }, false, true};
+            },
+            false, true};
 }
 
 /// One line on which search to take, and what of the data says so.
@@ -60,11 +62,14 @@ void advise(const Scene& scene, const std::vector<Row>& rows, const std::vector<
     const auto [thin, thick] = std::minmax_element(scene.radius.begin(), scene.radius.end());
     double length = 0.0, width = 0.0;
     for (std::size_t f = 0; f < scene.points.size(); ++f)
-        for (std::size_t k = 1; k < scene.points[f].size(); ++k) length += (scene.points[f][k] - scene.points[f][k - 1]).norm(), width += 2.0 * scene.radius[f];
-    std::fprintf(stderr, "%s: take %s (%.3g ms); segments are %.3g times as long as thick, radii differ %.3g times, %.3g pairs a segment%s. "
-                 "Where fibres move by less than a tenth of a radius from one search to the next, put VerletSearch around it: --motion\n",
-                 scene.name.c_str(), rows[best].name.c_str(), 1e3 * figures[best].total, length / width, *thick / *thin, pairs_a_segment,
-                 pairs_a_segment > 30.0 ? ": many, coarser segments would do" : "");
+        for (std::size_t k = 1; k < scene.points[f].size(); ++k)
+            length += (scene.points[f][k] - scene.points[f][k - 1]).norm(), width += 2.0 * scene.radius[f];
+    std::fprintf(
+        stderr,
+        "%s: take %s (%.3g ms); segments are %.3g times as long as thick, radii differ %.3g times, %.3g pairs a segment%s. "
+        "Where fibres move by less than a tenth of a radius from one search to the next, put VerletSearch around it: --motion\n",
+        scene.name.c_str(), rows[best].name.c_str(), 1e3 * figures[best].total, length / width, *thick / *thin, pairs_a_segment,
+        pairs_a_segment > 30.0 ? ": many, coarser segments would do" : "");
 }
 
 void print_table(const Scene& scene, const Options& options) {
@@ -102,9 +107,10 @@ void print_table(const Scene& scene, const Options& options) {
     double peer = 0.0;
     const auto print = [&](const std::string& name, const Figures& f) {
         if (peer == 0.0) peer = f.total;
-        std::printf("%s,%s,%.0f,%zu,%016llx,%zu,%zu,%.3f,%.3f,%.3f,%.3f,%.3f,%.4f,%.2f,%.0f\n", scene.name.c_str(), name.c_str(), segments, f.pairs.size(),
-                    static_cast<unsigned long long>(checksum(f.pairs)), lacking(exact, f.pairs), lacking(f.pairs, exact), 1e3 * f.build,
-                    1e3 * f.query, 1e3 * f.total, 1e3 * f.least, 1e3 * f.most, f.total / peer, f.total / least, static_cast<double>(f.bytes) / segments);
+        std::printf("%s,%s,%.0f,%zu,%016llx,%zu,%zu,%.3f,%.3f,%.3f,%.3f,%.3f,%.4f,%.2f,%.0f\n", scene.name.c_str(), name.c_str(),
+                    segments, f.pairs.size(), static_cast<unsigned long long>(checksum(f.pairs)), lacking(exact, f.pairs),
+                    lacking(f.pairs, exact), 1e3 * f.build, 1e3 * f.query, 1e3 * f.total, 1e3 * f.least, 1e3 * f.most,
+                    f.total / peer, f.total / least, static_cast<double>(f.bytes) / segments);
         std::fflush(stdout);
     };
     std::vector<Turn> turns;
@@ -126,14 +132,22 @@ void print_table(const Scene& scene, const Options& options) {
 int main(int argc, char** argv) try {
     Options options;
     std::string kind;
-    CLI::App app{"How long does each proximity search take on your fibres, does it find exactly the pairs of the exact search, and how does it stand to others?"};
+    CLI::App app{
+        "How long does each proximity search take on your fibres, does it find exactly the pairs of the exact search, and how "
+        "does it stand to others?"};
     app.add_option("files", options.files, "centrelines: .csv .vtk .vtp .obj .bcc .inp .tg3, or scenes .fpl .fpt");
-    app.add_option("--reach", options.reach, "pairs closer than touching and this many of the least radii; 0.5, or what a scene says")->check(CLI::Range(0.0, 1e6));
+    app.add_option("--reach", options.reach,
+                   "pairs closer than touching and this many of the least radii; 0.5, or what a scene says")
+        ->check(CLI::Range(0.0, 1e6));
     app.add_option("--radius", options.radius, "of fibres whose file has none [length]")->check(CLI::PositiveNumber);
-    app.add_option("--mat", options.mat, "a random mat of so many segments as one more scene")->check(CLI::Range(64, 100'000'000));
+    app.add_option("--mat", options.mat, "a random mat of so many segments as one more scene")
+        ->check(CLI::Range(64, 100'000'000));
     app.add_option("--refine", options.refine, "each segment cut into so many")->check(CLI::Range(1, 1000));
-    app.add_option("--repeats", options.repeats, "calls of each search, in turn with the others")->check(CLI::Range(1, 10000))->capture_default_str();
-    app.add_option("--motion", options.motion, "instead: 50 calls between which each vertex moves by so many radii")->check(CLI::Range(0.0, 1e6));
+    app.add_option("--repeats", options.repeats, "calls of each search, in turn with the others")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    app.add_option("--motion", options.motion, "instead: 50 calls between which each vertex moves by so many radii")
+        ->check(CLI::Range(0.0, 1e6));
     app.add_flag("--brute", options.brute, "the exact search is brute force, which is quadratic; else GridSearch");
     app.add_flag("--own", options.own, "without the other libraries but nanoflann");
     app.add_flag("--self", options.self, "fibres pair with themselves too");
@@ -153,10 +167,14 @@ int main(int argc, char** argv) try {
         proximity::detail::SegmentTable(scene.centrelines(options.self), scene.margin);  // refuses before anything is printed
     }
     if (!options.motion)
-        std::printf("scene,search,segments,pairs,checksum,missed,extra,build_ms,query_ms,total_ms,least_ms,most_ms,ratio_to_nanoflann,ratio_to_floor,bytes\n");
+        std::printf(
+            "scene,search,segments,pairs,checksum,missed,extra,build_ms,query_ms,total_ms,least_ms,most_ms,ratio_to_nanoflann,"
+            "ratio_to_floor,bytes\n");
     for (const Scene& scene : scenes) {
-        if (options.motion) measure_motion(scene, *options.motion, 50, options.self);
-        else print_table(scene, options);
+        if (options.motion)
+            measure_motion(scene, *options.motion, 50, options.self);
+        else
+            print_table(scene, options);
     }
 } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -47,8 +47,10 @@ void measure(const char* name, const auto& parameters, double size) {
         for (Index e = 0; e < elements; ++e) {
             auto& s = stresses[core::at(e)] =
                 beam.predicted_stresses(mesh.rest(0, e), mesh.element(state, 0, e), mesh.element(step, 0, e));
-            if constexpr (beam::IteratedStrains<B>) sum += beam.internal_force(mesh.rest(0, e), mesh.element(state, 0, e), s)[0];
-            else sum += beam.internal_force(mesh.rest(0, e), mesh.element(state, 0, e))[0];
+            if constexpr (beam::IteratedStrains<B>)
+                sum += beam.internal_force(mesh.rest(0, e), mesh.element(state, 0, e), s)[0];
+            else
+                sum += beam.internal_force(mesh.rest(0, e), mesh.element(state, 0, e))[0];
             sum += beam.tangent_stiffness(mesh.rest(0, e), mesh.element(state, 0, e), s)(0, 0);
         }
         times.push_back((benchmarks::processor_time() - start) / elements);
@@ -70,12 +72,12 @@ int main() {
     std::printf("law,nanoseconds,over_elastic\n");
     measure<beam::Isotropic>("isotropic", beam::DirectorBeam<>::Parameters{}, 1e-4);
     measure<material::Elastic>("elastic or transversely isotropic", with<material::Elastic>({}), 1e-4);
-    measure<material::Eigenstrain<material::Elastic>>("eigenstrain",
-                                                          with<material::Eigenstrain<material::Elastic>>({.base = {}, .along = 0.01}), 1e-4);
+    measure<material::Eigenstrain<material::Elastic>>(
+        "eigenstrain", with<material::Eigenstrain<material::Elastic>>({.base = {}, .along = 0.01}), 1e-4);
     measure<material::Viscoelastic<2>>("viscoelastic of two branches",
                                        with<material::Viscoelastic<2>>({.share = {0.3, 0.2}, .time = {1.0, 10.0}}), 1e-4);
-    measure<material::Brittle>("brittle",
-                               with<material::Brittle>({.strength = 1e9, .modulus = 5.0, .reference_length = 1.0}), 1e-4);
+    measure<material::Brittle>("brittle", with<material::Brittle>({.strength = 1e9, .modulus = 5.0, .reference_length = 1.0}),
+                               1e-4);
     using Stops = material::Composed<material::NoCompression, material::BendingStops<8>>;
     Stops::Parameters stops;
     for (std::size_t k = 0; k < 8; ++k) {

@@ -82,7 +82,9 @@ void measure(const char* name, Scene& scene, bool self_contact, Observers&... ob
 }  // namespace
 
 int main(int argc, char** argv) {
-    Scene scene{benchmarks::chapter_fabric("plain", 2, argc > 1 ? std::atol(argv[1]) : 7), {}, argc > 2 ? std::max(1, std::atoi(argv[2])) : 5};
+    Scene scene{benchmarks::chapter_fabric("plain", 2, argc > 1 ? std::atol(argv[1]) : 7),
+                {},
+                argc > 2 ? std::max(1, std::atoi(argv[2])) : 5};
     const std::filesystem::path folder = std::filesystem::temp_directory_path() / "fibrant_skips_bench";
     std::printf("with,seconds,ratio,newton,contact_elements,crimp,crimp_differs_by,bytes_of_a_contact_element\n");
     measure<Weave>("nothing more", scene, false);

@@ -108,17 +108,24 @@ void measure(Solver solver, const System& system, const Vector& b, const Vector&
         const double end = time_now();
         const Vector difference = x - reference;
         system.apply(difference, energy);
-        rows[k] = {first - start, prepared - analysed, end - begin, report.residual, std::sqrt(std::abs(difference.dot(energy)) / size),
-                   peak_bytes() - before, static_cast<int>(report.status), report.iterations};
+        rows[k] = {first - start,
+                   prepared - analysed,
+                   end - begin,
+                   report.residual,
+                   std::sqrt(std::abs(difference.dot(energy)) / size),
+                   peak_bytes() - before,
+                   static_cast<int>(report.status),
+                   report.iterations};
     }
 }
 
 const std::vector<std::string>& known_strategies() {
-    static const std::vector<std::string> names{
+    static const std::vector<std::string> names {
 #if defined(FIBRANT_WITH_CHOLMOD)
         "CholmodCholesky",
 #endif
-        "DoubleBlockCholesky", "FloatBlockCholesky", "TwoLevelPcg", "AutomaticSolver", "FibreBlockPcg", "SparseCholesky"};
+            "DoubleBlockCholesky", "FloatBlockCholesky", "TwoLevelPcg", "AutomaticSolver", "FibreBlockPcg", "SparseCholesky"
+    };
     return names;
 }
 void measure(const std::string& name, const System& system, const Vector& b, const Vector& reference, Rows& rows) {
@@ -133,34 +140,40 @@ void measure(const std::string& name, const System& system, const Vector& b, con
     if (name == "SparseCholesky") measure(solver::SparseCholesky{}, system, b, reference, rows);
 }
 
-void print(const std::string& scene, const System& system, const std::string& strategy, double tolerance, const Row& row, double baseline) {
-    std::printf("%s,%td,%td,%zu,%s,%.0e,%d,%d,%.2e,%.2e,%.4f,%.4f,%.5f,%.3g,%.2f\n", scene.c_str(), core::count(system.layout().chains),
-                system.layout().unknowns(), system.points().size(), strategy.c_str(), tolerance, row.status, row.iterations, row.residual,
-                row.error, row.analyse, row.prepare, row.solve, row.bytes, baseline / (row.prepare + row.solve));
+void print(const std::string& scene, const System& system, const std::string& strategy, double tolerance, const Row& row,
+           double baseline) {
+    std::printf("%s,%td,%td,%zu,%s,%.0e,%d,%d,%.2e,%.2e,%.4f,%.4f,%.5f,%.3g,%.2f\n", scene.c_str(),
+                core::count(system.layout().chains), system.layout().unknowns(), system.points().size(), strategy.c_str(),
+                tolerance, row.status, row.iterations, row.residual, row.error, row.analyse, row.prepare, row.solve, row.bytes,
+                baseline / (row.prepare + row.solve));
     std::fflush(stdout);
 }
 
 /// A x against the same product of a scalar matrix in compressed rows.
 void measure_product(const std::string& scene, const System& system, const Vector& b, int threads) {
     Rows rows{};
-    const bool done = in_own_process(threads, [&](Rows& to) {
-        Vector y(b.size()), z(b.size());
-        SparseMatrix a;
-        assembly::assemble_from_terms(system, a);
-        const Eigen::SparseMatrix<double, Eigen::RowMajor> rows_of_a = a;
-        a.resize(0, 0);
-        const double own = median_seconds(9, [&] { system.apply(b, y); });
-        const double csr = median_seconds(9, [&] { z.noalias() = rows_of_a * b; });
-        const double error = (y - z).norm() / z.norm();
-        to[0] = {0.0, 0.0, csr, 0.0, 0.0, static_cast<double>(rows_of_a.nonZeros()) * 12.0, 0, 1};
-        to[1] = {0.0, 0.0, own, 0.0, error, 0.0, 0, 1};
-    }, rows);
+    const bool done = in_own_process(
+        threads,
+        [&](Rows& to) {
+            Vector y(b.size()), z(b.size());
+            SparseMatrix a;
+            assembly::assemble_from_terms(system, a);
+            const Eigen::SparseMatrix<double, Eigen::RowMajor> rows_of_a = a;
+            a.resize(0, 0);
+            const double own = median_seconds(9, [&] { system.apply(b, y); });
+            const double csr = median_seconds(9, [&] { z.noalias() = rows_of_a * b; });
+            const double error = (y - z).norm() / z.norm();
+            to[0] = {0.0, 0.0, csr, 0.0, 0.0, static_cast<double>(rows_of_a.nonZeros()) * 12.0, 0, 1};
+            to[1] = {0.0, 0.0, own, 0.0, error, 0.0, 0, 1};
+        },
+        rows);
     if (!done) return;
     print(scene, system, "product CSR", 0.0, rows[0], rows[0].solve);
     print(scene, system, "product", 0.0, rows[1], rows[0].solve);
 }
 
-void compare(const std::string& scene, const System& system, const Vector& b, const std::vector<std::string>& strategies, int threads) {
+void compare(const std::string& scene, const System& system, const Vector& b, const std::vector<std::string>& strategies,
+             int threads) {
     Vector reference;
     solver::TwoLevelPcg exact{{.iteration_limit = 20000}};
     exact.analyse(system);
@@ -171,7 +184,8 @@ void compare(const std::string& scene, const System& system, const Vector& b, co
     for (Row& row : baseline) row.solve = std::numeric_limits<double>::quiet_NaN();
     for (const std::string& strategy : strategies) {
         Rows rows{};
-        if (!in_own_process(threads, [&](Rows& to) { measure(strategy, system, b, reference, to); }, rows)) {
+        if (!in_own_process(
+                threads, [&](Rows& to) { measure(strategy, system, b, reference, to); }, rows)) {
             std::fprintf(stderr, "%s: %s ended early\n", scene.c_str(), strategy.c_str());
             continue;
         }
@@ -191,8 +205,10 @@ test::Fabric fabric(int fibres) {
 std::vector<std::string> split(const std::string& list) {
     std::vector<std::string> names(1);
     for (const char c : list) {
-        if (c == ',') names.emplace_back();
-        else names.back() += c;
+        if (c == ',')
+            names.emplace_back();
+        else
+            names.back() += c;
     }
     return names;
 }
@@ -205,10 +221,14 @@ int main(int argc, char** argv) try {
     int threads = 1;
     for (int k = 1; k < argc; ++k) {
         const std::string argument = argv[k];
-        if (argument == "--variants") variants = true;
-        else if (argument == "--strategies" && k + 1 < argc) strategies = split(argv[++k]);
-        else if (argument == "--threads" && k + 1 < argc) threads = std::max(1, std::atoi(argv[++k]));
-        else scenes.push_back(argument);
+        if (argument == "--variants")
+            variants = true;
+        else if (argument == "--strategies" && k + 1 < argc)
+            strategies = split(argv[++k]);
+        else if (argument == "--threads" && k + 1 < argc)
+            threads = std::max(1, std::atoi(argv[++k]));
+        else
+            scenes.push_back(argument);
     }
     if (scenes.empty()) scenes = {"76", "152"};
     for (const std::string& name : strategies) {
@@ -217,7 +237,9 @@ int main(int argc, char** argv) try {
         return 1;
     }
     set_threads(1);  // in this process, which is to have none when it forks
-    std::printf("scene,fibres,dofs,contacts,strategy,tolerance,status,iterations,residual,error,analyse_s,prepare_s,solve_s,bytes,ratio\n");
+    std::printf(
+        "scene,fibres,dofs,contacts,strategy,tolerance,status,iterations,residual,error,analyse_s,prepare_s,solve_s,bytes,"
+        "ratio\n");
     for (const std::string& scene : scenes) {
         const int fibres = std::atoi(scene.c_str());
         std::vector<std::string> chosen = strategies;
@@ -235,7 +257,8 @@ int main(int argc, char** argv) try {
         const test::Fabric base = fabric(fibres);
         std::vector<std::pair<std::string, test::Fabric>> all{{"base", base}};
         if (variants) {
-            for (const char* name : {"stiffness x 10", "stiffness x 100", "half active", "fifth active", "no friction", "misaligned", "no groups"})
+            for (const char* name :
+                 {"stiffness x 10", "stiffness x 100", "half active", "fifth active", "no friction", "misaligned", "no groups"})
                 all.emplace_back(name, base);
             all[1].second.contact_stiffness *= 10.0, all[2].second.contact_stiffness *= 100.0;
             all[3].second.active = 0.5, all[4].second.active = 0.2;

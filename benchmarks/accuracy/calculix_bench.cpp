@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A cantilever under an end force P L^2 / EI = 5, L/r = 100, with ours and with CalculiX (Debian's calculix-ccx), quadratic beams B32R, side
-// by side: error of the place of the tip over the length, and CPU time of the whole run, of CalculiX in one step and in ten.
-// Prints CSV, and last the least time in which either is as good as CalculiX with 20 elements. Without a program `ccx` in the path, ours alone.
-// usage: benchmark_accuracy_calculix_bench [folder for CalculiX's files [repeats]]; default . and 5
+// A cantilever under an end force P L^2 / EI = 5, L/r = 100, with ours and with CalculiX (Debian's calculix-ccx), quadratic beams
+// B32R, side by side: error of the place of the tip over the length, and CPU time of the whole run, of CalculiX in one step and
+// in ten. Prints CSV, and last the least time in which either is as good as CalculiX with 20 elements. Without a program `ccx` in
+// the path, ours alone. usage: benchmark_accuracy_calculix_bench [folder for CalculiX's files [repeats]]; default . and 5
 #include "rods.hpp"
 
 #include <sys/resource.h>
@@ -30,7 +30,8 @@ struct Sample {
     double error, seconds;
 };
 
-double error_of(double x, double z) {  // end_force.json, reissner: sections of the same bending stiffness differ by 1e-5 of L in shear
+double error_of(double x,
+                double z) {  // end_force.json, reissner: sections of the same bending stiffness differ by 1e-5 of L in shear
     return std::hypot(x - 0.7139748823646269, z - 0.6123354856053732);
 }
 double children_seconds() {
@@ -60,12 +61,17 @@ Sample calculix(const std::filesystem::path& folder, Index elements, double step
     std::ofstream input(folder / "cantilever.inp");
     input.precision(15);
     input << "*NODE, NSET=ALL\n";
-    for (Index k = 0; k <= 2 * elements; ++k) input << k + 1 << ",0,0," << slenderness * static_cast<double>(k) / static_cast<double>(2 * elements) << '\n';
+    for (Index k = 0; k <= 2 * elements; ++k)
+        input << k + 1 << ",0,0," << slenderness * static_cast<double>(k) / static_cast<double>(2 * elements) << '\n';
     input << "*ELEMENT, TYPE=B32R, ELSET=E\n";
     for (Index e = 0; e < elements; ++e) input << e + 1 << ',' << 2 * e + 1 << ',' << 2 * e + 2 << ',' << 2 * e + 3 << '\n';
-    input << "*NSET, NSET=TIP\n" << 2 * elements + 1 << "\n*MATERIAL, NAME=M\n*ELASTIC\n" << young << ",0.3\n*BEAM SECTION, ELSET=E, MATERIAL=M, SECTION=RECT\n"
-          << side << ',' << side << "\n1,0,0\n*BOUNDARY\n1,1,6\n*STEP, NLGEOM, INC=1000\n*STATIC\n" << step << ",1\n*CLOAD\n" << 2 * elements + 1 << ",1,"
-          << 5.0 * young * inertia / (slenderness * slenderness) << "\n*NODE PRINT, NSET=TIP, FREQUENCY=1000\nU\n*END STEP\n";
+    input << "*NSET, NSET=TIP\n"
+          << 2 * elements + 1 << "\n*MATERIAL, NAME=M\n*ELASTIC\n"
+          << young << ",0.3\n*BEAM SECTION, ELSET=E, MATERIAL=M, SECTION=RECT\n"
+          << side << ',' << side << "\n1,0,0\n*BOUNDARY\n1,1,6\n*STEP, NLGEOM, INC=1000\n*STATIC\n"
+          << step << ",1\n*CLOAD\n"
+          << 2 * elements + 1 << ",1," << 5.0 * young * inertia / (slenderness * slenderness)
+          << "\n*NODE PRINT, NSET=TIP, FREQUENCY=1000\nU\n*END STEP\n";
     input.close();
     const std::string command = "cd '" + folder.string() + "' && OMP_NUM_THREADS=1 ccx cantilever > cantilever.log 2>&1";
     std::vector<double> times;
@@ -81,7 +87,8 @@ Sample calculix(const std::filesystem::path& folder, Index elements, double step
     std::istringstream row(last);
     double node = 0, x = NAN, y = NAN, z = NAN;
     row >> node >> x >> y >> z;
-    return {step < 1.0 ? "ccx, steps of a tenth" : "ccx, one step", elements, error_of(x / slenderness, 1.0 + z / slenderness), median(times)};
+    return {step < 1.0 ? "ccx, steps of a tenth" : "ccx, one step", elements, error_of(x / slenderness, 1.0 + z / slenderness),
+            median(times)};
 }
 
 }  // namespace
@@ -101,10 +108,12 @@ int main(int argc, char** argv) {
     if (!installed) return 0;
     for (const double step : {0.1, 1.0})
         for (const Index elements : {5, 10, 20, 40, 80}) take(calculix(folder, elements, step, repeats));
-    const auto bar = std::find_if(samples.begin(), samples.end(), [](const Sample& s) { return s.code == "ccx, one step" && s.elements == 20; });
+    const auto bar = std::find_if(samples.begin(), samples.end(),
+                                  [](const Sample& s) { return s.code == "ccx, one step" && s.elements == 20; });
     double best[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     for (const Sample& s : samples)
         if (s.error <= bar->error) best[s.code == "fibrant" ? 0 : 1] = std::min(best[s.code == "fibrant" ? 0 : 1], s.seconds);
-    std::printf("# error %.2e or less: ours %.2e s, CalculiX %.2e s, %.0f times\n", bar->error, best[0], best[1], best[1] / best[0]);
+    std::printf("# error %.2e or less: ours %.2e s, CalculiX %.2e s, %.0f times\n", bar->error, best[0], best[1],
+                best[1] / best[0]);
     return 0;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Which element and which normal law reach a given error in a contact force soonest? Two scenes with a known answer: two fibres clamped
-// at both ends that cross and are pressed together by two radii, and a strand of a core and six wires that is stretched. Each is
-// run at smaller and smaller penetrations, with a penalty alone and with multipliers; the crossing also on finer and finer meshes, with
-// multipliers. Prints CSV, a line a run, and writes log-log plots.
-// usage: benchmark_accuracy_contact_bench [directory of the plots [repeats]]; default . and 3
+// Which element and which normal law reach a given error in a contact force soonest? Two scenes with a known answer: two fibres
+// clamped at both ends that cross and are pressed together by two radii, and a strand of a core and six wires that is stretched.
+// Each is run at smaller and smaller penetrations, with a penalty alone and with multipliers; the crossing also on finer and
+// finer meshes, with multipliers. Prints CSV, a line a run, and writes log-log plots. usage: benchmark_accuracy_contact_bench
+// [directory of the plots [repeats]]; default . and 3
 #include "sweep.hpp"
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
@@ -71,17 +71,21 @@ int main(int argc, char** argv) {
     const int repeats = argc > 2 ? std::max(1, std::atoi(argv[2])) : 3;
     print_sweep_header();  // value: allowed penetration over the radius, or elements
     observe::LogLogPlot crossed, meshes, wires;
-    crossed.title = "crossed fibres, less and less penetration", meshes.title = "crossed fibres, multipliers, finer and finer meshes", wires.title = "strand 1 + 6";
+    crossed.title = "crossed fibres, less and less penetration",
+    meshes.title = "crossed fibres, multipliers, finer and finer meshes", wires.title = "strand 1 + 6";
     const std::array penetrations{1e-1, 1e-2, 1e-3, 1e-4, 1e-5};
     const std::array<Index, 5> numbers{8, 16, 32, 64, 128};
     const auto cross = [&]<simulation::Model M>(const char* policy, Index elements) {
-        sweep("crossing", policy, penetrations, [&](double p) { return crossing<M>(p * r, elements); }, repeats, crossed);
+        sweep(
+            "crossing", policy, penetrations, [&](double p) { return crossing<M>(p * r, elements); }, repeats, crossed);
     };
     const auto refine = [&]<simulation::Model M>(const char* policy) {
-        sweep("meshes", policy, numbers, [&](Index elements) { return crossing<M>(1e-5 * r, elements); }, repeats, meshes);
+        sweep(
+            "meshes", policy, numbers, [&](Index elements) { return crossing<M>(1e-5 * r, elements); }, repeats, meshes);
     };
     const auto stretch = [&]<simulation::Model M>(const char* policy) {
-        sweep("strand", policy, penetrations, [&](double p) { return stretched_strand<M>(p * r, 24); }, repeats, wires);
+        sweep(
+            "strand", policy, penetrations, [&](double p) { return stretched_strand<M>(p * r, 24); }, repeats, wires);
     };
     cross.operator()<Policy<Director>>("director, penalty", 32);
     cross.operator()<Held<Director>>("director, multipliers", 32);

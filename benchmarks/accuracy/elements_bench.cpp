@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Which beam element reaches a given error soonest? Prints CSV, a line a mesh: the error in the figure that the reference gives, CPU time
-// of the whole run and unknowns; then the fitted orders, and what each element costs in one and the same scene of touching fibres. Writes a
-// log-log plot of each case.
-// usage: benchmark_accuracy_elements_bench [directory of the plots [repeats [cost]]]; default . and 5; `cost` leaves meshes and plots out, the name of a policy all others too, so that
-// its instructions can be counted (valgrind --tool=callgrind)
+// Which beam element reaches a given error soonest? Prints CSV, a line a mesh: the error in the figure that the reference gives,
+// CPU time of the whole run and unknowns; then the fitted orders, and what each element costs in one and the same scene of
+// touching fibres. Writes a log-log plot of each case. usage: benchmark_accuracy_elements_bench [directory of the plots [repeats
+// [cost]]]; default . and 5; `cost` leaves meshes and plots out, the name of a policy all others too, so that its instructions
+// can be counted (valgrind --tool=callgrind)
 #include "rods.hpp"
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
@@ -33,13 +33,15 @@ struct Problem {
     std::string name;
     scene::Assembly (*assembly)(Index elements);
     std::vector<std::vector<simulation::Ramp>> stages;
-    bool (*reaction)();                             ///< compare the force at mid-span, not the place of the tip
-    double size;                                    ///< errors are divided by [length or force]
-    std::map<std::string, Vec3> reference;          ///< by model
+    bool (*reaction)();                     ///< compare the force at mid-span, not the place of the tip
+    double size;                            ///< errors are divided by [length or force]
+    std::map<std::string, Vec3> reference;  ///< by model
 };
 
 template <int Slenderness>
-scene::Assembly cantilever_of(Index elements) { return cantilever(Slenderness, elements); }
+scene::Assembly cantilever_of(Index elements) {
+    return cantilever(Slenderness, elements);
+}
 template <int Slenderness, int Thousandths>
 scene::Assembly stretched(Index elements) {
     const double length = Slenderness * r;
@@ -48,7 +50,8 @@ scene::Assembly stretched(Index elements) {
     assembly.clamp(scene::first_end(0));
     assembly.clamp(scene::last_end(0), Vec3(0, 0, 1e-3 * Thousandths * length), Vec3::Zero(), Vec3::Zero(), "stretch");
     scene::Hold push;
-    push.at = {0, 0.5}, push.directions = Vec3(1, 0, 0).asDiagonal(), push.displacement = Vec3(2.0 * r, 0, 0), push.channel = "push";
+    push.at = {0, 0.5}, push.directions = Vec3(1, 0, 0).asDiagonal(), push.displacement = Vec3(2.0 * r, 0, 0),
+    push.channel = "push";
     assembly.hold(push);
     return assembly;
 }
@@ -70,13 +73,32 @@ bool no() { return false; }
 
 std::vector<Problem> problems() {
     return {
-        {"cantilever_1000", cantilever_of<1000>, {{{"load", 1.0}}}, no, 20.1,
-         {{"kirchhoff", {14.347209624599, 0, 12.308669949439}}, {"reissner", {14.347246478717, 0, 12.308662682769}}, {"director", {14.347255281111, 0, 12.308643485742}}}},
-        {"arc45_slender", arc, {{{"load", 1.0}}}, no, 100.0,
-         {{"reissner", {47.151285842085, 15.685075385944, 53.468661045426}}, {"director", {47.151285842085, 15.685075385944, 53.468661045426}}}},
-        {"stretched_100_w2", stretched<100, 0>, {{{"stretch", 1.0}}, {{"push", 1.0}}}, yes, 0.0017,
+        {"cantilever_1000",
+         cantilever_of<1000>,
+         {{{"load", 1.0}}},
+         no,
+         20.1,
+         {{"kirchhoff", {14.347209624599, 0, 12.308669949439}},
+          {"reissner", {14.347246478717, 0, 12.308662682769}},
+          {"director", {14.347255281111, 0, 12.308643485742}}}},
+        {"arc45_slender",
+         arc,
+         {{{"load", 1.0}}},
+         no,
+         100.0,
+         {{"reissner", {47.151285842085, 15.685075385944, 53.468661045426}},
+          {"director", {47.151285842085, 15.685075385944, 53.468661045426}}}},
+        {"stretched_100_w2",
+         stretched<100, 0>,
+         {{{"stretch", 1.0}}, {{"push", 1.0}}},
+         yes,
+         0.0017,
          {{"reissner", {0.0017101073583669, 0, 0}}, {"director", {0.00171357790723, 0, 0}}}},
-        {"stretched_1000_eps0.01", stretched<1000, 10>, {{{"stretch", 1.0}}, {{"push", 1.0}}}, yes, 0.00075,
+        {"stretched_1000_eps0.01",
+         stretched<1000, 10>,
+         {{{"stretch", 1.0}}, {{"push", 1.0}}},
+         yes,
+         0.00075,
          {{"reissner", {0.00074918537055306, 0, 0}}, {"director", {0.000760462464506, 0, 0}}}},
     };
 }
@@ -102,7 +124,8 @@ Sample measure(const Problem& problem, const Vec3& reference, Index elements, in
         }
         sample.converged = simulator.run(loading).converged;
         times.push_back(processor_time() - start);
-        const Vec3 value = problem.reaction() ? Vec3(simulator.reaction({0, 0.5}).x(), 0, 0) : simulator.value(scene::last_end(0));
+        const Vec3 value =
+            problem.reaction() ? Vec3(simulator.reaction({0, 0.5}).x(), 0, 0) : simulator.value(scene::last_end(0));
         sample.error = (value - reference).norm() / problem.size;
         sample.unknowns = simulator.state().size();
     }
@@ -117,20 +140,24 @@ template <simulation::Model M>
 void sweep(const char* policy, const std::vector<std::string>& models, int first, bool curved, int repeats, Plots& plots) {
     for (const Problem& problem : problems()) {
         if (problem.name.starts_with("arc") && !curved) continue;
-        const auto model = std::find_if(models.begin(), models.end(), [&](const std::string& m) { return problem.reference.contains(m); });
+        const auto model =
+            std::find_if(models.begin(), models.end(), [&](const std::string& m) { return problem.reference.contains(m); });
         std::vector<std::pair<double, double>> by_time, by_unknowns;
         for (Index elements = first; elements <= 64 * first; elements *= 2) {
             const Sample sample = measure<M>(problem, problem.reference.at(*model), elements, repeats);
-            std::printf("%s,%s,%s,%ld,%ld,%.3e,%.3e,%d\n", problem.name.c_str(), policy, model->c_str(), static_cast<long>(elements), static_cast<long>(sample.unknowns),
-                        sample.error, sample.seconds, sample.converged ? 1 : 0);
+            std::printf("%s,%s,%s,%ld,%ld,%.3e,%.3e,%d\n", problem.name.c_str(), policy, model->c_str(),
+                        static_cast<long>(elements), static_cast<long>(sample.unknowns), sample.error, sample.seconds,
+                        sample.converged ? 1 : 0);
             if (!sample.converged) continue;
             by_time.emplace_back(sample.seconds, sample.error);
             by_unknowns.emplace_back(static_cast<double>(sample.unknowns), sample.error);
         }
         // The order of the range in which refinement helps: up to the least error.
-        const auto least = std::min_element(by_unknowns.begin(), by_unknowns.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+        const auto least = std::min_element(by_unknowns.begin(), by_unknowns.end(),
+                                            [](const auto& a, const auto& b) { return a.second < b.second; });
         const std::vector<std::pair<double, double>> falling(by_unknowns.begin(), least == by_unknowns.end() ? least : least + 1);
-        std::printf("# order,%s,%s,%.2f,least error %.1e\n", problem.name.c_str(), policy, -observe::fitted_order(falling), least == by_unknowns.end() ? NAN : least->second);
+        std::printf("# order,%s,%s,%.2f,least error %.1e\n", problem.name.c_str(), policy, -observe::fitted_order(falling),
+                    least == by_unknowns.end() ? NAN : least->second);
         observe::LogLogPlot& plot = plots[problem.name];
         plot.title = problem.name, plot.x_label = "CPU time [s]", plot.y_label = "error";
         plot.lines.push_back({policy, by_time});
@@ -146,7 +173,8 @@ scene::Assembly layers() {
         for (int k = 0; k < 8; ++k) {
             const double aside = (k - 3.5) * pitch, z = upper ? 2.0 * r : 0.0;
             scene::FibreSpecification fibre = along_z(1.0, 20);
-            fibre.from = upper ? Vec3(-0.5 * length, aside, z) : Vec3(aside, -0.5 * length, z), fibre.to = upper ? Vec3(0.5 * length, aside, z) : Vec3(aside, 0.5 * length, z);
+            fibre.from = upper ? Vec3(-0.5 * length, aside, z) : Vec3(aside, -0.5 * length, z),
+            fibre.to = upper ? Vec3(0.5 * length, aside, z) : Vec3(aside, 0.5 * length, z);
             fibre.director = Vec3::UnitZ(), fibre.group = group;
             const Index f = assembly.add(fibre);
             for (const double end : {0.0, 1.0}) assembly.clamp({f, end}, upper ? Vec3(0, 0, -r) : Vec3(Vec3::Zero()));
@@ -189,12 +217,15 @@ void cost(const char* policy, int repeats, const std::string& only, With with = 
         times.push_back(processor_time() - start);
         if (with == With::checkpoint) std::filesystem::remove(file);
         converged = converged && report.converged;
-        unknowns = simulator.state().size(), active = report.contact.active, newton = report.counts.newton, force = report.contact.reaction_sum;
+        unknowns = simulator.state().size(), active = report.contact.active, newton = report.counts.newton,
+        force = report.contact.reaction_sum;
     }
     const double seconds = median(times);
-    std::printf("%s,%ld,%zu,%zu,%zu,%zu,%zu,%ld,%ld,%.6e,%.3f,%.3e,%d\n", policy, static_cast<long>(unknowns), sizeof(typename B::Rest) + sizeof(typename B::Stresses),
-                sizeof(typename assembly::ChainSystem<B>::Row), sizeof(Element), sizeof(contact::ContactRecord<typename M::Normal, typename M::Friction>), sizeof(typename assembly::ChainSystem<B>::Point),
-                static_cast<long>(active), static_cast<long>(newton), force, seconds, seconds / static_cast<double>(newton), converged ? 1 : 0);
+    std::printf("%s,%ld,%zu,%zu,%zu,%zu,%zu,%ld,%ld,%.6e,%.3f,%.3e,%d\n", policy, static_cast<long>(unknowns),
+                sizeof(typename B::Rest) + sizeof(typename B::Stresses), sizeof(typename assembly::ChainSystem<B>::Row),
+                sizeof(Element), sizeof(contact::ContactRecord<typename M::Normal, typename M::Friction>),
+                sizeof(typename assembly::ChainSystem<B>::Point), static_cast<long>(active), static_cast<long>(newton), force,
+                seconds, seconds / static_cast<double>(newton), converged ? 1 : 0);
     std::fflush(stdout);
 }
 
@@ -220,14 +251,17 @@ int main(int argc, char** argv) {
     Plots plots;
     std::printf("problem,policy,reference,elements,unknowns,error,seconds,converged\n");
     if (argc <= 3) {
-    sweep<Director>("director 3", {"director"}, 2, true, repeats, plots);
-    sweep<Director2>("director 2", {"director"}, 4, true, repeats, plots);
-    sweep<Rod>("rod", {"reissner"}, 4, true, repeats, plots);
-    sweep<Cable>("cable", {"kirchhoff", "reissner"}, 2, false, repeats, plots);
-    for (const auto& [name, plot] : plots) observe::write_file(directory / ("accuracy_" + name + ".svg"), observe::log_log_svg(plot));
+        sweep<Director>("director 3", {"director"}, 2, true, repeats, plots);
+        sweep<Director2>("director 2", {"director"}, 4, true, repeats, plots);
+        sweep<Rod>("rod", {"reissner"}, 4, true, repeats, plots);
+        sweep<Cable>("cable", {"kirchhoff", "reissner"}, 2, false, repeats, plots);
+        for (const auto& [name, plot] : plots)
+            observe::write_file(directory / ("accuracy_" + name + ".svg"), observe::log_log_svg(plot));
     }
     const std::string only = argc > 3 && std::string(argv[3]) != "cost" ? argv[3] : "";
-    std::printf("policy,unknowns,bytes an element,bytes a row,bytes a contact,bytes of its record,bytes a point,active,newton,reactions,seconds,seconds an iteration,converged\n");
+    std::printf(
+        "policy,unknowns,bytes an element,bytes a row,bytes a contact,bytes of its record,bytes a "
+        "point,active,newton,reactions,seconds,seconds an iteration,converged\n");
     cost<Director>("director", repeats, only);
     cost<Rough>("director with friction", repeats, only);
     cost<Smooth>("director with smooth friction", repeats, only);

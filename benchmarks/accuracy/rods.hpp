@@ -29,7 +29,12 @@ struct Policy {
 inline const double r = 0.0201, young = 7300.0, area = std::numbers::pi * r * r, bending = 0.25 * young * area * r * r;
 
 inline scene::FibreSpecification along_z(double length, Index elements) {
-    return {.from = Vec3::Zero(), .to = Vec3(0, 0, length), .section = scene::circular(r), .material = {young, 0.3}, .elements = elements, .director = Vec3::UnitX()};
+    return {.from = Vec3::Zero(),
+            .to = Vec3(0, 0, length),
+            .section = scene::circular(r),
+            .material = {young, 0.3},
+            .elements = elements,
+            .director = Vec3::UnitX()};
 }
 /// Clamped at one end, under an end force P L^2 / EI = 5 across it.
 inline scene::Assembly cantilever(double slenderness, Index elements) {
@@ -37,7 +42,8 @@ inline scene::Assembly cantilever(double slenderness, Index elements) {
     scene::Assembly assembly;
     assembly.add(along_z(length, elements));
     assembly.clamp(scene::first_end(0));
-    assembly.apply(scene::DeadForce{scene::last_end(0), scene::NodeVector::position, Vec3(5.0 * bending / (length * length), 0, 0), "load"});
+    assembly.apply(
+        scene::DeadForce{scene::last_end(0), scene::NodeVector::position, Vec3(5.0 * bending / (length * length), 0, 0), "load"});
     return assembly;
 }
 template <simulation::Model M>
@@ -47,7 +53,8 @@ simulation::ModelParameters<M> parameters() {
     all.contact.stiffness.allowed_penetration = 1e-2 * r;
     all.iteration.step_tolerance = 1e-8, all.iteration.residual_tolerance = 1e-8, all.iteration.linear_tolerance = 1e-9;
     all.iteration.newton_limit = 40;
-    if constexpr (core::Active<typename M::Friction>) all.friction = {.friction_coefficient = 0.15, .reversible_displacement = 0.02 * r};
+    if constexpr (core::Active<typename M::Friction>)
+        all.friction = {.friction_coefficient = 0.15, .reversible_displacement = 0.02 * r};
     return all;
 }
 

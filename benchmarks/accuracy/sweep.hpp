@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file What benchmarks of contact share: how deep surfaces may be in each other, a strand that is stretched, and a policy that is run over a range of values.
+/// @file What benchmarks of contact share: how deep surfaces may be in each other, a strand that is stretched, and a policy that
+/// is run over a range of values.
 
 #include "rods.hpp"
 
@@ -80,10 +81,14 @@ Sample stretched_strand(double penetration, Index elements, double penalty = 0.0
     return sample;
 }
 
-inline void print_sweep_header() { std::printf("scene,policy,value,error,seconds,penetration_over_radius,newton,contact_passes,converged\n"); }
+inline void print_sweep_header() {
+    std::printf("scene,policy,value,error,seconds,penetration_over_radius,newton,contact_passes,converged\n");
+}
 
-/// Prints a line of CSV a value, the time a median of repeats, and one with the slopes of log error over log value and over log time.
-/// @param run  run(value) gives a Sample; value is a penetration over the radius, a number of elements or another thing that is refined
+/// Prints a line of CSV a value, the time a median of repeats, and one with the slopes of log error over log value and over log
+/// time.
+/// @param run  run(value) gives a Sample; value is a penetration over the radius, a number of elements or another thing that is
+/// refined
 template <class Run, class Values>
 void sweep(const char* scene, const char* policy, const Values& values, const Run& run, int repeats, observe::LogLogPlot& plot) {
     std::vector<std::pair<double, double>> by_time, by_value;
@@ -95,14 +100,16 @@ void sweep(const char* scene, const char* policy, const Values& values, const Ru
             times.push_back(sample.seconds);
         }
         const double seconds = median(times);
-        std::printf("%s,%s,%g,%.3e,%.3e,%.2e,%ld,%ld,%d\n", scene, policy, static_cast<double>(value), sample.error, seconds, sample.report.contact.greatest_penetration / r,
-                    static_cast<long>(sample.report.counts.newton), static_cast<long>(sample.report.counts.contact_passes), sample.report.converged ? 1 : 0);
+        std::printf("%s,%s,%g,%.3e,%.3e,%.2e,%ld,%ld,%d\n", scene, policy, static_cast<double>(value), sample.error, seconds,
+                    sample.report.contact.greatest_penetration / r, static_cast<long>(sample.report.counts.newton),
+                    static_cast<long>(sample.report.counts.contact_passes), sample.report.converged ? 1 : 0);
         std::fflush(stdout);
         if (!sample.report.converged) continue;
         by_time.emplace_back(seconds, sample.error);
         by_value.emplace_back(static_cast<double>(value), sample.error);
     }
-    std::printf("%s,%s,order by value and by time,%.2f,%.2f,,,,\n", scene, policy, observe::fitted_order(by_value), observe::fitted_order(by_time));
+    std::printf("%s,%s,order by value and by time,%.2f,%.2f,,,,\n", scene, policy, observe::fitted_order(by_value),
+                observe::fitted_order(by_time));
     plot.x_label = "CPU time [s]";
     plot.lines.push_back({policy, by_time});
 }

@@ -30,11 +30,13 @@ inline void measure_growth(int repeats) {
             const Figures& figures = all[m];
             const auto n = static_cast<double>(scene.segments());
             curves[m].points.emplace_back(n, 1e3 * figures.total);
-            std::printf("%zu,%s,%zu,%.3f,%.1f\n", scene.segments(), curves[m].name.c_str(), figures.pairs.size(), 1e3 * figures.total, 1e9 * figures.total / n);
+            std::printf("%zu,%s,%zu,%.3f,%.1f\n", scene.segments(), curves[m].name.c_str(), figures.pairs.size(),
+                        1e3 * figures.total, 1e9 * figures.total / n);
             std::fflush(stdout);
         }
     }
-    for (const observe::PlotLine& curve : curves) std::printf("exponent,%s,,%.3f,\n", curve.name.c_str(), observe::fitted_order(curve.points));
+    for (const observe::PlotLine& curve : curves)
+        std::printf("exponent,%s,,%.3f,\n", curve.name.c_str(), observe::fitted_order(curve.points));
 }
 
 }  // namespace fibrant::benchmarks

@@ -45,9 +45,10 @@ inline void measure_motion(Scene scene, double step, int calls, bool self) {
     strategies.push_back({"GridSearch rebuilt", [&](auto lines) { return grid.pairs(lines, reach); }, {}});
     strategies.push_back({"BvhSearch rebuilt", [&](auto lines) { return tree.pairs(lines, reach); }, {}});
     for (std::size_t k = 0; k < verlet.size(); ++k)
-        strategies.push_back({k < 4 ? "VerletSearch skin " + core::text(0.25 * std::pow(2.0, static_cast<double>(k))) + " r" : "VerletSearch",
-                              [&verlet, k, reach](auto lines) { return verlet[k].pairs(lines, reach); },
-                              [&verlet, k] { return verlet[k].builds(); }});
+        strategies.push_back(
+            {k < 4 ? "VerletSearch skin " + core::text(0.25 * std::pow(2.0, static_cast<double>(k))) + " r" : "VerletSearch",
+             [&verlet, k, reach](auto lines) { return verlet[k].pairs(lines, reach); },
+             [&verlet, k] { return verlet[k].builds(); }});
     double least = 0.0;
     for (int call = 0; call <= calls; ++call) {
         const auto lines = scene.centrelines(self);
@@ -64,7 +65,8 @@ inline void measure_motion(Scene scene, double step, int calls, bool self) {
         for (std::size_t f = 0; f < scene.points.size(); ++f)
             for (std::size_t k = 0; k < scene.points[f].size(); ++k) scene.points[f][k] += way[f][k];
     }
-    std::printf("scene,strategy,step_over_r,calls,builds,wrong,milliseconds,ratio_to_nanoflann,ratio_to_rebuilt,ratio_to_floor\n");
+    std::printf(
+        "scene,strategy,step_over_r,calls,builds,wrong,milliseconds,ratio_to_nanoflann,ratio_to_rebuilt,ratio_to_floor\n");
     for (const Strategy& s : strategies)
         std::printf("%s,%s,%g,%d,%ld,%zu,%.3f,%.4f,%.3f,%.2f\n", scene.name.c_str(), s.name.c_str(), step, calls,
                     static_cast<long>(s.builds ? s.builds() : calls), s.wrong, 1e3 * s.seconds / calls,

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 /// @file Searches of other libraries, each as one would write it by hand, with the filter of ours: nanoflann, and, where the
-/// build found them, Boost's R-tree, CGAL's intersection of boxes and FCL's dynamic tree. Their pairs are neither sorted nor joined.
+/// build found them, Boost's R-tree, CGAL's intersection of boxes and FCL's dynamic tree. Their pairs are neither sorted nor
+/// joined.
 
 #include "measure.hpp"
 
 #include <fibrant/proximity/kd_tree_search.hpp>
 
 #if defined(FIBRANT_BENCHMARK_BOOST)
-#include <boost/iterator/function_output_iterator.hpp>
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>
+#include <boost/iterator/function_output_iterator.hpp>
 #endif
 #if defined(FIBRANT_BENCHMARK_CGAL)
 #include <CGAL/Box_intersection_d/Box_with_handle_d.h>
@@ -28,8 +29,8 @@
 
 namespace fibrant::benchmarks {
 
-/// nanoflann's static kd-tree over the middles of segments, leaves of 20, every search wide enough for the longest segment; what it
-/// finds goes to the filter where the balls around both segments meet, as a careful user would have it.
+/// nanoflann's static kd-tree over the middles of segments, leaves of 20, every search wide enough for the longest segment; what
+/// it finds goes to the filter where the balls around both segments meet, as a careful user would have it.
 inline Call nanoflann_pairs(std::span<const proximity::Centreline> fibres, double reach) {
     using namespace proximity::detail;
     const SegmentTable table(fibres, reach);
@@ -143,7 +144,8 @@ inline Call fcl_pairs(std::span<const proximity::Centreline> fibres, double reac
     std::vector<fcl::CollisionObjectd*> objects;
     for (const SegmentRecord& r : records) {
         const auto [low, high] = detail::corners(r, reach);
-        boxes.push_back(std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Boxd>(high - low), Mat3::Identity(), 0.5 * (low + high)));
+        boxes.push_back(std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Boxd>(high - low), Mat3::Identity(),
+                                                                0.5 * (low + high)));
         boxes.back()->setUserData(const_cast<SegmentRecord*>(&r));
         objects.push_back(boxes.back().get());
     }
@@ -158,7 +160,9 @@ inline Call fcl_pairs(std::span<const proximity::Centreline> fibres, double reac
         void keep() { keep_close(table, records.data(), candidates, call.pairs), candidates.clear(); }
     } search{table, records};
     tree.collide(&search, [](fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
-        const auto segment = [](const fcl::CollisionObjectd* object) { return static_cast<const SegmentRecord*>(object->getUserData())->segment; };
+        const auto segment = [](const fcl::CollisionObjectd* object) {
+            return static_cast<const SegmentRecord*>(object->getUserData())->segment;
+        };
         auto& to = *static_cast<Search*>(data);
         to.candidates.push_back({std::min(segment(a), segment(b)), std::max(segment(a), segment(b))});
         if (to.candidates.size() >= 4096) to.keep();

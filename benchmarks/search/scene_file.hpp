@@ -37,7 +37,8 @@ struct Scene {
         for (auto& line : points) {
             std::vector<Vec3> fine{line.front()};
             for (std::size_t k = 1; k < line.size(); ++k)
-                for (int part = 1; part <= n; ++part) fine.push_back(line[k - 1] + (line[k] - line[k - 1]) * (static_cast<double>(part) / n));
+                for (int part = 1; part <= n; ++part)
+                    fine.push_back(line[k - 1] + (line[k] - line[k - 1]) * (static_cast<double>(part) / n));
             line = fine;
         }
     }
@@ -50,7 +51,8 @@ struct Scene {
             double length = 0.0;
             for (std::size_t k = 1; k < points[f].size(); ++k) length += (points[f][k] - points[f][k - 1]).norm();
             // |i - j| > skip on segments of one length: half a segment below the arc of skip segments between them.
-            if (self) lines[f].self_skip = (static_cast<double>(self_skip) - 0.5) * length / static_cast<double>(points[f].size() - 1);
+            if (self)
+                lines[f].self_skip = (static_cast<double>(self_skip) - 0.5) * length / static_cast<double>(points[f].size() - 1);
         }
         return lines;
     }
@@ -77,22 +79,26 @@ inline void read_text(std::ifstream& in, const std::string& path, Scene& scene) 
         number(n, of_fibre(f) + ", vertices"), number(scene.radius.emplace_back(), of_fibre(f) + ", radius");
         scene.points.emplace_back();
         for (std::size_t k = 0; k < n; ++k)  // one by one: a wrong number must not take all memory
-            for (double& x : scene.points.back().emplace_back(Vec3::Zero())) number(x, of_fibre(f) + ", vertex " + std::to_string(k));
+            for (double& x : scene.points.back().emplace_back(Vec3::Zero()))
+                number(x, of_fibre(f) + ", vertex " + std::to_string(k));
     }
 }
 /// Little endian: "FIBPOL01" has been read.
 inline void read_binary(std::ifstream& in, const std::string& path, Scene& scene) {
     std::uint64_t fibres = 0, vertices = 0;
-    read(in, path, &fibres, 1), read(in, path, &vertices, 1), read(in, path, &scene.margin, 1), read(in, path, &scene.self_skip, 1);
+    read(in, path, &fibres, 1), read(in, path, &vertices, 1), read(in, path, &scene.margin, 1),
+        read(in, path, &scene.self_skip, 1);
     const std::uint64_t bytes = std::filesystem::file_size(path);
-    if (fibres > bytes / 8 || vertices > bytes / 24) exchange::refuse_file(path, "", "ends too early for its " + std::to_string(fibres) + " fibres");
+    if (fibres > bytes / 8 || vertices > bytes / 24)
+        exchange::refuse_file(path, "", "ends too early for its " + std::to_string(fibres) + " fibres");
     scene.radius.resize(fibres);
     if (fibres > 0) read(in, path, scene.radius.data(), fibres);
     std::vector<std::uint64_t> first(fibres + 1);
     read(in, path, first.data(), fibres + 1);
     scene.points.resize(fibres);
     for (std::size_t f = 0; f < fibres; ++f) {
-        if (first[f + 1] < first[f] || first[f + 1] > vertices) exchange::refuse_file(path, of_fibre(f), "its first vertices do not increase");
+        if (first[f + 1] < first[f] || first[f + 1] > vertices)
+            exchange::refuse_file(path, of_fibre(f), "its first vertices do not increase");
         scene.points[f].resize(first[f + 1] - first[f]);
         if (!scene.points[f].empty()) read(in, path, scene.points[f].front().data(), 3 * scene.points[f].size());
     }
@@ -111,8 +117,10 @@ inline Scene read_scene(const std::string& path, double radius) {
     Scene scene{.name = std::filesystem::path(path).stem().string()};
     std::string magic(8, ' ');
     in.read(magic.data(), 8);
-    if (in && magic == "FIBPOL 1") detail::read_text(in, path, scene);
-    else if (in && magic == "FIBPOL01") detail::read_binary(in, path, scene);
+    if (in && magic == "FIBPOL 1")
+        detail::read_text(in, path, scene);
+    else if (in && magic == "FIBPOL01")
+        detail::read_binary(in, path, scene);
     else {
         exchange::CleanParameters clean;
         clean.least_points = 2, clean.largest_turn_deg = 180.0;
@@ -126,11 +134,14 @@ inline Scene read_scene(const std::string& path, double radius) {
     }
     if (scene.points.empty()) exchange::refuse_file(path, "", "has no fibres");
     for (std::size_t f = 0; f < scene.points.size(); ++f)
-        if (scene.points[f].size() < 2) exchange::refuse_file(path, detail::of_fibre(f), "has " + std::to_string(scene.points[f].size()) + " vertices, but it needs 2");
+        if (scene.points[f].size() < 2)
+            exchange::refuse_file(path, detail::of_fibre(f),
+                                  "has " + std::to_string(scene.points[f].size()) + " vertices, but it needs 2");
     return scene;
 }
 
-/// Random curved fibres of 64 segments of 4 r that fill 10 % of a cube, overlaps allowed, and turn back at its walls: as dense in any number; seed 1.
+/// Random curved fibres of 64 segments of 4 r that fill 10 % of a cube, overlaps allowed, and turn back at its walls: as dense in
+/// any number; seed 1.
 /// @param segments  about so many
 inline Scene random_mat(std::size_t segments) {
     const double r = 1.0, length = 4.0 * r, curl = 0.12, fraction = 0.1;
@@ -150,7 +161,8 @@ inline Scene random_mat(std::size_t segments) {
         for (std::size_t k = 0; k < each; ++k) {
             Vec3 next = line.back() + length * direction;
             for (Index axis = 0; axis < 3; ++axis)
-                if (next[axis] < 0.0 || next[axis] > box) direction[axis] = -direction[axis], next[axis] = line.back()[axis] + length * direction[axis];
+                if (next[axis] < 0.0 || next[axis] > box)
+                    direction[axis] = -direction[axis], next[axis] = line.back()[axis] + length * direction[axis];
             line.push_back(next);
             direction = (direction + curl * vector(normal, random)).normalized();
         }

@@ -88,7 +88,7 @@ def fields(body):
         kept += flat[place:flat.rfind("\n", 0, brace.start()) + 1]
         place = closing(flat, brace.end() - 1)
     kept += flat[place:]
-    lines, pending = kept.split("\n"), []
+    lines, pending = re.sub(r" =\n *", " = ", kept).split("\n"), []
     for number, line in enumerate(lines):
         stripped = line.strip()
         if stripped.startswith("///") and not stripped.startswith("///<"):

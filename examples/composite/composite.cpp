@@ -57,7 +57,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const parts::Composite composite = parts::composite_of(fabric, dry.state(), flat, layers, scene.matrix, scene.load);
     auto parameters = cloth::model_parameters<Composite>(fabric, scene.weave.settle);
     parameters.friction.friction_coefficient = scene.weave.settle.friction_coefficient;
-    parameters.iteration = scene.weave.iteration, parameters.iteration.margin = 1.0, parameters.iteration.largest_margin = 8.0;  // edges swing far
+    parameters.iteration = scene.weave.iteration, parameters.iteration.margin = 1.0,
+    parameters.iteration.largest_margin = 8.0;  // edges swing far
     parameters.iteration.overshoot = scene.overshoot;
     parameters.solver.carried = scene.carried;
     parameters.solid.bonding_factor = scene.matrix.bonding_factor, parameters.solid.section_factor = scene.matrix.section_factor;
@@ -65,11 +66,14 @@ bool solve(example::SceneReader& file, example::Output& output) {
     simulator.go_on_from(dry);
     const auto& solid = simulator.equilibrium().solid();
     if (!output.quiet)
-        std::printf("matrix: %td nodes, %td cells, %td bonds; grid columns %td, pores %td of %td, clipped %td\n", solid.nodes(), solid.cells(),
-                    core::count(solid.bonds()), layers.columns, layers.filled, layers.met + layers.filled, layers.clipped);
+        std::printf("matrix: %td nodes, %td cells, %td bonds; grid columns %td, pores %td of %td, clipped %td\n", solid.nodes(),
+                    solid.cells(), core::count(solid.bonds()), layers.columns, layers.filled, layers.met + layers.filled,
+                    layers.clipped);
 
     composite::Watch watch(output);
-    const auto point = [&](const simulation::Wrench& edge) { return composite::curve_point(scene.load, simulator.amplitude(parts::load_channel), edge); };
+    const auto point = [&](const simulation::Wrench& edge) {
+        return composite::curve_point(scene.load, simulator.amplitude(parts::load_channel), edge);
+    };
     example::Recorder recorder(output, cloth::smallest_radius(fabric), [&] {
         const simulation::Wrench edge = parts::edge_wrench(simulator, composite);
         return watch.columns(point(edge), edge);
@@ -81,7 +85,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     composite::write_curve(output, end);
     composite::write_pictures(output, simulator.snapshot(), fabric);
     const simulation::Audit audit = example::audit(output, simulator, cloth::smallest_radius(fabric));
-    const observe::JsonObject summary = composite::write_summary(output, simulator, report, audit, end, cloth::smallest_radius(fabric));
+    const observe::JsonObject summary =
+        composite::write_summary(output, simulator, report, audit, end, cloth::smallest_radius(fabric));
     example::write_report(output, "composite", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }

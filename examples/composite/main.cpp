@@ -3,6 +3,4 @@
 
 example::Program composite_program();
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, composite_program());
-}
+int main(int argc, char** argv) { return example::run(argc, argv, composite_program()); }

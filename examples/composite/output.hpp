@@ -31,10 +31,14 @@ struct CurvePoint {
 };
 inline CurvePoint curve_point(const parts::LoadParameters& load, double amplitude, const fibrant::simulation::Wrench& edge) {
     switch (load.load) {
-        case parts::LoadCase::bending: return {"angle_deg", "moment", "moment_y", amplitude * load.angle_deg, edge.moment.y()};
-        case parts::LoadCase::twisting: return {"angle_deg", "torque", "moment_x", amplitude * load.angle_deg, edge.moment.x()};
-        case parts::LoadCase::shear: return {"shear", "force", "force_y", amplitude * load.strain, edge.force.y()};
-        default: return {"strain", "force", "force_x", amplitude * load.strain, edge.force.x()};
+        case parts::LoadCase::bending:
+            return {"angle_deg", "moment", "moment_y", amplitude * load.angle_deg, edge.moment.y()};
+        case parts::LoadCase::twisting:
+            return {"angle_deg", "torque", "moment_x", amplitude * load.angle_deg, edge.moment.x()};
+        case parts::LoadCase::shear:
+            return {"shear", "force", "force_y", amplitude * load.strain, edge.force.y()};
+        default:
+            return {"strain", "force", "force_x", amplitude * load.strain, edge.force.x()};
     }
 }
 
@@ -51,10 +55,20 @@ public:
     /// Columns of the table of increments beside those of every run.
     std::vector<observe::Column> columns(const CurvePoint& point, const fibrant::simulation::Wrench& edge) {
         const fibrant::simulation::EnergyBalance& energy = last_->energy;
-        return {{point.x_name, point.x}, {"moment_x", edge.moment.x()}, {"moment_y", edge.moment.y()}, {"moment_z", edge.moment.z()},
-                {"force_x", edge.force.x()}, {"force_y", edge.force.y()}, {"force_z", edge.force.z()},
-                {"linear_solves", last_->counts.linear_solves}, {"elastic", energy.elastic}, {"contact", energy.contact},
-                {"rearranged", energy.rearranged}, {"energy_error", energy.error()}, {"displacement", last_->displacement}, {"fraction", last_->fraction}};
+        return {{point.x_name, point.x},
+                {"moment_x", edge.moment.x()},
+                {"moment_y", edge.moment.y()},
+                {"moment_z", edge.moment.z()},
+                {"force_x", edge.force.x()},
+                {"force_y", edge.force.y()},
+                {"force_z", edge.force.z()},
+                {"linear_solves", last_->counts.linear_solves},
+                {"elastic", energy.elastic},
+                {"contact", energy.contact},
+                {"rearranged", energy.rearranged},
+                {"energy_error", energy.error()},
+                {"displacement", last_->displacement},
+                {"fraction", last_->fraction}};
     }
 
 private:
@@ -67,12 +81,16 @@ inline void write_curve(const example::Output& output, const CurvePoint& names) 
     const example::Table table(output.folder / "increments.csv");
     const observe::PlotLine line = table.line("", table.column(names.x_name), table.column(names.column), "stage", "load");
     if (line.points.empty()) return;
-    observe::write_file(output.folder / "curve.svg", observe::curves_svg({.title = output.scene.stem().string(), .x_label = example::axis_label(names.x_name, output.unit),
-                                                                          .y_label = example::axis_label(names.y_name, output.unit), .lines = {line}}));
+    observe::write_file(output.folder / "curve.svg",
+                        observe::curves_svg({.title = output.scene.stem().string(),
+                                             .x_label = example::axis_label(names.x_name, output.unit),
+                                             .y_label = example::axis_label(names.y_name, output.unit),
+                                             .lines = {line}}));
 }
 
 /// view.svg of the fibres, solid.svg of the matrix with stresses, slices through both.
-inline void write_pictures(const example::Output& output, const observe::Snapshot& snapshot, const cloth::FabricParameters& fabric) {
+inline void write_pictures(const example::Output& output, const observe::Snapshot& snapshot,
+                           const cloth::FabricParameters& fabric) {
     if (!output.pictures) return;
     observe::ViewParameters view;
     view.palette = cloth::fabric_palette(fabric), view.unit = output.unit, view.azimuth = -65.0, view.elevation = 22.0;
@@ -87,27 +105,45 @@ inline void write_pictures(const example::Output& output, const observe::Snapsho
     for (const Index axis : {Index{0}, Index{1}}) {
         observe::SliceParameters slice;
         slice.axis = axis, slice.unit = output.unit, slice.palette = view.palette;
-        slice.position = fabric.tow_position(axis == 0 ? cloth::Family::weft : cloth::Family::warp, axis == 0 ? fabric.weft_tows / 2 : fabric.warp_tows / 2);
+        slice.position = fabric.tow_position(axis == 0 ? cloth::Family::weft : cloth::Family::warp,
+                                             axis == 0 ? fabric.weft_tows / 2 : fabric.warp_tows / 2);
         observe::write_file(output.folder / (axis == 0 ? "slice_x.svg" : "slice_y.svg"), observe::svg_slice(snapshot, slice));
     }
 }
 
 /// summary.json
 template <class Simulator>
-observe::JsonObject write_summary(const example::Output& output, const Simulator& simulator, const fibrant::simulation::Report& report,
-                                  const fibrant::simulation::Audit& audit, const CurvePoint& point, double radius) {
+observe::JsonObject write_summary(const example::Output& output, const Simulator& simulator,
+                                  const fibrant::simulation::Report& report, const fibrant::simulation::Audit& audit,
+                                  const CurvePoint& point, double radius) {
     const auto& solid = simulator.equilibrium().solid();
-    const auto start = std::find_if(report.increments.begin(), report.increments.end(), [](const auto& increment) { return increment.stage == "load"; });
-    const fibrant::simulation::EnergyBalance none, &before = start == report.increments.begin() || report.increments.empty() ? none : (start - 1)->energy;
+    const auto start = std::find_if(report.increments.begin(), report.increments.end(),
+                                    [](const auto& increment) { return increment.stage == "load"; });
+    const fibrant::simulation::EnergyBalance none,
+        &before = start == report.increments.begin() || report.increments.empty() ? none : (start - 1)->energy;
     const auto number = [](auto value) { return static_cast<double>(value); };
-    return example::write_summary(output, report, audit, radius, {{"fibres", number(simulator.mesh().fibre_count())},
-                           {"unknowns", number(simulator.state().size())}, {"solid_unknowns", number(3 * solid.nodes())},
-                           {"cells", number(solid.cells())}, {"bonds", number(solid.bonds().size())}, {point.x_name, point.x}, {point.y_name, point.y},
-                           {"search_seconds", report.seconds[0]}, {"contact_seconds", report.seconds[1]}, {"assembly_seconds", report.seconds[2]},
-                           {"preparation_seconds", report.seconds[3]}, {"solution_seconds", report.seconds[4]}, {"output_seconds", report.seconds[5]},
-                           {"elastic_before_load", before.elastic}, {"external_before_load", before.external}, {"dissipated_before_load", before.dissipated},
-                           {"elastic", report.energy.elastic}, {"external", report.energy.external}, {"dissipated", report.energy.dissipated},
-                           {"damped", report.energy.damped}, {"energy_error", report.energy.error()}});
+    return example::write_summary(output, report, audit, radius,
+                                  {{"fibres", number(simulator.mesh().fibre_count())},
+                                   {"unknowns", number(simulator.state().size())},
+                                   {"solid_unknowns", number(3 * solid.nodes())},
+                                   {"cells", number(solid.cells())},
+                                   {"bonds", number(solid.bonds().size())},
+                                   {point.x_name, point.x},
+                                   {point.y_name, point.y},
+                                   {"search_seconds", report.seconds[0]},
+                                   {"contact_seconds", report.seconds[1]},
+                                   {"assembly_seconds", report.seconds[2]},
+                                   {"preparation_seconds", report.seconds[3]},
+                                   {"solution_seconds", report.seconds[4]},
+                                   {"output_seconds", report.seconds[5]},
+                                   {"elastic_before_load", before.elastic},
+                                   {"external_before_load", before.external},
+                                   {"dissipated_before_load", before.dissipated},
+                                   {"elastic", report.energy.elastic},
+                                   {"external", report.energy.external},
+                                   {"dissipated", report.energy.dissipated},
+                                   {"damped", report.energy.damped},
+                                   {"energy_error", report.energy.error()}});
 }
 
 }  // namespace composite

@@ -21,7 +21,7 @@ struct Scene {
     parts::LoadParameters load;
     double overshoot = std::numeric_limits<double>::infinity();  ///< of solver::IterationParameters under load
     bool carried = false;  ///< of solver::SolidPcg: pays where bonds are much stiffer than the sheet is in bending
-    std::string settled;  ///< checkpoint of the weave's settled state; empty: settled.bin in the folder of results
+    std::string settled;   ///< checkpoint of the weave's settled state; empty: settled.bin in the folder of results
 };
 
 /// Throws std::invalid_argument, "file: section.key = value, but it must be bound".
@@ -34,8 +34,10 @@ inline Scene read_scene(example::SceneReader& file) {
     const auto keys = [&] {
         file.require("matrix", "young_modulus", matrix.material.young_modulus, example::positive(), "force/length^2",
                      "Young's modulus of the matrix");
-        file.require("matrix", "poisson_ratio", matrix.material.poisson_ratio, example::poisson_ratio(), "1", "Poisson's ratio of the matrix");
-        file.require("matrix", "cover", matrix.cover, example::positive(), "length", "thickness of matrix beyond the outermost fibre");
+        file.require("matrix", "poisson_ratio", matrix.material.poisson_ratio, example::poisson_ratio(), "1",
+                     "Poisson's ratio of the matrix");
+        file.require("matrix", "cover", matrix.cover, example::positive(), "length",
+                     "thickness of matrix beyond the outermost fibre");
         file.require("matrix", "cells_along", matrix.cells_along, example::between(1, 2000), "cells along the warp");
         matrix.cells_across = matrix.cells_along;
         file.read("matrix", "cells_across", matrix.cells_across, example::between(1, 2000),
@@ -83,10 +85,15 @@ inline Scene read_scene(example::SceneReader& file) {
     };
     file.names({{"MatrixParameters.material.", "matrix."}, {"MatrixParameters.", "matrix."}, {"LoadParameters.", "load."}});
     scene.weave = weave::read_fabric(file, keys);
-    matrix.sides = sides == "both" ? fibrant::solid::Sides::both : sides == "upper" ? fibrant::solid::Sides::upper : fibrant::solid::Sides::lower;
+    matrix.sides = sides == "both"    ? fibrant::solid::Sides::both
+                   : sides == "upper" ? fibrant::solid::Sides::upper
+                                      : fibrant::solid::Sides::lower;
     matrix.crossing = clip ? fibrant::solid::Crossing::clip : fibrant::solid::Crossing::refuse;
     using parts::LoadCase;
-    load.load = kind == "tension" ? LoadCase::tension : kind == "shear" ? LoadCase::shear : kind == "bending" ? LoadCase::bending : LoadCase::twisting;
+    load.load = kind == "tension"   ? LoadCase::tension
+                : kind == "shear"   ? LoadCase::shear
+                : kind == "bending" ? LoadCase::bending
+                                    : LoadCase::twisting;
     const auto& fabric = scene.weave.fabric;
     const double stiffest = std::min(fabric.warp.material.young_modulus, fabric.weft.material.young_modulus),
                  thickest = std::max(fabric.warp.fibre_radius, fabric.weft.fibre_radius);

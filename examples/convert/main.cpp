@@ -106,7 +106,8 @@ int main(int argc, char** argv) {
             if (cells && !voxels) {
                 core::require_positive("--voxels", spacing);
                 const auto grid = [&] {
-                    if (!box.empty()) return exchange::grid_in(Vec3(box[0], box[1], box[2]), Vec3(box[3], box[4], box[5]), spacing);
+                    if (!box.empty())
+                        return exchange::grid_in(Vec3(box[0], box[1], box[2]), Vec3(box[3], box[4], box[5]), spacing);
                     try {
                         return exchange::grid_around(curves, spacing);
                     } catch (const std::invalid_argument& error) {

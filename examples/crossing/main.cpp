@@ -34,8 +34,8 @@ int main() {
     const double height = 2.0 * radius;
 
     scene::Assembly assembly;
-    const Index lower = assembly.add(
-        {.from = {0, -0.5, 0}, .to = {0, 0.5, 0}, .section = section, .material = material, .elements = 16});
+    const Index lower =
+        assembly.add({.from = {0, -0.5, 0}, .to = {0, 0.5, 0}, .section = section, .material = material, .elements = 16});
     const Index upper = assembly.add(
         {.from = {-0.5, 0, height}, .to = {0.5, 0, height}, .section = section, .material = material, .elements = 16});
     assembly.clamp(scene::first_end(lower));
@@ -54,7 +54,8 @@ int main() {
     for (const auto& [progress, force] : curve.points()) std::printf("%.4f mm  %.3e N\n", progress * approach, force);
     if (!report.converged) std::printf("stopped: %s\n", report.reason.c_str());
     const simulation::Audit audit = simulation::audit(simulator);
-    if (!audit.clean()) std::printf("fibres %td and %td are %.2e mm deep in each other\n",
-                    audit.least_gap.fibre_i, audit.least_gap.fibre_j, -audit.least_gap.gap);
+    if (!audit.clean())
+        std::printf("fibres %td and %td are %.2e mm deep in each other\n", audit.least_gap.fibre_i, audit.least_gap.fibre_j,
+                    -audit.least_gap.gap);
     return report.converged && audit.clean() ? 0 : 1;
 }

@@ -40,10 +40,13 @@ observe::PlotLine write_levels(observe::CsvWriter& table, std::uint64_t seed, co
     observe::PlotLine line{"seed " + std::to_string(seed), {}};
     const std::size_t stage = increments.column("stage");
     for (std::size_t k = 0; k < increments.rows(); ++k) {
-        if (increments.cell(k, stage) != "level" || (k + 1 < increments.rows() && increments.cell(k + 1, stage) == "level")) continue;
+        if (increments.cell(k, stage) != "level" || (k + 1 < increments.rows() && increments.cell(k + 1, stage) == "level"))
+            continue;
         const auto figure = [&](const char* name) { return std::stod(increments.cell(k, increments.column(name))); };
-        const mat::LevelState level{{.volume_fraction = figure("volume_fraction"), .pressure = figure("pressure_over_modulus"),
-                                     .lower_pressure = figure("lower_pressure_over_modulus")}, figure("damping_share")};
+        const mat::LevelState level{{.volume_fraction = figure("volume_fraction"),
+                                     .pressure = figure("pressure_over_modulus"),
+                                     .lower_pressure = figure("lower_pressure_over_modulus")},
+                                    figure("damping_share")};
         std::vector<observe::Column> columns{{"seed", seed}};
         for (const char* name : {"volume_fraction", "pressure_over_modulus", "lower_pressure_over_modulus", "contacts_per_fibre",
                                  "contacts_without_bulk", "sine", "elastic_energy"})
@@ -56,24 +59,28 @@ observe::PlotLine write_levels(observe::CsvWriter& table, std::uint64_t seed, co
 }
 
 bool solve(example::SceneReader& file, example::Output& output) {
-    mat::MatParameters parameters{.radius = 1.0, .cut = true, .clearance = -2.0, .material = {1.0, 0.2}};  // fibres may lie in each other
+    mat::MatParameters parameters{
+        .radius = 1.0, .cut = true, .clearance = -2.0, .material = {1.0, 0.2}};  // fibres may lie in each other
     mat::LevelParameters levels;
     double fraction = core::unset;
     Index seed = 1, seeds = 1;
     file.require("mat", "length", parameters.length, example::between(2.0, 1e5), "radius", "length of a fibre");
     file.require("mat", "width", parameters.width, example::between(3.0, 1e5), "radius", "width of the box along x and y");
     file.require("mat", "fibres", parameters.fibres, example::between(1, 1000000), "how many lengths of a fibre are in the box");
-    file.require("mat", "volume_fraction", fraction, example::inside(0.0, 0.9), "1", "volume fraction of fibres in the box at the start");
+    file.require("mat", "volume_fraction", fraction, example::inside(0.0, 0.9), "1",
+                 "volume fraction of fibres in the box at the start");
     example::read_random_fibres(file, parameters.tilt_deg, parameters.elements, "elements along a length of fibre");
     example::read_seed(file, seed);
     file.read("mat", "seeds", seeds, example::between(1, 1000),
               "number of mats, one after the other; more than one: each has a folder of its own");
-    example::read_friction(file, levels.friction_coefficient, "coefficient of friction of fibres on each other, once they are parted");
+    example::read_friction(file, levels.friction_coefficient,
+                           "coefficient of friction of fibres on each other, once they are parted");
     example::read_allowed_penetration(file, levels.allowed_penetration);
     file.read("contact", "softest_over_section", levels.softest, example::above(0.0, 1.0), "1",
               "least stiffness of a contact, over that of a section");
     file.require("levels", "last", levels.last, example::inside(0.0, 0.9), "1", "volume fraction that no level exceeds");
-    file.read("levels", "ratio", levels.ratio, {.low = 1.001, .high = 10.0}, "1", "volume fraction of a level over that of the one before");
+    file.read("levels", "ratio", levels.ratio, {.low = 1.001, .high = 10.0}, "1",
+              "volume fraction of a level over that of the one before");
     file.read("levels", "step", levels.step, example::between(1e-4, 1e3), "radius", "motion of the plate in an increment");
     file.read("levels", "damping", levels.damping, example::above(0.0, 1e6), "1",
               "stiffness of the damping, over what bends a tenth of a fibre; it moves on with the mean motion of the mat");
@@ -101,7 +108,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.names({{"MatParameters.height", "mat.volume_fraction is too large: the height of the box"},
                 {"MatParameters.", "mat."},
                 {"LevelParameters.", "levels."}});
-    const auto folder_of = [&](Index k) { return seeds > 1 ? output.folder / ("seed_" + std::to_string(seed + k)) : output.folder; };
+    const auto folder_of = [&](Index k) {
+        return seeds > 1 ? output.folder / ("seed_" + std::to_string(seed + k)) : output.folder;
+    };
     for (Index k = 0; seeds > 1 && k < seeds; ++k) output.parts.push_back(folder_of(k));
     output.open(file);
 
@@ -113,11 +122,16 @@ bool solve(example::SceneReader& file, example::Output& output) {
         example::Output own = output;
         own.folder = folder_of(k);
         std::filesystem::create_directories(own.folder);
-        simulation::Simulator<Mat> simulator(mat::boxed_mat(parameters, mat::random_fibres(parameters)), mat::model_parameters<Mat>(parameters, levels));
+        simulation::Simulator<Mat> simulator(mat::boxed_mat(parameters, mat::random_fibres(parameters)),
+                                             mat::model_parameters<Mat>(parameters, levels));
         example::Recorder recorder(own, 1.0, [&]() -> std::vector<observe::Column> {
             const mat::MatState state = mat::measure(simulator, parameters);
-            return {{"volume_fraction", state.volume_fraction}, {"pressure_over_modulus", state.pressure}, {"lower_pressure_over_modulus", state.lower_pressure},
-                    {"contacts_per_fibre", state.contacts_per_fibre}, {"contacts_without_bulk", state.contacts_without_bulk}, {"elastic_energy", state.elastic_energy},
+            return {{"volume_fraction", state.volume_fraction},
+                    {"pressure_over_modulus", state.pressure},
+                    {"lower_pressure_over_modulus", state.lower_pressure},
+                    {"contacts_per_fibre", state.contacts_per_fibre},
+                    {"contacts_without_bulk", state.contacts_without_bulk},
+                    {"elastic_energy", state.elastic_energy},
                     {"sine", state.sine}};
         });
         simulation::Loading<Mat> loading = mat::pressing_by_levels<Mat>(parameters, levels);
@@ -130,7 +144,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
         plot.lines.push_back(write_levels(table, parameters.seed, example::Table(own.folder / "increments.csv")));
         if (!plot.lines.back().points.empty()) observe::write_file(output.folder / "pressure.svg", observe::log_log_svg(plot));
         example::write_pictures(own, simulator.snapshot(), -60.0, 25.0);
-        const observe::JsonObject summary = example::write_summary(own, report, audit, 1.0, {{"exponent", observe::fitted_order(plot.lines.back().points)}});
+        const observe::JsonObject summary =
+            example::write_summary(own, report, audit, 1.0, {{"exponent", observe::fitted_order(plot.lines.back().points)}});
         example::write_report(own, "dense_mat", summary, simulator.snapshot());
     }
     return converged;
@@ -138,6 +153,4 @@ bool solve(example::SceneReader& file, example::Output& output) {
 
 }  // namespace
 
-example::Program dense_mat_program() {
-    return {"dense_mat", "Presses a dense mat of random fibres from level to level.", solve};
-}
+example::Program dense_mat_program() { return {"dense_mat", "Presses a dense mat of random fibres from level to level.", solve}; }

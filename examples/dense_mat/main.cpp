@@ -3,6 +3,4 @@
 
 example::Program dense_mat_program();
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, dense_mat_program());
-}
+int main(int argc, char** argv) { return example::run(argc, argv, dense_mat_program()); }

@@ -74,9 +74,15 @@ bool run(const fabric_loading::LoadFile& load, example::SceneReader& file, examp
     fabric_loading::write_state(output.folder / "after", snapshot, load.scene, output.pictures);
     fabric_loading::write_curves(output.folder, load.name, output.unit);
     const cloth::CrimpMeasures before = cloth::crimp_measures(settled, fabric), after = cloth::crimp_measures(snapshot, fabric);
-    std::vector<std::pair<std::string, double>> figures{{"fibres", static_cast<double>(fabric.fibres())}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())}};
+    std::vector<std::pair<std::string, double>> figures{{"fibres", static_cast<double>(fabric.fibres())},
+                                                        {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())}};
     for (const auto& figure : cloth::load_figures(scene, simulator, snapshot)) figures.push_back(figure);
-    for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"crimp_before", before.warp}, {"crimp_after", after.warp}, {"dissipated", report.energy.dissipated}, {"damped", report.energy.damped}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()}})
+    for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"crimp_before", before.warp},
+                                                                                 {"crimp_after", after.warp},
+                                                                                 {"dissipated", report.energy.dissipated},
+                                                                                 {"damped", report.energy.damped},
+                                                                                 {"external_work", report.energy.external},
+                                                                                 {"energy_error", report.energy.error()}})
         figures.emplace_back(name, value);
     const simulation::Audit audit = example::audit(output, simulator, radius);
     const observe::JsonObject summary = example::write_summary(output, report, audit, radius, figures);

@@ -28,8 +28,8 @@ struct LoadFile {
     weave::Scene scene;  ///< of the settled fabric
     std::string checkpoint, name;
     cloth::TowEnds tow_ends = cloth::TowEnds::kept;
-    Index points_per_element = 0;  ///< spacing of contacts, if it is another
-    Index parts = 1;               ///< that each element of the settled fabric is cut into
+    Index points_per_element = 0;            ///< spacing of contacts, if it is another
+    Index parts = 1;                         ///< that each element of the settled fabric is cut into
     cloth::FabricParameters settled_fabric;  ///< before that
     fibrant::simulation::LoadProgramme programme;
 };
@@ -66,7 +66,8 @@ inline fibrant::simulation::ProgrammeStage read_stage(SceneReader& file, const s
               "stiffness of the damping, over that which the tension of settling gave a node");
     file.read(name, "looseness", stage.looseness, example::looseness(), "1", "factor on the tolerances of passes");
     double coefficient = fibrant::core::unset;
-    if (file.read(name, "friction_coefficient", coefficient, example::friction(), "1", "coefficient of friction from this stage on; left out: as before"))
+    if (file.read(name, "friction_coefficient", coefficient, example::friction(), "1",
+                  "coefficient of friction from this stage on; left out: as before"))
         stage.friction = coefficient;
     for (const std::string& text : ramps) stage.ramps.push_back(read_ramp(file, name, text));
     return stage;
@@ -79,7 +80,8 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     std::vector<std::string> set, stages;
     file.require("settled", "scene", scene, example::any_text(), "scene that was settled, from the folder of this file");
     file.read("settled", "set", set, "values that were given by --set then");
-    file.require("settled", "checkpoint", load.checkpoint, example::any_text(), "checkpoint that it left, from the working folder");
+    file.require("settled", "checkpoint", load.checkpoint, example::any_text(),
+                 "checkpoint that it left, from the working folder");
     for (const char* key : {"scene", "set", "checkpoint"}) file.is_a_place("settled", key);
     file.read("settled", "parts", load.parts, example::between(1, 8), "how many parts each element is cut into");
     file.require("loading", "case", load.name, cloth::load_case_names(), "what is done to the fabric");
@@ -89,13 +91,16 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     auto& programme = load.programme;
     double friction = fibrant::core::unset, rest_motion = fibrant::core::unset, rest_share = fibrant::core::unset, largest = 1.0,
            calm = 0.15;
-    file.read("loading", "halvings", programme.halvings, example::between(0, 16), "how many times all increments of ramps are halved");
+    file.read("loading", "halvings", programme.halvings, example::between(0, 16),
+              "how many times all increments of ramps are halved");
     file.read("loading", "friction_coefficient", friction, example::friction(), "1",
               "coefficient of friction from the first stage on; left out: as in the settled scene");
     file.read("loading", "rest_motion_over_radius", rest_motion, example::above(0.0, 10.0), "1",
               "as settle.rest_motion_over_radius; left out: as in the settled scene");
-    file.read("loading", "rest_share", rest_share, example::above(0.0, 0.01), "1", "as settle.rest_share; left out: as in the settled scene");
-    file.read("loading", "largest_displacement_over_radius", largest, example::above(0.0, 1e6), "1", "an increment in which a fibre moves further is given up, over the radius");
+    file.read("loading", "rest_share", rest_share, example::above(0.0, 0.01), "1",
+              "as settle.rest_share; left out: as in the settled scene");
+    file.read("loading", "largest_displacement_over_radius", largest, example::above(0.0, 1e6), "1",
+              "an increment in which a fibre moves further is given up, over the radius");
     file.read("loading", "calm_over_radius", calm, example::above(0.0, 1e6), "1",
               "damping falls after an increment in which nothing moved further, over the radius");
     file.read("contact", "points_per_element", load.points_per_element, example::between(0, 100),
@@ -148,15 +153,16 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     if (std::isnan(friction)) friction = load.scene.settle.friction_coefficient;
     if (std::isnan(rest_motion)) rest_motion = load.scene.settle.rest_motion_over_radius;
     programme.rest_share = std::isnan(rest_share) ? load.scene.settle.rest_share : rest_share;
-    programme.rest_motion = rest_motion * r, programme.rest_penetration = 2.0 * allowed, programme.largest_displacement = largest * r;
+    programme.rest_motion = rest_motion * r, programme.rest_penetration = 2.0 * allowed,
+    programme.largest_displacement = largest * r;
     programme.calm = calm * r;
     programme.reversible_displacement = fibrant::simulation::reversible_displacement(r, friction, allowed);
     // Of a length of fibre, however many nodes it has.
-    programme.damping = cloth::node_stiffness(load.scene.fabric, load.scene.settle.tension_strain) / static_cast<double>(load.parts);
-    load.settled_fabric = load.scene.fabric, load.scene.fabric.elements *= load.parts, load.scene.fabric.weft_elements *= load.parts;
-    example::require_room(
-        file, "settled", "parts",
-        9.0 * static_cast<double>(load.scene.fabric.nodes()));
+    programme.damping =
+        cloth::node_stiffness(load.scene.fabric, load.scene.settle.tension_strain) / static_cast<double>(load.parts);
+    load.settled_fabric = load.scene.fabric, load.scene.fabric.elements *= load.parts,
+    load.scene.fabric.weft_elements *= load.parts;
+    example::require_room(file, "settled", "parts", 9.0 * static_cast<double>(load.scene.fabric.nodes()));
     if (!programme.stages.front().friction) programme.stages.front().friction = friction;
     file.names({{"LoadProgramme.", "loading."}, {"load_case.name", "loading.case"}});
     programme.validate();

@@ -3,6 +3,4 @@
 
 example::Program fabric_loading_program();
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, fabric_loading_program());
-}
+int main(int argc, char** argv) { return example::run(argc, argv, fabric_loading_program()); }

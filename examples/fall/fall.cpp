@@ -146,6 +146,4 @@ bool solve(example::SceneReader& file, example::Output& output) {
 
 }  // namespace
 
-example::Program fall_program() {
-    return {"fall", "Lets a nest of fibres fall into a drum.", solve};
-}
+example::Program fall_program() { return {"fall", "Lets a nest of fibres fall into a drum.", solve}; }

@@ -3,6 +3,4 @@
 
 example::Program fall_program();
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, fall_program());
-}
+int main(int argc, char** argv) { return example::run(argc, argv, fall_program()); }

@@ -34,8 +34,10 @@ bool solve(example::SceneReader& file, example::Output& output) {
     Index crossings = 3, increments = 20;
     double drawn = 0.0, mu = 0.0;
     file.require("knot", "radius", parameters.radius, example::positive(), "length", "radius of the rod");
-    file.require("knot", "loop_radius", parameters.loop_radius, example::positive(), "length", "radius of the loop in which the knot is tied");
-    file.require("knot", "tail", parameters.tail, example::positive(), "length", "length of the rod beyond the knot, on each side");
+    file.require("knot", "loop_radius", parameters.loop_radius, example::positive(), "length",
+                 "radius of the loop in which the knot is tied");
+    file.require("knot", "tail", parameters.tail, example::positive(), "length",
+                 "length of the rod beyond the knot, on each side");
     file.read("knot", "crossings", crossings,
               {.low = 3, .high = 15, .said = "an odd number from 3 to 15", .values = {3, 5, 7, 9, 11, 13, 15}},
               "crossings of the knot: 3 overhand, 5 double overhand");
@@ -72,11 +74,16 @@ bool solve(example::SceneReader& file, example::Output& output) {
     model.contact.detection.self_contact = true;
     model.iteration.newton_limit = 30;
     simulation::Simulator<Knot> simulator(knot::tied_rod(parameters), model);
-    const auto loose = [&](const knot::KnotState& state) { return 0.5 * bending * std::pow(2.0 * std::numbers::pi / state.shortening, 2); };
+    const auto loose = [&](const knot::KnotState& state) {
+        return 0.5 * bending * std::pow(2.0 * std::numbers::pi / state.shortening, 2);
+    };
     output.open(file);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const knot::KnotState state = knot::measure(simulator, parameters);
-        return {{"shortening", state.shortening}, {"force", state.force}, {"force_of_loose_knots", loose(state)}, {"contact_force", state.contact_force}};
+        return {{"shortening", state.shortening},
+                {"force", state.force},
+                {"force_of_loose_knots", loose(state)},
+                {"contact_force", state.contact_force}};
     });
     simulation::Loading<Knot> loading;
     loading.stages.resize(drawn > 0.0 ? 2 : 1);
@@ -98,14 +105,17 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const knot::KnotState state = knot::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -90.0, 60.0);
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"force", state.force}, {"force_of_loose_knots", loose(state)}, {"shortening", state.shortening},
-                           {"radius_over_loop_radius", 2.0 * std::numbers::pi * radius / state.shortening}, {"imbalance", state.imbalance}});
+    const observe::JsonObject summary =
+        example::write_summary(output, report, audit, radius,
+                               {{"force", state.force},
+                                {"force_of_loose_knots", loose(state)},
+                                {"shortening", state.shortening},
+                                {"radius_over_loop_radius", 2.0 * std::numbers::pi * radius / state.shortening},
+                                {"imbalance", state.imbalance}});
     example::write_report(output, "knot", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 
 }  // namespace
 
-example::Program knot_program() {
-    return {"knot", "Ties a knot in a straight rod and draws it tight.", solve};
-}
+example::Program knot_program() { return {"knot", "Ties a knot in a straight rod and draws it tight.", solve}; }

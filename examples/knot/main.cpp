@@ -3,6 +3,4 @@
 
 example::Program knot_program();
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, knot_program());
-}
+int main(int argc, char** argv) { return example::run(argc, argv, knot_program()); }

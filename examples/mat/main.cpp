@@ -3,6 +3,4 @@
 
 example::Program mat_program();
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, mat_program());
-}
+int main(int argc, char** argv) { return example::run(argc, argv, mat_program()); }

@@ -92,9 +92,14 @@ bool solve(example::SceneReader& file, example::Output& output) {
     output.open(file);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const mat::MatState state = mat::measure(simulator, parameters);
-        return {{"height", state.height}, {"volume_fraction", state.volume_fraction}, {"pressure_over_modulus", state.pressure / parameters.material.young_modulus},
-                {"lower_pressure_over_modulus", state.lower_pressure / parameters.material.young_modulus}, {"contacts_per_fibre", state.contacts_per_fibre},
-                {"contacts_without_bulk", state.contacts_without_bulk}, {"sine", state.sine}, {"elastic_energy", state.elastic_energy}};
+        return {{"height", state.height},
+                {"volume_fraction", state.volume_fraction},
+                {"pressure_over_modulus", state.pressure / parameters.material.young_modulus},
+                {"lower_pressure_over_modulus", state.lower_pressure / parameters.material.young_modulus},
+                {"contacts_per_fibre", state.contacts_per_fibre},
+                {"contacts_without_bulk", state.contacts_without_bulk},
+                {"sine", state.sine},
+                {"elastic_energy", state.elastic_energy}};
     });
     simulation::Loading<Mat> loading = mat::pressing<Mat>(parameters, press);
     output.tell(loading);
@@ -102,14 +107,16 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const mat::MatState state = mat::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 25.0);
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"volume_fraction", state.volume_fraction}, {"pressure", state.pressure}, {"lower_pressure", state.lower_pressure},
-                           {"contacts_per_fibre", state.contacts_per_fibre}, {"contacts_without_bulk", state.contacts_without_bulk}});
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius,
+                                                               {{"volume_fraction", state.volume_fraction},
+                                                                {"pressure", state.pressure},
+                                                                {"lower_pressure", state.lower_pressure},
+                                                                {"contacts_per_fibre", state.contacts_per_fibre},
+                                                                {"contacts_without_bulk", state.contacts_without_bulk}});
     example::write_report(output, "mat", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 
 }  // namespace
 
-example::Program mat_program() {
-    return {"mat", "Compacts a mat of random fibres in a box.", solve};
-}
+example::Program mat_program() { return {"mat", "Compacts a mat of random fibres in a box.", solve}; }

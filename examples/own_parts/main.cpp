@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A model of one's own parts: force, normal law, friction law with memory, search, observer; each is a header beside this file, and a
-// row of a model. What they do is compared with closed forms; the program fails where it differs.
+// A model of one's own parts: force, normal law, friction law with memory, search, observer; each is a header beside this file,
+// and a row of a model. What they do is compared with closed forms; the program fails where it differs.
 #include "own_force.hpp"
 #include "own_friction.hpp"
 #include "own_normal_law.hpp"
@@ -54,7 +54,8 @@ bool beam_in_a_bed() {
     const double inertia = std::pow(radius, 4) * std::acos(-1.0) / 4.0, bed = 0.5, force = 1e-4;
     const double b = std::pow(bed / (4.0 * material.young_modulus * inertia), 0.25);
     scene::Assembly assembly;
-    const Index fibre = assembly.add({.from = {0, 0, 0}, .to = {8.0 / b, 0, 0}, .section = section, .material = material, .elements = 40});
+    const Index fibre =
+        assembly.add({.from = {0, 0, 0}, .to = {8.0 / b, 0, 0}, .section = section, .material = material, .elements = 40});
     assembly.hold_position(scene::last_end(fibre));  // eight lengths away: it feels nothing
     assembly.hold_axial_rotation(scene::last_end(fibre));
     assembly.apply(scene::DeadForce{.at = scene::first_end(fibre), .force = {0, 0, force}});
@@ -70,8 +71,13 @@ bool beam_in_a_bed() {
 /// A fibre is pressed on another one, then drawn along it: all that touches slides, and is held by mu times what presses.
 bool drawn_over_another() {
     scene::Assembly assembly;
-    const Index lower = assembly.add({.from = {0, -0.5, 0}, .to = {0, 0.5, 0}, .section = section, .material = material, .elements = 16});
-    const Index upper = assembly.add({.from = {-0.5, 0, 2.0 * radius}, .to = {0.5, 0, 2.0 * radius}, .section = section, .material = material, .elements = 16});
+    const Index lower =
+        assembly.add({.from = {0, -0.5, 0}, .to = {0, 0.5, 0}, .section = section, .material = material, .elements = 16});
+    const Index upper = assembly.add({.from = {-0.5, 0, 2.0 * radius},
+                                      .to = {0.5, 0, 2.0 * radius},
+                                      .section = section,
+                                      .material = material,
+                                      .elements = 16});
     for (const scene::Station at : {scene::first_end(lower), scene::last_end(lower)}) assembly.clamp(at);
     for (const scene::Station at : {scene::first_end(upper), scene::last_end(upper)}) {
         scene::Hold path;

@@ -7,8 +7,12 @@
 #include <vector>
 
 /// k times the displacement, a length. An internal force with a potential; its stiffness lies within elements.
-class SoftBed : public fibrant::term::NoDrive, public fibrant::term::NoSearch, public fibrant::term::NoSpring, public fibrant::term::NoCouplings,
-                public fibrant::term::NoMemory, public fibrant::term::NoPicture {
+class SoftBed : public fibrant::term::NoDrive,
+                public fibrant::term::NoSearch,
+                public fibrant::term::NoSpring,
+                public fibrant::term::NoCouplings,
+                public fibrant::term::NoMemory,
+                public fibrant::term::NoPicture {
 public:
     static constexpr auto role = fibrant::term::Role::structure;
     struct Parameters {
@@ -19,7 +23,8 @@ public:
         Parameters bed{};  // parameters.acts.bed.stiffness
     };
 
-    SoftBed(const fibrant::term::Site& site, const Parameters& parameters) : stiffness_{fibrant::core::validated(parameters).stiffness} {
+    SoftBed(const fibrant::term::Site& site, const Parameters& parameters)
+        : stiffness_{fibrant::core::validated(parameters).stiffness} {
         for (fibrant::Index f = 0; f < fibrant::core::count(site.fibres()); ++f)
             site.each_point(f, 0.0, 1.0, [&](const fibrant::term::CentrePoint& at, double length) {
                 points_.push_back({at, length, at.place(site.rest_state())});

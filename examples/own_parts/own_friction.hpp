@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file A friction law of one's own, with memory: a tangential spring whose stiffness does not depend on the reaction, and that slips.
+/// @file A friction law of one's own, with memory: a tangential spring whose stiffness does not depend on the reaction, and that
+/// slips.
 
 #include <fibrant/law/friction_law.hpp>
 
@@ -22,7 +23,8 @@ public:
     };
     explicit SlippingSpring(const Parameters& parameters) : parameters_{fibrant::core::validated(parameters)} {}
 
-    fibrant::law::FrictionResponse<History> response(const fibrant::Vec3& slip, double reaction, const History& history) const noexcept {
+    fibrant::law::FrictionResponse<History> response(const fibrant::Vec3& slip, double reaction,
+                                                     const History& history) const noexcept {
         const double k = parameters_.stiffness, range = parameters_.friction_coefficient * reaction / k;
         const fibrant::Vec3 trial = history.reversible + slip;
         const double length = trial.norm();
@@ -31,8 +33,10 @@ public:
         const fibrant::Vec3 direction = length > 0.0 ? fibrant::Vec3(trial / length) : fibrant::Vec3(fibrant::Vec3::Zero());
         answer.history.reversible = answer.sliding ? fibrant::Vec3(range * direction) : trial;
         answer.force = k * answer.history.reversible;
-        if (answer.sliding) answer.tangent = k * range / length * (fibrant::Mat3::Identity() - direction * direction.transpose());
-        else answer.tangent = k * fibrant::Mat3::Identity();
+        if (answer.sliding)
+            answer.tangent = k * range / length * (fibrant::Mat3::Identity() - direction * direction.transpose());
+        else
+            answer.tangent = k * fibrant::Mat3::Identity();
         answer.stored = 0.5 * k * answer.history.reversible.squaredNorm();
         if (answer.sliding) answer.dissipated = std::max(0.0, k * range * (length - range));
         return answer;

@@ -9,7 +9,8 @@ struct FrictionCarried {
     double reaction = 0.0, friction = 0.0;  // [force]
     void accepted(const fibrant::observe::Snapshot& shot) {
         reaction = friction = 0.0;
-        for (const fibrant::observe::ContactSnapshot& contact : shot.contacts) reaction += contact.reaction, friction += contact.friction.norm();
+        for (const fibrant::observe::ContactSnapshot& contact : shot.contacts)
+            reaction += contact.reaction, friction += contact.friction.norm();
     }
 };
 static_assert(fibrant::observe::Observer<FrictionCarried>);

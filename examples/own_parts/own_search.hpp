@@ -15,13 +15,18 @@ public:
     using Parameters = fibrant::core::NoParameters;
     explicit SweepSearch(const Parameters& = {}) {}
 
-    std::vector<fibrant::proximity::SegmentPair> pairs(std::span<const fibrant::proximity::Centreline> fibres, double reach) const {
+    std::vector<fibrant::proximity::SegmentPair> pairs(std::span<const fibrant::proximity::Centreline> fibres,
+                                                       double reach) const {
         namespace detail = fibrant::proximity::detail;
         const detail::SegmentTable table(fibres, reach);
         const std::vector<detail::SegmentRecord> records = table.records();
         // Half of the reach on each side: two that are close overlap.
-        const auto first = [&](const detail::SegmentRecord& one) { return std::min(one.start.x, one.start.x + one.chord.x) - one.half - 0.5 * reach; };
-        const auto last = [&](const detail::SegmentRecord& one) { return std::max(one.start.x, one.start.x + one.chord.x) + one.half + 0.5 * reach; };
+        const auto first = [&](const detail::SegmentRecord& one) {
+            return std::min(one.start.x, one.start.x + one.chord.x) - one.half - 0.5 * reach;
+        };
+        const auto last = [&](const detail::SegmentRecord& one) {
+            return std::max(one.start.x, one.start.x + one.chord.x) + one.half + 0.5 * reach;
+        };
         std::vector<std::int32_t> order(records.size());
         std::iota(order.begin(), order.end(), 0);
         std::ranges::sort(order, {}, [&](std::int32_t k) { return std::pair{first(records[fibrant::core::at(k)]), k}; });
@@ -36,7 +41,8 @@ public:
         std::ranges::sort(close);
         return close;
     }
-    std::vector<fibrant::proximity::ProximityZone> find(std::span<const fibrant::proximity::Centreline> fibres, double reach) const {
+    std::vector<fibrant::proximity::ProximityZone> find(std::span<const fibrant::proximity::Centreline> fibres,
+                                                        double reach) const {
         return fibrant::proximity::zones_from_pairs(fibres, reach, pairs(fibres, reach));
     }
 };

@@ -43,7 +43,8 @@ example::Program program_of(const std::string& name) {
         if (name == program.name) return program;
         names += (names.empty() ? "" : ", ") + std::string(program.name);
     }
-    throw std::invalid_argument("program = " + example::clipped(name) + ", but it must be one of those that were built: " + names);
+    throw std::invalid_argument("program = " + example::clipped(name) +
+                                ", but it must be one of those that were built: " + names);
 }
 
 /// The end of a run.
@@ -84,7 +85,8 @@ template <class Owner, class Value>
 auto values(std::vector<Value> Owner::*list) {
     return [list](const py::object& self) {
         const std::vector<Value>& of = self.cast<const Owner&>().*list;
-        return looking_at(of.empty() ? nullptr : Row<Value>::first(of.front()), of.size(), sizeof(Value), Row<Value>::components, self);
+        return looking_at(of.empty() ? nullptr : Row<Value>::first(of.front()), of.size(), sizeof(Value), Row<Value>::components,
+                          self);
     };
 }
 /// Property: a member of all elements of a list.
@@ -142,7 +144,10 @@ PYBIND11_MODULE(native, module) {
         .def_property_readonly("director_2", values(&FibreSnapshot::director_2), "(nodes, 3), of the section [1]")
         .def_property_readonly("curvature", values(&FibreSnapshot::curvature), "(nodes,) [1 / length]")
         .def_property_readonly(
-            "semi_axes", [](const FibreSnapshot& fibre) { return std::pair{fibre.section.semi_axis_1, fibre.section.semi_axis_2}; },
+            "semi_axes",
+            [](const FibreSnapshot& fibre) {
+                return std::pair{fibre.section.semi_axis_1, fibre.section.semi_axis_2};
+            },
             "of the section at rest, along its directors [length]")
         .def_readonly("group", &FibreSnapshot::group, "number of its tow or yarn family; -1: none")
         .def_readonly("closed", &FibreSnapshot::closed, "its last node is its first one");
@@ -161,8 +166,9 @@ PYBIND11_MODULE(native, module) {
         .def_readonly("sound", &End::sound)
         .def_readonly("stopped", &End::stopped)
         .def_readonly("summary", &End::summary)
-        .def_property_readonly("contacts", [](const End& end) -> const Contacts& { return end.snapshot.contacts; },
-                               py::return_value_policy::reference_internal)
+        .def_property_readonly(
+            "contacts", [](const End& end) -> const Contacts& { return end.snapshot.contacts; },
+            py::return_value_policy::reference_internal)
         .def_property_readonly("fibres", [](const py::object& self) {
             const End& end = self.cast<const End&>();
             py::list fibres;

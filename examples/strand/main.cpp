@@ -3,6 +3,4 @@
 
 example::Program strand_program();
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, strand_program());
-}
+int main(int argc, char** argv) { return example::run(argc, argv, strand_program()); }

@@ -34,7 +34,8 @@ struct Strand {
 
 /// What is the same for a strand and a rope.
 struct Scene {
-    double radius = core::unset, lay = core::unset, length = core::unset, strain = 0.0, rotation = 0.0, mu = 0.0, sinking = 1e-5, allowed = 1e-3, depth = 0.1, tolerance = 1e-4, reversible = 0.01;
+    double radius = core::unset, lay = core::unset, length = core::unset, strain = 0.0, rotation = 0.0, mu = 0.0, sinking = 1e-5,
+           allowed = 1e-3, depth = 0.1, tolerance = 1e-4, reversible = 0.01;
     Index elements = 40, increments = 4;
     scene::ElasticMaterial material;
 };
@@ -44,7 +45,8 @@ bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters&
           example::Output& output, std::vector<std::pair<std::string, double>> figures) {
     const double radius = given.radius;
     simulation::ModelParameters<Strand> model;
-    model.normal = {.law = {.regularisation_depth = given.depth * given.allowed * radius}, .largest_penetration = given.sinking * radius};
+    model.normal = {.law = {.regularisation_depth = given.depth * given.allowed * radius},
+                    .largest_penetration = given.sinking * radius};
     model.friction = {.friction_coefficient = given.mu, .reversible_displacement = given.reversible * radius};
     model.contact.stiffness.allowed_penetration = given.allowed * radius;
     model.contact.stiffness.initial_fraction = 0.2;
@@ -55,7 +57,10 @@ bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters&
     output.open(file);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const strand::StrandState state = strand::measure(simulator, parameters);
-        return {{"strain", simulator.amplitude(strand::stretch)}, {"rotation", simulator.amplitude(strand::twist)}, {"force", state.force}, {"torque", state.torque}};
+        return {{"strain", simulator.amplitude(strand::stretch)},
+                {"rotation", simulator.amplitude(strand::twist)},
+                {"force", state.force},
+                {"torque", state.torque}};
     });
     simulation::Loading<Strand> loading;
     loading.stages.resize(1);
@@ -65,9 +70,14 @@ bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters&
     const simulation::Report report = simulator.run(loading, recorder);
     const strand::StrandState state = strand::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 20.0, std::pair{Index{2}, 0.5 * given.length});
-    figures.insert(figures.begin(), {{"force", state.force}, {"torque", state.torque}, {"metal_stiffness", parameters.metal_stiffness()},
-                                     {"force_over_metal_stiffness_and_strain", state.force / (parameters.metal_stiffness() * given.strain)}});
-    figures.insert(figures.end(), {{"external_work", report.energy.external}, {"dissipated", report.energy.dissipated}, {"energy_error", report.energy.error()}});
+    figures.insert(figures.begin(),
+                   {{"force", state.force},
+                    {"torque", state.torque},
+                    {"metal_stiffness", parameters.metal_stiffness()},
+                    {"force_over_metal_stiffness_and_strain", state.force / (parameters.metal_stiffness() * given.strain)}});
+    figures.insert(figures.end(), {{"external_work", report.energy.external},
+                                   {"dissipated", report.energy.dissipated},
+                                   {"energy_error", report.energy.error()}});
     const simulation::Audit audit = example::audit(output, simulator, radius);
     const observe::JsonObject summary = example::write_summary(output, report, audit, radius, figures);
     example::write_report(output, "strand", summary, simulator.snapshot());
@@ -87,7 +97,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("strand", "elements", given.elements, example::between(2, 10000), "elements along a wire");
     file.read("rope", "lay_angle_deg", rope_lay, example::between(-45.0, 45.0), "degree",
               "angle of the strands to the axis; 0: one strand");
-    file.read("rope", "apart_over_radius", apart, example::between(0.0, 1.0), "1", "distance between neighbouring strands, over the radius");
+    file.read("rope", "apart_over_radius", apart, example::between(0.0, 1.0), "1",
+              "distance between neighbouring strands, over the radius");
     file.read("rope", "overlap_over_radius", overlap, example::between(0.0, 0.5), "1",
               "how deep wires may be in each other at the start, over the radius");
     example::read_material(file, "material", given.material);
@@ -139,7 +150,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
         parameters.length = given.length, parameters.elements = given.elements, parameters.material = given.material;
         return draw(given, strand::straight_strand(parameters), parameters, file, output, {});
     }
-    strand::RopeParameters rope = strand::rope_of_seven(given.radius, given.lay, rope_lay, given.length, apart * given.radius, overlap * given.radius);
+    strand::RopeParameters rope =
+        strand::rope_of_seven(given.radius, given.lay, rope_lay, given.length, apart * given.radius, overlap * given.radius);
     rope.elements = given.elements, rope.material = given.material;
     const strand::RopeStiffness sliding = strand::stiffness_bound(rope), stuck = strand::stiffness_bound(rope, true);
     return draw(

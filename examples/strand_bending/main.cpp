@@ -3,6 +3,4 @@
 
 example::Program strand_bending_program();
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, strand_bending_program());
-}
+int main(int argc, char** argv) { return example::run(argc, argv, strand_bending_program()); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A strand of 7 to 91 wires with friction is bent to an arc, and back if asked for; prints the moment between its bounds, and the time. The
-// wires may yield: [material.law] kind = "wire".
+// A strand of 7 to 91 wires with friction is bent to an arc, and back if asked for; prints the moment between its bounds, and the
+// time. The wires may yield: [material.law] kind = "wire".
 //   strand_bending SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
 #include "../support/program.hpp"
@@ -44,7 +44,8 @@ struct Asked {
 };
 
 template <class Law>
-bool bend(const Asked& asked, const std::vector<typename beam::With<beam::DirectorBeam<>, Law>::Parameters>& beams, example::SceneReader& file, example::Output& output) {
+bool bend(const Asked& asked, const std::vector<typename beam::With<beam::DirectorBeam<>, Law>::Parameters>& beams,
+          example::SceneReader& file, example::Output& output) {
     using Model = Strand<Law>;
     const strand::StrandParameters& parameters = asked.strand;
     const double radius = asked.radius, angle = asked.angle;
@@ -59,8 +60,12 @@ bool bend(const Asked& asked, const std::vector<typename beam::With<beam::Direct
     output.open(file);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const strand::BendingState state = strand::measure_bending(simulator, parameters, asked.bending);
-        return {{"angle_deg", state.angle * 180.0 / std::numbers::pi}, {"moment", state.moment}, {"moment_at_plate", state.at_plate}, {"tension", state.tension},
-                {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius}, {"processor_seconds", example::cpu_seconds()}};
+        return {{"angle_deg", state.angle * 180.0 / std::numbers::pi},
+                {"moment", state.moment},
+                {"moment_at_plate", state.at_plate},
+                {"tension", state.tension},
+                {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius},
+                {"processor_seconds", example::cpu_seconds()}};
     });
     simulation::Loading<Model> loading;
     const double full = angle * std::numbers::pi / 180.0;
@@ -73,27 +78,37 @@ bool bend(const Asked& asked, const std::vector<typename beam::With<beam::Direct
     loading.stages.back().increments = asked.increments, loading.stages.back().most_increments = 20 * asked.increments;
     if (!std::isnan(asked.back)) {
         loading.stages.push_back(loading.stages.back());
-        loading.stages.back().name = "back", loading.stages.back().ramps = {{strand::bend, asked.back * std::numbers::pi / 180.0}};
+        loading.stages.back().name = "back",
+        loading.stages.back().ramps = {{strand::bend, asked.back * std::numbers::pi / 180.0}};
     }
     output.tell(loading);
     const simulation::Report report = simulator.run(loading, recorder);
     const strand::BendingState state = strand::measure_bending(simulator, parameters, asked.bending);
     example::write_pictures(output, simulator.snapshot(), -90.0, 10.0);
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"wires", static_cast<double>(parameters.wires())}, {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
-                           {"length_over_radius", parameters.length / radius}, {"angle_deg", state.angle * 180.0 / std::numbers::pi},
-                           {"moment", state.moment}, {"moment_at_plate", state.at_plate},
-                           {"moment_of_loose_wires", strand::loose_stiffness(parameters) * state.angle / parameters.length},
-                           {"moment_of_a_solid", strand::solid_stiffness(parameters) * state.angle / parameters.length},
-                           {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius},
-                           {"lost_in_the_wires", report.energy.lost}, {"dissipated", report.energy.dissipated}, {"external_work", report.energy.external}, {"energy_error", report.energy.error()}});
+    const observe::JsonObject summary =
+        example::write_summary(output, report, audit, radius,
+                               {{"wires", static_cast<double>(parameters.wires())},
+                                {"dofs", static_cast<double>(simulator.mesh().layout().unknowns())},
+                                {"length_over_radius", parameters.length / radius},
+                                {"angle_deg", state.angle * 180.0 / std::numbers::pi},
+                                {"moment", state.moment},
+                                {"moment_at_plate", state.at_plate},
+                                {"moment_of_loose_wires", strand::loose_stiffness(parameters) * state.angle / parameters.length},
+                                {"moment_of_a_solid", strand::solid_stiffness(parameters) * state.angle / parameters.length},
+                                {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius},
+                                {"lost_in_the_wires", report.energy.lost},
+                                {"dissipated", report.energy.dissipated},
+                                {"external_work", report.energy.external},
+                                {"energy_error", report.energy.error()}});
     example::write_report(output, "strand_bending", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 
 bool solve(example::SceneReader& file, example::Output& output) {
     Index wires = 7, elements = 0, increments = 30;
-    double radius = core::unset, lay_angle = core::unset, turns = 1.0, length = 0.0, angle = 90.0, mu = 0.1, depth = 0.02, reversible = 0.1;
+    double radius = core::unset, lay_angle = core::unset, turns = 1.0, length = 0.0, angle = 90.0, mu = 0.1, depth = 0.02,
+           reversible = 0.1;
     scene::ElasticMaterial material;
     bool alternate = true;
     std::string anchor = "both_plates", lay = "equal_pitch";
@@ -112,7 +127,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
               "elements along a wire; 0: sixteen a turn, and none longer than seven radii");
     example::read_material(file, "material", material);
     file.read("material.law", "kind", kind, {"elastic", "wire"}, "how the wires behave");
-    file.read("material.law", "yield_stress", yielding.yield_stress, example::positive(), "force/length^2", "stress at which a wire yields");
+    file.read("material.law", "yield_stress", yielding.yield_stress, example::positive(), "force/length^2",
+              "stress at which a wire yields");
     file.read("material.law", "hardening", yielding.hardening, example::not_negative(), "force/length^2",
               "slope of the yield stress over the plastic strain, kinematic");
     example::read_friction(file, mu, "coefficient of friction of wires on each other");
@@ -120,14 +136,19 @@ bool solve(example::SceneReader& file, example::Output& output) {
     example::read_allowed_penetration(file, depth);
     file.read("loading", "anchor", anchor, {"both_plates", "near_plate"},
               "which plates hold every wire; elsewhere wires slide through");
-    file.read("loading", "strain", bending.strain, example::inside(-0.5, 1.0), "1", "strain by which the strand is drawn before it is bent");
+    file.read("loading", "strain", bending.strain, example::inside(-0.5, 1.0), "1",
+              "strain by which the strand is drawn before it is bent");
     file.read("loading", "angle_deg", angle, example::inside(-3600.0, 3600.0), "degree", "angle between the plates at the end");
-    file.read("loading", "back_to_deg", back, example::inside(-3600.0, 3600.0), "degree", "angle to which it is bent back; left out: not at all");
+    file.read("loading", "back_to_deg", back, example::inside(-3600.0, 3600.0), "degree",
+              "angle to which it is bent back; left out: not at all");
     file.read("loading", "increments", increments, example::increments(), "increments of the bending");
     file.complete();
-    file.check(kind == "elastic" || !std::isnan(yielding.yield_stress), "material.law", "yield_stress", "given, for kind = \"wire\"");
-    file.check(kind == "wire" || !file.given("material.law", "yield_stress"), "material.law", "yield_stress", "left out, for kind = \"elastic\"");
-    file.check(kind == "wire" || !file.given("material.law", "hardening"), "material.law", "hardening", "left out, for kind = \"elastic\"");
+    file.check(kind == "elastic" || !std::isnan(yielding.yield_stress), "material.law", "yield_stress",
+               "given, for kind = \"wire\"");
+    file.check(kind == "wire" || !file.given("material.law", "yield_stress"), "material.law", "yield_stress",
+               "left out, for kind = \"elastic\"");
+    file.check(kind == "wire" || !file.given("material.law", "hardening"), "material.law", "hardening",
+               "left out, for kind = \"elastic\"");
     file.check(lay_angle != 0.0, "strand", "lay_angle_deg", "other than 0: straight wires have no turns");
     file.check(elements != 1, "strand", "elements", "0 or >= 2");
     file.check(angle != 0.0, "loading", "angle_deg", "other than 0: nothing would be bent");
@@ -150,7 +171,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     parameters.material = material;
     parameters.length = length > 0.0 ? length : turns * pitch;
     // Sixteen a turn follow a helix; wires of opposite hands cross each other every two diameters, and hardly bend in between.
-    parameters.elements = elements > 0 ? elements : static_cast<Index>(std::ceil(std::max(16.0 * turns, parameters.length / (7.0 * radius))));
+    parameters.elements =
+        elements > 0 ? elements : static_cast<Index>(std::ceil(std::max(16.0 * turns, parameters.length / (7.0 * radius))));
     const double round = parameters.length / pitch;
     file.check(static_cast<double>(parameters.elements) >= 4.0 * round, "strand", "elements",
                ">= " + core::text(std::ceil(4.0 * round)) + ", for wires go around " + core::text(round) +

@@ -40,14 +40,14 @@ namespace observe = fibrant::observe;
 struct Output {
     std::filesystem::path folder, scene;  ///< of the results; the scene file
     bool quiet = false, paraview = true, pictures = true;
-    bool resume = false;      ///< go on from the last accepted increment in the folder
-    bool overwrite = false;   ///< begin anew, whatever is in the folder
+    bool resume = false;       ///< go on from the last accepted increment in the folder
+    bool overwrite = false;    ///< begin anew, whatever is in the folder
     bool other_scene = false;  ///< go on from increments of another scene as well
     observe::Start start() const noexcept { return resume ? observe::Start::resumed : observe::Start::anew; }
     std::string checkpoint() const { return (folder / "checkpoint.bin").string(); }
     std::string unit = "mm";  ///< of lengths, for the pictures
-    /// How deep fibres may be in each other at the end, anywhere, over the radius of the thinnest; unset: as deep as contact is allowed to be, and
-    /// what contact points may leave unseen.
+    /// How deep fibres may be in each other at the end, anywhere, over the radius of the thinnest; unset: as deep as contact is
+    /// allowed to be, and what contact points may leave unseen.
     double deepest_over_radius = fibrant::core::unset;
     std::string told;                             ///< what the scene is, line by line: kept in checkpoints
     std::vector<std::filesystem::path> parts{};   ///< folders in it that have checkpoints of their own
@@ -64,7 +64,8 @@ struct Output {
         locked = std::make_shared<const ResultsFolder>(folder);
         const std::string found = earlier_results(folder), name = "--output " + folder.string();
         const bool goes_on = std::filesystem::exists(checkpoint()) || std::filesystem::exists(folder / "settled.bin") ||
-                             std::any_of(parts.begin(), parts.end(), [](const auto& part) { return std::filesystem::exists(part / "checkpoint.bin"); });
+                             std::any_of(parts.begin(), parts.end(),
+                                         [](const auto& part) { return std::filesystem::exists(part / "checkpoint.bin"); });
         if (!found.empty() && !resume && !overwrite)
             throw std::invalid_argument(name + ": holds results of an earlier run (" + found +
                                         "): " + (goes_on ? "--resume goes on from its last increment, " : "") +
@@ -99,37 +100,42 @@ struct Output {
     }
 };
 
-/// The ParaView series, a row of increments.csv and a line of progress after each increment. `more()` gives columns of its own, the first
-/// three of which are told in the line of progress, too.
+/// The ParaView series, a row of increments.csv and a line of progress after each increment. `more()` gives columns of its own,
+/// the first three of which are told in the line of progress, too.
 template <class More>
 class Recorder {
 public:
     Recorder(const Output& output, double radius, const More& more)
-        : table_{output.folder / "increments.csv", output.start()}, printer_{progress_printer(radius, 3, output.quiet)}, radius_{radius}, more_{more} {
+        : table_{output.folder / "increments.csv", output.start()},
+          printer_{progress_printer(radius, 3, output.quiet)},
+          radius_{radius},
+          more_{more} {
         if (output.paraview) series_.emplace(output.folder / "paraview", output.start());
     }
     void reported(const fibrant::simulation::IncrementReport& increment) {
-        std::vector<observe::Column> columns{{"increment", increment.number}, {"stage", increment.stage}, {"progress", increment.progress}};
+        std::vector<observe::Column> columns{
+            {"increment", increment.number}, {"stage", increment.stage}, {"progress", increment.progress}};
         const std::vector<observe::Column> figures = more_();
         columns.insert(columns.end(), figures.begin(), figures.end());
-        for (const observe::Column& column : std::vector<observe::Column>{{"newton_iterations", increment.counts.newton},
-                                                                           {"linear_iterations", increment.counts.linear_iterations},
-                                                                           {"contact_passes", increment.counts.contact_passes},
-                                                                           {"cuts", increment.cuts},
-                                                                           {"active_contacts", increment.contact.active},
-                                                                           {"greatest_penetration_over_radius", increment.contact.greatest_penetration / radius_},
-                                                                           {"residual", increment.residual},
-                                                                           {"damping_share", increment.damping},
-                                                                           {"springs", increment.springs},
-                                                                           {"hardest_springs", increment.hardest_springs},
-                                                                           {"elastic_energy", increment.energy.elastic},
-                                                                           {"contact_energy", increment.energy.contact},
-                                                                           {"external_work", increment.energy.external},
-                                                                           {"dissipated", increment.energy.dissipated},
-                                                                           {"damped", increment.energy.damped},
-                                                                           {"rearranged", increment.energy.rearranged},
-                                                                           {"energy_error", increment.energy.error()},
-                                                                           {"seconds", increment.seconds}})
+        for (const observe::Column& column :
+             std::vector<observe::Column>{{"newton_iterations", increment.counts.newton},
+                                          {"linear_iterations", increment.counts.linear_iterations},
+                                          {"contact_passes", increment.counts.contact_passes},
+                                          {"cuts", increment.cuts},
+                                          {"active_contacts", increment.contact.active},
+                                          {"greatest_penetration_over_radius", increment.contact.greatest_penetration / radius_},
+                                          {"residual", increment.residual},
+                                          {"damping_share", increment.damping},
+                                          {"springs", increment.springs},
+                                          {"hardest_springs", increment.hardest_springs},
+                                          {"elastic_energy", increment.energy.elastic},
+                                          {"contact_energy", increment.energy.contact},
+                                          {"external_work", increment.energy.external},
+                                          {"dissipated", increment.energy.dissipated},
+                                          {"damped", increment.energy.damped},
+                                          {"rearranged", increment.energy.rearranged},
+                                          {"energy_error", increment.energy.error()},
+                                          {"seconds", increment.seconds}})
             columns.push_back(column);
         table_.row(columns);
         printer_.reported(increment, figures);
@@ -168,22 +174,26 @@ fibrant::simulation::Audit audit(const Output& output, const Simulator& simulato
     const observe::LeastGap& least = answer.least_gap;
     if (answer.inside_out) std::fprintf(stderr, "audit: %s\n", fibrant::beam::text(*answer.inside_out).c_str());
     if (least.gap < -answer.allowed)
-        std::fprintf(stderr, "audit: fibres %td and %td are %.4f radii deep in each other at (%g, %g, %g), and may be %.4f\n", least.fibre_i, least.fibre_j, -least.gap / radius,
-                     least.position.x(), least.position.y(), least.position.z(), answer.allowed / radius);
+        std::fprintf(stderr, "audit: fibres %td and %td are %.4f radii deep in each other at (%g, %g, %g), and may be %.4f\n",
+                     least.fibre_i, least.fibre_j, -least.gap / radius, least.position.x(), least.position.y(),
+                     least.position.z(), answer.allowed / radius);
     return answer;
 }
 
 /// summary.json: what every run says, and what `figures` adds.
 /// @param begin  what stands before it
 /// @returns what it wrote
-inline observe::JsonObject write_summary(const Output& output, const fibrant::simulation::Report& report, const fibrant::simulation::Audit& audit, double radius,
-                          const std::vector<std::pair<std::string, double>>& figures, observe::JsonObject begin = {}) {
+inline observe::JsonObject write_summary(const Output& output, const fibrant::simulation::Report& report,
+                                         const fibrant::simulation::Audit& audit, double radius,
+                                         const std::vector<std::pair<std::string, double>>& figures,
+                                         observe::JsonObject begin = {}) {
     observe::JsonObject& json = begin;
     json.add("converged", report.converged).add("audit_clean", audit.clean()).add("reason", report.reason);
     json.add("least_gap_over_radius", audit.least_gap.gap_over_radius).add("deepest_allowed_over_radius", audit.allowed / radius);
     // Of the last increment, then the most of any, over what is stated: 1 or less where that was kept.
     json.add("residual_over_tolerance", report.use.residual).add("penetration_over_allowed", report.use.penetration);
-    json.add("most_residual_over_tolerance", report.most_use.residual).add("most_penetration_over_allowed", report.most_use.penetration);
+    json.add("most_residual_over_tolerance", report.most_use.residual)
+        .add("most_penetration_over_allowed", report.most_use.penetration);
     for (const auto& [name, value] : figures) json.add(name, value);
     json.add("increments", report.increments.empty() ? fibrant::Index{0} : report.increments.back().number)
         .add("rejected_increments", report.rejected_increments)

@@ -29,8 +29,8 @@ inline std::int64_t peak_memory_bytes() {
     return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
 }
 
-/// Keeps freed memory in the process, where the C library is GNU's: every search and every increment takes again what the last one
-/// freed, and each page that was given back costs a fault.
+/// Keeps freed memory in the process, where the C library is GNU's: every search and every increment takes again what the last
+/// one freed, and each page that was given back costs a fault.
 inline void keep_freed_memory() {
 #if defined(M_TRIM_THRESHOLD) && defined(M_MMAP_MAX)
     mallopt(M_TRIM_THRESHOLD, 2'000'000'000);

@@ -22,10 +22,11 @@ struct Program {
 bool solve(const Program& program, SceneReader& scene, Output& output, const std::string& threads = {},
            const std::string& threads_name = {});
 
-/// The same with the command line NAME SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite]
+/// The same with the command line NAME SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume |
+/// --overwrite]
 /// [--other-scene] [--quiet], or tells the keys of a scene: NAME --help-scene.
-/// @returns 0 if it is sound, 1 if not, 2 if the scene is refused or what is needed cannot be read, written or held in memory, 130
-/// and 143 if it was stopped by SIGINT and SIGTERM
+/// @returns 0 if it is sound, 1 if not, 2 if the scene is refused or what is needed cannot be read, written or held in memory,
+/// 130 and 143 if it was stopped by SIGINT and SIGTERM
 int run(int argc, char** argv, const Program& program);
 
 }  // namespace example

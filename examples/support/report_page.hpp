@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file report.html: a run as one page that needs no network: whether it is good, what to be warned of, a view of the fibres, figures
-/// and curves.
+/// @file report.html: a run as one page that needs no network: whether it is good, what to be warned of, a view of the fibres,
+/// figures and curves.
 
 #include "figure_meanings.hpp"
 #include "report_viewer.hpp"
@@ -27,8 +27,8 @@ namespace observe = fibrant::observe;
 
 /// What a page is made of, beside the files increments.csv and parameters.toml of its folder.
 struct ReportPage {
-    std::string program, unit;         ///< unit of lengths
-    observe::JsonObject summary;       ///< as in summary.json
+    std::string program, unit;    ///< unit of lengths
+    observe::JsonObject summary;  ///< as in summary.json
     observe::Palette palette;
     std::vector<std::string> foremost;  ///< keys of the summary that are shown first
 };
@@ -70,21 +70,25 @@ struct Warning {
 /// Of the last row of a table; unset if there is none.
 inline double last_of(const Table& table, std::string_view name) {
     const std::size_t column = table.column(name);
-    return table.rows() == 0 || column == table.names().size() ? fibrant::core::unset
-                                                               : std::strtod(table.cell(table.rows() - 1, column).c_str(), nullptr);
+    return table.rows() == 0 || column == table.names().size()
+               ? fibrant::core::unset
+               : std::strtod(table.cell(table.rows() - 1, column).c_str(), nullptr);
 }
 
 inline std::vector<Warning> warnings(const observe::JsonObject& summary, const Table& table) {
-    constexpr double unseen = 0.005;       // radii between contact points and the true gap: what `ContactSpacing.largest_unseen` is by default
-    constexpr double energy_share = 0.01;  // of what was turned over, beyond which the balance is told
+    constexpr double unseen =
+        0.005;  // radii between contact points and the true gap: what `ContactSpacing.largest_unseen` is by default
+    constexpr double energy_share = 0.01;   // of what was turned over, beyond which the balance is told
     constexpr double damping_share = 0.01;  // of the forces, beyond which a curve shows it
     constexpr double cut_share = 0.2;       // of the increments, beyond which cuts cost more than increments
     std::vector<Warning> list;
     const auto number = [&](const char* key) { return number_of(summary, key); };
     const auto is_false = [&](const char* key) { return value_of(summary, key) == "false"; };
     if (is_false("converged"))
-        list.push_back({"The run stopped: " + shown(value_of(summary, "reason")),
-                        "Forces do not balance in the state that is shown. The how-to page \"When it says ...\" has cause and remedy.", true});
+        list.push_back(
+            {"The run stopped: " + shown(value_of(summary, "reason")),
+             "Forces do not balance in the state that is shown. The how-to page \"When it says ...\" has cause and remedy.",
+             true});
     const double gap = number("least_gap_over_radius"), depth = number("greatest_penetration_over_radius");
     const double wrong = number("wrong_crossings"), missing = number("missing_crossings");
     const bool ended = !is_false("converged");  // what a run that stopped had not yet mended says nothing more
@@ -93,16 +97,19 @@ inline std::vector<Warning> warnings(const observe::JsonObject& summary, const T
                         "Fibres went to the wrong side. Take a smaller gap limit, less tension, or more elements.", true});
     else if (ended && is_false("audit_clean"))
         list.push_back({"Two fibres are " + short_number(-gap) + " radii deep in each other.",
-                        "This is more than allowed. Take more elements, or say by output.deepest_over_radius that you accept it.", true});
+                        "This is more than allowed. Take more elements, or say by output.deepest_over_radius that you accept it.",
+                        true});
     if (ended && is_false("topology_clean"))
         list.push_back({"Yarns do not lie above and below each other as the textile says.",
                         "Yarns went through each other. Start with yarns that overlap less, or with more elements.", true});
     if (-gap > std::max(0.0, depth) + unseen && !is_false("audit_clean"))
-        list.push_back({"The true gap, " + short_number(gap) + " radii, is deeper than contact points say, " + short_number(depth) + ".",
-                        "Between contact points the mesh is coarse: fibres bend or flatten within an element. Compare with more elements."});
+        list.push_back(
+            {"The true gap, " + short_number(gap) + " radii, is deeper than contact points say, " + short_number(depth) + ".",
+             "Between contact points the mesh is coarse: fibres bend or flatten within an element. Compare with more elements."});
     if (const double missed = number("energy_error_over_work"); std::abs(missed) > energy_share)
-        list.push_back({"The energy balance misses " + short_number(100.0 * missed, "%.2g") + " % of what was turned over.",
-                        "Friction slid far in single increments, or fibres leapt. Compare with more increments before you use energies."});
+        list.push_back(
+            {"The energy balance misses " + short_number(100.0 * missed, "%.2g") + " % of what was turned over.",
+             "Friction slid far in single increments, or fibres leapt. Compare with more increments before you use energies."});
     if (const double held = last_of(table, "damping_share"); held > damping_share)
         list.push_back({"Damping holds " + short_number(100.0 * held, "%.2g") + " % of the forces at the end.",
                         "The state has not come to rest. Forces and shape are those of fibres that are still held by springs."});
@@ -125,15 +132,17 @@ inline std::string fibres_json(const observe::Snapshot& snapshot, const ReportPa
     const std::size_t step = points / most_points + 1;
     const auto three = [&](const fibrant::Vec3& x, int digits) {
         std::string text;
-        for (int axis = 0; axis < 3; ++axis) text += (axis > 0 ? "," : "") + observe::rounded(scale * (x[axis] - middle[axis]), digits);
+        for (int axis = 0; axis < 3; ++axis)
+            text += (axis > 0 ? "," : "") + observe::rounded(scale * (x[axis] - middle[axis]), digits);
         return text;
     };
-    std::string text = "{\"unit\":" + observe::json_quoted(observe::xml_escaped(page.unit)) + ",\"size\":" + observe::shortest(size) +
-                       ",\"across\":" + observe::rounded(extent.norm() / size, 3) + ",\"low\":[" + three(low, 1) + "],\"high\":[" +
-                       three(high, 1) + "],\n\"fibres\":[";
+    std::string text = "{\"unit\":" + observe::json_quoted(observe::xml_escaped(page.unit)) +
+                       ",\"size\":" + observe::shortest(size) + ",\"across\":" + observe::rounded(extent.norm() / size, 3) +
+                       ",\"low\":[" + three(low, 1) + "],\"high\":[" + three(high, 1) + "],\n\"fibres\":[";
     for (std::size_t f = 0; f < snapshot.fibres.size(); ++f) {
         const observe::FibreSnapshot& fibre = snapshot.fibres[f];
-        text += std::string(f > 0 ? "," : "") + "\n{\"c\":\"" + page.palette.of(static_cast<fibrant::Index>(f), fibre.group).text() +
+        text += std::string(f > 0 ? "," : "") + "\n{\"c\":\"" +
+                page.palette.of(static_cast<fibrant::Index>(f), fibre.group).text() +
                 "\",\"r\":" + observe::rounded(scale * fibre.section.radius(), 2) + ",\"p\":[";
         for (std::size_t k = 0; k < fibre.position.size(); k += step) text += (k > 0 ? "," : "") + three(fibre.position[k], 1);
         if ((fibre.position.size() - 1) % step != 0) text += "," + three(fibre.position.back(), 1);
@@ -143,8 +152,8 @@ inline std::string fibres_json(const observe::Snapshot& snapshot, const ReportPa
 }
 
 /// A plot of columns over the increments; empty where no column is there.
-inline std::string plot(const Table& table, const std::string& title, const std::string& label, const std::vector<std::string>& names,
-                        bool powers = false) {
+inline std::string plot(const Table& table, const std::string& title, const std::string& label,
+                        const std::vector<std::string>& names, bool powers = false) {
     observe::CurvePlot curves{title, "increment", label, {}, false, 520.0, 300.0};
     for (const std::string& name : names) {
         observe::PlotLine line = table.line(name, table.column("increment"), table.column(name));
@@ -160,15 +169,18 @@ inline std::string plot(const Table& table, const std::string& title, const std:
 
 /// Which increments each stage took: a row a stage.
 inline std::string stages(const Table& table) {
-    const std::size_t stage = table.column("stage"), iterations = table.column("newton_iterations"), seconds = table.column("seconds");
+    const std::size_t stage = table.column("stage"), iterations = table.column("newton_iterations"),
+                      seconds = table.column("seconds");
     if (table.rows() == 0 || std::max({stage, iterations, seconds}) == table.names().size()) return {};
     std::string text = "<table><tr><th>stage</th><th>increments</th><th>Newton iterations</th><th>seconds</th></tr>\n";
     for (std::size_t from = 0, to = 0; from < table.rows(); from = to) {
         double newton = 0.0, taken = 0.0;
         for (to = from; to < table.rows() && table.cell(to, stage) == table.cell(from, stage); ++to)
-            newton += std::strtod(table.cell(to, iterations).c_str(), nullptr), taken += std::strtod(table.cell(to, seconds).c_str(), nullptr);
-        text += "<tr><td>" + observe::xml_escaped(table.cell(from, stage)) + "</td><td>" + table.cell(from, 0) + " to " + table.cell(to - 1, 0) +
-                "</td><td>" + short_number(newton) + "</td><td>" + short_number(taken, "%.3g") + "</td></tr>\n";
+            newton += std::strtod(table.cell(to, iterations).c_str(), nullptr),
+                taken += std::strtod(table.cell(to, seconds).c_str(), nullptr);
+        text += "<tr><td>" + observe::xml_escaped(table.cell(from, stage)) + "</td><td>" + table.cell(from, 0) + " to " +
+                table.cell(to - 1, 0) + "</td><td>" + short_number(newton) + "</td><td>" + short_number(taken, "%.3g") +
+                "</td></tr>\n";
     }
     return text + "</table>\n";
 }
@@ -203,36 +215,48 @@ inline std::string report_page(const std::filesystem::path& folder, const Report
     const bool good = std::none_of(list.begin(), list.end(), [](const auto& warning) { return warning.grave; });
     const std::string name = observe::xml_escaped(page.program + ": " + folder.filename().string());
     std::string text = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + name +
-                       "</title>\n<meta name=\"viewport\" content=\"width=device-width\">\n<style>" + detail::report_style + "</style>\n</head>\n<body><main>\n<h1>" + name + "</h1>\n";
-    text += good ? "<p class=\"said good\"><b>The result is good.</b>Forces balance, and the audit found nothing that is not allowed.</p>\n"
+                       "</title>\n<meta name=\"viewport\" content=\"width=device-width\">\n<style>" + detail::report_style +
+                       "</style>\n</head>\n<body><main>\n<h1>" + name + "</h1>\n";
+    text += good ? "<p class=\"said good\"><b>The result is good.</b>Forces balance, and the audit found nothing that is not "
+                   "allowed.</p>\n"
                  : "<p class=\"said bad\"><b>Do not use this result.</b>What is wrong is said below.</p>\n";
     for (const detail::Warning& warning : list)
-        text += std::string("<p class=\"said ") + (warning.grave ? "bad" : "doubt") + "\"><b>" + warning.seen + "</b>" + warning.means + "</p>\n";
+        text += std::string("<p class=\"said ") + (warning.grave ? "bad" : "doubt") + "\"><b>" + warning.seen + "</b>" +
+                warning.means + "</p>\n";
 
     const auto row = [&](const std::string& key, const std::string& value) {
-        return "<tr><td>" + std::string(key) + "<br><small>" + observe::xml_escaped(meaning_of(key)) + "</small></td><td class=\"n\">" + detail::shown(value) + "</td></tr>\n";
+        return "<tr><td>" + std::string(key) + "<br><small>" + observe::xml_escaped(meaning_of(key)) +
+               "</small></td><td class=\"n\">" + detail::shown(value) + "</td></tr>\n";
     };
     text += "<div class=\"two\"><div class=\"card\">\n<canvas id=\"view\"></canvas>\n<div class=\"bar\">";
-    for (const char* view : {"oblique", "front", "side", "top"}) text += std::string("<button data-view=\"") + view + "\">" + view + "</button>";
-    text += "<label>cut across <select id=\"axis\"><option value=\"0\">x</option><option value=\"1\">y</option><option value=\"2\">z</option></select></label>"
-            "<input id=\"cut\" type=\"range\" min=\"0\" max=\"1000\" value=\"1000\"><small>drag: turn; shift and drag: move; wheel: zoom</small></div></div>\n";
+    for (const char* view : {"oblique", "front", "side", "top"})
+        text += std::string("<button data-view=\"") + view + "\">" + view + "</button>";
+    text +=
+        "<label>cut across <select id=\"axis\"><option value=\"0\">x</option><option value=\"1\">y</option><option "
+        "value=\"2\">z</option></select></label>"
+        "<input id=\"cut\" type=\"range\" min=\"0\" max=\"1000\" value=\"1000\"><small>drag: turn; shift and drag: move; wheel: "
+        "zoom</small></div></div>\n";
     text += "<div class=\"card\"><table>\n";
     for (const std::string& key : page.foremost)
         if (const std::string value = detail::value_of(page.summary, key); !value.empty()) text += row(key, value);
     text += "</table></div></div>\n<h2>Over the increments</h2>\n<div class=\"plots\">\n";
-    text += detail::plot(table, "What is out of balance; stages on the way may be loose", "power of ten of the residual", {"residual"}, true);
+    text += detail::plot(table, "What is out of balance; stages on the way may be loose", "power of ten of the residual",
+                         {"residual"}, true);
     text += detail::plot(table, "Deepest contact", "power of ten of depth / radius", {"greatest_penetration_over_radius"}, true);
     text += detail::plot(table, "Iterations", "of Newton's method", {"newton_iterations"});
     text += detail::plot(table, "Part of the forces that damping holds", "power of ten", {"damping_share"}, true);
-    text += detail::plot(table, "Energies", "energy", {"external_work", "elastic_energy", "contact_energy", "dissipated", "damped", "energy_error"});
+    text += detail::plot(table, "Energies", "energy",
+                         {"external_work", "elastic_energy", "contact_energy", "dissipated", "damped", "energy_error"});
     text += detail::plot(table, "Contacts", "number", {"active_contacts"});
     text += "</div>\n<h2>Stages</h2>\n" + detail::stages(table);
     text += "<details><summary>All figures of the run</summary><table>\n";
     for (const auto& [key, value] : page.summary.members()) text += row(key, value);
     text += "</table></details>\n";
     if (std::filesystem::exists(folder / "parameters.toml"))
-        text += "<details><summary>The scene, with all values</summary><pre>" + observe::xml_escaped(observe::read_file(folder / "parameters.toml")) + "</pre></details>\n";
-    text += "</main>\n<script type=\"application/json\" id=\"fibres\">" + detail::fibres_json(snapshot, page) + "</script>\n<script>" + report_viewer + "</script>\n</body>\n</html>\n";
+        text += "<details><summary>The scene, with all values</summary><pre>" +
+                observe::xml_escaped(observe::read_file(folder / "parameters.toml")) + "</pre></details>\n";
+    text += "</main>\n<script type=\"application/json\" id=\"fibres\">" + detail::fibres_json(snapshot, page) +
+            "</script>\n<script>" + report_viewer + "</script>\n</body>\n</html>\n";
     return text;
 }
 
@@ -244,7 +268,8 @@ void write_report(const Output& output, const ReportPage& page, const observe::S
 }
 /// The same with what the summary says before the counts of iterations shown first.
 template <class Output>
-void write_report(const Output& output, const char* program, const observe::JsonObject& summary, const observe::Snapshot& snapshot) {
+void write_report(const Output& output, const char* program, const observe::JsonObject& summary,
+                  const observe::Snapshot& snapshot) {
     ReportPage page{program, output.unit, summary, {}, {}};
     for (const auto& [key, value] : summary.members()) {
         if (key == "increments") break;

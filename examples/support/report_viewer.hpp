@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file The view of fibres in a report: a canvas and its script, without any library. Fibres are drawn from back to front; it turns by the
-/// pointer, comes nearer by the wheel, and is cut across an axis.
+/// @file The view of fibres in a report: a canvas and its script, without any library. Fibres are drawn from back to front; it
+/// turns by the pointer, comes nearer by the wheel, and is cut across an axis.
 
 namespace example {
 

@@ -42,7 +42,8 @@ int threads_of(const std::string& text, const std::string& name) {
 
 }  // namespace
 
-bool solve(const Program& program, SceneReader& scene, Output& output, const std::string& threads, const std::string& threads_name) {
+bool solve(const Program& program, SceneReader& scene, Output& output, const std::string& threads,
+           const std::string& threads_name) {
     scene.read("output", "paraview", output.paraview, "write files for ParaView");
     scene.read("output", "pictures", output.pictures, "write pictures of the end");
     scene.read("output", "unit", output.unit, any_text(), "name of the unit of length, for pictures");
@@ -55,15 +56,18 @@ bool solve(const Program& program, SceneReader& scene, Output& output, const std
     const int count = threads.empty() ? threads_of(std::to_string(wanted), scene.file() + ": solver.threads")
                                       : threads_of(threads, threads_name);
 #if defined(_OPENMP)
-    if (count > 0) omp_set_num_threads(count);
-    else threads_of(std::to_string(omp_get_max_threads()), threads_name + " is not given, and OMP_NUM_THREADS");
+    if (count > 0)
+        omp_set_num_threads(count);
+    else
+        threads_of(std::to_string(omp_get_max_threads()), threads_name + " is not given, and OMP_NUM_THREADS");
 #else
     static_cast<void>(count);
 #endif
     try {
         return program.solve(scene, output);
     } catch (const std::invalid_argument& error) {  // of the command line: as it is
-        throw std::invalid_argument(std::string_view(error.what()).substr(0, 2) == "--" ? error.what() : scene.told(error.what()));
+        throw std::invalid_argument(std::string_view(error.what()).substr(0, 2) == "--" ? error.what()
+                                                                                        : scene.told(error.what()));
     }
 }
 
@@ -104,7 +108,8 @@ int run(int argc, char** argv, const Program& program) {
             const bool sound = solve(program, reader, output, app.count("--threads") == 0 ? "" : threads, "--threads");
             if (!stopped()) return sound ? 0 : 1;
             if (!output.quiet)
-                std::fprintf(stderr, "%s: stopped by signal %d: --resume goes on from the last increment\n", program.name, stop_signal());
+                std::fprintf(stderr, "%s: stopped by signal %d: --resume goes on from the last increment\n", program.name,
+                             stop_signal());
             return 128 + stop_signal();
         } catch (const Described&) {
             std::printf("Keys of a scene of %s. Values after = are taken where a key is not given.\n\n%s", program.name,

@@ -226,9 +226,7 @@ public:
     }
 
 private:
-    void refuse_unknown() const {
-        refuse_unknown(table_, "");
-    }
+    void refuse_unknown() const { refuse_unknown(table_, ""); }
     /// @param above  the section that a table is in, with a dot
     void refuse_unknown(const toml::table& table, const std::string& above) const {
         for (const auto& [name, section] : table) {
@@ -301,8 +299,9 @@ private:
             const toml::node* titled = table->get(section.substr(from, dot - from));
             if (titled == nullptr) return nullptr;
             if (!titled->is_table())
-                throw std::invalid_argument(file_ + ": " + section.substr(0, dot) + " is a " + (titled->is_array() ? "list" : "value") +
-                                            ", but it must be a section, [" + section.substr(0, dot) + "]");
+                throw std::invalid_argument(file_ + ": " + section.substr(0, dot) + " is a " +
+                                            (titled->is_array() ? "list" : "value") + ", but it must be a section, [" +
+                                            section.substr(0, dot) + "]");
             table = titled->as_table(), from = dot + 1;
         }
         return table->get(key);

@@ -13,8 +13,8 @@ inline volatile std::sig_atomic_t stop_signal = 0;
 extern "C" inline void note_stop(int signal) { stop_signal = signal; }
 }  // namespace detail
 
-/// As long as it lives these signals are taken down, and the second ends the program at once. A file that may not grow any more is a
-/// write that failed, and not the end of the program.
+/// As long as it lives these signals are taken down, and the second ends the program at once. A file that may not grow any more
+/// is a write that failed, and not the end of the program.
 class ListeningForStops {
 public:
     ListeningForStops() {

@@ -32,7 +32,8 @@ public:
         return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
     }
     /// One column over another, of the rows whose column `where` is `what`, or of all; empty where a column is missing.
-    fibrant::observe::PlotLine line(std::string name, std::size_t x, std::size_t y, std::string_view where = {}, std::string_view what = {}) const {
+    fibrant::observe::PlotLine line(std::string name, std::size_t x, std::size_t y, std::string_view where = {},
+                                    std::string_view what = {}) const {
         fibrant::observe::PlotLine answer{std::move(name), {}};
         const std::size_t c = column(where);
         if (std::max(x, y) >= names_.size() || (!where.empty() && c == names_.size())) return answer;
@@ -45,8 +46,10 @@ private:
     static std::vector<std::string> cells(const std::string& line) {
         std::vector<std::string> row(1);
         for (const char c : line) {
-            if (c == ',') row.emplace_back();
-            else row.back() += c;
+            if (c == ',')
+                row.emplace_back();
+            else
+                row.back() += c;
         }
         return row;
     }

@@ -16,23 +16,28 @@ inline void read_material(SceneReader& file, const std::string& section, fibrant
     file.require(section, "poisson_ratio", material.poisson_ratio, poisson_ratio(), "1", "Poisson's ratio of the fibres");
 }
 
-/// What fibres are across, by `[section.law]` kind = "transversely_isotropic"; young_modulus and poisson_ratio are those along them then. To
-/// be checked by `check_transverse` once all keys are known.
-inline void read_transverse(SceneReader& file, const std::string& section, std::string& kind, fibrant::scene::TransverseConstants& across) {
+/// What fibres are across, by `[section.law]` kind = "transversely_isotropic"; young_modulus and poisson_ratio are those along
+/// them then. To be checked by `check_transverse` once all keys are known.
+inline void read_transverse(SceneReader& file, const std::string& section, std::string& kind,
+                            fibrant::scene::TransverseConstants& across) {
     const std::string law = section + ".law";
     file.read(law, "kind", kind, {"isotropic", "transversely_isotropic"}, "how the material of the fibres behaves across them");
     file.read(law, "transverse_modulus", across.young_modulus, positive(), "force/length^2", "Young's modulus across the fibres");
-    file.read(law, "transverse_poisson_ratio", across.poisson_ratio, inside(-1.0, 1.0), "1", "Poisson's ratio in the plane of the section");
-    file.read(law, "shear_modulus", across.shear_modulus, positive(), "force/length^2", "shear modulus between the fibre axis and its section");
+    file.read(law, "transverse_poisson_ratio", across.poisson_ratio, inside(-1.0, 1.0), "1",
+              "Poisson's ratio in the plane of the section");
+    file.read(law, "shear_modulus", across.shear_modulus, positive(), "force/length^2",
+              "shear modulus between the fibre axis and its section");
 }
 inline void check_transverse(const SceneReader& file, const std::string& section, const std::string& kind) {
     const std::string law = section + ".law";
     for (const char* key : {"transverse_modulus", "transverse_poisson_ratio", "shear_modulus"})
-        file.check(file.given(law, key) == (kind != "isotropic"), law, key, kind == "isotropic" ? "left out, for kind = \"isotropic\"" : "given, for kind = \"transversely_isotropic\"");
+        file.check(file.given(law, key) == (kind != "isotropic"), law, key,
+                   kind == "isotropic" ? "left out, for kind = \"isotropic\"" : "given, for kind = \"transversely_isotropic\"");
 }
 
 /// The same where the law of another section holds unless this one names its own: `across` comes in as that.
-inline void read_own_transverse(SceneReader& file, const std::string& section, std::string& kind, fibrant::scene::TransverseConstants& across) {
+inline void read_own_transverse(SceneReader& file, const std::string& section, std::string& kind,
+                                fibrant::scene::TransverseConstants& across) {
     const std::string law = section + ".law";
     for (const char* key : {"kind", "transverse_modulus", "transverse_poisson_ratio", "shear_modulus"})
         if (file.given(law, key)) {
@@ -48,10 +53,12 @@ inline void read_friction(SceneReader& file, double& coefficient, const char* wh
 }
 /// Displacement over the radius that friction takes before it slides.
 inline void read_reversible_displacement(SceneReader& file, double& over_radius) {
-    file.read("contact", "reversible_displacement_over_radius", over_radius, above(0.0, 1.0), "1", "slip up to which friction is elastic, over the radius");
+    file.read("contact", "reversible_displacement_over_radius", over_radius, above(0.0, 1.0), "1",
+              "slip up to which friction is elastic, over the radius");
 }
 /// How deep fibres may be in each other over their radius.
-inline void read_allowed_penetration(SceneReader& file, double& over_radius, const char* which = "how deep a contact may be, over the radius") {
+inline void read_allowed_penetration(SceneReader& file, double& over_radius,
+                                     const char* which = "how deep a contact may be, over the radius") {
     file.read("contact", "allowed_penetration_over_radius", over_radius, depth_over_radius(), "1", which);
 }
 
@@ -66,9 +73,12 @@ inline void read_wires(SceneReader& file, Index& count, double& radius, double& 
 
 /// Directions of random fibres, and how finely each is divided.
 inline void read_random_fibres(SceneReader& file, double& tilt_deg, Index& elements, const char* of) {
-    file.read("mat", "tilt_deg", tilt_deg, between(0.0, 90.0), "degree", "greatest angle of a fibre to the plane; 90: all directions");
+    file.read("mat", "tilt_deg", tilt_deg, between(0.0, 90.0), "degree",
+              "greatest angle of a fibre to the plane; 90: all directions");
     file.read("mat", "elements", elements, between(1, 10000), of);
 }
-inline void read_seed(SceneReader& file, Index& seed) { file.read("mat", "seed", seed, between(0, 1e15), "seed of the random numbers"); }
+inline void read_seed(SceneReader& file, Index& seed) {
+    file.read("mat", "seed", seed, between(0, 1e15), "seed of the random numbers");
+}
 
 }  // namespace example

@@ -3,6 +3,4 @@
 
 example::Program textile_program();
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, textile_program());
-}
+int main(int argc, char** argv) { return example::run(argc, argv, textile_program()); }

@@ -3,6 +3,4 @@
 
 example::Program tow_program();
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, tow_program());
-}
+int main(int argc, char** argv) { return example::run(argc, argv, tow_program()); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Fibres of a tow, one above the other, are pressed between two plates: carbon is fifteen times as soft across as along, so that sections
-// flatten where isotropic ones would not. Prints the load a unit of length, and that of the closed form.
+// Fibres of a tow, one above the other, are pressed between two plates: carbon is fifteen times as soft across as along, so that
+// sections flatten where isotropic ones would not. Prints the load a unit of length, and that of the closed form.
 //   tow SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
 #include "../support/program.hpp"
@@ -34,17 +34,25 @@ struct Tow {
 };
 
 /// Along z, one above the other; plates below (tool 0) and above (tool 1), which comes down by `depth` on the channel "press".
-scene::Assembly stacked(Index fibres, double radius, double length, Index elements, const scene::ElasticMaterial& material, double depth) {
+scene::Assembly stacked(Index fibres, double radius, double length, Index elements, const scene::ElasticMaterial& material,
+                        double depth) {
     scene::Assembly assembly;
     for (Index f = 0; f < fibres; ++f) {
         const double height = 2.0 * radius * static_cast<double>(f);
-        assembly.add({.from = {0, height, 0}, .to = {0, height, length}, .section = scene::circular(radius), .material = material, .elements = elements, .director = Vec3::UnitX()});
+        assembly.add({.from = {0, height, 0},
+                      .to = {0, height, length},
+                      .section = scene::circular(radius),
+                      .material = material,
+                      .elements = elements,
+                      .director = Vec3::UnitX()});
         // Ends stay above each other and do not turn; up and down they go where contacts push them.
-        for (const double end : {0.0, 1.0}) assembly.hold_position({f, end}, Vec3(1, 0, 1).asDiagonal()), assembly.hold_rotation({f, end});
+        for (const double end : {0.0, 1.0})
+            assembly.hold_position({f, end}, Vec3(1, 0, 1).asDiagonal()), assembly.hold_rotation({f, end});
     }
     scene::Tool below, above;
     below.origin = {0, -radius, 0}, below.axis = Vec3::UnitY(), below.channel = "press";
-    above.origin = {0, (2.0 * static_cast<double>(fibres) - 1.0) * radius, 0}, above.axis = -Vec3::UnitY(), above.channel = "press";
+    above.origin = {0, (2.0 * static_cast<double>(fibres) - 1.0) * radius, 0}, above.axis = -Vec3::UnitY(),
+    above.channel = "press";
     above.displacement = {0, -depth, 0};
     assembly.add(below), assembly.add(above);
     return assembly;
@@ -59,12 +67,15 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.require("tow", "radius", radius, example::positive(), "length", "radius of a fibre");
     file.require("tow", "length", length, example::positive(), "length", "length of the fibres");
     file.read("tow", "elements", elements, example::between(1, 10000), "elements along a fibre");
-    file.require("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2", "Young's modulus along the fibres");
-    file.require("material", "poisson_ratio", material.poisson_ratio, example::inside(-10.0, 10.0), "1", "contraction across under tension along");
+    file.require("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2",
+                 "Young's modulus along the fibres");
+    file.require("material", "poisson_ratio", material.poisson_ratio, example::inside(-10.0, 10.0), "1",
+                 "contraction across under tension along");
     example::read_transverse(file, "material", kind, material.transverse);
     example::read_friction(file, mu, "coefficient of friction of fibres on each other and on the plates");
     example::read_allowed_penetration(file, depth);
-    file.read("loading", "compression", compression, example::inside(0.0, 0.2), "1", "compression at the end, over the height at the start");
+    file.read("loading", "compression", compression, example::inside(0.0, 0.2), "1",
+              "compression at the end, over the height at the start");
     file.read("loading", "increments", increments, example::increments(), "increments of the pressing");
     file.complete();
     example::check_transverse(file, "material", kind);
@@ -79,11 +90,14 @@ bool solve(example::SceneReader& file, example::Output& output) {
     model.friction = {.friction_coefficient = mu, .reversible_displacement = 0.02 * radius};
     model.contact.stiffness.allowed_penetration = depth * radius;
     model.contact.stiffness.cap_fraction = 1e3;  // so stiff that what gives way is the sections
-    simulation::Simulator<Tow> simulator(stacked(fibres, radius, length, elements, material, compression * 2.0 * radius * static_cast<double>(fibres)), model);
+    simulation::Simulator<Tow> simulator(
+        stacked(fibres, radius, length, elements, material, compression * 2.0 * radius * static_cast<double>(fibres)), model);
     output.open(file);
     const auto line_load = [&] { return simulator.contacts().tools().reaction(1).force.y() / length; };
     // q 2 r = A S_22 for opposite line loads on a section that stays an ellipse.
-    const auto closed = [&](double progress) { return 0.5 * std::numbers::pi * material.section_modulus() * radius * compression * progress; };
+    const auto closed = [&](double progress) {
+        return 0.5 * std::numbers::pi * material.section_modulus() * radius * compression * progress;
+    };
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const double progress = simulator.amplitude("press");
         return {{"compression", compression * progress}, {"line_load", line_load()}, {"line_load_of_sections", closed(progress)}};
@@ -98,13 +112,16 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const simulation::Report report = simulator.run(loading, recorder);
     example::write_pictures(output, simulator.snapshot(), -60.0, 25.0);
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"line_load", line_load()}, {"line_load_of_sections", closed(1.0)}, {"section_modulus", material.section_modulus()}, {"energy_error", report.energy.error()}, {"external_work", report.energy.external}});
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius,
+                                                               {{"line_load", line_load()},
+                                                                {"line_load_of_sections", closed(1.0)},
+                                                                {"section_modulus", material.section_modulus()},
+                                                                {"energy_error", report.energy.error()},
+                                                                {"external_work", report.energy.external}});
     example::write_report(output, "tow", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 
 }  // namespace
 
-example::Program tow_program() {
-    return {"tow", "Presses a stack of fibres that are softer across than along.", solve};
-}
+example::Program tow_program() { return {"tow", "Presses a stack of fibres that are softer across than along.", solve}; }

@@ -3,6 +3,4 @@
 
 example::Program two_ply_program();
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, two_ply_program());
-}
+int main(int argc, char** argv) { return example::run(argc, argv, two_ply_program()); }

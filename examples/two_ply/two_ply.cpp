@@ -66,33 +66,40 @@ bool solve(example::SceneReader& file, example::Output& output) {
     model.contact.stiffness.allowed_penetration = 1e-2 * radius;
     model.iteration.contact_tolerance = 1e-3;
     simulation::Simulator<TwoPly> simulator(two_ply::straight_rods(parameters), model);
-    const auto theory = [&](const two_ply::TwoPlyState& state) { return two_ply::HelixTheory(parameters, state.helix_angle, state.radius, state.twist); };
+    const auto theory = [&](const two_ply::TwoPlyState& state) {
+        return two_ply::HelixTheory(parameters, state.helix_angle, state.radius, state.twist);
+    };
     output.open(file);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         const two_ply::TwoPlyState state = two_ply::measure(simulator, parameters);
-        return {{"turns", simulator.amplitude(two_ply::turn)}, {"helix_angle_deg", state.helix_angle * 180.0 / std::numbers::pi}, {"torque", state.torque},
-                {"torque_of_helices", theory(state).torque}, {"line_load", state.line_load}};
+        return {{"turns", simulator.amplitude(two_ply::turn)},
+                {"helix_angle_deg", state.helix_angle * 180.0 / std::numbers::pi},
+                {"torque", state.torque},
+                {"torque_of_helices", theory(state).torque},
+                {"line_load", state.line_load}};
     });
     simulation::Loading<TwoPly> loading;
     loading.stages.resize(2);
     loading.stages[0].name = "pull", loading.stages[0].ramps = {{two_ply::pull, 1.0}}, loading.stages[0].increments = 2;
     loading.stages[1].name = "turn", loading.stages[1].ramps = {{two_ply::turn, turns}};
-    loading.stages[1].increments = std::max<Index>(1, static_cast<Index>(std::ceil(std::abs(turns) * static_cast<double>(per_turn))));
+    loading.stages[1].increments =
+        std::max<Index>(1, static_cast<Index>(std::ceil(std::abs(turns) * static_cast<double>(per_turn))));
     loading.stages[1].most_increments = 10 * loading.stages[1].increments;
     output.tell(loading);
     const simulation::Report report = simulator.run(loading, recorder);
     const two_ply::TwoPlyState state = two_ply::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 15.0, std::pair{Index{2}, 0.5 * parameters.length});
     const simulation::Audit audit = example::audit(output, simulator, radius);
-    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {{"torque", state.torque}, {"torque_of_helices", theory(state).torque},
-                           {"helix_angle_deg", state.helix_angle * 180.0 / std::numbers::pi}, {"line_load", state.line_load},
-                           {"line_load_of_helices", theory(state).line_load}});
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius,
+                                                               {{"torque", state.torque},
+                                                                {"torque_of_helices", theory(state).torque},
+                                                                {"helix_angle_deg", state.helix_angle * 180.0 / std::numbers::pi},
+                                                                {"line_load", state.line_load},
+                                                                {"line_load_of_helices", theory(state).line_load}});
     example::write_report(output, "two_ply", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }
 
 }  // namespace
 
-example::Program two_ply_program() {
-    return {"two_ply", "Winds two rods around each other.", solve};
-}
+example::Program two_ply_program() { return {"two_ply", "Winds two rods around each other.", solve}; }

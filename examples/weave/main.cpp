@@ -3,6 +3,4 @@
 
 example::Program weave_program();
 
-int main(int argc, char** argv) {
-    return example::run(argc, argv, weave_program());
-}
+int main(int argc, char** argv) { return example::run(argc, argv, weave_program()); }

@@ -163,7 +163,7 @@ struct Summary {
     double wall_seconds = 0, cpu_seconds = 0;
     std::int64_t peak_memory_bytes = 0;
     std::array<double, fibrant::core::part_count> seconds_by_stage{};  ///< by core::Part
-    std::string solver;  ///< chosen, and what the automatic one used and why
+    std::string solver;                                                ///< chosen, and what the automatic one used and why
     Index threads = 1;
 };
 
@@ -244,16 +244,18 @@ inline void print(const Summary& summary, const std::string& folder) {
     std::printf("\n%s after %td increments (%td rejected), %td Newton iterations, %s\n",
                 summary.converged ? "settled" : "NOT settled", summary.increments, summary.rejected_increments,
                 summary.newton_iterations, observe::clock_text(summary.wall_seconds).c_str());
-    if (!summary.converged) std::printf("  %s\n", summary.reason.c_str());
-    else if (!summary.clean) std::printf("  the audit is NOT clean: a crossing is wrong, or two fibres are too deep in each other\n");
+    if (!summary.converged)
+        std::printf("  %s\n", summary.reason.c_str());
+    else if (!summary.clean)
+        std::printf("  the audit is NOT clean: a crossing is wrong, or two fibres are too deep in each other\n");
     std::printf("  crossings  %td, against the pattern %td, missing %td\n", summary.crossings, summary.wrong_crossings,
                 summary.missing_crossings);
     std::printf("  crimp      warp %.4f  weft %.4f;  thickness %.4f\n", summary.crimp_warp, summary.crimp_weft,
                 summary.thickness);
     std::printf("  depth / r  %.4f;  least gap / r %.4f, fibres %td and %td at (%.3f, %.3f, %.3f);  energy balance %.1e\n",
                 summary.greatest_penetration_over_radius, summary.least_gap_over_radius, summary.least_gap_fibre_i,
-                summary.least_gap_fibre_j, summary.least_gap_place.x(), summary.least_gap_place.y(),
-                summary.least_gap_place.z(), summary.energy_error_over_work);
+                summary.least_gap_fibre_j, summary.least_gap_place.x(), summary.least_gap_place.y(), summary.least_gap_place.z(),
+                summary.energy_error_over_work);
     std::printf("  results    %s (report.html, view.svg, slice_*.svg, summary.json, paraview/fibres.pvd)\n", folder.c_str());
 }
 

@@ -60,7 +60,8 @@ inline void read_tow(SceneReader& file, const std::string& section, bool require
     double real_fibres = fibrant::core::unset, real_diameter = fibrant::core::unset;
     const bool count = file.read(section, "real_fibres", real_fibres, example::between(1.0, 1e9), "1",
                                  "real fibres in a tow, for which the computed ones stand");
-    const bool diameter = file.read(section, "real_diameter", real_diameter, example::positive(), "length", "diameter of a real fibre");
+    const bool diameter =
+        file.read(section, "real_diameter", real_diameter, example::positive(), "length", "diameter of a real fibre");
     for (const char* key : {"radius", "inertia_factor", "real_fibres", "real_diameter"})
         file.is_one_of_several_ways(section, key);
     file.read(section, "aspect", tow.aspect, example::between(1.0, 20.0), "1", "width over thickness of the flat tow");
@@ -68,7 +69,8 @@ inline void read_tow(SceneReader& file, const std::string& section, bool require
               "free distance between neighbouring fibres at the start, over their diameter");
     file.read(section, "young_modulus", tow.material.young_modulus, example::positive(), "force/length^2",
               "Young's modulus of these fibres; left out: that of [material]");
-    file.read(section, "poisson_ratio", tow.material.poisson_ratio, example::poisson_ratio(), "1", "Poisson's ratio of these fibres; left out: that of [material]");
+    file.read(section, "poisson_ratio", tow.material.poisson_ratio, example::poisson_ratio(), "1",
+              "Poisson's ratio of these fibres; left out: that of [material]");
     if (file.describes()) return;
     if (!count && !diameter) {
         if (required && !radius)
@@ -97,16 +99,17 @@ inline void read_iteration(SceneReader& file, std::string& linear_solver, fibran
         "solver", "linear_solver", linear_solver,
         {"automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"},
         "how linear systems are solved");
-    file.read("solver", "step_tolerance", iteration.step_tolerance, example::above(0.0, 1.0), "1", "largest last step of Newton's method, over the radius");
+    file.read("solver", "step_tolerance", iteration.step_tolerance, example::above(0.0, 1.0), "1",
+              "largest last step of Newton's method, over the radius");
     file.read("solver", "residual_tolerance", iteration.residual_tolerance, example::above(0.0, 1.0), "1",
               "largest forces out of balance, over the greatest force");
-    file.read("solver", "contact_tolerance", iteration.contact_tolerance, example::above(0.0, 1.0), "1", "largest motion of the last contact pass, over the radius");
-    file.read("solver", "linear_tolerance", iteration.linear_tolerance, example::above(0.0, 0.01), "1", "largest error of a linear system, over its right-hand side");
-    file.read("solver", "newton_limit", iteration.newton_limit, example::between(1, 10000),
-              "most iterations of Newton's method");
+    file.read("solver", "contact_tolerance", iteration.contact_tolerance, example::above(0.0, 1.0), "1",
+              "largest motion of the last contact pass, over the radius");
+    file.read("solver", "linear_tolerance", iteration.linear_tolerance, example::above(0.0, 0.01), "1",
+              "largest error of a linear system, over its right-hand side");
+    file.read("solver", "newton_limit", iteration.newton_limit, example::between(1, 10000), "most iterations of Newton's method");
     file.read("solver", "normal_limit", iteration.normal_limit, example::between(1, 10000), "most passes with new normals");
-    file.read("solver", "contact_limit", iteration.contact_limit, example::between(1, 10000),
-              "most passes with new contacts");
+    file.read("solver", "contact_limit", iteration.contact_limit, example::between(1, 10000), "most passes with new contacts");
     file.read("solver", "mixed", iteration.mixed, "use single precision where it is enough");
 }
 
@@ -138,7 +141,8 @@ Scene read_fabric(SceneReader& file, const More& more) {
         file.read("fabric", "pattern", rows, "one text for each warp tow: 1 where it lies above the weft tow, 0 where below");
     else
         file.require("fabric", "pattern", name, example::any_text(),
-                     "plain, twill22, twill31, satin5, satin8, or a list with one text for each warp tow: 1 where it lies above the weft tow, 0 where below");
+                     "plain, twill22, twill31, satin5, satin8, or a list with one text for each warp tow: 1 where it lies above "
+                     "the weft tow, 0 where below");
     file.require("fabric", "warp_tows", fabric.warp_tows, example::between(1, 1000), "number of tows along x");
     file.require("fabric", "weft_tows", fabric.weft_tows, example::between(1, 1000), "number of tows along y");
     file.require("fabric", "warp_spacing", fabric.warp_spacing, example::positive(), "length",
@@ -149,10 +153,13 @@ Scene read_fabric(SceneReader& file, const More& more) {
     file.require("fabric", "overhang", fabric.overhang, example::positive(), "length",
                  "length of a tow beyond its outermost crossings, at each end");
     file.require("fabric", "elements", fabric.elements, example::between(1, 100000), "elements along a fibre");
-    file.read("fabric", "weft_elements", fabric.weft_elements, example::between(0, 100000), "elements along a weft fibre; 0: as many as along a warp fibre");
+    file.read("fabric", "weft_elements", fabric.weft_elements, example::between(0, 100000),
+              "elements along a weft fibre; 0: as many as along a warp fibre");
     scene::ElasticMaterial material;
-    file.read("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2", "Young's modulus of the fibres");
-    file.read("material", "poisson_ratio", material.poisson_ratio, example::poisson_ratio(), "1", "Poisson's ratio of the fibres");
+    file.read("material", "young_modulus", material.young_modulus, example::positive(), "force/length^2",
+              "Young's modulus of the fibres");
+    file.read("material", "poisson_ratio", material.poisson_ratio, example::poisson_ratio(), "1",
+              "Poisson's ratio of the fibres");
     std::string law = "isotropic";
     example::read_transverse(file, "material", law, material.transverse);
     std::string warp_law = law, weft_law = law;
@@ -170,7 +177,8 @@ Scene read_fabric(SceneReader& file, const More& more) {
               "tension of a tow while tows part, over its E A");
     file.read("settle", "final_tension_factor", settle.final_tension_factor, example::above(0.0, 1.0), "1",
               "tension at the end, over that while tows part");
-    file.read("settle", "tension_increments", settle.tension_increments, example::increments(), "increments in which the tension is raised");
+    file.read("settle", "tension_increments", settle.tension_increments, example::increments(),
+              "increments in which the tension is raised");
     file.read("settle", "gap_limit_over_radius", settle.gap_limit_over_radius, example::above(0.0, 10.0), "1",
               "how far fibres that start in each other part in an increment, over the radius");
     file.read("settle", "separation_increments", settle.separation_increments, example::increments(),
@@ -181,7 +189,8 @@ Scene read_fabric(SceneReader& file, const More& more) {
               "most increments of each stage that waits for rest");
     file.read("settle", "softness", settle.softness, example::between(1.0, 20.0), "1",
               "penetration allowed on the way, over that at rest");
-    file.read("settle", "looseness", settle.looseness, example::looseness(), "1", "factor on the tolerances of passes on the way to rest");
+    file.read("settle", "looseness", settle.looseness, example::looseness(), "1",
+              "factor on the tolerances of passes on the way to rest");
     file.read("settle", "rest_motion_over_radius", settle.rest_motion_over_radius, example::above(0.0, 10.0), "1",
               "the fabric is at rest when it moves by less than this in an increment, over the radius; or");
     file.read("settle", "rest_share", settle.rest_share, example::above(0.0, 0.01), "1",
@@ -191,11 +200,13 @@ Scene read_fabric(SceneReader& file, const More& more) {
     file.read("settle", "overshoot", scene.iteration.overshoot, {.low = 0.0, .high = 1e6, .above = true, .endless = true}, "1",
               "Newton's step is cut where the energy rises at its end by more than this part of the slope at which it fell");
     example::read_friction(file, settle.friction_coefficient, "coefficient of friction, once tows have parted; 0: none");
-    example::read_allowed_penetration(file, settle.allowed_penetration_over_radius, "how deep a contact may be at the end, over the radius");
+    example::read_allowed_penetration(file, settle.allowed_penetration_over_radius,
+                                      "how deep a contact may be at the end, over the radius");
     read_iteration(file, scene.linear_solver, scene.iteration);
     file.read("solver", "threads", scene.threads, example::between(0, 100000), "0: as many as the machine has");
     file.read("output", "paraview", scene.paraview, "files for ParaView");
-    file.read("output", "paraview_every", scene.paraview_every, example::increments(), "one file for ParaView each so many increments");
+    file.read("output", "paraview_every", scene.paraview_every, example::increments(),
+              "one file for ParaView each so many increments");
     file.read("output", "pictures", scene.pictures, "a view and slices along each tow");
     file.read("output", "unit", scene.unit, example::any_text(), "of lengths, in pictures");
     more();
@@ -235,8 +246,7 @@ Scene read_fabric(SceneReader& file, const More& more) {
         const bool own = file.given("weft", "young_modulus"), softer = (own ? weft : warp) < (own ? warp : weft);
         file.refuse(own ? "weft" : "warp", "young_modulus",
                     (softer ? ">= a millionth of " : "<= 1000000 times ") +
-                        std::string(own ? "that of the warp, " : "that of the weft, ") +
-                        fibrant::core::text(own ? warp : weft));
+                        std::string(own ? "that of the warp, " : "that of the weft, ") + fibrant::core::text(own ? warp : weft));
     }
     file.check(settle.allowed_penetration_over_radius <= settle.gap_limit_over_radius, "contact",
                "allowed_penetration_over_radius",

@@ -76,21 +76,31 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     if (scene.pictures) weave::write_pictures(folder, snapshot, scene.fabric, scene.unit);
     summary.cpu_seconds = example::cpu_seconds();
     summary.peak_memory_bytes = example::peak_memory_bytes();
-    example::write_report(output, {"weave", scene.unit, weave::write_summary(folder, summary), weave::cloth::fabric_palette(scene.fabric),
-                                   {"converged", "audit_clean", "fibres", "crimp_warp", "crimp_weft", "thickness", "least_gap_over_radius",
-                                    "greatest_penetration_over_radius", "wrong_crossings", "energy_error_over_work", "wall_seconds"}},
-                          snapshot);
-    if (!output.quiet) weave::print(summary, folder.string());
-    else if (!summary.converged) std::fprintf(stderr, "weave: not settled: %s\n", summary.reason.c_str());
-    else if (!summary.clean) std::fprintf(stderr, "weave: the audit is not clean: %td crossings against the pattern, %td missing, least gap %.4f radii\n",
-                                          summary.wrong_crossings, summary.missing_crossings, summary.least_gap_over_radius);
+    example::write_report(
+        output,
+        {"weave",
+         scene.unit,
+         weave::write_summary(folder, summary),
+         weave::cloth::fabric_palette(scene.fabric),
+         {"converged", "audit_clean", "fibres", "crimp_warp", "crimp_weft", "thickness", "least_gap_over_radius",
+          "greatest_penetration_over_radius", "wrong_crossings", "energy_error_over_work", "wall_seconds"}},
+        snapshot);
+    if (!output.quiet)
+        weave::print(summary, folder.string());
+    else if (!summary.converged)
+        std::fprintf(stderr, "weave: not settled: %s\n", summary.reason.c_str());
+    else if (!summary.clean)
+        std::fprintf(stderr,
+                     "weave: the audit is not clean: %td crossings against the pattern, %td missing, least gap %.4f radii\n",
+                     summary.wrong_crossings, summary.missing_crossings, summary.least_gap_over_radius);
     return summary.converged && summary.clean;
 }
 
 bool solve(example::SceneReader& file, example::Output& output) {
     const weave::Scene scene = weave::read_fabric(file, [] {});
     if (scene.transverse()) {
-        file.check(scene.settle.friction_coefficient > 0.0, "contact", "friction_coefficient", "> 0, for kind = \"transversely_isotropic\"");
+        file.check(scene.settle.friction_coefficient > 0.0, "contact", "friction_coefficient",
+                   "> 0, for kind = \"transversely_isotropic\"");
         return settle<Weave<law::RegularisedCoulomb, material::Elastic>>(scene, file, output);
     }
     return scene.settle.friction_coefficient > 0.0 ? settle<Weave<law::RegularisedCoulomb>>(scene, file, output)

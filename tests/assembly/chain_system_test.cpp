@@ -37,7 +37,8 @@ TEST_CASE_TEMPLATE("the product is that of the matrix of all terms, held compone
     }
 }
 
-TEST_CASE_TEMPLATE("bands of fibres are those of their terms, with their own part of every contact", Pressed, Smooth, Rough, Centred) {
+TEST_CASE_TEMPLATE("bands of fibres are those of their terms, with their own part of every contact", Pressed, Smooth, Rough,
+                   Centred) {
     const Pressed fibres(true);
     const auto& system = fibres.equilibrium.system();
     std::vector<Matrix> expected;

@@ -36,7 +36,8 @@ double derivative_error(Pressed& fibres, const Directions& within) {
 }
 const auto everywhere = [](const Vector& x) { return x; };
 
-TEST_CASE_TEMPLATE("the tangent is the derivative of the residual, with contacts active at frozen normals", Pressed, Smooth, Centred) {
+TEST_CASE_TEMPLATE("the tangent is the derivative of the residual, with contacts active at frozen normals", Pressed, Smooth,
+                   Centred) {
     Pressed fibres(false);
     REQUIRE(fibres.active() > 5);
     const double error = derivative_error(fibres, everywhere);
@@ -54,7 +55,8 @@ TEST_CASE("friction that follows the reaction: the part that is not symmetric co
         Vector x = Vector::Zero(fibres.state.size());
         for (Index f = 0; f < fibres.mesh.fibre_count(); ++f) {
             const double a = any(random), b = any(random), c = any(random);
-            for (Index n = 0; n < fibres.mesh.node_count(f); ++n) x.segment<3>(3 * fibres.mesh.node_vector(f, n, 0)) = size * Vec3(a, b, c);
+            for (Index n = 0; n < fibres.mesh.node_count(f); ++n)
+                x.segment<3>(3 * fibres.mesh.node_vector(f, n, 0)) = size * Vec3(a, b, c);
         }
         return x;
     };
@@ -133,15 +135,22 @@ TEST_CASE("figures compare the free residual with loads, reactions and contact f
 TEST_CASE("a residual moved rigidly is rounding only, far from the origin too") {
     for (const double away : {0.0, 100.0}) {
         scene::Assembly assembly;
-        assembly.add({.from = {away, 0, 0}, .to = {away + 1.0, 0, 0}, .section = scene::circular(0.01), .material = {7300.0, 0.3}, .elements = 20});
+        assembly.add({.from = {away, 0, 0},
+                      .to = {away + 1.0, 0, 0},
+                      .section = scene::circular(0.01),
+                      .material = {7300.0, 0.3},
+                      .elements = 20});
         const beam::DirectorBeam<3> beam;
         const beam::Mesh<beam::DirectorBeam<3>> mesh(assembly, beam);
         const connection::Channels channels(assembly);
-        Smooth::Contacts contacts(assembly, mesh, [] {
-            contact::ContactParameters parameters;
-            parameters.stiffness.allowed_penetration = 1e-4;
-            return parameters;
-        }(), proximity::BruteSearch{}, law::RegularisedPenalty({.regularisation_depth = 1e-5}), law::Frictionless{});
+        Smooth::Contacts contacts(
+            assembly, mesh,
+            [] {
+                contact::ContactParameters parameters;
+                parameters.stiffness.allowed_penetration = 1e-4;
+                return parameters;
+            }(),
+            proximity::BruteSearch{}, law::RegularisedPenalty({.regularisation_depth = 1e-5}), law::Frictionless{});
         Smooth::Equilibrium equilibrium(assembly, mesh, beam, contacts, channels);
         Vector state = mesh.rest_state(), r;
         const Mat3 turn(Eigen::AngleAxisd(1.0, Vec3(1, 2, 3).normalized()));

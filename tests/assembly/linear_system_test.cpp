@@ -30,15 +30,18 @@ Matrix written_out(const SyntheticSystem& system) {
     for (const auto& term : system.dense)
         for (Index i = 0; i < core::count(term.vectors); ++i)
             for (Index j = 0; j < core::count(term.vectors); ++j)
-                k.block<3, 3>(3 * term.vectors[core::at(i)], 3 * term.vectors[core::at(j)]) += term.stiffness.block<3, 3>(3 * i, 3 * j);
+                k.block<3, 3>(3 * term.vectors[core::at(i)], 3 * term.vectors[core::at(j)]) +=
+                    term.stiffness.block<3, 3>(3 * i, 3 * j);
     for (const auto& term : system.points) {
         Matrix w = Matrix::Zero(3, n);
-        for (std::size_t i = 0; i < term.vectors.size(); ++i) w.middleCols<3>(3 * term.vectors[i]) += term.weights[i] * Mat3::Identity();
+        for (std::size_t i = 0; i < term.vectors.size(); ++i)
+            w.middleCols<3>(3 * term.vectors[i]) += term.weights[i] * Mat3::Identity();
         k += w.transpose() * term.stiffness * w;
     }
     for (const auto& held : system.description.held) f.block<3, 3>(3 * held.vector, 3 * held.vector) = held.free;
     Matrix rest = Matrix::Identity(n, n) - f;  // as stiff as the chain is elsewhere
-    for (const auto& held : system.description.held) rest.block<3, 3>(3 * held.vector, 3 * held.vector) *= system.description.held_stiffness(held.vector);
+    for (const auto& held : system.description.held)
+        rest.block<3, 3>(3 * held.vector, 3 * held.vector) *= system.description.held_stiffness(held.vector);
     return f * k * f + rest;
 }
 
@@ -53,7 +56,8 @@ TEST_CASE("a product visits every term once and leaves held components alone") {
     Vector x = test::random_load(system.layout(), 3), y(x.size());
     system.apply(x, y);
     for (const scene::HeldVector& held : system.layout().held) {
-        const Vec3 change = y.segment<3>(3 * held.vector) - system.layout().held_stiffness(held.vector) * x.segment<3>(3 * held.vector);
+        const Vec3 change =
+            y.segment<3>(3 * held.vector) - system.layout().held_stiffness(held.vector) * x.segment<3>(3 * held.vector);
         CHECK((change - held.free * change).norm() < rounding);  // outside the free directions y is x times a stiffness
     }
 }
@@ -88,7 +92,8 @@ TEST_CASE("bands and node blocks are the blocks of the matrix, and empty before 
         REQUIRE(nodes.cols() == m);
         for (Index i = 0; i < chain.nodes; ++i)
             for (Index d = 0; d <= chain.reach; ++d) {
-                const Matrix expected = d <= i ? Matrix(a.block(first + i * m, first + (i - d) * m, m, m)) : Matrix(Matrix::Zero(m, m));
+                const Matrix expected =
+                    d <= i ? Matrix(a.block(first + i * m, first + (i - d) * m, m, m)) : Matrix(Matrix::Zero(m, m));
                 CHECK((band.block(i * m, d * m, m, m) - expected).norm() <= rounding * a.norm());
                 if (d == 0) CHECK((nodes.block(i * m, 0, m, m) - expected).norm() <= rounding * a.norm());
             }

@@ -17,7 +17,8 @@
 
 namespace fibrant::test {
 
-/// Two parallel fibres and one that crosses both, overlapping by some percent of a radius; sections are ellipses where contact sees them.
+/// Two parallel fibres and one that crosses both, overlapping by some percent of a radius; sections are ellipses where contact
+/// sees them.
 template <law::FrictionLaw Friction, beam::BeamElement B = beam::DirectorBeam<3>>
 struct PressedFibres {
     using Beam = B;
@@ -67,7 +68,8 @@ private:
         const scene::ElasticMaterial material{7300.0, 0.3};
         const double depth = 0.04 * radius;
         const auto add = [&](const Vec3& from, const Vec3& to) {
-            assembly.add({.from = from, .to = to, .section = section, .material = material, .elements = 4, .director = Vec3::UnitZ()});
+            assembly.add(
+                {.from = from, .to = to, .section = section, .material = material, .elements = 4, .director = Vec3::UnitZ()});
         };
         add({-0.4, 0, 0}, {0.4, 0, 0});
         const double apart = 2.0 * flatness * radius - depth;
@@ -81,14 +83,15 @@ private:
             slanted.directions = Vec3(1, 2, 3).normalized() * Vec3(1, 2, 3).normalized().transpose();
             assembly.hold(slanted);
         }
-        if (moment.norm() > 0.0)
-            assembly.apply(scene::Moment{scene::last_end(0), scene::NodeVector::director_1, moment, "load"});
+        if (moment.norm() > 0.0) assembly.apply(scene::Moment{scene::last_end(0), scene::NodeVector::director_1, moment, "load"});
         return assembly;
     }
     static law::RegularisedPenalty normal_law() { return law::RegularisedPenalty({.regularisation_depth = 1e-3 * radius}); }
     static Friction friction_law() {
-        if constexpr (core::Active<Friction>) return Friction({0.3, 0.01 * radius});
-        else return Friction();
+        if constexpr (core::Active<Friction>)
+            return Friction({0.3, 0.01 * radius});
+        else
+            return Friction();
     }
     static contact::ContactParameters contact_parameters() {
         contact::ContactParameters parameters;

@@ -25,7 +25,9 @@ struct ElementErrors {
 
 /// Strains of the director beam are quadratic in its unknowns; others say so by not being.
 template <class B>
-inline constexpr bool quadratic_strains = requires { B::options; };
+inline constexpr bool quadratic_strains = requires {
+    B::options;
+};
 /// The tangent of a cable is a length.
 template <class B>
 inline constexpr bool tangents_are_lengths = beam::CentrelineOnly<B>;
@@ -35,7 +37,8 @@ template <beam::BeamElement B>
 beam::ElementVector<B> unknown_scale(double length) {
     beam::ElementVector<B> scale;
     for (int v = 0; v < B::nodes * B::vectors_per_node; ++v) {
-        const bool position = tangents_are_lengths<B> || B::kinds[core::at(v % B::vectors_per_node)] == scene::VectorKind::position;
+        const bool position =
+            tangents_are_lengths<B> || B::kinds[core::at(v % B::vectors_per_node)] == scene::VectorKind::position;
         scale.template segment<3>(3 * v).setConstant(position ? length : 1.0);
     }
     return scale;
@@ -51,7 +54,8 @@ beam::ElementVector<B> moved(const beam::ElementVector<B>& y, const Mat3& rotati
         if (kind == scene::VectorKind::rotation)
             image.template segment<3>(3 * v) = core::rotation_vector(rotation * core::rotation(value));
         else
-            image.template segment<3>(3 * v) = rotation * value + (kind == scene::VectorKind::position ? translation : Vec3::Zero());
+            image.template segment<3>(3 * v) =
+                rotation * value + (kind == scene::VectorKind::position ? translation : Vec3::Zero());
     }
     return image;
 }
@@ -95,7 +99,9 @@ int rigid_motions(const beam::ElementVector<B>& at_rest, double size) {
     for (int k = 0; k < 6; ++k) {
         const Vec3 axis = Vec3::Unit(k % 3);
         const Mat3 turn = k < 3 ? Mat3(Mat3::Identity()) : Mat3(Eigen::AngleAxisd(1e-6, axis));
-        motions.col(k) = (moved<B>(at_rest, turn, k < 3 ? Vec3(1e-6 * size * axis) : Vec3(Vec3::Zero())) - at_rest).cwiseQuotient(unknown_scale<B>(size)) / 1e-6;
+        motions.col(k) = (moved<B>(at_rest, turn, k < 3 ? Vec3(1e-6 * size * axis) : Vec3(Vec3::Zero())) - at_rest)
+                             .cwiseQuotient(unknown_scale<B>(size)) /
+                         1e-6;
     }
     const Eigen::Matrix<double, 6, 1> squares = symmetric_eigenvalues<6>(motions.transpose() * motions);
     return static_cast<int>(std::count_if(squares.begin(), squares.end(), [](double square) { return square > 1e-8; }));
@@ -107,8 +113,8 @@ int rigid_motions(const beam::ElementVector<B>& at_rest, double size) {
 /// @param size     length of the element [length]: positions vary by a fifth of it, directors by 0.2
 /// @param radius   of the section [length]
 template <beam::BeamElement B>
-ElementErrors check_beam_element(const B& beam, const typename B::Rest& rest, const beam::ElementVector<B>& at_rest,
-                                 double size, double radius, int states) {
+ElementErrors check_beam_element(const B& beam, const typename B::Rest& rest, const beam::ElementVector<B>& at_rest, double size,
+                                 double radius, int states) {
     using Y = beam::ElementVector<B>;
     using K = beam::ElementMatrix<B>;
     const Y scale = unknown_scale<B>(size);
@@ -151,8 +157,7 @@ ElementErrors check_beam_element(const B& beam, const typename B::Rest& rest, co
             ahead[k] += h * scale[k];
             behind[k] -= h * scale[k];
             difference[k] = (beam.energy(rest, ahead) - beam.energy(rest, behind)) / (2.0 * h);
-            slope.col(k) =
-                scale.cwiseProduct(beam.internal_force(rest, ahead) - beam.internal_force(rest, behind)) / (2.0 * h);
+            slope.col(k) = scale.cwiseProduct(beam.internal_force(rest, ahead) - beam.internal_force(rest, behind)) / (2.0 * h);
         }
         const double of_force = (difference - force).norm() / force.norm();
         const double of_tangent = (slope - tangent).norm() / tangent.norm();
@@ -185,8 +190,7 @@ ElementErrors check_beam_element(const B& beam, const typename B::Rest& rest, co
         // Predicted stresses: without a step those of the state, and right to first order: as the step halves, the
         // error (strains are quadratic) is a quarter; checked through the geometric stiffness they cause.
         const K exact = scale.asDiagonal() * beam.tangent_stiffness(rest, y, stresses) * scale.asDiagonal();
-        const K still = scale.asDiagonal() *
-                        beam.tangent_stiffness(rest, y, beam.predicted_stresses(rest, y, Y::Zero())) *
+        const K still = scale.asDiagonal() * beam.tangent_stiffness(rest, y, beam.predicted_stresses(rest, y, Y::Zero())) *
                         scale.asDiagonal();
         CHECK((still - exact).norm() <= 1e-14 * exact.norm());
         const Y direction = scale.cwiseProduct(random());
@@ -205,10 +209,9 @@ ElementErrors check_beam_element(const B& beam, const typename B::Rest& rest, co
 
         // With tension alone the geometric part takes nothing from the material part.
         const typename B::Stresses tension = B::without_compression(stresses);
-        const K part =
-            scale.asDiagonal() *
-            (beam.tangent_stiffness(rest, y, tension) - beam.tangent_stiffness(rest, y, typename B::Stresses{})) *
-            scale.asDiagonal();
+        const K part = scale.asDiagonal() *
+                       (beam.tangent_stiffness(rest, y, tension) - beam.tangent_stiffness(rest, y, typename B::Stresses{})) *
+                       scale.asDiagonal();
         CHECK(symmetric_eigenvalues<B::nodes * B::dofs_per_node>(part)[0] >= -1e-13 * tangent.norm());
     }
     return errors;

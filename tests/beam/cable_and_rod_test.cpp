@@ -57,12 +57,14 @@ const Mat3 any_turn = Eigen::AngleAxisd(2.9, Vec3(1, 2, 3).normalized()).toRotat
 
 template <class B>
 void report(const char* name, const ElementErrors& e) {
-    std::printf("%s: force %.1e, tangent %.1e, prediction %.1e, rotation %.1e\n", name, e.force, e.tangent, e.prediction, e.rotation);
+    std::printf("%s: force %.1e, tangent %.1e, prediction %.1e, rotation %.1e\n", name, e.force, e.tangent, e.prediction,
+                e.rotation);
 }
 
 TEST_CASE_TEMPLATE("a straight element of each kind owes the contract of beam elements", B, KirchhoffCable, RigidSectionRod) {
     for (const Mat3& turn : {Mat3(Mat3::Identity()), any_turn}) {
-        const beam::ElementVector<B> straight = element<B>(turned_frame(0.0, Vec3::Zero()), turned_frame(length, Vec3::Zero()), turn);
+        const beam::ElementVector<B> straight =
+            element<B>(turned_frame(0.0, Vec3::Zero()), turned_frame(length, Vec3::Zero()), turn);
         const B beam;
         report<B>("straight", check_beam_element(beam, beam.rest(section, material, straight), straight, length, radius, 20));
     }
@@ -72,7 +74,8 @@ TEST_CASE("a rod that is a helix at rest, of an elliptical section, owes it too"
     const Vec3 curvature = Vec3(0.3, -0.5, 0.4) / length;
     const auto helix = element<RigidSectionRod>(turned_frame(0.0, curvature), turned_frame(length, curvature), any_turn);
     const RigidSectionRod beam{{.shear_factor = 0.9}};
-    report<RigidSectionRod>("helix", check_beam_element(beam, beam.rest(scene::elliptical(0.025, 0.014), material, helix), helix, length, radius, 20));
+    report<RigidSectionRod>("helix", check_beam_element(beam, beam.rest(scene::elliptical(0.025, 0.014), material, helix), helix,
+                                                        length, radius, 20));
 }
 
 TEST_CASE("a rod has the energy of its strains in any helix, however long the element") {
@@ -99,7 +102,8 @@ TEST_CASE("whole turns of a rotation vector change neither the strains of a rod 
     const RigidSectionRod beam;
     const auto rest = beam.rest(section, material, straight);
     auto bent = straight;
-    bent.segment<3>(3) += Vec3(0.2, -0.1, 0.15), bent.segment<3>(6) += 0.1 * length * Vec3(1, 2, 3), bent.segment<3>(9) += Vec3(-0.1, 0.3, 0.2);
+    bent.segment<3>(3) += Vec3(0.2, -0.1, 0.15), bent.segment<3>(6) += 0.1 * length * Vec3(1, 2, 3),
+        bent.segment<3>(9) += Vec3(-0.1, 0.3, 0.2);
     auto far = bent;
     for (const Index v : {3, 9}) {
         const Vec3 psi = bent.segment<3>(v);
@@ -147,9 +151,14 @@ TEST_CASE("what a cable cannot be is refused by name") {
     const Vec3 curvature(0.1 / length, 0.0, 0.0);
     const auto straight = element<KirchhoffCable>(turned_frame(0.0, Vec3::Zero()), turned_frame(length, Vec3::Zero()));
     const auto bent = element<KirchhoffCable>(turned_frame(0.0, curvature), turned_frame(length, curvature));
-    CHECK(refusal([&] { KirchhoffCable{}.rest(scene::elliptical(0.02, 0.01), material, straight); }).find("KirchhoffCable.rest: semi_axis_2 = 0.01") == 0);
-    CHECK(refusal([&] { KirchhoffCable{}.rest(section, material, bent); }).find("KirchhoffCable.rest: turn between chord and tangent = 0.05") == 0);
-    CHECK(refusal([&] { RigidSectionRod{{.shear_factor = -1.0}}; }) == "RigidSectionRod.shear_factor = -1, but it must be finite and > 0");
+    CHECK(refusal([&] {
+              KirchhoffCable{}.rest(scene::elliptical(0.02, 0.01), material, straight);
+          }).find("KirchhoffCable.rest: semi_axis_2 = 0.01") == 0);
+    CHECK(refusal([&] {
+              KirchhoffCable{}.rest(section, material, bent);
+          }).find("KirchhoffCable.rest: turn between chord and tangent = 0.05") == 0);
+    CHECK(refusal([&] { RigidSectionRod{{.shear_factor = -1.0}}; }) ==
+          "RigidSectionRod.shear_factor = -1, but it must be finite and > 0");
 }
 
 }  // namespace cable_and_rod_test

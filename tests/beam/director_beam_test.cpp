@@ -17,15 +17,13 @@ constexpr double radius = 0.0201, length = 6.0 * radius, young = 7300.0, poisson
 const scene::ElasticMaterial material{young, poisson};
 
 template <class B>
-void check_variant(const char* shape, const scene::CrossSection& section, const beam::ElementVector<B>& at_rest,
-                   int states) {
+void check_variant(const char* shape, const scene::CrossSection& section, const beam::ElementVector<B>& at_rest, int states) {
     const B beam{{.shear_factor = 0.9}};
     const ElementErrors e =
         check_beam_element(beam, beam.rest(section, material, at_rest), at_rest, length, section.radius(), states);
     const bool nodal = B::options.sampling == SectionSampling::nodal, split = B::options.law == ElasticLaw::split;
-    std::printf("%d-node %s %s quadratic %d, %s: force %.1e, tangent %.1e, rotation %.1e\n", B::nodes,
-                split ? "split" : "full", nodal ? "nodal" : "gauss", static_cast<int>(B::options.quadratic), shape,
-                e.force, e.tangent, e.rotation);
+    std::printf("%d-node %s %s quadratic %d, %s: force %.1e, tangent %.1e, rotation %.1e\n", B::nodes, split ? "split" : "full",
+                nodal ? "nodal" : "gauss", static_cast<int>(B::options.quadratic), shape, e.force, e.tangent, e.rotation);
 }
 
 /// Stiffness against a motion with the given nodal velocities, at rest: d.K d.
@@ -53,8 +51,7 @@ NodeMotion twist(double s) {
 TEST_CASE_TEMPLATE("every variant of the element derives from an energy that rigid motions leave alone", B,
                    FIBRANT_ALL_VARIANTS) {
     check_variant<B>("round and straight", scene::circular(radius), straight_element<B>(length), 100);
-    check_variant<B>("elliptical and curved", scene::elliptical(radius, 0.6 * radius, 0.5),
-                     curved_element<B>(length, 0.8), 100);
+    check_variant<B>("elliptical and curved", scene::elliptical(radius, 0.6 * radius, 0.5), curved_element<B>(length, 0.8), 100);
 }
 
 TEST_CASE_TEMPLATE("a stretched fibre with a free section obeys the uniaxial law exactly", B, FIBRANT_ALL_VARIANTS) {
@@ -85,28 +82,20 @@ TEST_CASE_TEMPLATE("bending and twist meet the stiffness of the rod", B, FIBRANT
     const typename B::Rest ellipse = B{}.rest(scene::elliptical(a, b), material, at_rest);
     const double G = young / (2.0 * (1.0 + poisson));
     // The motions are exact in the element, so only round-off is left. The full law bends 1.346 times too stiffly.
-    const double factor =
-        B::options.law == ElasticLaw::split ? 1.0 : (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
-    CHECK(resistance<B>(round, at_rest, bending) ==
-          test::near(factor * young * pi * std::pow(a, 4) / 4.0 * length, 1e-12));
-    CHECK(resistance<B>(ellipse, at_rest, bending) ==
-          test::near(factor * young * pi * std::pow(a, 3) * b / 4.0 * length, 1e-12));
-    CHECK(resistance<B>(round, at_rest, twist) ==
-          test::near(G * pi * std::pow(a, 4) / 2.0 * length, 1e-12));
+    const double factor = B::options.law == ElasticLaw::split ? 1.0 : (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+    CHECK(resistance<B>(round, at_rest, bending) == test::near(factor * young * pi * std::pow(a, 4) / 4.0 * length, 1e-12));
+    CHECK(resistance<B>(ellipse, at_rest, bending) == test::near(factor * young * pi * std::pow(a, 3) * b / 4.0 * length, 1e-12));
+    CHECK(resistance<B>(round, at_rest, twist) == test::near(G * pi * std::pow(a, 4) / 2.0 * length, 1e-12));
     // St Venant's torsion constant of an ellipse: pi a^3 b^3/(a^2 + b^2).
-    CHECK(resistance<B>(ellipse, at_rest, twist) ==
-          test::near(G * pi * std::pow(a * b, 3) / (a * a + b * b) * length, 1e-12));
+    CHECK(resistance<B>(ellipse, at_rest, twist) == test::near(G * pi * std::pow(a * b, 3) / (a * a + b * b) * length, 1e-12));
 }
 
-TEST_CASE_TEMPLATE("a macro-fibre keeps its area and is softer in bending and twist alone", B, DirectorBeam<2>,
-                   DirectorBeam<3>) {
+TEST_CASE_TEMPLATE("a macro-fibre keeps its area and is softer in bending and twist alone", B, DirectorBeam<2>, DirectorBeam<3>) {
     const beam::ElementVector<B> at_rest = straight_element<B>(length);
     const typename B::Rest solid = B{}.rest(scene::circular(radius), material, at_rest);
     const typename B::Rest macro = B{}.rest(scene::circular(radius, 0.2), material, at_rest);
-    CHECK(resistance<B>(macro, at_rest, bending) ==
-          test::near(0.2 * resistance<B>(solid, at_rest, bending), 1e-12));
-    CHECK(resistance<B>(macro, at_rest, twist) ==
-          test::near(0.2 * resistance<B>(solid, at_rest, twist), 1e-12));
+    CHECK(resistance<B>(macro, at_rest, bending) == test::near(0.2 * resistance<B>(solid, at_rest, bending), 1e-12));
+    CHECK(resistance<B>(macro, at_rest, twist) == test::near(0.2 * resistance<B>(solid, at_rest, twist), 1e-12));
     const auto stretch = [](double s) {
         NodeMotion d;
         d << 0, 0, s, 0, 0, 0, 0, 0, 0;
@@ -120,13 +109,12 @@ TEST_CASE("the element of three nodes has no soft mode beyond the rigid ones") {
     const DirectorBeam<3> beam;
     const auto at_rest = straight_element<DirectorBeam<3>>(length);
     const auto modes = rest_modes(beam, beam.rest(scene::circular(radius), material, at_rest), at_rest, radius);
-    std::printf("3-node: sixth %.1e, seventh %.2e of the largest eigenvalue\n", modes[5] / modes[26],
-                modes[6] / modes[26]);
+    std::printf("3-node: sixth %.1e, seventh %.2e of the largest eigenvalue\n", modes[5] / modes[26], modes[6] / modes[26]);
     CHECK(modes[6] > 1e-3 * modes[26]);
 }
 
-TEST_CASE_TEMPLATE("a curved rest shape that is turned and moved stays free of stress", B, DirectorBeam<2>,
-                   DirectorBeam<3>, FIBRANT_VARIANTS_OF(3, ElasticLaw::full)) {
+TEST_CASE_TEMPLATE("a curved rest shape that is turned and moved stays free of stress", B, DirectorBeam<2>, DirectorBeam<3>,
+                   FIBRANT_VARIANTS_OF(3, ElasticLaw::full)) {
     const B beam;
     const beam::ElementVector<B> at_rest = curved_element<B>(length, 1.0);
     const scene::CrossSection section = scene::circular(radius);

@@ -22,7 +22,8 @@ template <class B, int Which>
 constexpr int director_vector = beam::detail::only_vector<B>([](double xi) { return beam::director_weights<B>(xi, Which); });
 
 // A position depends on the positions of nodes, but on their tangents as well along a cubic; a director on nothing but itself.
-static_assert(centre_vector<beam::DirectorBeam<2>> == 0 && centre_vector<beam::DirectorBeam<3>> == 0 && centre_vector<beam::RigidSectionRod> == 0);
+static_assert(centre_vector<beam::DirectorBeam<2>> == 0 && centre_vector<beam::DirectorBeam<3>> == 0 &&
+              centre_vector<beam::RigidSectionRod> == 0);
 static_assert(centre_vector<beam::KirchhoffCable> == -1);
 static_assert(director_vector<beam::DirectorBeam<3>, 1> == 1 && director_vector<beam::DirectorBeam<3>, 2> == 2);
 static_assert(director_vector<beam::OnCentreline<beam::DirectorBeam<3>>, 1> == 1);
@@ -35,10 +36,11 @@ struct Opaque {
 };
 static_assert(beam::detail::only_vector<Opaque>([](double xi) { return Opaque::weights(xi); }) == -1);
 
-TEST_CASE_TEMPLATE("a point, a tangent and a director are the same by one vector of each node and by all", B, beam::DirectorBeam<2>, beam::DirectorBeam<3>,
-                   beam::RigidSectionRod, beam::KirchhoffCable) {
+TEST_CASE_TEMPLATE("a point, a tangent and a director are the same by one vector of each node and by all", B,
+                   beam::DirectorBeam<2>, beam::DirectorBeam<3>, beam::RigidSectionRod, beam::KirchhoffCable) {
     scene::Assembly assembly;
-    assembly.add({.from = {0, 0, 0}, .to = {1, 0.2, -0.1}, .section = scene::circular(0.02), .material = {7300.0, 0.3}, .elements = 5});
+    assembly.add(
+        {.from = {0, 0, 0}, .to = {1, 0.2, -0.1}, .section = scene::circular(0.02), .material = {7300.0, 0.3}, .elements = 5});
     const beam::Mesh<B> mesh(assembly, B());
     Vector state = mesh.start_state();
     for (Index k = 0; k < state.size(); ++k) state[k] += 0.1 * std::sin(1.7 * static_cast<double>(k));
@@ -46,12 +48,17 @@ TEST_CASE_TEMPLATE("a point, a tangent and a director are the same by one vector
     for (const double xi : {-1.0, -0.4, 0.0, 0.33, 1.0})
         for (Index e = 0; e < 5; ++e) {
             const Index first = mesh.first_unknown(0, e);
-            const auto compare = [&](const Vec3& a, const Vec3& b) { difference = std::max(difference, (a - b).norm()), least = std::min(least, b.norm()); };
+            const auto compare = [&](const Vec3& a, const Vec3& b) {
+                difference = std::max(difference, (a - b).norm()), least = std::min(least, b.norm());
+            };
             compare(mesh.centre(state, first, B::centreline_weights(xi)), mesh.point(state, first, B::centreline_weights(xi)));
-            compare(mesh.centre(state, first, B::centreline_derivative_weights(xi)), mesh.point(state, first, B::centreline_derivative_weights(xi)));
+            compare(mesh.centre(state, first, B::centreline_derivative_weights(xi)),
+                    mesh.point(state, first, B::centreline_derivative_weights(xi)));
             if constexpr (beam::DeformableSections<B>) {
-                compare(mesh.template director<1>(state, first, beam::director_weights<B>(xi, 1)), mesh.point(state, first, beam::director_weights<B>(xi, 1)));
-                compare(mesh.template director<2>(state, first, beam::director_weights<B>(xi, 2)), mesh.point(state, first, beam::director_weights<B>(xi, 2)));
+                compare(mesh.template director<1>(state, first, beam::director_weights<B>(xi, 1)),
+                        mesh.point(state, first, beam::director_weights<B>(xi, 1)));
+                compare(mesh.template director<2>(state, first, beam::director_weights<B>(xi, 2)),
+                        mesh.point(state, first, beam::director_weights<B>(xi, 2)));
             }
         }
     CHECK(difference < 1e-15);  // rounding of another order of the same terms

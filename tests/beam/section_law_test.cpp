@@ -33,10 +33,9 @@ double integrated(const std::array<double, 15>& e, double a, double b) {
             const double e13 = e[strain::e13] + x * e[strain::c11] + y * e[strain::c12];
             const double e23 = e[strain::e23] + x * e[strain::c21] + y * e[strain::c22];
             const double trace = e[strain::e11] + e[strain::e22] + e33;
-            const double density =
-                0.5 * lame * trace * trace +
-                mu * (e[strain::e11] * e[strain::e11] + e[strain::e22] * e[strain::e22] + e33 * e33) +
-                0.5 * mu * (e[strain::e12] * e[strain::e12] + e13 * e13 + e23 * e23);
+            const double density = 0.5 * lame * trace * trace +
+                                   mu * (e[strain::e11] * e[strain::e11] + e[strain::e22] * e[strain::e22] + e33 * e33) +
+                                   0.5 * mu * (e[strain::e12] * e[strain::e12] + e13 * e13 + e23 * e23);
             sum += weight[i] / 12 * pi * a * b * density;
         }
     }
@@ -97,8 +96,8 @@ TEST_CASE("the shear factor multiplies transverse shear, the torsion factor mult
 
 TEST_CASE("no strain is free of energy, however flat the section") {
     for (const double b : {0.03, 0.01, 0.001}) {
-        const SectionLaw<ElasticLaw::split, QuadraticStrain::complete> law(
-            section_constants(scene::elliptical(0.03, b)), material, 1.0);
+        const SectionLaw<ElasticLaw::split, QuadraticStrain::complete> law(section_constants(scene::elliptical(0.03, b)),
+                                                                           material, 1.0);
         Eigen::Matrix<double, 15, 15> C;
         for (std::size_t k = 0; k < 15; ++k) {
             std::array<double, 15> unit{};

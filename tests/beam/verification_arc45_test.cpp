@@ -25,8 +25,7 @@ Bent bend(const Arc& arc, int intervals, int steps = 1) {
     const beam::SectionConstants section{arc.side * arc.side, inertia, inertia, arc.torsion_constant / (2.0 * inertia)};
     const auto shape = [&](double s) -> Frame {
         const double t = s / arc.radius;
-        return {arc.radius * Vec3(std::sin(t), 1.0 - std::cos(t), 0), Vec3(-std::sin(t), std::cos(t), 0),
-                Vec3::UnitZ()};
+        return {arc.radius * Vec3(std::sin(t), 1.0 - std::cos(t), 0), Vec3(-std::sin(t), std::cos(t), 0), Vec3::UnitZ()};
     };
     Rod<> mesh(beam::DirectorBeam<3>{{.shear_factor = arc.shear_factor}}, section, {arc.young, arc.poisson}, intervals,
                arc.radius * arc.angle, shape);
@@ -99,8 +98,7 @@ const std::vector<Case>& cases() {
 }
 
 TEST_CASE("the 45-degree bend converges with the fourth order, in one load step") {
-    std::printf(
-        "distance of the tip from the own limit over R, n = 8 16 32 64; from the Reissner rod, n = 64; iterations\n");
+    std::printf("distance of the tip from the own limit over R, n = 8 16 32 64; from the Reissner rod, n = 64; iterations\n");
     for (const Case& c : cases()) {
         CAPTURE(c.name);
         const Bent limit = bend(c.arc, 256);

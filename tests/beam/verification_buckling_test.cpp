@@ -58,10 +58,9 @@ Tip post_buckling(const RoundRod& rod, double load_over_critical, int n) {
     const double critical = 0.25 * std::numbers::pi * std::numbers::pi * EI;
     Rod<> mesh = rod.mesh(n);
     mesh.place(0, straight(0.0), false);
-    REQUIRE(mesh.follow(8, [&](double t) { mesh.force(n, 0) = Vec3(EI * t, 0, -t * load_over_critical * critical); })
-                .converged);
-    REQUIRE(mesh.follow(4, [&](double t) { mesh.force(n, 0) = Vec3(EI * (1 - t), 0, -load_over_critical * critical); })
-                .converged);
+    REQUIRE(mesh.follow(8, [&](double t) { mesh.force(n, 0) = Vec3(EI * t, 0, -t * load_over_critical * critical); }).converged);
+    REQUIRE(
+        mesh.follow(4, [&](double t) { mesh.force(n, 0) = Vec3(EI * (1 - t), 0, -load_over_critical * critical); }).converged);
     CHECK(mesh.negative_pivots() <= 1);  // none, but any plane through the axis is as good: one pivot is about zero
     const Vec3 x = mesh.position(n) / rod.length, g1 = mesh.director(n, 1);
     return {x[0], x[2], std::atan2(-g1[2], g1[0])};
@@ -119,11 +118,10 @@ double twist_buckling(const RoundRod& rod, double tension, double guess, int n) 
 }
 
 /// Dead force along the height, at the free end of a deep cantilever, that tips it over. Pre-buckling bending included.
-double lateral_torsional(double width, double height, double length, double young, double poisson, double guess,
-                         int n) {
+double lateral_torsional(double width, double height, double length, double young, double poisson, double guess, int n) {
     // The section stays plane, as in the reference: torsion_factor 1.
-    const beam::SectionConstants section{width * height, width * std::pow(height, 3) / 12.0,
-                                         height * std::pow(width, 3) / 12.0, 1.0};
+    const beam::SectionConstants section{width * height, width * std::pow(height, 3) / 12.0, height * std::pow(width, 3) / 12.0,
+                                         1.0};
     return bisected(0.8 * guess, 1.2 * guess, [&](double load) {
         Rod<> mesh(beam::DirectorBeam<3>{}, section, {young, poisson}, n, length, straight);
         mesh.place(0, straight(0.0), false);
@@ -206,9 +204,8 @@ TEST_CASE("a clamped column pressed beyond buckling bears what the reference say
     std::printf("shortening, thrust, clamp moment, energy: relative distance from the Reissner rod, L/r = 200\n");
     for (const Case& c : cases) {
         const Column column = pressed_column(rod, c.w_over_length * rod.length, 64);
-        const std::vector<double> row{
-            off(column.shortening, c.expected.shortening), off(column.thrust, c.expected.thrust),
-            off(column.clamp_moment, c.expected.clamp_moment), off(column.energy, c.expected.energy)};
+        const std::vector<double> row{off(column.shortening, c.expected.shortening), off(column.thrust, c.expected.thrust),
+                                      off(column.clamp_moment, c.expected.clamp_moment), off(column.energy, c.expected.energy)};
         char name[64];
         std::snprintf(name, sizeof name, "w/L = %g", c.w_over_length);
         print_row(name, row);
@@ -220,8 +217,7 @@ TEST_CASE("a clamped column pressed beyond buckling bears what the reference say
 TEST_CASE("a fibre that is twisted between clamps buckles at Greenhill's moment") {
     RoundRod rod;
     rod.length = 1000.0 * rod.radius;
-    const double cases[][2] = {
-        {0, 8.9868189158181}, {1, 9.1347300889362}, {10, 10.428856439277}, {100, 20.983500828141}};
+    const double cases[][2] = {{0, 8.9868189158181}, {1, 9.1347300889362}, {10, 10.428856439277}, {100, 20.983500828141}};
     std::printf("relative error of the critical rotation, n = 64 128\n");
     for (const auto& c : cases) {
         std::vector<double> row;

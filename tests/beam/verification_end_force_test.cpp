@@ -36,42 +36,20 @@ struct Case {
     Tip expected;  ///< results.director of end_force.json
 };
 const Case cases[] = {
-    {100,
-     1,
-     {0.60658579957974,
-      1.8965346878742,
-      0.46135378262014,
-      0.19343487787524,
-      0.98099759528254,
-      6.6797532195722e-05,
-      {}}},
-    {20,
-     5,
-     {0.28925364095094, 0.24482533314087, 1.2148710567894, 0.10639716805479, 0.16123955912313, 0.0026328940589275, {}}},
-    {100,
-     5,
-     {1.4351777145384, 1.2306021733469, 1.2153463068668, 0.52468948764057, 0.81076200115462, 0.00052100158209165, {}}},
-    {1000,
-     5,
-     {14.347255281111, 12.308643485742, 1.2153678987569, 5.2439371016334, 8.1094698002784, 5.207754794948e-05, {}}},
-    {100,
-     10,
-     {1.6301053896191, 0.89405594775055, 1.4302262673303, 0.64808410964012, 0.68848032198453, 0.00083668507395811, {}}},
+    {100, 1, {0.60658579957974, 1.8965346878742, 0.46135378262014, 0.19343487787524, 0.98099759528254, 6.6797532195722e-05, {}}},
+    {20, 5, {0.28925364095094, 0.24482533314087, 1.2148710567894, 0.10639716805479, 0.16123955912313, 0.0026328940589275, {}}},
+    {100, 5, {1.4351777145384, 1.2306021733469, 1.2153463068668, 0.52468948764057, 0.81076200115462, 0.00052100158209165, {}}},
+    {1000, 5, {14.347255281111, 12.308643485742, 1.2153678987569, 5.2439371016334, 8.1094698002784, 5.207754794948e-05, {}}},
+    {100, 10, {1.6301053896191, 0.89405594775055, 1.4302262673303, 0.64808410964012, 0.68848032198453, 0.00083668507395811, {}}},
 };
 /// P L^2/EI = 5: tip over length of the elastica, and how far from it the director rod is, in (r/L)^2 (from L/r =
 /// 1000).
 Tip slender_tip(const RoundRod& rod) {
     const double elastica_x = 1.4347209624599 / 2.01, elastica_z = 1.2308669949439 / 2.01;
-    const double away_x = (14.347255281111 / 20.1 - elastica_x) * 1e6,
-                 away_z = (12.308643485742 / 20.1 - elastica_z) * 1e6;
+    const double away_x = (14.347255281111 / 20.1 - elastica_x) * 1e6, away_z = (12.308643485742 / 20.1 - elastica_z) * 1e6;
     const double ratio = rod.radius / rod.length;
-    return {(elastica_x + away_x * ratio * ratio) * rod.length,
-            (elastica_z + away_z * ratio * ratio) * rod.length,
-            0,
-            0,
-            0,
-            0,
-            {}};
+    return {
+        (elastica_x + away_x * ratio * ratio) * rod.length, (elastica_z + away_z * ratio * ratio) * rod.length, 0, 0, 0, 0, {}};
 }
 
 TEST_CASE("a cantilever converges to the director rod with the fourth order of the mesh") {
@@ -128,10 +106,8 @@ TEST_CASE("a fibre ten thousand radii long bends accurately, in one load step") 
 }
 
 TEST_CASE("sampling section strains at the nodes raises the order from two to four") {
-    using Gauss =
-        beam::DirectorBeam<3, beam::DirectorBeamOptions{beam::ElasticLaw::split, beam::SectionSampling::gauss}>;
-    using GaussTwo =
-        beam::DirectorBeam<2, beam::DirectorBeamOptions{beam::ElasticLaw::split, beam::SectionSampling::gauss}>;
+    using Gauss = beam::DirectorBeam<3, beam::DirectorBeamOptions{beam::ElasticLaw::split, beam::SectionSampling::gauss}>;
+    using GaussTwo = beam::DirectorBeam<2, beam::DirectorBeamOptions{beam::ElasticLaw::split, beam::SectionSampling::gauss}>;
     RoundRod rod;
     rod.length = 1e4 * rod.radius;
     const Tip expected = slender_tip(rod);

@@ -86,8 +86,7 @@ TEST_CASE("a stretched fibre that is pushed sideways resists as the director rod
         row.push_back(off(p.axial, c.expected.axial));
         row.push_back(off(p.energy, c.expected.energy));
         char name[64];
-        std::snprintf(name, sizeof name, "L/r = %g, eps0 = %g, w/r = %g", c.slenderness, c.strain,
-                      c.deflection_over_radius);
+        std::snprintf(name, sizeof name, "L/r = %g, eps0 = %g, w/r = %g", c.slenderness, c.strain, c.deflection_over_radius);
         print_row(name, row);
         // Bending layers at the clamps, r/(2 sqrt(eps0)) long, are shorter than an element for the most slender rods
         // until n = 64: 5e-3 at most before, without overshoot, then the same accuracy for all.

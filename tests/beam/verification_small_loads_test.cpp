@@ -71,8 +71,9 @@ TEST_CASE("a fibre stretches with EA and Poisson's contraction is free") {
         const double error = extension / (strain * rod.length) - 1.0;
         std::printf("stretching, %s clamp: %.1e\n", rigid ? "whole" : "rotation", error);
         CHECK(std::abs(error) < (rigid ? 0.7 * rod.radius / rod.length : 1e-6));
-        // Two Gauss points an element do not see a contraction of (xi^2 - 1/3), which is 0 at both: what a clamp holds goes on so from node to node,
-        // twice as much at the ends of elements as in their middles and the other way round, and of it a quarter is left at the last one.
+        // Two Gauss points an element do not see a contraction of (xi^2 - 1/3), which is 0 at both: what a clamp holds goes on so
+        // from node to node, twice as much at the ends of elements as in their middles and the other way round, and of it a
+        // quarter is left at the last one.
         CHECK(mesh.director(16, 1)[0] - 1.0 == test::near(-rod.poisson * strain, rigid ? 0.3 : 1e-5));
     }
 }

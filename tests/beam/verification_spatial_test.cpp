@@ -57,8 +57,8 @@ Solved solve(const Spatial& c, int n, bool without_twist = true, int steps = 4) 
 /// @param of_length   allowed distance of tip and middle over L
 /// @param of_angle    of directions [rad]
 /// @param of_load     relative, of moment and energy
-void check(const char* name, const Spatial& c, const Solved& expected, double of_length, double of_angle,
-           double of_load, bool directors) {
+void check(const char* name, const Spatial& c, const Solved& expected, double of_length, double of_angle, double of_load,
+           bool directors) {
     CAPTURE(name);
     const Solved limit = solve(c, 256);
     std::vector<double> row;
@@ -102,8 +102,8 @@ PlacedSolution place_end(const Placed& c, int n, int steps = 16) {
     PlacedSolution r;
     r.solution = mesh.follow(steps, [&](double f) {
         Frame end = straight(c.rod.length);
-        end.position = Vec3(f * c.end_position[0], f * c.end_position[1],
-                            c.rod.length + f * f * (c.end_position[2] - c.rod.length));
+        end.position =
+            Vec3(f * c.end_position[0], f * c.end_position[1], c.rod.length + f * f * (c.end_position[2] - c.rod.length));
         const double angle = c.end_rotation.norm();
         const Mat3 turn = Eigen::AngleAxisd(f * angle, c.end_rotation / angle).toRotationMatrix();
         end.director_1 = turn.col(0);
@@ -202,8 +202,8 @@ TEST_CASE("rest directors that do not twist about the axis describe a curved fib
     const Vec3 tip(0.71205159358667, 1.0243615710659, -0.18698467563431);
     const double without = (solve(curved, 64, true).tip - tip).norm() / 2.0;
     const double with = (solve(curved, 64, false).tip - tip).norm() / 2.0;
-    std::printf("helical rest shape, tip from Reissner over L: %.2e without twist, %.2e with (stated 1.1e-4, 1.6e-4)\n",
-                without, with);
+    std::printf("helical rest shape, tip from Reissner over L: %.2e without twist, %.2e with (stated 1.1e-4, 1.6e-4)\n", without,
+                with);
     CHECK(without == test::near(1.1e-4, 0.1));
     CHECK(with == test::near(1.6e-4, 0.1));
 }

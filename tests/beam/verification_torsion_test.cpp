@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A rod that is twisted far, against M = G J t, t the turn of its sections per length at rest, and against what each variant comes to.
+// A rod that is twisted far, against M = G J t, t the turn of its sections per length at rest, and against what each variant
+// comes to.
 #include <support/rod.hpp>
 
 #include <doctest/doctest.h>
@@ -23,7 +24,8 @@ double stiffness() { return shear * 0.5 * std::numbers::pi * std::pow(r, 4); }
 /// M / (G J t) - 1 of the far end, which turns about the axis and slides along it unless the length is held.
 template <class B>
 double error(double rt, int elements, bool held) {
-    test::Rod<B> rod(B{}, beam::section_constants(scene::circular(r)), {young, poisson}, elements * B::reach, length, test::straight);
+    test::Rod<B> rod(B{}, beam::section_constants(scene::circular(r)), {young, poisson}, elements * B::reach, length,
+                     test::straight);
     rod.place(0, test::straight(0.0), false);
     const int last = elements * B::reach;
     const double angle = rt / r * length;

@@ -89,11 +89,14 @@ TEST_CASE("fibres much softer than a uniformly strained block leave its field un
     REQUIRE(scene.solid().bonds().size() == 27);
     CHECK(scene.solve() <= 1e-10);
     double field = 0.0, place = 0.0, fibres = 0.0;
-    for (Index c = 0; c < scene.solid().cells(); ++c) field = std::max(field, (scene.solid().mean_state(scene.state, c).strain - strain).norm());
+    for (Index c = 0; c < scene.solid().cells(); ++c)
+        field = std::max(field, (scene.solid().mean_state(scene.state, c).strain - strain).norm());
     for (Index n = 0; n < scene.solid().nodes(); ++n)
-        place = std::max(place, (scene.state.segment<3>(3 * (scene.solid().first_vector() + n)) - f * scene.solid().start(n)).norm());
+        place =
+            std::max(place, (scene.state.segment<3>(3 * (scene.solid().first_vector() + n)) - f * scene.solid().start(n)).norm());
     for (const connection::Bond& bond : scene.solid().bonds())
-        fibres = std::max(fibres, (scene.state.segment<3>(3 * bond.vector) - f * scene.mesh.start_state().segment<3>(3 * bond.vector)).norm());
+        fibres = std::max(
+            fibres, (scene.state.segment<3>(3 * bond.vector) - f * scene.mesh.start_state().segment<3>(3 * bond.vector)).norm());
     // E A of the fibres is 1e-10 of that of the block.
     CHECK(field <= 1e-10);
     CHECK(place <= 1e-10);
@@ -111,7 +114,7 @@ TEST_CASE("a rigid motion of fibres and solid gives no force") {
             const Vec3 value = scene.state.segment<3>(3 * v);
             scene.state.segment<3>(3 * v) = turn * value;
             if (layout.kind[core::at(v)] == scene::VectorKind::position) scene.state.segment<3>(3 * v) += Vec3(3.0, -2.0, 5.0);
-    }
+        }
         scene.equilibrium.residual(scene.state, residual);
         // Coordinates of 5 carry 1e-15; E h of a cell is 300, E A / l of an element of a fibre about 100.
         CHECK(residual.cwiseAbs().maxCoeff() <= 1e-10);
@@ -131,7 +134,8 @@ TEST_CASE("the tangent of fibres and solid is the derivative of the residual, an
     scene.equilibrium.linearise(state, false, 0.0);
     Vector direction(state.size()), image(state.size()), up, down, terms(state.size());
     for (Index k = 0; k < state.size(); ++k) direction[k] = 1e-6 * draw(generator);
-    for (const scene::HeldVector& held : system.layout().held) direction.segment<3>(3 * held.vector) = (held.free * direction.segment<3>(3 * held.vector)).eval();
+    for (const scene::HeldVector& held : system.layout().held)
+        direction.segment<3>(3 * held.vector) = (held.free * direction.segment<3>(3 * held.vector)).eval();
     system.apply(direction, image);
     scene.equilibrium.residual(state + direction, up), scene.equilibrium.residual(state - direction, down);
     CHECK((0.5 * (up - down) - image).norm() <= 1e-7 * image.norm());  // third derivatives times 1e-12, rounding 1e-10
@@ -186,13 +190,16 @@ TEST_CASE("a fibre that turns about itself in a block is held by bonds of its se
         const Mat3 turn = Eigen::AngleAxisd(angle, Vec3::UnitX()).toRotationMatrix();
         const auto& layout = scene.equilibrium.system().layout();
         for (Index v = 0; v < scene.solid().first_vector(); ++v)
-            if (layout.kind[core::at(v)] != scene::VectorKind::position) scene.state.segment<3>(3 * v) = turn * scene.state.segment<3>(3 * v);
+            if (layout.kind[core::at(v)] != scene::VectorKind::position)
+                scene.state.segment<3>(3 * v) = turn * scene.state.segment<3>(3 * v);
         return scene.equilibrium.elastic_energy(scene.state) / (0.5 * angle * angle);
     };
-    // A stiff cylinder that turns in a matrix takes 4 pi G r^2 a length. Springs to the field of displacement that were chosen for the
-    // shear of the section hold a turn 16 (1 - nu) / (3 (3 - 4 nu)) = 2 times as stiffly, over the matrix's part 1 - V of a cell.
-    const double cylinder = 4.0 * std::numbers::pi * shear * radius * radius * 2.0, matrix = 1.0 - std::numbers::pi * radius * radius / (0.2 * 0.2);
-    CHECK(stiffness(0.0) <= 1e-9 * cylinder);  // energies of the fibre's section strains in 1e-16 E
+    // A stiff cylinder that turns in a matrix takes 4 pi G r^2 a length. Springs to the field of displacement that were chosen
+    // for the shear of the section hold a turn 16 (1 - nu) / (3 (3 - 4 nu)) = 2 times as stiffly, over the matrix's part 1 - V of
+    // a cell.
+    const double cylinder = 4.0 * std::numbers::pi * shear * radius * radius * 2.0,
+                 matrix = 1.0 - std::numbers::pi * radius * radius / (0.2 * 0.2);
+    CHECK(stiffness(0.0) <= 1e-9 * cylinder);                            // energies of the fibre's section strains in 1e-16 E
     CHECK(stiffness(1.0) == test::near(2.0 * cylinder / matrix, 2e-3));  // a cell of the fibre is 8e-3 of fibre
 }
 
@@ -216,20 +223,22 @@ double pull_out_of_rigid(Index elements, double pull) {
 
 TEST_CASE("the force to draw one fibre out converges with its mesh to shear lag") {
     // A rod on springs: F = u sqrt(E A k) tanh(L sqrt(k / E A)), k = 2 pi G / ln(h / 2r) = 15.6 a length.
-    const double k = 2.0 * std::numbers::pi * 4.0 / std::log(0.1 / 0.02), stiffness = 2000.0 * std::numbers::pi * 1e-4, pull = 1e-6;
+    const double k = 2.0 * std::numbers::pi * 4.0 / std::log(0.1 / 0.02), stiffness = 2000.0 * std::numbers::pi * 1e-4,
+                 pull = 1e-6;
     const double exact = pull * std::sqrt(stiffness * k) * std::tanh(std::sqrt(k / stiffness));
     double last = 1.0;
     for (const Index elements : {4, 8, 16, 32}) {
         const double error = pull_out_of_rigid(elements, pull) / exact - 1.0;
-        MESSAGE("elements " << elements << ", transfer lengths an element " << std::sqrt(k / stiffness) / static_cast<double>(elements) << ": error " << error);
+        MESSAGE("elements " << elements << ", transfer lengths an element "
+                            << std::sqrt(k / stiffness) / static_cast<double>(elements) << ": error " << error);
         CHECK(std::abs(error) < 0.3 * last);  // order 2 or better, until the law's own 1.5 strain shows
         last = std::max(std::abs(error), 2e-5);
     }
     CHECK(last <= 1e-4);
 }
 
-/// Stiffness a length of the slip of a stiff fibre along the middle of a square block held at its sides, over 2 pi G / ln(R / r) with
-/// R = 1.0787 times half the side, the conformal radius of the square.
+/// Stiffness a length of the slip of a stiff fibre along the middle of a square block held at its sides, over 2 pi G / ln(R / r)
+/// with R = 1.0787 times half the side, the conformal radius of the square.
 double axial_stiffness(Index cells, double radius, const Vec3& offset) {
     scene::Assembly assembly;
     const double length = 2.0 / static_cast<double>(cells);
@@ -249,7 +258,8 @@ double axial_stiffness(Index cells, double radius, const Vec3& offset) {
     Scene scene(assembly);
     scene.solve(1.0, 3);
     Vec3 sum = Vec3::Zero();
-    for (Index a = 0; a < scene.mesh.node_count(0); ++a) sum += scene.equilibrium.reaction().segment<3>(3 * scene.mesh.node_vector(0, a));
+    for (Index a = 0; a < scene.mesh.node_count(0); ++a)
+        sum += scene.equilibrium.reaction().segment<3>(3 * scene.mesh.node_vector(0, a));
     return sum.x() / 1e-6 / length * std::log(1.0787 / radius) / (2.0 * std::numbers::pi);
 }
 
@@ -258,8 +268,8 @@ TEST_CASE("how far a fibre's slip depends on the size of cells is bounded") {
         for (const Index cells : {5, 9, 19, 39}) {
             const double middle = axial_stiffness(cells, radius, Vec3::Zero());
             const double node = axial_stiffness(cells, radius, Vec3(0, 1.0, 1.0) / static_cast<double>(cells));
-            MESSAGE("cell over radius " << 2.0 / static_cast<double>(cells) / radius << ": stiffness over shear lag " << middle << " in the middle of a cell, "
-                                        << node << " on an edge");
+            MESSAGE("cell over radius " << 2.0 / static_cast<double>(cells) / radius << ": stiffness over shear lag " << middle
+                                        << " in the middle of a cell, " << node << " on an edge");
             // Cells of more than 4 radii: what they do not resolve is that of the formula, 5 % off; along an edge the cells
             // themselves give way more. Smaller cells are softer, as the formula is bounded there.
             const bool large = 2.0 / static_cast<double>(cells) > 4.0 * radius;
@@ -274,14 +284,14 @@ struct Moduli {
     double along, across, shear, shear_along;
 };
 struct Bundle {
-    double fraction, ratio;    ///< of the fibres' volume; their Young's modulus over that of the matrix
-    Index cells = 4;           ///< of the unit cube along each edge, across the fibres
-    double offset = 0.0;       ///< of the fibres from the middles of the quarters of the cube
+    double fraction, ratio;  ///< of the fibres' volume; their Young's modulus over that of the matrix
+    Index cells = 4;         ///< of the unit cube along each edge, across the fibres
+    double offset = 0.0;     ///< of the fibres from the middles of the quarters of the cube
     double section_factor = 0.0;
-    bool lowered = false;      ///< fibres' moduli by those of the matrix
+    bool lowered = false;  ///< fibres' moduli by those of the matrix
 };
-/// Moduli of a unit cube with 2 x 2 fibres along x, over those of the matrix: drawn along them, sides free; drawn across them at a
-/// fixed length along them, the other sides free; sheared across and along them on all faces.
+/// Moduli of a unit cube with 2 x 2 fibres along x, over those of the matrix: drawn along them, sides free; drawn across them at
+/// a fixed length along them, the other sides free; sheared across and along them on all faces.
 Moduli moduli(const Bundle& bundle) {
     Moduli result{};
     const double radius = 0.5 * std::sqrt(bundle.fraction / std::numbers::pi), strain = 1e-6;
@@ -316,22 +326,28 @@ Moduli moduli(const Bundle& bundle) {
             for (const double z : {0.25, 0.75}) {
                 scene::FibreSpecification one;
                 one.from = Vec3(0, y + bundle.offset, z + bundle.offset), one.to = Vec3(1, y + bundle.offset, z + bundle.offset);
-                one.section = scene::circular(radius), one.material = {bundle.ratio - (bundle.lowered ? 1.0 : 0.0), 0.3}, one.elements = 4;
+                one.section = scene::circular(radius), one.material = {bundle.ratio - (bundle.lowered ? 1.0 : 0.0), 0.3},
+                one.elements = 4;
                 const Index f = assembly.add(one);
                 if (load == 0) {
                     assembly.hold_position(scene::first_end(f), Vec3(1, 0, 0).asDiagonal());
                     scene::Hold hold;
-                    hold.at = scene::last_end(f), hold.directions = Vec3(1, 0, 0).asDiagonal(), hold.displacement = Vec3(strain, 0, 0);
+                    hold.at = scene::last_end(f), hold.directions = Vec3(1, 0, 0).asDiagonal(),
+                    hold.displacement = Vec3(strain, 0, 0);
                     assembly.hold(hold);
                 }
                 if (load == 1)
-                    for (const scene::Station& end : {scene::first_end(f), scene::last_end(f)}) assembly.hold_position(end, Vec3(1, 0, 0).asDiagonal());
+                    for (const scene::Station& end : {scene::first_end(f), scene::last_end(f)})
+                        assembly.hold_position(end, Vec3(1, 0, 0).asDiagonal());
             }
         Scene scene(assembly, {.section_factor = bundle.section_factor});
         scene.solve(1.0, 3);
         if (load == 0) result.along = scene.reaction([](const Vec3& x) { return x.x() > 1.0 - 1e-9; }).x() / strain;
-        if (load == 1) result.across = scene.reaction([](const Vec3& x) { return x.y() > 1.0 - 1e-9; }).y() / strain * (1.0 - 0.3 * 0.3);
-        if (load >= 2) (load == 2 ? result.shear : result.shear_along) = scene.equilibrium.elastic_energy(scene.state) / (0.5 * strain * strain) / matrix.shear_modulus();
+        if (load == 1)
+            result.across = scene.reaction([](const Vec3& x) { return x.y() > 1.0 - 1e-9; }).y() / strain * (1.0 - 0.3 * 0.3);
+        if (load >= 2)
+            (load == 2 ? result.shear : result.shear_along) =
+                scene.equilibrium.elastic_energy(scene.state) / (0.5 * strain * strain) / matrix.shear_modulus();
     }
     return result;
 }
@@ -346,21 +362,35 @@ Bounds bounds(double fraction, double ratio, double nu = 0.3) {
     const auto plane_bulk = [&](double e) { return shear(e) / (1.0 - 2.0 * nu); };  // of plane strain
     const double v = fraction, gm = shear(1.0), gf = shear(ratio), km = plane_bulk(1.0), kf = plane_bulk(ratio);
     // Hashin (1965): of plane-strain bulk and transverse shear; the upper ones with matrix and fibres exchanged.
-    const auto bulk = [](double k1, double g1, double k2, double part) { return k1 + part / (1.0 / (k2 - k1) + (1.0 - part) / (k1 + g1)); };
-    const auto across = [](double k1, double g1, double g2, double part) { return g1 + part / (1.0 / (g2 - g1) + (1.0 - part) * (k1 + 2.0 * g1) / (2.0 * g1 * (k1 + g1))); };
-    const auto along = [](double g1, double g2, double part) { return g1 + part / (1.0 / (g2 - g1) + (1.0 - part) / (2.0 * g1)); };
+    const auto bulk = [](double k1, double g1, double k2, double part) {
+        return k1 + part / (1.0 / (k2 - k1) + (1.0 - part) / (k1 + g1));
+    };
+    const auto across = [](double k1, double g1, double g2, double part) {
+        return g1 + part / (1.0 / (g2 - g1) + (1.0 - part) * (k1 + 2.0 * g1) / (2.0 * g1 * (k1 + g1)));
+    };
+    const auto along = [](double g1, double g2, double part) {
+        return g1 + part / (1.0 / (g2 - g1) + (1.0 - part) / (2.0 * g1));
+    };
     const auto young = [&](double g, double k) { return 4.0 / (1.0 / g + 1.0 / k) * (1.0 - nu * nu); };
     const double g_low = across(km, gm, gf, v), g_high = across(kf, gf, gm, 1.0 - v);
-    return {1.0 / (v / ratio + 1.0 - v), v * ratio + 1.0 - v, young(g_low, bulk(km, gm, kf, v)), g_low / gm, young(g_high, bulk(kf, gf, km, 1.0 - v)), g_high / gm,
-            along(gm, gf, v) / gm, along(gf, gm, 1.0 - v) / gm};
+    return {1.0 / (v / ratio + 1.0 - v),
+            v * ratio + 1.0 - v,
+            young(g_low, bulk(km, gm, kf, v)),
+            g_low / gm,
+            young(g_high, bulk(kf, gf, km, 1.0 - v)),
+            g_high / gm,
+            along(gm, gf, v) / gm,
+            along(gf, gm, 1.0 - v) / gm};
 }
 
-TEST_CASE("a bundle of fibres in a matrix is as stiff along them as the rule of mixtures says, across them once sections are bonded") {
+TEST_CASE(
+    "a bundle of fibres in a matrix is as stiff along them as the rule of mixtures says, across them once sections are bonded") {
     for (const double fraction : {0.2, 0.5}) {
         const double ratio = 100.0;
         const Bounds bound = bounds(fraction, ratio);
         const Moduli centres = moduli({fraction, ratio});
-        MESSAGE("fraction " << fraction << ", centres bonded: along " << centres.along << ", across " << centres.across << ", shear " << centres.shear << "; Reuss " << bound.reuss);
+        MESSAGE("fraction " << fraction << ", centres bonded: along " << centres.along << ", across " << centres.across
+                            << ", shear " << centres.shear << "; Reuss " << bound.reuss);
         // The meshes overlap, so that the matrix fills the fibres' place too.
         CHECK(centres.along == test::near(fraction * ratio + 1.0, 1e-4));
         // Bonds hold centrelines, so that sections do not stiffen the matrix across them.
@@ -371,10 +401,12 @@ TEST_CASE("a bundle of fibres in a matrix is as stiff along them as the rule of 
             for (const Index cells : {1, 2, 3, 4}) {
                 const Bounds own = bounds(fraction, stiff);
                 const Moduli found = moduli({fraction, stiff, cells, cells == 4 ? 0.125 : 0.0, 1.0, true});
-                MESSAGE("fraction " << fraction << ", E ratio " << stiff << ", " << cells << " cells an edge, sections bonded: along " << found.along << " of "
-                                    << fraction * stiff + 1.0 - fraction << ", across " << found.across << " of " << own.low_e << " to " << own.high_e << ", shear "
-                                    << found.shear << " of " << own.low_g << " to " << own.high_g << ", along " << found.shear_along << " of " << own.low_along
-                                    << " to " << own.high_along << ", Reuss " << own.reuss);
+                MESSAGE("fraction " << fraction << ", E ratio " << stiff << ", " << cells
+                                    << " cells an edge, sections bonded: along " << found.along << " of "
+                                    << fraction * stiff + 1.0 - fraction << ", across " << found.across << " of " << own.low_e
+                                    << " to " << own.high_e << ", shear " << found.shear << " of " << own.low_g << " to "
+                                    << own.high_g << ", along " << found.shear_along << " of " << own.low_along << " to "
+                                    << own.high_along << ", Reuss " << own.reuss);
                 CHECK(found.along == test::near(fraction * stiff + 1.0 - fraction, 0.01));
                 CHECK(found.across < own.high_e);
                 CHECK(found.shear < own.high_g);
@@ -382,8 +414,9 @@ TEST_CASE("a bundle of fibres in a matrix is as stiff along them as the rule of 
                 if (cells <= 2) CHECK(found.across > own.low_e);
                 if (cells <= 2) CHECK(found.shear > own.low_g);
                 if (cells <= 2) CHECK(found.shear < 1.25 * own.low_g);
-                // Sheared along the fibres: between the sums of compliances and of stiffnesses (one law for E and G, as Poisson's ratio is
-                // the same), and within the narrower bounds while bonds, made for a thin fibre, are not those of half the volume.
+                // Sheared along the fibres: between the sums of compliances and of stiffnesses (one law for E and G, as Poisson's
+                // ratio is the same), and within the narrower bounds while bonds, made for a thin fibre, are not those of half
+                // the volume.
                 CHECK(found.shear_along > own.reuss);
                 CHECK(found.shear_along < own.high_along);
                 if (fraction < 0.3) CHECK(found.shear_along > own.low_along);
@@ -415,7 +448,8 @@ TEST_CASE("conjugate gradients find what a direct solver does, in few iterations
             CHECK(difference.norm() <= 1e-8 * b.norm());
             iterations[carried ? 1 : 0] = report.iterations;
         }
-        MESSAGE("bonds times " << factor << ": iterations " << iterations[1] << ", with blocks for fibres and solid alone " << iterations[0]);
+        MESSAGE("bonds times " << factor << ": iterations " << iterations[1] << ", with blocks for fibres and solid alone "
+                               << iterations[0]);
         CHECK(iterations[1] <= 40);
     }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "refusal.hpp"
 #include "../support/random_vector.hpp"
+#include "refusal.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>

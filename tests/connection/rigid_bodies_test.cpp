@@ -32,7 +32,8 @@ struct Tied {
     using Connections = connection::RigidBodies;
 };
 static_assert(simulation::Model<Tied> && simulation::HasConnections<Tied>);
-static_assert(std::is_empty_v<connection::NoConnections::Of<beam::DirectorBeam<3>>>, "a scene without bodies has no trace of them");
+static_assert(std::is_empty_v<connection::NoConnections::Of<beam::DirectorBeam<3>>>,
+              "a scene without bodies has no trace of them");
 
 constexpr double radius = 0.02, length = 2.0, young = 7300.0, apart = 0.1;
 
@@ -50,8 +51,12 @@ struct Bundle {
         assembly.add(std::move(base));
         for (Index k = 0; k < count; ++k) {
             const double x = apart * (static_cast<double>(k) - 0.5 * static_cast<double>(count - 1));
-            const Index f = assembly.add({.from = {x, 0, 0}, .to = {x, 0, length}, .section = scene::circular(radius),
-                                          .material = {young, 0.3}, .elements = 8, .director = Vec3::UnitX()});
+            const Index f = assembly.add({.from = {x, 0, 0},
+                                          .to = {x, 0, length},
+                                          .section = scene::circular(radius),
+                                          .material = {young, 0.3},
+                                          .elements = 8,
+                                          .director = Vec3::UnitX()});
             assembly.clamp_to(0, scene::first_end(f), section);
         }
     }
@@ -104,8 +109,10 @@ TEST_CASE("the mean of fibre ends follows its body exactly while single ends giv
     const auto& ties = simulator.equilibrium().ties();
     CHECK(std::abs(ties.wrench(1).force.y() - 7.0 * share) < 2e-4 * 7.0 * stiffness * given);  // of what the loads take away most
     // All of the sample: bodies and loads balance, in force and in moment about the origin.
-    Vec3 force = ties.wrench(0).force + ties.wrench(1).force, moment = ties.wrench(0, Vec3::Zero()).moment + ties.wrench(1, Vec3::Zero()).moment;
-    for (const scene::DeadForce& load : bundle.assembly.forces()) force += load.force, moment += simulator.value(load.at).cross(load.force);
+    Vec3 force = ties.wrench(0).force + ties.wrench(1).force,
+         moment = ties.wrench(0, Vec3::Zero()).moment + ties.wrench(1, Vec3::Zero()).moment;
+    for (const scene::DeadForce& load : bundle.assembly.forces())
+        force += load.force, moment += simulator.value(load.at).cross(load.force);
     // Fibres this slender leave E A times the rounding of strains in every force.
     const double rounding = 3e-13 * young * area();
     CHECK(force.norm() < 1e-8 * std::abs(loads) + rounding);
@@ -122,8 +129,10 @@ TEST_CASE("an end that is tied to what is prescribed altogether is held, and sta
         scene::RigidBody end;
         end.position = {0, 0, length};
         end.rotation[0] = scene::Coordinate::held_at(0.2, "turn");
-        end.translation[1] = driven ? scene::Coordinate::held_at(0.1 * length, "turn") : scene::Coordinate::under(force.y(), "turn");
-        end.translation[2] = scene::Coordinate::held_at(-0.004 * length, "turn");  // its chord grows by 0.1 %: pulled, not buckled
+        end.translation[1] =
+            driven ? scene::Coordinate::held_at(0.1 * length, "turn") : scene::Coordinate::under(force.y(), "turn");
+        end.translation[2] =
+            scene::Coordinate::held_at(-0.004 * length, "turn");  // its chord grows by 0.1 %: pulled, not buckled
         const Index body = bundle.assembly.add(end);
         bundle.assembly.clamp_to(body, scene::last_end(0), bundle.section);
         simulation::Simulator<Tied> simulator(bundle.assembly, parameters());
@@ -136,7 +145,8 @@ TEST_CASE("an end that is tied to what is prescribed altogether is held, and sta
         CHECK(core::count(layout.held) == (driven ? 6 : 5));
         CHECK(simulator.equilibrium().ties().misfit() < 1e-14 * length);
         states[driven ? 0 : 1] = simulator.state();
-        const connection::Wrench wrench = simulator.equilibrium().ties().wrench(body), base = simulator.equilibrium().ties().wrench(0, Vec3::Zero());
+        const connection::Wrench wrench = simulator.equilibrium().ties().wrench(body),
+                                 base = simulator.equilibrium().ties().wrench(0, Vec3::Zero());
         if (driven) force = wrench.force;
         CHECK((wrench.force + base.force).norm() < 1e-8 * force.norm());
         const Vec3 about = simulator.value(scene::last_end(0));
@@ -170,8 +180,8 @@ TEST_CASE("a rigid motion of all bodies strains nothing") {
 }
 
 TEST_CASE("ends of a body that turns freely hold to rounding, however loosely forces balance") {
-    // Three fibres whose ends are clamped to a body that a moment turns in their plane: so little that one step of Newton's method is near
-    // enough, which leaves the outer ends further apart by half of the angle's square, 3e-9.
+    // Three fibres whose ends are clamped to a body that a moment turns in their plane: so little that one step of Newton's
+    // method is near enough, which leaves the outer ends further apart by half of the angle's square, 3e-9.
     const double angle = 2.5e-4;
     Bundle bundle(3);
     scene::RigidBody end;
@@ -311,14 +321,19 @@ TEST_CASE("a periodic fibre stretches under a mean stress as a bar, and carries 
     const double force = young * area() * 0.5 * (stretch * stretch - 1.0) * stretch;  // St Venant-Kirchhoff, nominal
     for (const bool prescribed : {true, false}) {
         scene::Assembly assembly;
-        const Index f = assembly.add({.from = {0, 0, 0}, .to = {0, 0, length}, .section = scene::circular(radius),
-                                      .material = {young, 0.3}, .elements = 8, .director = Vec3::UnitX()});
+        const Index f = assembly.add({.from = {0, 0, 0},
+                                      .to = {0, 0, length},
+                                      .section = scene::circular(radius),
+                                      .material = {young, 0.3},
+                                      .elements = 8,
+                                      .director = Vec3::UnitX()});
         assembly.hold_position({f, 0.5});
         assembly.hold_axial_rotation({f, 0.5});
         // The other rotations of a straight periodic fibre are held by its period.
         scene::PeriodicCell cell;
         cell.volume = 3.0;
-        cell.component(2, 2) = prescribed ? scene::Coordinate::held_at(strain, "strain") : scene::Coordinate::under(force * length / cell.volume, "strain");
+        cell.component(2, 2) = prescribed ? scene::Coordinate::held_at(strain, "strain")
+                                          : scene::Coordinate::under(force * length / cell.volume, "strain");
         assembly.add(cell);
         assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), Vec3(0, 0, length), 0});
         simulation::Simulator<Tied> simulator(assembly, parameters());
@@ -330,7 +345,8 @@ TEST_CASE("a periodic fibre stretches under a mean stress as a bar, and carries 
         CHECK(ties.cell_force(0)(2, 2) == test::near(force * length, 1e-8));
         const Vec3 apart_now = simulator.value(scene::last_end(f)) - simulator.value(scene::first_end(f));
         CHECK((apart_now - Vec3(0, 0, stretch * length)).norm() < 1e-9);
-        const Vec3 g = simulator.value(scene::last_end(f), scene::NodeVector::director_1) - simulator.value(scene::first_end(f), scene::NodeVector::director_1);
+        const Vec3 g = simulator.value(scene::last_end(f), scene::NodeVector::director_1) -
+                       simulator.value(scene::first_end(f), scene::NodeVector::director_1);
         CHECK(g.norm() < 1e-10);
     }
 }
@@ -340,10 +356,16 @@ TEST_CASE("a cell that is stretched and sheared holds the force of its bar along
     gradient << 0.01, 0.02, -0.03, 0.04, -0.015, 0.05, 0.06, -0.07, 0.025;  // no two alike
     scene::Assembly assembly;
     const Vec3 along = Vec3(1, 2, 3).normalized(), period = length * along, now = period + gradient * period;
-    const Index f = assembly.add({.from = {0, 0, 0}, .to = period, .section = scene::circular(radius), .material = {young, 0.3}, .elements = 4, .director = Vec3::UnitX()});
+    const Index f = assembly.add({.from = {0, 0, 0},
+                                  .to = period,
+                                  .section = scene::circular(radius),
+                                  .material = {young, 0.3},
+                                  .elements = 4,
+                                  .director = Vec3::UnitX()});
     assembly.hold_position({f, 0.5});
     scene::Hold spin;  // by one director alone: the bar turns with the cell, and both could not stay
-    spin.at = {f, 0.5}, spin.axes = scene::Axes::section, spin.vector = scene::NodeVector::director_1, spin.directions = Vec3(0, 1, 0).asDiagonal();
+    spin.at = {f, 0.5}, spin.axes = scene::Axes::section, spin.vector = scene::NodeVector::director_1,
+    spin.directions = Vec3(0, 1, 0).asDiagonal();
     assembly.hold(spin);
     scene::PeriodicCell cell;
     for (int i = 0; i < 3; ++i)
@@ -373,7 +395,8 @@ TEST_CASE("a scene that starts from the state of another one ties the means that
     const std::string file = "rigid_bodies_test_checkpoint.bin";
     Bundle loaded(3), tied(3);
     for (Index k = 0; k < 3; ++k)
-        loaded.assembly.apply(scene::DeadForce{scene::last_end(k), scene::NodeVector::position, Vec3(0, stiffness * given * static_cast<double>(k), 0), "load"});
+        loaded.assembly.apply(scene::DeadForce{scene::last_end(k), scene::NodeVector::position,
+                                               Vec3(0, stiffness * given * static_cast<double>(k), 0), "load"});
     {
         simulation::Simulator<Tied> simulator(loaded.assembly, parameters());
         simulation::Loading<Tied> loading{.increments = 1};
@@ -420,11 +443,15 @@ TEST_CASE("an end that is held cannot be tied, nor tied twice, and a body needs 
     Bundle bundle(1);
     bundle.assembly.hold_position(scene::last_end(0));
     bundle.assembly.connect({.ends = {scene::last_end(0)}, .body = 0});
-    CHECK(test::refusal([&] { simulation::Simulator<Tied>(bundle.assembly, parameters()); }).find("neither held nor tied twice") != std::string::npos);
+    CHECK(test::refusal([&] {
+              simulation::Simulator<Tied>(bundle.assembly, parameters());
+          }).find("neither held nor tied twice") != std::string::npos);
     scene::RigidBody skew;
     skew.frame(0, 0) = 2.0;
     CHECK(test::refusal([&] { bundle.assembly.add(skew); }).find("RigidBody.frame") != std::string::npos);
-    CHECK(test::refusal([&] { bundle.assembly.connect(scene::AverageConnection{.ends = {scene::last_end(0)}, .body = 7}); }).find("AverageConnection.body = 7") != std::string::npos);
+    CHECK(test::refusal([&] {
+              bundle.assembly.connect(scene::AverageConnection{.ends = {scene::last_end(0)}, .body = 7});
+          }).find("AverageConnection.body = 7") != std::string::npos);
 }
 
 }  // namespace rigid_bodies_test

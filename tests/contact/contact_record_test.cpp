@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "fibres.hpp"
 #include "../support/random_vector.hpp"
+#include "fibres.hpp"
 
 #include <fibrant/contact/contact_record.hpp>
 #include <fibrant/law/frictionless.hpp>
@@ -42,7 +42,8 @@ TEST_CASE("friction that is linear along a contact is carried over exactly to ne
     for (const double slope : {1.0, -1.0, 0.8}) {  // abscissa of the second fibre: along, against, with longer elements
         std::vector<Record> list{record(0, 1, 2.0, 2.0, 9.0, 9.0), record(1, 2, 2.0, 2.0, 9.0, 9.0)};  // of other pairs
         const auto opposite = [&](double u) { return 5.0 + slope * (u - 3.0); };
-        for (double u = 0.0; u < 6.5; u += step(generator)) list.push_back(record(0, 2, u, opposite(u), field(u), 2.0 * field(u)));
+        for (double u = 0.0; u < 6.5; u += step(generator))
+            list.push_back(record(0, 2, u, opposite(u), field(u), 2.0 * field(u)));
         std::shuffle(list.begin(), list.end(), generator);
         Memory memory;
         memory.assign(list);
@@ -93,7 +94,8 @@ TEST_CASE("the nearest record is found by brute force too") {
         const double u = place(generator), v = place(generator), range = 0.8;
         double least = 1e300;
         for (const Record& entry : list)
-            if (entry.fibre_i == 1 && entry.fibre_j == 4) least = std::min(least, std::max(std::abs(entry.u_i - u), std::abs(entry.u_j - v)));
+            if (entry.fibre_i == 1 && entry.fibre_j == 4)
+                least = std::min(least, std::max(std::abs(entry.u_i - u), std::abs(entry.u_j - v)));
         const Record* found = memory.nearest(1, 4, u, v, range);
         CHECK((found != nullptr) == (least <= range));
         if (found) CHECK(std::max(std::abs(found->u_i - u), std::abs(found->u_j - v)) == least);

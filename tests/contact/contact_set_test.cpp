@@ -55,7 +55,8 @@ struct BareElement {
 static_assert(sizeof(Element<RegularisedPenalty, Frictionless>) == sizeof(BareElement), "null policies take no byte");
 static_assert(sizeof(Element<law::LinearPenalty, Frictionless>) == sizeof(BareElement));
 static_assert(sizeof(Element<RegularisedPenalty, Frictionless>) < sizeof(Element<RegularisedPenalty, RegularisedCoulomb>));
-static_assert(sizeof(Element<RegularisedPenalty, Frictionless>) < sizeof(Element<law::LimitedGap<RegularisedPenalty>, Frictionless>));
+static_assert(sizeof(Element<RegularisedPenalty, Frictionless>) <
+              sizeof(Element<law::LimitedGap<RegularisedPenalty>, Frictionless>));
 
 const double r = 0.02;
 const RegularisedPenalty penalty({.regularisation_depth = 0.005 * r});
@@ -102,11 +103,11 @@ Vector random_vector(std::mt19937& generator, Index size) {
 std::vector<scene::FibreSpecification> some_fibres() {
     std::vector<scene::FibreSpecification> fibres{
         straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8),
-        straight_fibre({-0.45, 0.01, 1.9 * r}, {0.5, 0.02, 1.9 * r}, r, 8),       // side by side
-        straight_fibre({0.4, -0.03, -1.95 * r}, {-0.5, 0.12, -1.95 * r}, r, 7),   // at 9 degrees, the other way
-        straight_fibre({0.1, -0.4, 3.8 * r}, {-0.1, 0.5, 3.85 * r}, r, 6),        // across
-        straight_fibre({-0.2, 0.3, -3.85 * r}, {0.2, -0.3, -3.85 * r}, r, 6),     // across, below
-        straight_fibre({0.3, 0.9, 0.0}, {0.3, 0.039, 0.0}, r, 8),                 // its end against the first
+        straight_fibre({-0.45, 0.01, 1.9 * r}, {0.5, 0.02, 1.9 * r}, r, 8),      // side by side
+        straight_fibre({0.4, -0.03, -1.95 * r}, {-0.5, 0.12, -1.95 * r}, r, 7),  // at 9 degrees, the other way
+        straight_fibre({0.1, -0.4, 3.8 * r}, {-0.1, 0.5, 3.85 * r}, r, 6),       // across
+        straight_fibre({-0.2, 0.3, -3.85 * r}, {0.2, -0.3, -3.85 * r}, r, 6),    // across, below
+        straight_fibre({0.3, 0.9, 0.0}, {0.3, 0.039, 0.0}, r, 8),                // its end against the first
     };
     fibres[3].section = scene::elliptical(1.2 * r, 0.9 * r);
     fibres[3].director = Vec3(1, 0, 0.3);
@@ -155,14 +156,16 @@ Vector tangent_times(const Contact& contacts, const Mesh& mesh, const Vector& st
     };
     for (Index k = 0; k < core::count(contacts.elements()); ++k) {
         const auto& element = contacts.elements()[core::at(k)];
-        const Vec3 force = contacts.tangent(k) * (Mesh::point(x, element.first_j, element.weights_j) - Mesh::point(x, element.first_i, element.weights_i));
+        const Vec3 force = contacts.tangent(k) * (Mesh::point(x, element.first_j, element.weights_j) -
+                                                  Mesh::point(x, element.first_i, element.weights_i));
         add(element.first_j, element.weights_j, force);
         add(element.first_i, element.weights_i, -force);
     }
     for (Index f = 0; f < mesh.fibre_count(); ++f)
-        contacts.section_stiffness_terms(f, state, [&](Index first, const beam::ElementWeights<Beam>& weights, const Mat3& stiffness) {
-            add(first, weights, stiffness * Mesh::point(x, first, weights));
-        });
+        contacts.section_stiffness_terms(f, state,
+                                         [&](Index first, const beam::ElementWeights<Beam>& weights, const Mat3& stiffness) {
+                                             add(first, weights, stiffness * Mesh::point(x, first, weights));
+                                         });
     return y;
 }
 
@@ -199,22 +202,26 @@ TEST_CASE("the tangent of contact is the slope of its forces, symmetric and neve
         const Vector product = tangent_times(contacts, scene.mesh, state, x);
         CHECK((difference - product).norm() < 1e-5 * product.norm());  // differences lose digits where a contact is about to open
         CHECK(x.dot(product) >= 0.0);
-        CHECK(std::abs(y.dot(product) - x.dot(tangent_times(contacts, scene.mesh, state, y))) < 1e-10 * product.norm() * y.norm());
+        CHECK(std::abs(y.dot(product) - x.dot(tangent_times(contacts, scene.mesh, state, y))) <
+              1e-10 * product.norm() * y.norm());
     }
 }
 
-/// Equal and opposite forces without a moment, on sections that are strained and lean, of pairs that slide; the moment over the radius and the forces.
+/// Equal and opposite forces without a moment, on sections that are strained and lean, of pairs that slide; the moment over the
+/// radius and the forces.
 template <class B, class Friction>
 void check_balance(const std::vector<scene::FibreSpecification>& fibres, const Friction& friction) {
     const scene::Assembly assembly = Scene::gather(fibres);
     const beam::Mesh<B> mesh{assembly, B{}};
-    contact::ContactSet<B, proximity::GridSearch, RegularisedPenalty, Friction> contacts{assembly, mesh, contact_parameters(), proximity::GridSearch{}, penalty, friction};
+    contact::ContactSet<B, proximity::GridSearch, RegularisedPenalty, Friction> contacts{
+        assembly, mesh, contact_parameters(), proximity::GridSearch{}, penalty, friction};
     std::mt19937 generator(6);
     const Vector rest = mesh.rest_state();
     Vector state = rest;
     const auto& kind = mesh.layout().kind;
     for (Index v = 0; v < mesh.layout().vectors(); ++v)
-        for (int k = 0; k < 3; ++k) state[3 * v + k] += (kind[core::at(v)] == scene::VectorKind::position ? 0.02 * r : 0.05) * random_value(generator);
+        for (int k = 0; k < 3; ++k)
+            state[3 * v + k] += (kind[core::at(v)] == scene::VectorKind::position ? 0.02 * r : 0.05) * random_value(generator);
     contacts.detect(state, rest, 0.5 * r, false);
     const Vector force = forces(contacts, state);
     CHECK(contacts.figures(state).active > 5);
@@ -225,8 +232,10 @@ void check_balance(const std::vector<scene::FibreSpecification>& fibres, const F
         const Vec3 f = force.segment<3>(3 * v), y = state.segment<3>(3 * v);
         const bool position = kind[core::at(v)] == scene::VectorKind::position;
         if (position) sum += f, size += f.norm();
-        if (position || !beam::TurningSections<B>) moment += y.cross(f);
-        else moment += core::spin_matrix(y).inverse().transpose() * f;
+        if (position || !beam::TurningSections<B>)
+            moment += y.cross(f);
+        else
+            moment += core::spin_matrix(y).inverse().transpose() * f;
     }
     CHECK(size > 0.0);
     CHECK(sum.norm() < 1e-13 * size);
@@ -248,12 +257,13 @@ TEST_CASE("contact forces are equal and opposite and without a moment, whatever 
 }
 
 TEST_CASE("friction answers a slide at a standing reaction by its own slope, stuck or sliding") {
-    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8),
+    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8),
+                       straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8),
                        straight_fibre({0.1, -0.4, -1.9 * r}, {0.1, 0.5, -1.9 * r}, r, 6)});
     const Vector rest = scene.mesh.rest_state();
     auto contacts = contacts_of(scene.assembly, scene.mesh, coulomb);
     contacts.detect(rest, rest, 0.5 * r, false);
-    for (const double slide : {0.3, 3.0}) {  // in reversible displacements
+    for (const double slide : {0.3, 3.0}) {                       // in reversible displacements
         Vector aside = Vector::Zero(rest.size()), other = aside;  // the first fibre along itself, and across
         for (Index node = 0; node < scene.mesh.node_count(0); ++node) {
             aside[3 * scene.mesh.node_vector(0, node)] = 1.0;
@@ -275,8 +285,9 @@ TEST_CASE("friction answers a slide at a standing reaction by its own slope, stu
 }
 
 TEST_CASE("what stuck friction remembers turns with the fibres, and files show what contacts exert and where fibres are") {
-    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8),
-                       straight_fibre({0.1, -0.4, -1.9 * r}, {0.1, 0.5, -1.9 * r}, r, 6), straight_fibre({-0.4, 1, 0}, {0.4, 1, 0}, r, 6)});
+    const Scene scene(
+        {straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8),
+         straight_fibre({0.1, -0.4, -1.9 * r}, {0.1, 0.5, -1.9 * r}, r, 6), straight_fibre({-0.4, 1, 0}, {0.4, 1, 0}, r, 6)});
     const Vector rest = scene.mesh.rest_state();
     auto contacts = contacts_of(scene.assembly, scene.mesh, coulomb);
     contacts.detect(rest, rest, 0.5 * r, false);
@@ -294,7 +305,8 @@ TEST_CASE("what stuck friction remembers turns with the fibres, and files show w
     const Vector turned = (turn * Eigen::Map<const Eigen::Matrix3Xd>(state.data(), 3, state.size() / 3)).reshaped();
     contacts.detect(turned, turned, 0.5 * r, false);
     const Vector after = forces(contacts, turned);
-    CHECK((after - (turn * Eigen::Map<const Eigen::Matrix3Xd>(before.data(), 3, before.size() / 3)).reshaped()).norm() < 1e-9 * before.norm());
+    CHECK((after - (turn * Eigen::Map<const Eigen::Matrix3Xd>(before.data(), 3, before.size() / 3)).reshaped()).norm() <
+          1e-9 * before.norm());
     // Of friction there is something: 0.3 of the reactions, for 0.58 of the reversible displacement.
     CHECK(on_fibre(scene.mesh, before, 0).head<2>().norm() > 0.05 * std::abs(on_fibre(scene.mesh, before, 1).z()));
 
@@ -305,27 +317,34 @@ TEST_CASE("what stuck friction remembers turns with the fibres, and files show w
     for (Index fibre = 0; fibre < 3; ++fibre) {
         Vec3 sum = Vec3::Zero();
         for (std::size_t k = 0; k < first.size(); ++k) {
-            const Vec3 on_i = Vec3(friction[3 * k], friction[3 * k + 1], friction[3 * k + 2]) - Vec3(pushed[3 * k], pushed[3 * k + 1], pushed[3 * k + 2]);
+            const Vec3 on_i = Vec3(friction[3 * k], friction[3 * k + 1], friction[3 * k + 2]) -
+                              Vec3(pushed[3 * k], pushed[3 * k + 1], pushed[3 * k + 2]);
             if (static_cast<Index>(first[k]) == fibre) sum += on_i;
             if (static_cast<Index>(second[k]) == fibre) sum -= on_i;
         }
-        CHECK((sum + on_fibre(scene.mesh, after, fibre)).norm() < 1e-6 * on_fibre(scene.mesh, after, 1).norm());  // floats; forces are internal ones
+        CHECK((sum + on_fibre(scene.mesh, after, fibre)).norm() <
+              1e-6 * on_fibre(scene.mesh, after, 1).norm());  // floats; forces are internal ones
     }
-    const auto displacement = test::array_of<float>(fibres, "displacement"), curvature = test::array_of<float>(fibres, "curvature");
+    const auto displacement = test::array_of<float>(fibres, "displacement"),
+               curvature = test::array_of<float>(fibres, "curvature");
     std::size_t point = 0;
     for (Index fibre = 0; fibre < 4; ++fibre)
         for (Index node = 0; node < scene.mesh.node_count(fibre); ++node, ++point) {
             const Index v = 3 * scene.mesh.node_vector(fibre, node);
             const Vec3 way = turned.segment<3>(v) - rest.segment<3>(v);
-            CHECK((Vec3(displacement[3 * point], displacement[3 * point + 1], displacement[3 * point + 2]) - way).norm() < 1e-6 * way.norm());
-            if (fibre == 3) CHECK(curvature[point] == test::near(2.0 * bend / std::pow(1.0 + std::pow(2.0 * bend * state[v], 2), 1.5), 1e-6));
+            CHECK((Vec3(displacement[3 * point], displacement[3 * point + 1], displacement[3 * point + 2]) - way).norm() <
+                  1e-6 * way.norm());
+            if (fibre == 3)
+                CHECK(curvature[point] == test::near(2.0 * bend / std::pow(1.0 + std::pow(2.0 * bend * state[v], 2), 1.5), 1e-6));
         }
 }
 
 TEST_CASE("where an increment started, pairs far deeper than their zone was exert and store nothing, friction included") {
-    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8),
+    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8),
+                       straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8),
                        straight_fibre({0.1, -0.4, -1.98 * r}, {0.1, 0.5, -1.98 * r}, r, 6)});
-    const Vector rest = scene.mesh.rest_state(), slid = moved(scene.mesh, rest, 0, {0.01 * r, 0, 0});  // by half of a reversible displacement
+    const Vector rest = scene.mesh.rest_state(),
+                 slid = moved(scene.mesh, rest, 0, {0.01 * r, 0, 0});  // by half of a reversible displacement
     struct Seen {
         std::array<Vec3, 3> on;  // each fibre
         contact::ContactFigures figures;
@@ -353,8 +372,9 @@ TEST_CASE("where an increment started, pairs far deeper than their zone was exer
     };
     // The upper pair was 0.1 r deep: it carries at 0.15 r, and is of no place where it stood at 0.25 r.
     const auto contacts = settled(slid);
-    const Seen whole = seen(contacts, slid), deeper = seen(contacts, moved(scene.mesh, slid, 1, {0, 0, -0.05 * r})), part = seen(contacts, moved(scene.mesh, slid, 1, {0, 0, -0.15 * r}));
-    CHECK(std::abs(whole.on[1].x()) > 0.05 * whole.on[1].norm());  // friction: half of 0.3
+    const Seen whole = seen(contacts, slid), deeper = seen(contacts, moved(scene.mesh, slid, 1, {0, 0, -0.05 * r})),
+               part = seen(contacts, moved(scene.mesh, slid, 1, {0, 0, -0.15 * r}));
+    CHECK(std::abs(whole.on[1].x()) > 0.05 * whole.on[1].norm());        // friction: half of 0.3
     CHECK(deeper.on[1].z() / whole.on[1].z() == test::near(1.5, 0.05));  // the penalty's regularised foot
     CHECK(part.on[1] == Vec3(Vec3::Zero()));
     CHECK(whole.on[2].norm() > 0.0);
@@ -368,7 +388,8 @@ TEST_CASE("where an increment started, pairs far deeper than their zone was exer
 }
 
 TEST_CASE("fibres that cross and slid along themselves since are pushed where they cross now, which spins neither") {
-    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({0, -0.5, 1.98 * r}, {0, 0.5, 1.98 * r}, r, 8)});
+    const Scene scene(
+        {straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({0, -0.5, 1.98 * r}, {0, 0.5, 1.98 * r}, r, 8)});
     const Vector rest = scene.mesh.rest_state();
     const Vector slid = moved(scene.mesh, moved(scene.mesh, rest, 0, {0.3 * r, 0, 0}), 1, {0, 0.3 * r, 0});
     auto contacts = contacts_of(scene.assembly, scene.mesh);
@@ -379,7 +400,8 @@ TEST_CASE("fibres that cross and slid along themselves since are pushed where th
     for (const Index fibre : {0, 1}) {
         const Vec3 push = on_fibre(scene.mesh, force, fibre), crossing(0, 0, static_cast<double>(fibre) * 1.98 * r);
         Vec3 moment = -crossing.cross(push);  // about the crossing, at the height of the fibre's axis
-        for (Index v = scene.mesh.node_vector(fibre, 0); v < scene.mesh.node_vector(fibre, 0) + 3 * scene.mesh.node_count(fibre); ++v)
+        for (Index v = scene.mesh.node_vector(fibre, 0); v < scene.mesh.node_vector(fibre, 0) + 3 * scene.mesh.node_count(fibre);
+             ++v)
             moment += slid.segment<3>(3 * v).cross(force.segment<3>(3 * v));
         REQUIRE(std::abs(push.z()) > 0.0);
         CHECK(moment.norm() < 1e-12 * r * std::abs(push.z()));  // half-way between stations it were 0.2 r
@@ -389,7 +411,8 @@ TEST_CASE("fibres that cross and slid along themselves since are pushed where th
 TEST_CASE("a fibre that slid around another stores and exerts the same where it came from, as it stood there") {
     const double apart = 1.98 * r, angle = 0.4;
     const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({-0.5, 0, apart}, {0.5, 0, apart}, r, 8)});
-    const Vector start = scene.mesh.rest_state(), end = moved(scene.mesh, start, 1, apart * Vec3(0.0, std::sin(angle), std::cos(angle) - 1.0));
+    const Vector start = scene.mesh.rest_state(),
+                 end = moved(scene.mesh, start, 1, apart * Vec3(0.0, std::sin(angle), std::cos(angle) - 1.0));
     auto contacts = contacts_of(scene.assembly, scene.mesh);
     contacts.detect(end, end, 0.5 * r, false);
     const auto pressed = [&](const Vector& state, bool start) {
@@ -415,9 +438,11 @@ TEST_CASE("a rule for a pair of groups changes the friction and the penetration 
     // One fibre on two others, in the groups of a hierarchy: the rule is given for the outer group of one of them.
     for (const bool ruled : {false, true}) {
         scene::Assembly assembly;
-        const Index upper = assembly.add_group("upper"), outer = assembly.add_group("outer"), inner = assembly.add_group("inner", outer);
+        const Index upper = assembly.add_group("upper"), outer = assembly.add_group("outer"),
+                    inner = assembly.add_group("inner", outer);
         const Index other = assembly.add_group("other");
-        auto fibres = std::array{straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8), straight_fibre({-0.2, -0.4, 0}, {-0.2, 0.4, 0}, r, 6),
+        auto fibres = std::array{straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8),
+                                 straight_fibre({-0.2, -0.4, 0}, {-0.2, 0.4, 0}, r, 6),
                                  straight_fibre({0.2, -0.4, 0}, {0.2, 0.4, 0}, r, 6)};
         fibres[0].group = upper, fibres[1].group = inner, fibres[2].group = other;
         for (const scene::FibreSpecification& fibre : fibres) assembly.add(fibre);
@@ -433,7 +458,9 @@ TEST_CASE("a rule for a pair of groups changes the friction and the penetration 
         const Vector slid = moved(mesh, rest, 0, {0.1 * r, 0, 0});
         contacts.evaluate(slid);
         REQUIRE(contacts.elements().size() == 2);
-        const auto ratio = [&](Index k) { return contacts.frictions()[core::at(k)].force.norm() / contacts.responses()[core::at(k)].reaction; };
+        const auto ratio = [&](Index k) {
+            return contacts.frictions()[core::at(k)].force.norm() / contacts.responses()[core::at(k)].reaction;
+        };
         CHECK(ratio(0) == test::near(ruled ? 0.15 : 0.3, 1e-12));
         CHECK(ratio(1) == test::near(0.3, 1e-12));
         const double before = contacts.zones()[0].stiffness;
@@ -446,14 +473,16 @@ TEST_CASE("a rule for a pair of groups changes the friction and the penetration 
         for (const Index k : {0, 1}) {
             const double depth = -contacts.responses()[core::at(k)].gap;
             CHECK(contacts.zones()[core::at(k)].stiffness ==
-                  test::near((k == 0 ? own : all).adapted(before, contacts.zones()[core::at(k)].reference, depth, 0.005 * r), 1e-12));
+                  test::near((k == 0 ? own : all).adapted(before, contacts.zones()[core::at(k)].reference, depth, 0.005 * r),
+                             1e-12));
         }
         CHECK((contacts.zones()[0].stiffness == contacts.zones()[1].stiffness) == !ruled);
     }
     scene::Assembly assembly;
     assembly.add_group("only");
     CHECK_THROWS_WITH(assembly.add(scene::PairRule{0, 1}), "PairRule.group = 1, but it must be a group of this assembly");
-    CHECK_THROWS_WITH(assembly.add(scene::PairRule{0, 0, -0.5}), "PairRule.friction_factor = -0.5, but it must be finite and >= 0 (group 0 'only' and group 0 'only')");
+    CHECK_THROWS_WITH(assembly.add(scene::PairRule{0, 0, -0.5}),
+                      "PairRule.friction_factor = -0.5, but it must be finite and >= 0 (group 0 'only' and group 0 'only')");
 }
 
 /// Two families of four waving fibres that interlace, and an order between them.
@@ -466,7 +495,8 @@ scene::Assembly interlaced() {
         for (int k = 0; k < 4; ++k) {
             scene::FibreSpecification fibre = test::curved_fibre(
                 [=](double t) {
-                    const double along = 0.6 * (t - 0.5), across = 0.05 * (k - 1.5) + (k > 1 ? 0.04 : -0.04), height = 0.01 * std::sin(9.0 * t + k);
+                    const double along = 0.6 * (t - 0.5), across = 0.05 * (k - 1.5) + (k > 1 ? 0.04 : -0.04),
+                                 height = 0.01 * std::sin(9.0 * t + k);
                     return family == 0 ? Vec3(along, across, height) : Vec3(across, along, height);
                 },
                 r, 8);
@@ -503,8 +533,9 @@ void check_same(const Result& a, const Result& b) {
     }
     for (std::size_t k = 0; k < a.first.size(); ++k) {
         const auto &p = a.first[k], &q = b.first[k];
-        const bool same = p.u_i == q.u_i && p.u_j == q.u_j && p.fibre_i == q.fibre_i && p.fibre_j == q.fibre_j && p.normal == q.normal &&
-                          p.weights_i == q.weights_i && p.weights_j == q.weights_j && p.cap == q.cap && p.zone == q.zone;
+        const bool same = p.u_i == q.u_i && p.u_j == q.u_j && p.fibre_i == q.fibre_i && p.fibre_j == q.fibre_j &&
+                          p.normal == q.normal && p.weights_i == q.weights_i && p.weights_j == q.weights_j && p.cap == q.cap &&
+                          p.zone == q.zone;
         CHECK(same);
     }
 }
@@ -555,7 +586,8 @@ TEST_CASE("the order in which fibres are named changes no force") {
         const Index size = 9 * one.mesh.node_count(static_cast<Index>(order[k]));
         // closest points and planes are solved to 1e-11 elements
         CHECK((f.segment(3 * one.mesh.node_vector(static_cast<Index>(order[k]), 0), size) -
-               g.segment(3 * other.mesh.node_vector(static_cast<Index>(k), 0), size)).norm() < 1e-8 * f.norm());
+               g.segment(3 * other.mesh.node_vector(static_cast<Index>(k), 0), size))
+                  .norm() < 1e-8 * f.norm());
     }
 }
 
@@ -583,7 +615,8 @@ TEST_CASE("a crossing that slides off the end of a fibre has the gap of a round 
 }
 
 TEST_CASE("contacts remember their side when elements are made anew after fibres have passed through each other") {
-    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8),
+    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8),
+                       straight_fibre({-0.5, 0, 1.9 * r}, {0.5, 0, 1.9 * r}, r, 8),
                        straight_fibre({0.1, -0.4, -1.9 * r}, {0.1, 0.5, -1.9 * r}, r, 6)});
     const Vector rest = scene.mesh.rest_state();
     auto contacts = contacts_of(scene.assembly, scene.mesh);
@@ -608,14 +641,16 @@ TEST_CASE("contacts remember their side when elements are made anew after fibres
 }
 
 TEST_CASE("accepting a state brings the stiffness of its zones to the target of the penetration") {
-    const Scene scene({straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({0.1, -0.4, 1.9 * r}, {0.1, 0.5, 1.9 * r}, r, 6)});
+    const Scene scene(
+        {straight_fibre({-0.5, 0, 0}, {0.5, 0, 0}, r, 8), straight_fibre({0.1, -0.4, 1.9 * r}, {0.1, 0.5, 1.9 * r}, r, 6)});
     const Vector rest = scene.mesh.rest_state();
     auto contacts = contacts_of(scene.assembly, scene.mesh);
     contacts.detect(rest, rest, 0.5 * r, false);
     contacts.evaluate(rest);
     REQUIRE(contacts.zones().size() == 1);
     const double before = contacts.zones()[0].stiffness;
-    contacts.accept(rest);  // the penetration is 0.1 r, twice the allowed one: over (0.6 * 0.05) it asks for more than three times
+    contacts.accept(
+        rest);  // the penetration is 0.1 r, twice the allowed one: over (0.6 * 0.05) it asks for more than three times
     CHECK(contacts.zones()[0].stiffness == test::near(3.0 * before, 1e-12));
     contacts.detect(rest, rest, 0.5 * r, false);
     CHECK(contacts.zones()[0].stiffness == test::near(3.0 * before, 1e-12));
@@ -624,8 +659,11 @@ TEST_CASE("accepting a state brings the stiffness of its zones to the target of 
 using Centred = beam::OnCentreline<Beam>;
 using Sliding = beam::OnCentreline<Beam, beam::FrictionLever::dropped>;
 static_assert(beam::BeamElement<Centred> && beam::BeamElement<Sliding>);
-static_assert(sizeof(contact::ContactElement<Centred, RegularisedPenalty, Frictionless>) + (12 + 7) * sizeof(double) == sizeof(BareElement), "a weight a node and side, and no meeting point");
-static_assert(sizeof(contact::ContactElement<Sliding, RegularisedPenalty, RegularisedCoulomb>) < sizeof(Element<RegularisedPenalty, RegularisedCoulomb>));
+static_assert(sizeof(contact::ContactElement<Centred, RegularisedPenalty, Frictionless>) + (12 + 7) * sizeof(double) ==
+                  sizeof(BareElement),
+              "a weight a node and side, and no meeting point");
+static_assert(sizeof(contact::ContactElement<Sliding, RegularisedPenalty, RegularisedCoulomb>) <
+              sizeof(Element<RegularisedPenalty, RegularisedCoulomb>));
 static_assert(!beam::LeverNeeded<Beam> && beam::LeverNeeded<Centred> && !beam::LeverNeeded<Sliding>);
 
 TEST_CASE("contact on centrelines refuses a section that is not round") {
@@ -634,7 +672,8 @@ TEST_CASE("contact on centrelines refuses a section that is not round") {
     fibre.section = scene::elliptical(r, 0.5 * r);
     assembly.add(fibre);
     const Centred beam;
-    CHECK_THROWS_WITH_AS((beam::Mesh<Centred>(assembly, beam)), doctest::Contains("OnCentreline.rest: semi_axis_2 = 0.01"), std::invalid_argument);
+    CHECK_THROWS_WITH_AS((beam::Mesh<Centred>(assembly, beam)), doctest::Contains("OnCentreline.rest: semi_axis_2 = 0.01"),
+                         std::invalid_argument);
 }
 
 TEST_CASE("what a contact element costs in memory") {

@@ -29,7 +29,8 @@ constexpr double pi = std::numbers::pi;
 Vec3 heading(double degrees) { return {std::cos(degrees * pi / 180.0), std::sin(degrees * pi / 180.0), 0.0}; }
 
 /// A straight fibre of half axes a and 1, the first `tilt` from the horizontal.
-scene::FibreSpecification flat_fibre(double a, const Vec3& middle, const Vec3& along, double half, double tilt, Index elements = 16) {
+scene::FibreSpecification flat_fibre(double a, const Vec3& middle, const Vec3& along, double half, double tilt,
+                                     Index elements = 16) {
     scene::FibreSpecification fibre = test::straight_fibre(middle - half * along, middle + half * along, 1.0, elements);
     fibre.section = scene::elliptical(a, 1.0);
     fibre.director = std::cos(tilt) * Vec3::UnitZ().cross(along) + std::sin(tilt) * Vec3::UnitZ();
@@ -43,8 +44,12 @@ struct Contacts {
     contact::ContactSet<B, proximity::GridSearch, RegularisedPenalty, Frictionless> set;
 
     explicit Contacts(const std::vector<scene::FibreSpecification>& fibres, bool self = false)
-        : assembly{gather(fibres)}, mesh{assembly, B{}},
-          set{assembly, mesh, parameters(self), proximity::GridSearch{}, RegularisedPenalty({.regularisation_depth = 1e-3}), Frictionless{}} {}
+        : assembly{gather(fibres)}, mesh{assembly, B{}}, set{assembly,
+                                                             mesh,
+                                                             parameters(self),
+                                                             proximity::GridSearch{},
+                                                             RegularisedPenalty({.regularisation_depth = 1e-3}),
+                                                             Frictionless{}} {}
     static scene::Assembly gather(const std::vector<scene::FibreSpecification>& fibres) {
         scene::Assembly assembly;
         for (const scene::FibreSpecification& fibre : fibres) assembly.add(fibre);
@@ -79,30 +84,37 @@ struct Contacts {
     }
 };
 
-TEST_CASE_TEMPLATE("two parallel ellipses that are askew are apart by what is between their contours", B, test::Beam, beam::RigidSectionRod) {
+TEST_CASE_TEMPLATE("two parallel ellipses that are askew are apart by what is between their contours", B, test::Beam,
+                   beam::RigidSectionRod) {
     for (const double sense : {-1.0, 1.0}) {
-        Contacts<B> pair({flat_fibre(2.0, Vec3::Zero(), heading(0), 40.0, 0.0), flat_fibre(2.0, {0.0, 2.0, 1.8}, sense * heading(0), 40.0, 0.0)});
-        CHECK(std::abs(pair.least_gap(pair.mesh.rest_state()) - 0.0653) < 1e-4);  // by points of the contours: tests/contact/section_gap_test.cpp
+        Contacts<B> pair({flat_fibre(2.0, Vec3::Zero(), heading(0), 40.0, 0.0),
+                          flat_fibre(2.0, {0.0, 2.0, 1.8}, sense * heading(0), 40.0, 0.0)});
+        CHECK(std::abs(pair.least_gap(pair.mesh.rest_state()) - 0.0653) <
+              1e-4);  // by points of the contours: tests/contact/section_gap_test.cpp
     }
 }
 
-TEST_CASE_TEMPLATE("flat fibres that cross at any angle, flat, tilted or on edge, are as far apart and as deep in each other as they were moved", B, test::Beam,
-                   beam::RigidSectionRod) {
+TEST_CASE_TEMPLATE(
+    "flat fibres that cross at any angle, flat, tilted or on edge, are as far apart and as deep in each other as they were moved",
+    B, test::Beam, beam::RigidSectionRod) {
     for (const double ratio : {2.0, 5.0, 10.0})
         for (const double degrees : {5.0, 10.0, 20.0, 45.0, 90.0})
             for (std::size_t kind = 0; kind < 6; ++kind) {
-                const std::array<double, 6> tilt_i{0.0, 0.0, 0.5 * pi, 0.4, 0.3, 0.0}, tilt_j{0.0, 0.5 * pi, 0.5 * pi, -0.4, 1.1, 0.0};
+                const std::array<double, 6> tilt_i{0.0, 0.0, 0.5 * pi, 0.4, 0.3, 0.0},
+                    tilt_j{0.0, 0.5 * pi, 0.5 * pi, -0.4, 1.1, 0.0};
                 const double a_i = kind == 5 ? 1.0 : ratio;  // round on flat
                 const auto height = [](double a, double tilt) { return std::hypot(a * std::sin(tilt), std::cos(tilt)); };
                 const double touching = height(a_i, tilt_i[kind]) + height(ratio, tilt_j[kind]);
                 for (const double gap : {0.1, -0.01}) {
-                    Contacts<B> pair({flat_fibre(a_i, Vec3::Zero(), heading(-0.5 * degrees), 20.0 * ratio, tilt_i[kind]),
-                                      flat_fibre(ratio, {0.0, 0.0, touching + gap}, heading(0.5 * degrees), 20.0 * ratio, tilt_j[kind])});
+                    Contacts<B> pair(
+                        {flat_fibre(a_i, Vec3::Zero(), heading(-0.5 * degrees), 20.0 * ratio, tilt_i[kind]),
+                         flat_fibre(ratio, {0.0, 0.0, touching + gap}, heading(0.5 * degrees), 20.0 * ratio, tilt_j[kind])});
                     CAPTURE(ratio);
                     CAPTURE(degrees);
                     CAPTURE(kind);
                     const double found = pair.least_gap(pair.mesh.rest_state());
-                    // Between stations a two hundredth of the thickness goes unseen, twice that where three halvings are not enough.
+                    // Between stations a two hundredth of the thickness goes unseen, twice that where three halvings are not
+                    // enough.
                     CHECK(found > gap - 1e-6);
                     CHECK(found < gap + 0.01);
                 }
@@ -115,7 +127,8 @@ TEST_CASE("a flat fibre against itself is held by its surfaces") {
         [=](double s) -> Vec3 {
             const double arc = s * (2.0 * leg + pi * radius), angle = (arc - leg) / radius;
             if (angle < 0.0) return {arc, 0.0, 0.0};
-            if (angle < pi) return {leg + radius * std::sin(angle), 1.2 * (1.0 - std::cos(angle)), radius - radius * std::cos(angle)};
+            if (angle < pi)
+                return {leg + radius * std::sin(angle), 1.2 * (1.0 - std::cos(angle)), radius - radius * std::cos(angle)};
             return {leg - (arc - leg - pi * radius), 2.4, 2.0 * radius};
         },
         1.0, 60);
@@ -149,8 +162,8 @@ Vector sunk(Contacts<B>& pair, Vector state, double depth) {
     return state;
 }
 
-/// Forces against differences of the energy along random ways. They act where the two sections meet, half of the depth inside, so that they
-/// have no moment: by so much of the size of a section they are not those of the two particles.
+/// Forces against differences of the energy along random ways. They act where the two sections meet, half of the depth inside, so
+/// that they have no moment: by so much of the size of a section they are not those of the two particles.
 template <class B>
 void check_energy(Contacts<B>& pair, const Vector& start) {
     for (const double depth : {1e-2, 1e-4}) {
@@ -172,7 +185,8 @@ void check_energy(Contacts<B>& pair, const Vector& start) {
 
 TEST_CASE("contact forces are the slope of the contact energy although the normals of flat sections turn") {
     // Flat against flat askew, and pressed flat besides: sections across their fibres.
-    Contacts<test::Beam> pair({flat_fibre(2.0, Vec3::Zero(), heading(0), 20.0, 0.1, 6), flat_fibre(3.0, {0.0, 2.2, 1.65}, heading(0), 20.0, -0.2, 6)});
+    Contacts<test::Beam> pair(
+        {flat_fibre(2.0, Vec3::Zero(), heading(0), 20.0, 0.1, 6), flat_fibre(3.0, {0.0, 2.2, 1.65}, heading(0), 20.0, -0.2, 6)});
     Vector state = pair.mesh.rest_state();
     check_energy(pair, state);
     for (Index f = 0; f < 2; ++f)
@@ -183,11 +197,14 @@ TEST_CASE("contact forces are the slope of the contact energy although the norma
     check_energy(pair, state);
 }
 
-TEST_CASE_TEMPLATE("a rigid motion of flat fibres in contact turns their forces with it, and these have no moment", B, test::Beam, beam::RigidSectionRod) {
+TEST_CASE_TEMPLATE("a rigid motion of flat fibres in contact turns their forces with it, and these have no moment", B, test::Beam,
+                   beam::RigidSectionRod) {
     const auto fibres = [](const Mat3& turn) {
-        std::vector<scene::FibreSpecification> made{flat_fibre(2.0, Vec3::Zero(), heading(0), 20.0, 0.1, 6), flat_fibre(3.0, {0.5, 2.2, 1.65}, heading(0), 20.0, -0.2, 6),
+        std::vector<scene::FibreSpecification> made{flat_fibre(2.0, Vec3::Zero(), heading(0), 20.0, 0.1, 6),
+                                                    flat_fibre(3.0, {0.5, 2.2, 1.65}, heading(0), 20.0, -0.2, 6),
                                                     flat_fibre(4.0, {0.0, 0.3, -2.02}, heading(12), 20.0, 0.15, 6)};
-        for (scene::FibreSpecification& fibre : made) fibre.from = turn * fibre.from, fibre.to = turn * fibre.to, fibre.director = turn * fibre.director;
+        for (scene::FibreSpecification& fibre : made)
+            fibre.from = turn * fibre.from, fibre.to = turn * fibre.to, fibre.director = turn * fibre.director;
         return made;
     };
     const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
@@ -233,7 +250,8 @@ TEST_CASE("the mirror image of flat fibres in contact has the mirror image of th
 
 TEST_CASE("a section that is ten and more times as wide as thick is touched on its contour, not at a round end") {
     for (const double ratio : {10.0, 20.0, 50.0}) {
-        Contacts<test::Beam> pair({flat_fibre(ratio, Vec3::Zero(), heading(0), 10.0 * ratio, 0.0), flat_fibre(ratio, {0.0, 0.3, 2.1}, heading(90), 10.0 * ratio, 0.0)});
+        Contacts<test::Beam> pair({flat_fibre(ratio, Vec3::Zero(), heading(0), 10.0 * ratio, 0.0),
+                                   flat_fibre(ratio, {0.0, 0.3, 2.1}, heading(90), 10.0 * ratio, 0.0)});
         CHECK(std::abs(pair.least_gap(pair.mesh.rest_state()) - 0.1) < 1e-9);
     }
 }

@@ -55,7 +55,8 @@ TEST_CASE("the normal of crossing fibres is across both of them and points from 
 TEST_CASE("the normal of parallel fibres joins their centres across them") {
     const Vec3 centres(0.7, 0.3, 0.4);  // 0.7 of it along the fibres
     for (const double sense : {-1.0, 1.0})
-        CHECK((normal_direction(rule, centres, heading(0), sense * heading(0), new_contact) - Vec3(0, 0.6, 0.8)).norm() < rounding);
+        CHECK((normal_direction(rule, centres, heading(0), sense * heading(0), new_contact) - Vec3(0, 0.6, 0.8)).norm() <
+              rounding);
     // 8 degrees apart: across the mean of the two tangents
     const Vec3 along = heading(4), across = (centres - centres.dot(along) * along).normalized();
     CHECK((normal_direction(rule, centres, heading(0), heading(8), new_contact) - across).norm() < rounding);
@@ -103,7 +104,8 @@ TEST_CASE("parallel fibres that pass beside each other keep the side they came f
 TEST_CASE("a crossing that turns through 90 degrees keeps its side") {
     Vec3 remembered = new_contact;
     for (double degrees = 31.0; degrees < 149.0; degrees += 0.5) {
-        remembered = normal_direction(rule, {0.0, 0.0, remembered.isZero() ? 0.1 : -0.1}, heading(0), heading(degrees), remembered);
+        remembered =
+            normal_direction(rule, {0.0, 0.0, remembered.isZero() ? 0.1 : -0.1}, heading(0), heading(degrees), remembered);
         CHECK((remembered - Vec3::UnitZ()).norm() < rounding);
     }
 }
@@ -112,7 +114,8 @@ TEST_CASE("the normal is a unit vector, changes sign with the order of the fibre
     std::mt19937 generator(1);
     for (int n = 0; n < 500; ++n) {
         const Vec3 centres = test::normal_vector(generator), t_i = test::normal_vector(generator).normalized();
-        const Vec3 t_j = n % 2 == 0 ? test::normal_vector(generator).normalized() : Vec3((t_i + 0.2 * test::normal_vector(generator)).normalized());
+        const Vec3 t_j = n % 2 == 0 ? test::normal_vector(generator).normalized()
+                                    : Vec3((t_i + 0.2 * test::normal_vector(generator)).normalized());
         const Vec3 remembered = n % 3 == 0 ? new_contact : Vec3(test::normal_vector(generator).normalized());
         const Vec3 normal = normal_direction(rule, centres, t_i, t_j, remembered);
         CHECK(std::abs(normal.norm() - 1.0) < rounding);
@@ -134,18 +137,24 @@ TEST_CASE("coincident parallel fibres without a memory part to a fixed side") {
 TEST_CASE("fibres that part in one plane are pushed apart in that plane, not across it") {
     const double touching = 0.1;
     for (const double degrees : {5.0, 20.0, 40.0, 80.0}) {
-        const Vec3 aside = 0.6 * touching * Vec3(-std::sin(0.5 * degrees * std::numbers::pi / 180.0), std::cos(0.5 * degrees * std::numbers::pi / 180.0), 0.0);
+        const Vec3 aside =
+            0.6 * touching *
+            Vec3(-std::sin(0.5 * degrees * std::numbers::pi / 180.0), std::cos(0.5 * degrees * std::numbers::pi / 180.0), 0.0);
         for (const double height : {0.0, 1e-3 * touching}) {
             const Vec3 centres = aside + height * Vec3::UnitZ();
-            CHECK((normal_direction(rule, centres, heading(0), heading(degrees), new_contact, touching) - centres.normalized()).norm() < rounding);
+            CHECK((normal_direction(rule, centres, heading(0), heading(degrees), new_contact, touching) - centres.normalized())
+                      .norm() < rounding);
             // and where they pass over each other, across both, with the blend of any other crossing
             const Vec3 over = height * Vec3::UnitZ() + 0.4 * aside;
-            CHECK((normal_direction(rule, over, heading(0), heading(degrees), new_contact, touching) - normal_direction(rule, over, heading(0), heading(degrees), new_contact)).norm() < rounding);
+            CHECK((normal_direction(rule, over, heading(0), heading(degrees), new_contact, touching) -
+                   normal_direction(rule, over, heading(0), heading(degrees), new_contact))
+                      .norm() < rounding);
         }
     }
     Vec3 last = Vec3::UnitZ();
     for (int k = 0; k <= 4000; ++k) {  // between them it turns continuously
-        const Vec3 normal = normal_direction(rule, 0.3 * touching * Vec3::UnitZ() + touching * k / 4000.0 * heading(115), heading(0), heading(50), last, touching);
+        const Vec3 normal = normal_direction(rule, 0.3 * touching * Vec3::UnitZ() + touching * k / 4000.0 * heading(115),
+                                             heading(0), heading(50), last, touching);
         CHECK((normal - last).norm() < 2e-3);
         last = normal;
     }
@@ -153,8 +162,12 @@ TEST_CASE("fibres that part in one plane are pushed apart in that plane, not acr
 }
 
 TEST_CASE("angles in the wrong order are refused") {
-    CHECK(test::refusal([] { core::validated(NormalRule{40.0, 30.0}); }).find("NormalRule.crossing_angle_deg") != std::string::npos);
-    CHECK(test::refusal([] { core::validated(NormalRule{-1.0, 30.0}); }).find("NormalRule.parallel_angle_deg") != std::string::npos);
+    CHECK(test::refusal([] {
+              core::validated(NormalRule{40.0, 30.0});
+          }).find("NormalRule.crossing_angle_deg") != std::string::npos);
+    CHECK(test::refusal([] {
+              core::validated(NormalRule{-1.0, 30.0});
+          }).find("NormalRule.parallel_angle_deg") != std::string::npos);
 }
 
 TEST_CASE("the least turn takes one direction to the other and leaves what is across both of them") {
@@ -163,7 +176,8 @@ TEST_CASE("the least turn takes one direction to the other and leaves what is ac
         const Vec3 before = test::normal_vector(generator).normalized();
         const Vec3 after = k == 0 ? Vec3(-before) : k == 1 ? before : test::normal_vector(generator).normalized();
         const Vec3 vector = test::normal_vector(generator), image = contact::turned(vector, before, after);
-        const double amplified = 1e-15 / std::max(1e-14, 1.0 + before.dot(after));  // the axis is a difference of rounded products
+        const double amplified =
+            1e-15 / std::max(1e-14, 1.0 + before.dot(after));  // the axis is a difference of rounded products
         CHECK((contact::turned(before, before, after) - after).norm() < rounding + amplified);
         CHECK(std::abs(image.norm() - vector.norm()) < vector.norm() * (rounding + amplified));
         const Vec3 axis = before.cross(after);

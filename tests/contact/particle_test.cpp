@@ -47,7 +47,8 @@ TEST_CASE("the particle lies on the contour, and none lies further along the nor
     const scene::CrossSection section = scene::elliptical(0.03, 0.01);
     for (int n = 0; n < 200; ++n) {
         // stretched, sheared and turned
-        const Vec3 g_1 = Vec3::UnitX() + 0.3 * test::normal_vector(generator), g_2 = Vec3::UnitY() + 0.3 * test::normal_vector(generator);
+        const Vec3 g_1 = Vec3::UnitX() + 0.3 * test::normal_vector(generator),
+                   g_2 = Vec3::UnitY() + 0.3 * test::normal_vector(generator);
         const Vec3 direction = test::normal_vector(generator).normalized();
         const Particle particle = support_particle(section, g_1, g_2, direction, false);
         if (particle.cap > 0.0) continue;
@@ -64,11 +65,17 @@ TEST_CASE("where the particle sits on the contour does not change the gap to fir
     const scene::CrossSection section = scene::elliptical(0.03, 0.02);
     const double step = 1e-5;
     for (int n = 0; n < 50; ++n) {
-        const Vec3 g_1 = Vec3::UnitX() + 0.2 * test::normal_vector(generator), g_2 = Vec3::UnitY() + 0.2 * test::normal_vector(generator);
-        const Vec3 direction = (g_1 + 0.7 * g_2 + 0.3 * test::normal_vector(generator)).normalized(), aside = test::normal_vector(generator);
+        const Vec3 g_1 = Vec3::UnitX() + 0.2 * test::normal_vector(generator),
+                   g_2 = Vec3::UnitY() + 0.2 * test::normal_vector(generator);
+        const Vec3 direction = (g_1 + 0.7 * g_2 + 0.3 * test::normal_vector(generator)).normalized(),
+                   aside = test::normal_vector(generator);
         const Particle particle = support_particle(section, g_1, g_2, direction, false);
-        const double by_1 = (reach(section, g_1 + step * aside, g_2, direction) - reach(section, g_1 - step * aside, g_2, direction)) / (2 * step);
-        const double by_2 = (reach(section, g_1, g_2 + step * aside, direction) - reach(section, g_1, g_2 - step * aside, direction)) / (2 * step);
+        const double by_1 =
+            (reach(section, g_1 + step * aside, g_2, direction) - reach(section, g_1 - step * aside, g_2, direction)) /
+            (2 * step);
+        const double by_2 =
+            (reach(section, g_1, g_2 + step * aside, direction) - reach(section, g_1, g_2 - step * aside, direction)) /
+            (2 * step);
         // central differences: step^2 over the squared distance of g . direction from zero, in units of the section
         CHECK(std::abs(by_1 - particle.xi_1 * direction.dot(aside)) < 1e-8 * 0.03);
         CHECK(std::abs(by_2 - particle.xi_2 * direction.dot(aside)) < 1e-8 * 0.03);

@@ -30,8 +30,18 @@ beam::Mesh<B> hanging(Index elements, double flatness = 1.0) {
         if (flatness != 1.0) fibre.section = scene::elliptical(r, flatness * r);
         assembly.add(fibre);
     };
-    add([=](double t) { const double a = half * (2.0 * t - 1.04); return Vec3(R * std::sin(a), 0.0, R - R * std::cos(a)); }, 0.0);
-    add([=](double t) { const double a = half * (2.0 * t - 0.97); return Vec3(0.28 * R * std::sin(a), 0.96 * R * std::sin(a), 2.0 * r - R + R * std::cos(a)); }, R);
+    add(
+        [=](double t) {
+            const double a = half * (2.0 * t - 1.04);
+            return Vec3(R * std::sin(a), 0.0, R - R * std::cos(a));
+        },
+        0.0);
+    add(
+        [=](double t) {
+            const double a = half * (2.0 * t - 0.97);
+            return Vec3(0.28 * R * std::sin(a), 0.96 * R * std::sin(a), 2.0 * r - R + R * std::cos(a));
+        },
+        R);
     return beam::Mesh<B>(assembly, B());
 }
 
@@ -71,7 +81,8 @@ TEST_CASE("the closest patches are those of all pairs nearby") {
     contact::follow_closest(mesh, state, 0, 1, u, v);
     const double least = (patches.place(1, v, half) - patches.place(0, u, half)).norm();
     for (double a = -0.3; a <= 0.3; a += 0.05)
-        for (double b = -0.3; b <= 0.3; b += 0.05) CHECK((patches.place(1, v + b, half) - patches.place(0, u + a, half)).norm() >= least * (1.0 - 1e-12));
+        for (double b = -0.3; b <= 0.3; b += 0.05)
+            CHECK((patches.place(1, v + b, half) - patches.place(0, u + a, half)).norm() >= least * (1.0 - 1e-12));
 }
 
 /// Force of a followed crossing under a reaction c (g_0 - g), whose energy is c (g_0 - g)^2 / 2.
@@ -102,7 +113,8 @@ Misfit misfit(const beam::Mesh<B>& mesh, const Vector& state, const Followed& at
     const Matrix own = stiffness.rows.transpose() * stiffness.stiffness * stiffness.rows;
     for (std::size_t a = 0; a < stiffness.vectors.size(); ++a)
         for (std::size_t b = 0; b < stiffness.vectors.size(); ++b)
-            tangent.block<3, 3>(3 * stiffness.vectors[a], 3 * stiffness.vectors[b]) += own.block<3, 3>(3 * static_cast<Index>(a), 3 * static_cast<Index>(b));
+            tangent.block<3, 3>(3 * stiffness.vectors[a], 3 * stiffness.vectors[b]) +=
+                own.block<3, 3>(3 * static_cast<Index>(a), 3 * static_cast<Index>(b));
     const Vector force = force_of(mesh, state, at, c, g_0);
     const auto energy = [&](const Vector& in) {
         Vec3 ignored;
@@ -114,18 +126,24 @@ Misfit misfit(const beam::Mesh<B>& mesh, const Vector& state, const Followed& at
         Vector before = state, after = state;
         before[k] -= step, after[k] += step;
         const Vector slope = (force_of(mesh, after, at, c, g_0) - force_of(mesh, before, at, c, g_0)) / (2.0 * step);
-        worst.stiffness = std::max(worst.stiffness, (slope - tangent.col(k)).cwiseAbs().maxCoeff() / tangent.cwiseAbs().maxCoeff());
-        worst.force = std::max(worst.force, std::abs((energy(after) - energy(before)) / (2.0 * step) - force[k]) / force.cwiseAbs().maxCoeff());
+        worst.stiffness =
+            std::max(worst.stiffness, (slope - tangent.col(k)).cwiseAbs().maxCoeff() / tangent.cwiseAbs().maxCoeff());
+        worst.force = std::max(
+            worst.force, std::abs((energy(after) - energy(before)) / (2.0 * step) - force[k]) / force.cwiseAbs().maxCoeff());
     }
     return worst;
 }
 
-TEST_CASE("on cables the force is the derivative of the energy, and the stiffness that of the force, with the place sliding and the normal turning") {
+TEST_CASE(
+    "on cables the force is the derivative of the energy, and the stiffness that of the force, with the place sliding and the "
+    "normal turning") {
     const beam::Mesh<beam::KirchhoffCable> mesh = hanging<beam::KirchhoffCable>(6);
-    for (const contact::Slide& slide : {contact::Slide{}, contact::Slide{contact::Slide::along, Eigen::Vector2d(0.8, -0.6)}, contact::Slide{contact::Slide::nowhere, {}}}) {
+    for (const contact::Slide& slide : {contact::Slide{}, contact::Slide{contact::Slide::along, Eigen::Vector2d(0.8, -0.6)},
+                                        contact::Slide{contact::Slide::nowhere, {}}}) {
         const Misfit worst = misfit(mesh, mesh.start_state(), {.slide = slide});
         CAPTURE(slide.kind);
-        CHECK(worst.stiffness < 1e-6);  // steps of 1e-5 leave 1e-10 of third derivatives and 1e-11 of rounding, times some hundreds
+        CHECK(worst.stiffness <
+              1e-6);  // steps of 1e-5 leave 1e-10 of third derivatives and 1e-11 of rounding, times some hundreds
         CHECK(worst.force < 1e-6);
     }
 }
@@ -136,8 +154,10 @@ TEST_CASE("with sections that are pressed flat as well, which stand while the pl
     // Flatter by a tenth near the middle, and less beside it.
     for (Index fibre = 0; fibre < 2; ++fibre)
         for (Index node = 0; node < mesh.node_count(fibre); ++node)
-            for (const Index part : {1, 2}) state[3 * mesh.node_vector(fibre, node, part) + 2] *= 0.9 + 0.01 * std::pow(static_cast<double>(node) - 6.0, 2);
-    for (const contact::Slide& slide : {contact::Slide{}, contact::Slide{contact::Slide::along, Eigen::Vector2d(0.8, -0.6)}, contact::Slide{contact::Slide::nowhere, {}}}) {
+            for (const Index part : {1, 2})
+                state[3 * mesh.node_vector(fibre, node, part) + 2] *= 0.9 + 0.01 * std::pow(static_cast<double>(node) - 6.0, 2);
+    for (const contact::Slide& slide : {contact::Slide{}, contact::Slide{contact::Slide::along, Eigen::Vector2d(0.8, -0.6)},
+                                        contact::Slide{contact::Slide::nowhere, {}}}) {
         const Misfit worst = misfit(mesh, state, {.slide = slide});
         CAPTURE(slide.kind);
         CHECK(worst.stiffness < 1e-6);
@@ -153,22 +173,27 @@ TEST_CASE("with sections that are not round: the true gap, along its own normal"
         // Sections that lie askew in both fibres, are strained, and clear of each other.
         for (Index fibre = 0; fibre < 2; ++fibre)
             for (Index node = 0; node < mesh.node_count(fibre); ++node) {
-                const Index centre = 3 * mesh.node_vector(fibre, node, 0), first = 3 * mesh.node_vector(fibre, node, 1), second = 3 * mesh.node_vector(fibre, node, 2);
+                const Index centre = 3 * mesh.node_vector(fibre, node, 0), first = 3 * mesh.node_vector(fibre, node, 1),
+                            second = 3 * mesh.node_vector(fibre, node, 2);
                 const Vec3 g_1 = state.segment<3>(first), g_2 = state.segment<3>(second);
-                state.segment<3>(first) = 0.9 * g_1 + (fibre == 0 ? 0.4 : -0.3) * g_2, state.segment<3>(second) = 0.95 * g_2 + (fibre == 0 ? -0.3 : 0.4) * g_1;
+                state.segment<3>(first) = 0.9 * g_1 + (fibre == 0 ? 0.4 : -0.3) * g_2,
+                state.segment<3>(second) = 0.95 * g_2 + (fibre == 0 ? -0.3 : 0.4) * g_1;
                 if (fibre == 1 && flatness > 1.0) state[centre + 2] += 3.0 * r;
             }
-        for (const contact::Slide& slide : {contact::Slide{}, contact::Slide{contact::Slide::along, Eigen::Vector2d(0.8, -0.6)}, contact::Slide{contact::Slide::nowhere, {}}}) {
+        for (const contact::Slide& slide : {contact::Slide{}, contact::Slide{contact::Slide::along, Eigen::Vector2d(0.8, -0.6)},
+                                            contact::Slide{contact::Slide::nowhere, {}}}) {
             CAPTURE(slide.kind);
             Followed at{.slide = slide, .oval = true};
-            for (int pass = 0; pass < 3 && slide.kind == contact::Slide::freely; ++pass) {  // sections that stand where the place is
+            for (int pass = 0; pass < 3 && slide.kind == contact::Slide::freely;
+                 ++pass) {  // sections that stand where the place is
                 Vec3 normal = Vec3::UnitZ();
                 double u = at.i.u, v = at.j.u;
                 contact::follow_oval(mesh, state, 0, 1, at.i, at.j, slide, u, v, normal);
                 at.i.u = u, at.j.u = v;
             }
             const Misfit worst = misfit(mesh, state, at);
-            // Where a place may not slide the pair's normal leans along fibres, and what a section's own turns by of second order is left out.
+            // Where a place may not slide the pair's normal leans along fibres, and what a section's own turns by of second order
+            // is left out.
             CHECK(worst.stiffness < (slide.kind == contact::Slide::freely ? 3e-6 : 5e-3));
             CHECK(worst.force < 1e-6);
         }
@@ -179,10 +204,11 @@ TEST_CASE("fibres that clasp each other touch at two places of one zone, with op
     const double h = 2.0 * r, w = 4.0 * r;
     const auto mesh_of = [&](bool clasp) {
         std::vector<scene::FibreSpecification> fibres(2, test::straight_fibre(Vec3(0, 0, 0), Vec3(1, 0, 0), r, 8));
-        for (const double side : {1.0, -1.0}) fibres[side < 0.0 ? 1 : 0].curve = [=](double t) {
-            const double x = 3.2 * t - 1.6;
-            return clasp ? Vec3(w * x, side * h * (1.0 - x * x), side * r * x) : Vec3(w * x, side * w * x, -side * r);
-        };
+        for (const double side : {1.0, -1.0})
+            fibres[side < 0.0 ? 1 : 0].curve = [=](double t) {
+                const double x = 3.2 * t - 1.6;
+                return clasp ? Vec3(w * x, side * h * (1.0 - x * x), side * r * x) : Vec3(w * x, side * w * x, -side * r);
+            };
         return test::mesh_of(fibres);
     };
     for (const bool clasp : {true, false}) {
@@ -198,7 +224,9 @@ TEST_CASE("fibres that clasp each other touch at two places of one zone, with op
         // Mirror images of each other.
         CHECK(std::abs(places[0][0] + places[1][0] - 8.0) < 1e-9);
         CHECK(std::abs(places[0][1] + places[1][1] - 8.0) < 1e-9);
-        const auto centres = [&](const auto& place) { return contact::pair_geometry(mesh, state, 0, 1, place[0], place[1]).centres; };
+        const auto centres = [&](const auto& place) {
+            return contact::pair_geometry(mesh, state, 0, 1, place[0], place[1]).centres;
+        };
         CHECK(centres(places[0]).dot(centres(places[1])) < 0.0);
     }
 }
@@ -206,7 +234,8 @@ TEST_CASE("fibres that clasp each other touch at two places of one zone, with op
 TEST_CASE("what turns as one within an iteration pushes as it did, turned, and without a moment") {
     const beam::Mesh<test::Beam> mesh = hanging<test::Beam>(6);
     Vector state = mesh.start_state();
-    for (Index k = 0; k < state.size(); ++k) state[k] += 0.02 * r * std::sin(1.7 * static_cast<double>(k));  // sections strained, and none like another
+    for (Index k = 0; k < state.size(); ++k)
+        state[k] += 0.02 * r * std::sin(1.7 * static_cast<double>(k));  // sections strained, and none like another
     const Mat3 turn = Eigen::AngleAxisd(0.4, Vec3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
     Vector turned = state;
     for (Index k = 0; k < state.size(); k += 3) turned.segment<3>(k) = turn * state.segment<3>(k);
@@ -219,7 +248,7 @@ TEST_CASE("what turns as one within an iteration pushes as it did, turned, and w
         moment += turned.segment<3>(k).cross(after.segment<3>(k));
     }
     const double size = after.cwiseAbs().maxCoeff();
-    CHECK(misfit < 1e-9 * size);          // places are found to 1e-11 of an element
+    CHECK(misfit < 1e-9 * size);  // places are found to 1e-11 of an element
     CHECK(moment.norm() < 1e-9 * r * size);
 }
 
@@ -235,7 +264,8 @@ TEST_CASE("what a hook pushes against holds it sideways, with reaction times cur
     assembly.add(test::straight_fibre(Vec3(-1, 0, 0), Vec3(1, 0, 0), r, 6));
     assembly.add(test::straight_fibre(Vec3(0.2, -1, 2.0 * r), Vec3(-0.2, 1, 2.0 * r), r, 6));
     const test::Mesh straight(assembly, test::Beam{});
-    const auto crossing = closest_place(straight, straight.rest_state(), {2.7, 2.8, {}, {3.0, {0.0, 1.0}, true}, {3.0, {0.0, 1.0}, true}}, normal);
+    const auto crossing =
+        closest_place(straight, straight.rest_state(), {2.7, 2.8, {}, {3.0, {0.0, 1.0}, true}, {3.0, {0.0, 1.0}, true}}, normal);
     CHECK(crossing.curvature.topLeftCorner<2, 2>().cwiseAbs().maxCoeff() < 1e-9 / r);
     CHECK(std::abs(crossing.gap) < 1e-12);
 }

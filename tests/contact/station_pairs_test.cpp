@@ -38,7 +38,8 @@ TEST_CASE("near-parallel fibres are paired across their mean line, at equal dist
     // 3 degrees apart, with as many elements that do not face each other
     const double angle = 3.0 * std::numbers::pi / 180.0;
     const Vec3 other(std::cos(angle), std::sin(angle), 0.0);
-    const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre(Vec3(0.03, 0, 0.04) - other, Vec3(0.03, 0, 0.04) + other, r, 10)});
+    const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10),
+                               straight_fibre(Vec3(0.03, 0, 0.04) - other, Vec3(0.03, 0, 0.04) + other, r, 10)});
     const std::vector<StationPair> pairs = pairs_of(mesh, zone_of(2, 8, 2, 8), false);
     REQUIRE(pairs.size() == 13);  // two an element, and one where the last begins
     const Vec3 mean = (Vec3::UnitX() + other).normalized();
@@ -63,7 +64,8 @@ TEST_CASE("fibres that slant have more pairs, so that none of their depth is mis
     const auto missed = [](double degrees, const ContactSpacing& used) {
         const double angle = degrees * std::numbers::pi / 180.0;
         const Vec3 along(std::cos(angle), std::sin(angle), 0.0), middle(0.05, 0.0, 0.039);
-        const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre(middle - 1.05 * along, middle + 0.95 * along, r, 10)});
+        const Mesh mesh = mesh_of(
+            {straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre(middle - 1.05 * along, middle + 0.95 * along, r, 10)});
         std::vector<StationPair> pairs;
         contact::station_pairs(mesh, mesh.rest_state(), zone_of(4.3, 6.2, 4.3, 6.2), false, used, pairs);
         double least = 1e300;
@@ -87,8 +89,12 @@ TEST_CASE("fibres that bend towards each other have more pairs where they do, an
     for (const double curvature : {0.025, 0.2}) {
         CAPTURE(curvature);
         const auto count = [&](double below, double above) {
-            const Mesh mesh = mesh_of({curved_fibre([&](double t) { return Vec3(2.0 * t, 0.0, 0.5 * below * (2.0 * t - 1.0) * (2.0 * t - 1.0)); }, r, 10),
-                                       curved_fibre([&](double t) { return Vec3(2.0 * t, 0.0, 2.0 * r + 0.5 * above * (2.0 * t - 1.0) * (2.0 * t - 1.0)); }, r, 10)});
+            const Mesh mesh = mesh_of(
+                {curved_fibre([&](double t) { return Vec3(2.0 * t, 0.0, 0.5 * below * (2.0 * t - 1.0) * (2.0 * t - 1.0)); }, r,
+                              10),
+                 curved_fibre(
+                     [&](double t) { return Vec3(2.0 * t, 0.0, 2.0 * r + 0.5 * above * (2.0 * t - 1.0) * (2.0 * t - 1.0)); }, r,
+                     10)});
             return pairs_of(mesh, zone_of(4, 6, 4, 6), false).size();
         };
         const std::size_t halved = curvature < 0.1 ? 5 : 9;
@@ -102,16 +108,22 @@ TEST_CASE("fibres that bend towards each other have more pairs where they do, an
 TEST_CASE("a spacing that was halved stays so, between the same stations, when the fibres have straightened") {
     const auto pair_of = [](double curvature) {
         return mesh_of({curved_fibre([](double t) { return Vec3(2.0 * t, 0.0, 0.0); }, r, 10),
-                        curved_fibre([&](double t) { return Vec3(2.0 * t, 0.0, 2.0 * r + curvature * (t > 0.5 ? 2.0 * (t - 0.5) * (t - 0.5) : 0.0)); }, r, 10)});
+                        curved_fibre(
+                            [&](double t) {
+                                return Vec3(2.0 * t, 0.0, 2.0 * r + curvature * (t > 0.5 ? 2.0 * (t - 0.5) * (t - 0.5) : 0.0));
+                            },
+                            r, 10)});
     };
     const Mesh bent = pair_of(0.2), straight = pair_of(0.0);
     const std::vector<StationPair> halved = pairs_of(bent, zone_of(4, 6, 4, 6), false);
     REQUIRE(halved.size() == 7);  // two more than for straight fibres, both beyond the middle
     std::vector<StationPair> again;
-    contact::station_pairs(straight, straight.rest_state(), zone_of(4, 6, 4, 6), false, spacing, again,
-                           [&](const auto& see) { for (const StationPair& pair : halved) see(pair.u_i, pair.u_j); });
+    contact::station_pairs(straight, straight.rest_state(), zone_of(4, 6, 4, 6), false, spacing, again, [&](const auto& see) {
+        for (const StationPair& pair : halved) see(pair.u_i, pair.u_j);
+    });
     REQUIRE(again.size() == halved.size());
-    for (std::size_t k = 0; k < again.size(); ++k) CHECK(std::abs(again[k].u_i - halved[k].u_i) < 0.02);  // the bent fibre has longer elements
+    for (std::size_t k = 0; k < again.size(); ++k)
+        CHECK(std::abs(again[k].u_i - halved[k].u_i) < 0.02);  // the bent fibre has longer elements
     CHECK(pairs_of(straight, zone_of(4, 6, 4, 6), false).size() == 5);
 }
 
@@ -130,9 +142,11 @@ TEST_CASE("a fibre that runs the other way is paired at the same places") {
 }
 
 TEST_CASE("a short zone has one pair, and a crossing exactly one at the closest points") {
-    const Mesh parallel = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({-1, 0, 0.04}, {1, 0, 0.04}, r, 10)});
+    const Mesh parallel =
+        mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({-1, 0, 0.04}, {1, 0, 0.04}, r, 10)});
     CHECK(pairs_of(parallel, zone_of(4.0, 4.1, 4.0, 4.1), false).size() == 1);
-    const Mesh crossing = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({0.1, -1, 0.04}, {0.1, 1, 0.04}, r, 10)});
+    const Mesh crossing =
+        mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({0.1, -1, 0.04}, {0.1, 1, 0.04}, r, 10)});
     const std::vector<StationPair> pairs = pairs_of(crossing, zone_of(4, 7, 3, 6), true);
     REQUIRE(pairs.size() == 1);
     CHECK(pairs[0].crossing);
@@ -144,7 +158,8 @@ TEST_CASE("a short zone has one pair, and a crossing exactly one at the closest 
 
 TEST_CASE("a zone that reaches beyond a fibre's end has one pair in its last section, and no cap beside another's side") {
     // The second fibre begins half way along the first.
-    const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({0.05, 0, 0.04}, {1.05, 0, 0.04}, r, 5)});
+    const Mesh mesh =
+        mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({0.05, 0, 0.04}, {1.05, 0, 0.04}, r, 5)});
     const std::vector<StationPair> pairs = pairs_of(mesh, zone_of(3, 9, 0, 4), false);
     int ends = 0;
     for (const StationPair& pair : pairs) {
@@ -163,7 +178,9 @@ TEST_CASE("splayed fibres have a pair in their last section, where they are clos
     const Vec3 far_end(2.0 * std::cos(angle), 0.0, 0.04 + 2.0 * std::sin(angle));
     for (const bool against : {false, true}) {
         const Vec3 near_end(0, 0, 0.04);
-        const Mesh mesh = mesh_of({straight_fibre({0, 0, 0}, {2, 0, 0}, r, 10), against ? straight_fibre(far_end, near_end, r, 10) : straight_fibre(near_end, far_end, r, 10)});
+        const Mesh mesh =
+            mesh_of({straight_fibre({0, 0, 0}, {2, 0, 0}, r, 10),
+                     against ? straight_fibre(far_end, near_end, r, 10) : straight_fibre(near_end, far_end, r, 10)});
         const double start = against ? 10.0 : 0.0;
         const std::vector<StationPair> pairs = pairs_of(mesh, zone_of(0, 4, start, against ? 6 : 4), false);
         REQUIRE(pairs.size() == 9);  // two an element, and one where the zone ends
@@ -172,7 +189,8 @@ TEST_CASE("splayed fibres have a pair in their last section, where they are clos
         CHECK(std::abs(pairs[0].u_j - start) < 0.01);
         CHECK_FALSE(pairs[0].end_i);
         CHECK_FALSE(pairs[0].end_j);
-        for (std::size_t k = 1; k < pairs.size(); ++k) CHECK(distance(mesh, pairs[k].u_i, pairs[k].u_j) > distance(mesh, pairs[k - 1].u_i, pairs[k - 1].u_j));
+        for (std::size_t k = 1; k < pairs.size(); ++k)
+            CHECK(distance(mesh, pairs[k].u_i, pairs[k].u_j) > distance(mesh, pairs[k - 1].u_i, pairs[k - 1].u_j));
     }
 }
 
@@ -193,7 +211,8 @@ TEST_CASE("a kink between two elements that is turned to the other fibre is seen
 }
 
 TEST_CASE("all kinks between two stations are seen where stations are further apart than nodes") {
-    // As above with 2.5 elements a station: the roof's own node and one or two more lie between two of them. Three halvings leave 0.31 elements.
+    // As above with 2.5 elements a station: the roof's own node and one or two more lie between two of them. Three halvings leave
+    // 0.31 elements.
     const double angle = 0.02, spacing_length = 2.5 * 0.2, left = 0.25 * angle * spacing_length / 8.0;
     ContactSpacing wide = spacing;
     wide.points_per_element = 0.4;
@@ -202,7 +221,8 @@ TEST_CASE("all kinks between two stations are seen where stations are further ap
         const auto roof = [=](double t) { return Vec3(-1.0 + along + 2.0 * t, 0.0, 2.0 * r + angle * std::abs(t - 0.5)); };
         const Mesh mesh = mesh_of({straight_fibre({-1.5, 0, 0}, {1.5, 0, 0}, r, 15), curved_fibre(roof, r, 10)});
         std::vector<StationPair> pairs;
-        contact::station_pairs(mesh, mesh.rest_state(), zone_of(2.5 + 5.0 * along, 12.5 + 5.0 * along, 0.0, 10.0), false, wide, pairs);
+        contact::station_pairs(mesh, mesh.rest_state(), zone_of(2.5 + 5.0 * along, 12.5 + 5.0 * along, 0.0, 10.0), false, wide,
+                               pairs);
         double least = 1e300;
         for (const StationPair& pair : pairs) least = std::min(least, distance(mesh, pair.u_i, pair.u_j));
         CHECK(least < 2.0 * r + left);
@@ -210,8 +230,8 @@ TEST_CASE("all kinks between two stations are seen where stations are further ap
 }
 
 TEST_CASE("a section that is thicker than those beside it is seen wherever it lies between the stations") {
-    // Straight fibres side by side, one of them 3 % thicker towards the other at one node: at the middle of an element and where two
-    // meet. Half an element's spacing misses up to 0.0075 and 0.023 radii of it.
+    // Straight fibres side by side, one of them 3 % thicker towards the other at one node: at the middle of an element and where
+    // two meet. Half an element's spacing misses up to 0.0075 and 0.023 radii of it.
     const double swell = 0.03;
     int most = 0, least = 1000;
     for (const bool of_first : {true, false})
@@ -221,7 +241,8 @@ TEST_CASE("a section that is thicker than those beside it is seen wherever it li
                 CAPTURE(node);
                 CAPTURE(shift);
                 const double along = 0.2 * 0.5 * shift / 20.0;
-                const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({-1.2 + along, 0, 2.0 * r}, {1.2 + along, 0, 2.0 * r}, r, 12)});
+                const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10),
+                                           straight_fibre({-1.2 + along, 0, 2.0 * r}, {1.2 + along, 0, 2.0 * r}, r, 12)});
                 Vector state = mesh.rest_state();
                 for (const Index vector : {1, 2}) {
                     Vec3 director = state.segment<3>(3 * (mesh.fibre(of_first ? 0 : 1).first_vector + 3 * node + vector));
@@ -233,20 +254,24 @@ TEST_CASE("a section that is thicker than those beside it is seen wherever it li
                     return mesh.fibre(fibre).section.extent(g_1, g_2, Vec3::UnitZ());
                 };
                 std::vector<StationPair> pairs;
-                contact::station_pairs(mesh, state, zone_of(1.0, 9.0, 2.0 - 5.0 * along, 10.0 - 5.0 * along), false, spacing, pairs);
+                contact::station_pairs(mesh, state, zone_of(1.0, 9.0, 2.0 - 5.0 * along, 10.0 - 5.0 * along), false, spacing,
+                                       pairs);
                 double seen = 0.0, there = 0.0;
                 for (const StationPair& pair : pairs) seen = std::max(seen, extent(0, pair.u_i) + extent(1, pair.u_j) - 2.0 * r);
-                for (int k = 0; k <= 8000; ++k) there = std::max(there, extent(0, 1.0 + 0.001 * k) + extent(1, 2.0 - 5.0 * along + 0.001 * k) - 2.0 * r);
+                for (int k = 0; k <= 8000; ++k)
+                    there = std::max(there, extent(0, 1.0 + 0.001 * k) + extent(1, 2.0 - 5.0 * along + 0.001 * k) - 2.0 * r);
                 CHECK(there == test::near(swell * r, 1e-3));  // a sample is at most 0.0005 elements from the swelling
                 CHECK(seen > there - spacing.largest_unseen * r);
                 most = std::max(most, static_cast<int>(pairs.size())), least = std::min(least, static_cast<int>(pairs.size()));
             }
     CHECK(least >= 16);  // two an element, ...
-    CHECK(most <= 17 + 2 * 7);  // ... one where the last ends, and the rest where sections change: at most two spacings in eight parts
+    CHECK(most <=
+          17 + 2 * 7);  // ... one where the last ends, and the rest where sections change: at most two spacings in eight parts
 }
 
 TEST_CASE("where a fibre ends, its last section has no deeper contact than its pairs know of, wherever its stations stand") {
-    // 15 degrees towards the first fibre, and touching it where it ends; it begins a little later each time, over a whole spacing.
+    // 15 degrees towards the first fibre, and touching it where it ends; it begins a little later each time, over a whole
+    // spacing.
     const double angle = 15.0 * std::numbers::pi / 180.0, length = 1.0;
     for (int shift = 0; shift < 40; ++shift) {
         const Vec3 end(0.7 + 0.2 * 0.5 * shift / 40.0, 0.0, 2.0 * r);
@@ -255,14 +280,16 @@ TEST_CASE("where a fibre ends, its last section has no deeper contact than its p
         const double last = (end.x() + 1.0) / 0.2;
         double least = 1e300;
         for (const StationPair& pair : pairs_of(mesh, zone_of(last - 2.0, last + 0.1, 3.0, 5.0), false))
-            least = std::min(least, std::cos(0.5 * angle) * distance(mesh, pair.u_i, pair.u_j));  // in the plane across their mean line
+            least = std::min(least,
+                             std::cos(0.5 * angle) * distance(mesh, pair.u_i, pair.u_j));  // in the plane across their mean line
         CHECK(least <= (2.0 + spacing.largest_unseen) * r);
     }
 }
 
 TEST_CASE("where one fibre ends before the other, the pair is in the last section of that one") {
     // The second begins 0.06 and ends 0.05 inside the first: 0.3 and 0.25 elements of it.
-    const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({-0.94, 0, 0.04}, {0.95, 0, 0.04}, r, 9)});
+    const Mesh mesh =
+        mesh_of({straight_fibre({-1, 0, 0}, {1, 0, 0}, r, 10), straight_fibre({-0.94, 0, 0.04}, {0.95, 0, 0.04}, r, 9)});
     const std::vector<StationPair> pairs = pairs_of(mesh, zone_of(0.2, 9.8, 0, 9), false);
     for (const bool last : {false, true}) {
         const StationPair& pair = last ? pairs.back() : pairs.front();
@@ -283,7 +310,8 @@ TEST_CASE("a zone that ends inside both fibres has no pair in a last section, an
 }
 
 TEST_CASE("fibres that meet end to end are paired by their two caps") {
-    const Mesh mesh = mesh_of({straight_fibre({-1, 0, 0}, {0, 0, 0}, r, 5), straight_fibre({0.03, 0, 0.01}, {1.03, 0, 0.01}, r, 5)});
+    const Mesh mesh =
+        mesh_of({straight_fibre({-1, 0, 0}, {0, 0, 0}, r, 5), straight_fibre({0.03, 0, 0.01}, {1.03, 0, 0.01}, r, 5)});
     const std::vector<StationPair> pairs = pairs_of(mesh, zone_of(4.8, 5, 0, 0.1), false);
     REQUIRE(pairs.size() == 1);
     CHECK(pairs[0].end_i);

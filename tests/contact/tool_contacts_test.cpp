@@ -68,7 +68,8 @@ Vector shaken(const Mesh& mesh, unsigned seed, double amount) {
     Vector state = mesh.rest_state();
     for (Index v = 0; v < mesh.layout().vectors(); ++v)
         for (int k = 0; k < 3; ++k)
-            state[3 * v + k] += amount * (mesh.layout().kind[core::at(v)] == scene::VectorKind::position ? 0.02 * r : 0.05) * value(generator);
+            state[3 * v + k] +=
+                amount * (mesh.layout().kind[core::at(v)] == scene::VectorKind::position ? 0.02 * r : 0.05) * value(generator);
     return state;
 }
 
@@ -99,7 +100,8 @@ TEST_CASE("the distance of a point from a tool grows along its normal by as much
             for (int k = 0; k < 3; ++k) {
                 const double h = 1e-6;
                 const Vec3 step = h * Vec3::Unit(k);
-                const double slope = (scene::tool_distance(tool, x + step).distance - scene::tool_distance(tool, x - step).distance) / (2 * h);
+                const double slope =
+                    (scene::tool_distance(tool, x + step).distance - scene::tool_distance(tool, x - step).distance) / (2 * h);
                 CHECK(std::abs(slope - here.normal[k]) < 1e-7);  // h^2 over the smallest square of a radius, and rounding / h
             }
         }
@@ -139,7 +141,8 @@ TEST_CASE("forces of tools are the slope of their energy, and the tangent is the
         tools.stiffness_terms(0, state, [&](Index first, const beam::ElementWeights<Beam>& weights, const Mat3& stiffness) {
             CHECK((stiffness - stiffness.transpose()).norm() <= 1e-12 * stiffness.norm());
             const Vec3 force = stiffness * Mesh::point(along, first, weights);
-            for (std::size_t a = 0; a < weights.size(); ++a) product.segment<3>(first + 3 * static_cast<Index>(a)) += weights[a] * force;
+            for (std::size_t a = 0; a < weights.size(); ++a)
+                product.segment<3>(first + 3 * static_cast<Index>(a)) += weights[a] * force;
         });
         // Without friction the tangent is complete. The friction's arm moves with the support too, and that small part is left
         // out, as between fibres: it would not be symmetric.
@@ -189,13 +192,14 @@ TEST_CASE("a fibre pressed between two plates carries what the theory of its sec
         load -= weight * 0.5 * (stretch * stretch - 1.0) * test::glass.young_modulus * pi * r * r * stretch / (2.0 * r);
         CHECK(std::abs(stretch - (1.0 - squeeze)) < 0.2 * squeeze);  // the rest is penetration
     }
-    std::printf("plates: %.6f N/mm below, %.6f above, %.6f expected; energy %.2e of %.2e missing\n", -down.z() / length, up.z() / length, load,
-                report.energy.error(), report.energy.external);
+    std::printf("plates: %.6f N/mm below, %.6f above, %.6f expected; energy %.2e of %.2e missing\n", -down.z() / length,
+                up.z() / length, load, report.energy.error(), report.energy.external);
     CHECK((down + up).norm() < 1e-6 * up.norm());
     // Observers and files are shown what presses.
     const observe::Snapshot shot = simulator.snapshot();
     Vec3 shown[2]{Vec3::Zero(), Vec3::Zero()};
-    for (const observe::ToolContactSnapshot& contact : shot.tool_contacts) shown[contact.tool] += contact.friction - contact.reaction * contact.normal;
+    for (const observe::ToolContactSnapshot& contact : shot.tool_contacts)
+        shown[contact.tool] += contact.friction - contact.reaction * contact.normal;
     CHECK((shown[0] - down).norm() < 1e-12 * down.norm());
     CHECK((shown[1] - up).norm() < 1e-12 * up.norm());
     CHECK(shot.contacts.empty());
@@ -234,7 +238,8 @@ TEST_CASE("a fibre pressed on a rough plate is dragged along with it, and slips 
     CHECK(std::abs(felt().y() / felt().z() - mu) < 1e-3 * mu);
     CHECK(report.energy.dissipated > 0.0);
     std::printf("energy %.2e of %.2e missing\n", report.energy.error(), report.energy.external);
-    CHECK(std::abs(report.energy.error()) < 0.002 * report.energy.external);  // increments of half the reversible way: the force bends within none
+    CHECK(std::abs(report.energy.error()) <
+          0.002 * report.energy.external);  // increments of half the reversible way: the force bends within none
 }
 
 TEST_CASE("a tool that comes closer in long steps does not hold by more than the friction of what it presses with") {
@@ -262,7 +267,8 @@ TEST_CASE("a tool that comes closer in long steps does not hold by more than the
     } held{&simulator};
     const simulation::Report report = simulator.run(loading, held);
     REQUIRE_MESSAGE(report.converged, report.reason);
-    for (const double ratio : held.ratios) CHECK(ratio < 1.05 * mu);  // bounds are those of the increment before, and the pressure grows
+    for (const double ratio : held.ratios)
+        CHECK(ratio < 1.05 * mu);  // bounds are those of the increment before, and the pressure grows
     CHECK(held.ratios.back() > 0.8 * mu);
 }
 
@@ -299,8 +305,10 @@ TEST_CASE("a stuck fibre that turns with its tool feels nothing of it") {
     REQUIRE_MESSAGE(report.converged, report.reason);
     const contact::ToolReaction after = simulator.contacts().tools().reaction(0);
     const Mat3 turn(Eigen::AngleAxisd(0.5 * pi, Vec3::UnitZ()));
-    std::printf("turning: %.5f N on the drum, tangential %.5f N; after a quarter turn off by %.1e, moment by %.1e, energy by %.1e\n", before.force.norm(), before.force.x(),
-                (after.force - turn * before.force).norm() / before.force.norm(), (after.moment - before.moment).norm() / before.moment.norm(), report.energy.elastic / elastic - 1.0);
+    std::printf(
+        "turning: %.5f N on the drum, tangential %.5f N; after a quarter turn off by %.1e, moment by %.1e, energy by %.1e\n",
+        before.force.norm(), before.force.x(), (after.force - turn * before.force).norm() / before.force.norm(),
+        (after.moment - before.moment).norm() / before.moment.norm(), report.energy.elastic / elastic - 1.0);
     CHECK(std::abs(before.force.x()) > 0.01 * before.force.norm());
     CHECK((after.force - turn * before.force).norm() < 1e-5 * before.force.norm());
     CHECK((after.moment - turn * before.moment).norm() < 1e-5 * before.moment.norm());
@@ -329,7 +337,8 @@ TEST_CASE("a fibre's end is round to a tool: as deep in it at any slant") {
 }
 
 TEST_CASE("a slanted fibre that stands with its end on a smooth plate bends and shortens as a cantilever does") {
-    for (const double tilt_deg : {3.0, 5.6, 20.0}) {  // from the plate's normal; the section reaches a tenth of a radius down at 5.7
+    for (const double tilt_deg :
+         {3.0, 5.6, 20.0}) {  // from the plate's normal; the section reaches a tenth of a radius down at 5.7
         CAPTURE(tilt_deg);
         const double tilt = tilt_deg * pi / 180.0, length = 0.5, way = 5e-3 * r;
         const Vec3 foot(0, 0, r), along(std::sin(tilt), 0, std::cos(tilt));
@@ -340,17 +349,21 @@ TEST_CASE("a slanted fibre that stands with its end on a smooth plate bends and 
         Simulator simulator(assembly, parameters(0.0));
         const simulation::Report report = simulator.run(test::stage<Pressing>({{"press", 1.0}}, 4));
         REQUIRE_MESSAGE(report.converged, report.reason);
-        const double area = pi * r * r, inertia = 0.25 * area * r * r, young = test::glass.young_modulus, shear = young / (2.0 * (1.0 + test::glass.poisson_ratio));
+        const double area = pi * r * r, inertia = 0.25 * area * r * r, young = test::glass.young_modulus,
+                     shear = young / (2.0 * (1.0 + test::glass.poisson_ratio));
         const double depth = r - simulator.value(scene::first_end(0), scene::NodeVector::position).z();
         const double load = -simulator.contacts().tools().reaction(0).force.z();
         // A cantilever under a load along and across it: both bend it (Timoshenko and Gere, 1.11).
         const double k = std::sqrt(load * std::cos(tilt) / (young * inertia));
-        const double give = std::pow(std::cos(tilt), 2) * length / (young * area) + std::pow(std::sin(tilt), 2) * length / (shear * area) +
+        const double give = std::pow(std::cos(tilt), 2) * length / (young * area) +
+                            std::pow(std::sin(tilt), 2) * length / (shear * area) +
                             std::sin(tilt) * std::tan(tilt) * (std::tan(k * length) / k - length) / load;
-        std::printf("end on a plate, %.1f degrees: %.3e N, %.3e expected, %.1e radii deep\n", tilt_deg, load, (way - depth) / give, depth / r);
+        std::printf("end on a plate, %.1f degrees: %.3e N, %.3e expected, %.1e radii deep\n", tilt_deg, load,
+                    (way - depth) / give, depth / r);
         CHECK(depth > 0.0);
         CHECK(depth < 2e-3 * r);
-        // The end turns by up to a tenth of the tilt, which shortens the lever by half of that in the square: terms of the third order.
+        // The end turns by up to a tenth of the tilt, which shortens the lever by half of that in the square: terms of the third
+        // order.
         CHECK(std::abs(load * give / (way - depth) - 1.0) < 0.03);
     }
 }
@@ -388,12 +401,15 @@ TEST_CASE("a run with tools that is interrupted goes on to the same bits") {
 
 TEST_CASE("a tool that is not one, and a scene whose model knows no tools, are refused by name") {
     scene::Assembly assembly;
-    CHECK(test::refusal([&] { assembly.add(plane(Vec3::Zero(), Vec3::Zero())); }) == "Tool.axis: length = 0, but it must be finite and > 0 (tool 0)");
+    CHECK(test::refusal([&] { assembly.add(plane(Vec3::Zero(), Vec3::Zero())); }) ==
+          "Tool.axis: length = 0, but it must be finite and > 0 (tool 0)");
     CHECK(test::refusal([&] { assembly.add(round(scene::ToolShape::sphere, Vec3::Zero(), Vec3::UnitZ(), -1.0)); }) ==
           "Tool.radius = -1, but it must be finite and > 0 (tool 0)");
     assembly.add(straight_fibre({0, 0, r}, {0.5, 0, r}, r, 6));
     assembly.add(plane(Vec3::Zero(), Vec3::UnitZ()));
-    CHECK(test::refusal([&] { simulation::Simulator<test::Smooth>(assembly, test::tight_parameters<test::Smooth>(r)); }).find("assembly.tools = 1") == 0);
+    CHECK(test::refusal([&] {
+              simulation::Simulator<test::Smooth>(assembly, test::tight_parameters<test::Smooth>(r));
+          }).find("assembly.tools = 1") == 0);
 }
 
 }  // namespace tool_contacts_test

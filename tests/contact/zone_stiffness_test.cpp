@@ -58,7 +58,8 @@ TEST_CASE("one adaptation within reach is exact beyond the quadratic start of th
     const double k = adaptation.adapted(20.0, reference, allowed, 0.1 * allowed);
     // the same force: 20 (1 - 0.05) = k (target - 0.05), in allowed penetrations
     CHECK(k == test::near(20.0 * 0.95 / (adaptation.target_fraction - 0.05), 1e-14));
-    CHECK(law.response(-adaptation.target_fraction * allowed, k).reaction == test::near(law.response(-allowed, 20.0).reaction, 1e-12));
+    CHECK(law.response(-adaptation.target_fraction * allowed, k).reaction ==
+          test::near(law.response(-allowed, 20.0).reaction, 1e-12));
 }
 
 TEST_CASE("the stiffness changes by at most the largest factor and stays between floor and cap") {
@@ -79,8 +80,8 @@ TEST_CASE("the reference stiffness is that of a section between two opposite lin
 }
 
 TEST_CASE("a zone takes over from the zone of the same pair that it overlaps most") {
-    const std::vector<Zone> old{zone(0, 1, 0, 2, 0, 2), zone(0, 2, 0, 4, 0, 4), zone(0, 2, 6, 9, 6, 9), zone(0, 2, 20, 22, 22, 20),
-                                zone(1, 2, 0, 9, 0, 9)};
+    const std::vector<Zone> old{zone(0, 1, 0, 2, 0, 2), zone(0, 2, 0, 4, 0, 4), zone(0, 2, 6, 9, 6, 9),
+                                zone(0, 2, 20, 22, 22, 20), zone(1, 2, 0, 9, 0, 9)};
     CHECK(contact::predecessor(old, zone(0, 2, 3, 9, 3, 9).span) == &old[2]);
     CHECK(contact::predecessor(old, zone(0, 2, 0, 7, 0, 7).span) == &old[1]);
     CHECK(contact::predecessor(old, zone(0, 2, 20, 21, 21, 20).span) == &old[3]);

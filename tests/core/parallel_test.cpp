@@ -38,10 +38,16 @@ TEST_CASE("a loop visits every item once, whatever the number of threads") {
 TEST_CASE("an exception leaves the loop that threw it, with its own type and message") {
     for (const int threads : {1, 2}) {
         test::with_threads(threads, [] {
-            CHECK_THROWS_WITH_AS(
-                core::parallel_for(100, [](Index k) { if (k == 73) throw std::domain_error("item 73"); }), "item 73", std::domain_error);
-            CHECK_THROWS_WITH_AS(
-                core::parallel_for<core::Share::turns>(100, [](Index k) { if (k == 73) throw std::domain_error("item 73"); }), "item 73", std::domain_error);
+            CHECK_THROWS_WITH_AS(core::parallel_for(100,
+                                                    [](Index k) {
+                                                        if (k == 73) throw std::domain_error("item 73");
+                                                    }),
+                                 "item 73", std::domain_error);
+            CHECK_THROWS_WITH_AS(core::parallel_for<core::Share::turns>(100,
+                                                                        [](Index k) {
+                                                                            if (k == 73) throw std::domain_error("item 73");
+                                                                        }),
+                                 "item 73", std::domain_error);
         });
     }
 }
@@ -52,7 +58,8 @@ TEST_CASE("parts are joined in their order, and what the whole held before is go
             std::vector<std::vector<Index>> parts(100);
             std::vector<Index> expected, whole(10'000, -1);
             for (Index p = 0; p < 100; ++p)
-                for (Index k = 0; k < (p * p) % 7; ++k) parts[core::at(p)].push_back(1000 * p + k), expected.push_back(1000 * p + k);
+                for (Index k = 0; k < (p * p) % 7; ++k)
+                    parts[core::at(p)].push_back(1000 * p + k), expected.push_back(1000 * p + k);
             core::join(parts, whole);
             CHECK(whole == expected);
             core::join(std::vector<std::vector<Index>>{}, whole);
@@ -64,9 +71,7 @@ TEST_CASE("parts are joined in their order, and what the whole held before is go
 TEST_CASE("a loop within a loop runs on its own thread and still visits everything") {
     test::with_threads(2, [] {
         std::vector<Index> sum(8, 0);
-        core::parallel_for(8, [&](Index k) {
-            core::parallel_for(100, [&](Index m) { sum[core::at(k)] += m; });
-        });
+        core::parallel_for(8, [&](Index k) { core::parallel_for(100, [&](Index m) { sum[core::at(k)] += m; }); });
         for (const Index value : sum) CHECK(value == 4950);
     });
 }

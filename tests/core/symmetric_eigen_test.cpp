@@ -19,7 +19,8 @@ void check(const Eigen::Matrix<double, n, n>& matrix) {
     CHECK((own.vectors().transpose() * own.vectors() - Eigen::Matrix<double, n, n>::Identity()).norm() < rounding);
     CHECK((matrix * own.vectors() - own.vectors() * own.values().asDiagonal()).norm() <= 4.0 * rounding * size);
     for (int k = 1; k < n; ++k) CHECK(own.values()[k - 1] <= own.values()[k]);
-    const Eigen::Matrix<double, n, n> raised = other.eigenvectors() * other.eigenvalues().cwiseMax(0.0).asDiagonal() * other.eigenvectors().transpose();
+    const Eigen::Matrix<double, n, n> raised =
+        other.eigenvectors() * other.eigenvalues().cwiseMax(0.0).asDiagonal() * other.eigenvectors().transpose();
     CHECK((own.raised(0.0) - raised).norm() <= 20.0 * rounding * size);
 }
 
@@ -32,7 +33,7 @@ void check_kinds() {
     for (int k = 0; k < 200; ++k) {
         const Square m = any();
         check<n>(m + m.transpose());
-        check<n>(m.col(0) * m.col(0).transpose());                  // of rank one
+        check<n>(m.col(0) * m.col(0).transpose());  // of rank one
         check<n>(Square(m.diagonal().asDiagonal()));
         check<n>(Square::Identity() + 1e-16 * (m + m.transpose()));  // all but equal
         check<n>(1e-170 * (m + m.transpose()));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Files of curves: written and read again they are the same; what is wrong in them is refused by its place.
-#include <near.hpp>
 #include "../refusal.hpp"
+#include <near.hpp>
 
 #include <fibrant/exchange/binary_curves.hpp>
 #include <fibrant/exchange/text_curves.hpp>
@@ -245,8 +245,7 @@ TEST_CASE("voxels hold the volume of fibres to a thousandth at half a radius, an
     // it.
     const Voxels twice = voxels_of({slanted, slanted}, fine.grid);
     double excess = 0.0;
-    for (const float share : fine.share)
-        excess += std::max(0.0, 2.0 * static_cast<double>(share) - 1.0) * std::pow(0.05, 3);
+    for (const float share : fine.share) excess += std::max(0.0, 2.0 * static_cast<double>(share) - 1.0) * std::pow(0.05, 3);
     CHECK(twice.excess == test::near(excess, 1e-6));
     FileCurve thin = slanted;
     thin.radius = 0.05, thin.group = 3;
@@ -263,8 +262,8 @@ TEST_CASE("voxels hold the volume of fibres to a thousandth at half a radius, an
     const Voxels tapered = voxels_of({cone}, grid_around({cone}, 0.05));
     double middle = 0.0, filled = 0.0;
     for (std::size_t k = 0; k < tapered.share.size(); ++k) {
-        const double x = tapered.grid.origin.x() +
-                         0.05 * (static_cast<double>(static_cast<Index>(k) % tapered.grid.counts[0]) + 0.5);
+        const double x =
+            tapered.grid.origin.x() + 0.05 * (static_cast<double>(static_cast<Index>(k) % tapered.grid.counts[0]) + 0.5);
         filled += static_cast<double>(tapered.share[k]), middle += static_cast<double>(tapered.share[k]) * x;
     }
     CHECK(middle / filled == test::near(2.0 * (1.0 + 6.0 + 27.0) / (1.0 + 3.0 + 9.0) / 4.0, 1e-3));

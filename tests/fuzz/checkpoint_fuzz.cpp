@@ -18,7 +18,8 @@ scene::Assembly two_fibres() {
     scene::Assembly assembly;
     for (const double z : {0.0, 0.0399}) {
         const Vec3 half = z > 0.0 ? Vec3(0.3, 0, 0) : Vec3(0, 0.3, 0), middle(0, 0, z);
-        const Index fibre = assembly.add({.from = middle - half, .to = middle + half, .section = section, .material = material, .elements = 4});
+        const Index fibre =
+            assembly.add({.from = middle - half, .to = middle + half, .section = section, .material = material, .elements = 4});
         assembly.clamp(scene::first_end(fibre)), assembly.clamp(scene::last_end(fibre));
     }
     return assembly;

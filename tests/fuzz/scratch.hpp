@@ -12,7 +12,8 @@ namespace fuzz {
 
 /// A file of this process, written anew for each input.
 inline std::string file_of(const std::uint8_t* data, std::size_t size, const void* more = nullptr, std::size_t more_size = 0) {
-    static const std::string path = (std::filesystem::temp_directory_path() / ("fibrant_fuzz_" + std::to_string(getpid()))).string();
+    static const std::string path =
+        (std::filesystem::temp_directory_path() / ("fibrant_fuzz_" + std::to_string(getpid()))).string();
     std::FILE* file = std::fopen(path.c_str(), "wb");
     if (file == nullptr) return path;
     if (size > 0) std::fwrite(data, 1, size, file);

@@ -183,7 +183,8 @@ TEST_CASE("a thrown fibre falls as a body does, and keeps its momenta and, to th
         const simulation::EnergyBalance& energy = fall.report.energy;
         lost[fine] = std::abs(energy.numerical) / energy.kinetic;
         CHECK(std::abs(energy.error()) < 1e-12 * energy.kinetic);
-        std::printf("thrown: spin off by %.1e, lost %.1e of the kinetic energy\n", turned[fine], energy.numerical / energy.kinetic);
+        std::printf("thrown: spin off by %.1e, lost %.1e of the kinetic energy\n", turned[fine],
+                    energy.numerical / energy.kinetic);
     }
     // Second order: a quarter with half of the step.
     CHECK(lost[1] < 3e-5);
@@ -209,10 +210,9 @@ TEST_CASE("a pendulum of 90 degrees swings with the period of the closed form, i
             if (swing.tips[k].x() <= 0.0)
                 passed = T * (swing.lasted[k - 1] + (swing.lasted[k] - swing.lasted[k - 1]) * swing.tips[k - 1].x() /
                                                         (swing.tips[k - 1].x() - swing.tips[k].x()));
-        std::printf(
-            "pendulum: quarter period %.6f of %.6f, %zu steps, %td refused; numerical %.1e of the work\n",
-            passed, quarter, swing.tips.size(), swing.report.rejected_increments,
-            swing.report.energy.numerical / swing.report.energy.external);
+        std::printf("pendulum: quarter period %.6f of %.6f, %zu steps, %td refused; numerical %.1e of the work\n", passed,
+                    quarter, swing.tips.size(), swing.report.rejected_increments,
+                    swing.report.energy.numerical / swing.report.energy.external);
         CHECK(passed == test::near(quarter, 5e-4));
         CHECK(std::abs(swing.report.energy.numerical) < 1e-3 * swing.report.energy.external);
         CHECK((swing.report.rejected_increments > 0) == controlled);
@@ -274,9 +274,8 @@ TEST_CASE("a cantilever that is let go under its weight comes to rest at its def
     Moved<Hitting> sink(assembly, with);
     sink.run(4.0 * 2.0 * pi / omega, 300);
     const simulation::EnergyBalance& energy = sink.report.energy;
-    std::printf("cantilever: sinks by %.6f of %.6f; kinetic %.1e, numerical %.1e of the work, lost %.4f\n",
-                -sink.tips.back().z(), sag, energy.kinetic / energy.external,
-                energy.numerical / energy.external, energy.lost / energy.external);
+    std::printf("cantilever: sinks by %.6f of %.6f; kinetic %.1e, numerical %.1e of the work, lost %.4f\n", -sink.tips.back().z(),
+                sag, energy.kinetic / energy.external, energy.numerical / energy.external, energy.lost / energy.external);
     CHECK(-sink.tips.back().z() == test::near(sag, 5e-3));  // 12 elements of constant strain
     CHECK(energy.kinetic < 1e-6 * energy.external);
     CHECK(std::abs(energy.numerical) < 3e-3 * energy.external);

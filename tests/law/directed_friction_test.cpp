@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <near.hpp>
 #include <fibrant/law/directed_friction.hpp>
 #include <fibrant/law/physical_normal.hpp>
+#include <near.hpp>
 
 #include <refusal.hpp>
 
@@ -23,30 +23,42 @@ using law::Touch;
 using Lubricated = law::Lubricated<AdhesiveFriction>;
 const double degree = std::numbers::pi / 180.0;
 
-DirectedFriction crossed(double along, double across) { return DirectedFriction({.along = along, .across = across, .reversible_displacement = 1e-3}); }
+DirectedFriction crossed(double along, double across) {
+    return DirectedFriction({.along = along, .across = across, .reversible_displacement = 1e-3});
+}
 template <class L>
 L sample();
 template <>
 DirectedFriction sample<DirectedFriction>() {
-    return DirectedFriction({.along = 0.2, .across = 0.4, .exponent = 0.8, .crossing_along = 0.15, .crossing_across = 0.3, .reversible_displacement = 1e-3});
+    return DirectedFriction({.along = 0.2,
+                             .across = 0.4,
+                             .exponent = 0.8,
+                             .crossing_along = 0.15,
+                             .crossing_across = 0.3,
+                             .reversible_displacement = 1e-3});
 }
 template <>
 AdhesiveFriction sample<AdhesiveFriction>() {
-    return AdhesiveFriction({.friction_coefficient = 0.3, .line_adhesion = 5.0, .crossing_adhesion = 0.7, .reversible_displacement = 1e-3});
+    return AdhesiveFriction(
+        {.friction_coefficient = 0.3, .line_adhesion = 5.0, .crossing_adhesion = 0.7, .reversible_displacement = 1e-3});
 }
 template <>
 SlipWeakeningFriction sample<SlipWeakeningFriction>() {
-    return SlipWeakeningFriction({.static_coefficient = 0.5, .kinetic_coefficient = 0.2, .weakening_length = 0.01, .reversible_displacement = 1e-3});
+    return SlipWeakeningFriction(
+        {.static_coefficient = 0.5, .kinetic_coefficient = 0.2, .weakening_length = 0.01, .reversible_displacement = 1e-3});
 }
 template <>
 Lubricated sample<Lubricated>() {
-    Lubricated law({.law = {.friction_coefficient = 0.3, .line_adhesion = 5.0, .crossing_adhesion = 0.7, .reversible_displacement = 1e-3}, .viscosity = 40.0, .crossing_viscosity = 3.0});
+    Lubricated law(
+        {.law = {.friction_coefficient = 0.3, .line_adhesion = 5.0, .crossing_adhesion = 0.7, .reversible_displacement = 1e-3},
+         .viscosity = 40.0,
+         .crossing_viscosity = 3.0});
     law.last(0.1);
     return law;
 }
 
-TEST_CASE_TEMPLATE("a law that sees has its derivatives, a potential, no direction of its own, and no element's size", L, DirectedFriction, AdhesiveFriction,
-                   SlipWeakeningFriction, Lubricated) {
+TEST_CASE_TEMPLATE("a law that sees has its derivatives, a potential, no direction of its own, and no element's size", L,
+                   DirectedFriction, AdhesiveFriction, SlipWeakeningFriction, Lubricated) {
     const L law = sample<L>();
     std::mt19937_64 generator(5);
     std::normal_distribution<double> normal;
@@ -54,7 +66,8 @@ TEST_CASE_TEMPLATE("a law that sees has its derivatives, a potential, no directi
     typename L::History memory;
     const bool rate = law::FrictionWithRate<L>;
     for (int k = 0; k < 40; ++k) {
-        Touch touch{flat(k % 3 == 0 ? 2e-4 : 2e-3), flat(1.0).normalized(), flat(1.0).normalized(), Vec3::UnitZ(), std::exp(normal(generator)), k % 2 == 0 ? 0.02 : 0.0};
+        Touch touch{flat(k % 3 == 0 ? 2e-4 : 2e-3), flat(1.0).normalized(), flat(1.0).normalized(), Vec3::UnitZ(),
+                    std::exp(normal(generator)),    k % 2 == 0 ? 0.02 : 0.0};
         const auto now = law.response(touch, memory);
         CHECK(now.dissipated >= 0.0);
         const double h = 1e-9;
@@ -96,13 +109,19 @@ TEST_CASE_TEMPLATE("a law that sees has its derivatives, a potential, no directi
 
 /// Force after sliding far enough along an angle, over the reaction.
 Vec3 sliding(const DirectedFriction& law, double angle, double of_j) {
-    Touch touch{50.0 * Vec3(std::cos(angle), std::sin(angle), 0.0), Vec3::UnitX(), Vec3(std::cos(of_j), std::sin(of_j), 0.0), Vec3::UnitZ(), 3.0, 0.0};
+    Touch touch{50.0 * Vec3(std::cos(angle), std::sin(angle), 0.0),
+                Vec3::UnitX(),
+                Vec3(std::cos(of_j), std::sin(of_j), 0.0),
+                Vec3::UnitZ(),
+                3.0,
+                0.0};
     return law.response(touch, {}).force / 3.0;
 }
 
 TEST_CASE("friction along and across a fibre: resistance, side force, and a block on an incline") {
     const DirectedFriction law = crossed(0.2, 0.4);
-    const double psi[] = {0, 30, 45, 60, 90}, resistance[] = {0.2, 0.264575, 0.316228, 0.360555, 0.4}, size[] = {0.2, 0.329502, 0.368782, 0.388290, 0.4};
+    const double psi[] = {0, 30, 45, 60, 90}, resistance[] = {0.2, 0.264575, 0.316228, 0.360555, 0.4},
+                 size[] = {0.2, 0.329502, 0.368782, 0.388290, 0.4};
     for (int k = 0; k < 5; ++k) {
         const Vec3 way(std::cos(psi[k] * degree), std::sin(psi[k] * degree), 0.0), force = sliding(law, psi[k] * degree, 0.0);
         CHECK(force.dot(way) == test::near(resistance[k], 1e-5));
@@ -116,10 +135,12 @@ TEST_CASE("friction along and across a fibre: resistance, side force, and a bloc
         CHECK(std::abs(force.y() - side[k]) < 1e-6);  // the digits of the table
     }
     // An incline of the drive phi to the fibre, steepened until the block slides: the force that holds it leaves the ellipse.
-    const double phi[] = {0, 15, 30, 45, 60, 75, 90}, alpha[] = {11.309932, 11.597313, 12.510125, 14.196947, 16.823825, 20.052189, 21.801409};
+    const double phi[] = {0, 15, 30, 45, 60, 75, 90},
+                 alpha[] = {11.309932, 11.597313, 12.510125, 14.196947, 16.823825, 20.052189, 21.801409};
     const double first[] = {0, 3.832364, 8.213211, 14.036243, 23.413224, 43.015246, 90};
     for (int k = 0; k < 7; ++k) {
-        const double c = std::cos(phi[k] * degree), s = std::sin(phi[k] * degree), most = 1.0 / std::sqrt(c * c / 0.04 + s * s / 0.16);
+        const double c = std::cos(phi[k] * degree), s = std::sin(phi[k] * degree),
+                     most = 1.0 / std::sqrt(c * c / 0.04 + s * s / 0.16);
         CHECK(std::atan(most) / degree == test::near(alpha[k], 1e-6));
         // It slides along M^-1 of the drive: there the law's force is that of the drive.
         const Vec3 force = sliding(law, first[k] * degree, 0.0);
@@ -138,13 +159,22 @@ TEST_CASE("friction of a power of the pressure wraps a cylinder as the capstan o
     };
     for (const Row& row : {Row{2.0 / 3.0, 1.549137, 4.317358}, Row{0.8, 1.568839, 4.950576}, Row{0.9, 1.584823, 5.623098}}) {
         const double a = mu0 * std::pow(T0 / R, 1.0 - row.n);
-        const DirectedFriction law({.along = a, .across = a, .exponent = row.n, .crossing_along = 0.1, .crossing_across = 0.1, .reversible_displacement = 1e-6});
+        const DirectedFriction law({.along = a,
+                                    .across = a,
+                                    .exponent = row.n,
+                                    .crossing_along = 0.1,
+                                    .crossing_across = 0.1,
+                                    .reversible_displacement = 1e-6});
         for (const int pieces : {400, 800}) {
             double T = T0;
             for (int k = 0; k < 4 * pieces; ++k) {
                 const double angle = std::numbers::pi / pieces;
                 // Midpoint rule: the tension in the middle of a piece presses it on.
-                const auto force = [&](double tension) { return law.response({Vec3(1, 0, 0), Vec3::UnitX(), Vec3::UnitX(), Vec3::UnitZ(), tension * angle, R * angle}, {}).force.x(); };
+                const auto force = [&](double tension) {
+                    return law
+                        .response({Vec3(1, 0, 0), Vec3::UnitX(), Vec3::UnitX(), Vec3::UnitZ(), tension * angle, R * angle}, {})
+                        .force.x();
+                };
                 const double middle = T + 0.5 * force(T);
                 T += force(middle);
                 if (k + 1 == pieces) CHECK(T == test::near(row.half, 2e-6));
@@ -153,14 +183,25 @@ TEST_CASE("friction of a power of the pressure wraps a cylinder as the capstan o
         }
     }
     // Where the pressure vanishes the coefficient would grow without a bound.
-    const DirectedFriction law({.along = 0.2, .across = 0.4, .exponent = 0.5, .crossing_along = 0.1, .crossing_across = 0.1, .largest_coefficient = 1.5, .reversible_displacement = 1e-3});
-    CHECK(law.response({Vec3(1, 0, 0), Vec3::UnitX(), Vec3::UnitX(), Vec3::UnitZ(), 1e-9, 1.0}, {}).force.x() / 1.5e-9 == test::near(1.0));
-    CHECK(test::refusal([] { DirectedFriction({.along = 0.2, .across = 0.4, .exponent = 0.5, .reversible_displacement = 1.0}); }).find("crossing_along") != std::string::npos);
+    const DirectedFriction law({.along = 0.2,
+                                .across = 0.4,
+                                .exponent = 0.5,
+                                .crossing_along = 0.1,
+                                .crossing_across = 0.1,
+                                .largest_coefficient = 1.5,
+                                .reversible_displacement = 1e-3});
+    CHECK(law.response({Vec3(1, 0, 0), Vec3::UnitX(), Vec3::UnitX(), Vec3::UnitZ(), 1e-9, 1.0}, {}).force.x() / 1.5e-9 ==
+          test::near(1.0));
+    CHECK(test::refusal([] {
+              DirectedFriction({.along = 0.2, .across = 0.4, .exponent = 0.5, .reversible_displacement = 1.0});
+          }).find("crossing_along") != std::string::npos);
 }
 
 TEST_CASE("a stuck pair resists without much load, a way slid weakens it, and a fluid resists by rate") {
     const AdhesiveFriction sticky = sample<AdhesiveFriction>();
-    const auto far = [](const auto& law, double reaction, double length) { return law.response({Vec3(1, 0, 0), Vec3::UnitX(), Vec3::UnitX(), Vec3::UnitZ(), reaction, length}, {}).force.x(); };
+    const auto far = [](const auto& law, double reaction, double length) {
+        return law.response({Vec3(1, 0, 0), Vec3::UnitX(), Vec3::UnitX(), Vec3::UnitZ(), reaction, length}, {}).force.x();
+    };
     CHECK(far(sticky, 1e-12, 2.0) == test::near(0.3 * 10.0));
     CHECK(far(sticky, 2.0, 0.0) == test::near(0.3 * 2.7));
     const SlipWeakeningFriction weak = sample<SlipWeakeningFriction>();
@@ -174,7 +215,10 @@ TEST_CASE("a stuck pair resists without much load, a way slid weakens it, and a 
     CHECK(first == test::near(1.0));  // static
     CHECK(last == test::near(0.4, 1e-6));
     CHECK(memory.numbers[0] == test::near(0.2 - 1e-3, 1e-9));
-    Lubricated wet({.law = {.friction_coefficient = 0.3, .line_adhesion = 0.0, .crossing_adhesion = 0.0, .reversible_displacement = 1e-3}, .viscosity = 4.0, .crossing_viscosity = 0.0});
+    Lubricated wet(
+        {.law = {.friction_coefficient = 0.3, .line_adhesion = 0.0, .crossing_adhesion = 0.0, .reversible_displacement = 1e-3},
+         .viscosity = 4.0,
+         .crossing_viscosity = 0.0});
     wet.last(0.5);
     CHECK(far(wet, 2.0, 0.25) == test::near(0.6 + 4.0 * 0.25 / 0.5));
 }
@@ -190,9 +234,11 @@ TEST_CASE("physical normal laws push, by an energy, alike however a line is cut,
                 const double h = 1e-8;
                 const law::NormalResponse now = law.response(at);
                 CHECK(now.reaction >= 0.0);
-                CHECK(std::abs((law.response(moved(h)).reaction - law.response(moved(-h)).reaction) / (2.0 * h) - now.slope) <= 1e-5 * std::abs(now.slope));
+                CHECK(std::abs((law.response(moved(h)).reaction - law.response(moved(-h)).reaction) / (2.0 * h) - now.slope) <=
+                      1e-5 * std::abs(now.slope));
                 CHECK(std::abs((law.energy(moved(-h)) - law.energy(moved(h))) / (2.0 * h) - now.reaction) <= 1e-5 * now.reaction);
-                if (length > 0.0) CHECK(std::abs(2.0 * law.response({-p, 0.5 * length, 0.1}).reaction - now.reaction) <= 1e-14 * now.reaction);
+                if (length > 0.0)
+                    CHECK(std::abs(2.0 * law.response({-p, 0.5 * length, 0.1}).reaction - now.reaction) <= 1e-14 * now.reaction);
             }
     };
     check(power), check(hardening);

@@ -34,9 +34,9 @@ Mat3 differences(const Vec3& slip, const History& history) {
     Mat3 slope;
     for (int k = 0; k < 3; ++k) {
         const Vec3 aside = step * Vec3::Unit(k);
-        slope.col(k) = (coulomb.response(slip + aside, reaction, history).force -
-                        coulomb.response(slip - aside, reaction, history).force) /
-                       (2.0 * step);
+        slope.col(k) =
+            (coulomb.response(slip + aside, reaction, history).force - coulomb.response(slip - aside, reaction, history).force) /
+            (2.0 * step);
     }
     return slope;
 }
@@ -228,9 +228,8 @@ TEST_CASE("no friction is nothing: no memory, no force, no size") {
 
 TEST_CASE("parameters that cannot hold are refused with field, value and bound") {
     const auto build = [](double coefficient, double displacement) {
-        return test::refusal([&] {
-            RegularisedCoulomb{{.friction_coefficient = coefficient, .reversible_displacement = displacement}};
-        });
+        return test::refusal(
+            [&] { RegularisedCoulomb{{.friction_coefficient = coefficient, .reversible_displacement = displacement}}; });
     };
     const double infinity = std::numeric_limits<double>::infinity();
     CHECK(build(-0.1, range) == "RegularisedCoulomb.friction_coefficient = -0.1, but it must be finite and >= 0");
@@ -248,7 +247,9 @@ TEST_CASE("smooth friction owes what regularised friction owes, and its stiffnes
     std::mt19937 random(20261122);
     std::normal_distribution<double> normal;
     for (int n = 0; n < 400; ++n) {
-        const auto vector = [&](double size) { return Vec3(size * normal(random), size * normal(random), size * normal(random)); };
+        const auto vector = [&](double size) {
+            return Vec3(size * normal(random), size * normal(random), size * normal(random));
+        };
         Memory history{.reversible = vector(0.5 * range)};
         if (history.reversible.norm() > range) history.reversible *= range / history.reversible.norm();
         const Vec3 slip = vector(n % 2 == 0 ? 0.3 * range : 3.0 * range);
@@ -262,7 +263,8 @@ TEST_CASE("smooth friction owes what regularised friction owes, and its stiffnes
         Mat3 slope;
         for (int k = 0; k < 3; ++k)
             slope.col(k) = (smooth.response(slip + step * Vec3::Unit(k), reaction, history).force -
-                            smooth.response(slip - step * Vec3::Unit(k), reaction, history).force) / (2.0 * step);
+                            smooth.response(slip - step * Vec3::Unit(k), reaction, history).force) /
+                           (2.0 * step);
         // Everywhere, where sliding begins too: there the second derivative jumps by 2 bound / range^2.
         CHECK((answer.tangent - slope).norm() <= 4e-6 * bound / range);
         const Vec3 x = vector(1.0);
@@ -271,7 +273,8 @@ TEST_CASE("smooth friction owes what regularised friction owes, and its stiffnes
               answer.force.dot(slip) + stored(history.reversible.norm()) + 1e-12 * bound * range);
     }
     CHECK(smooth.response(Vec3(range, 0, 0), reaction, {}).force.x() == test::near(bound, 1e-12));
-    CHECK(smooth.response(Vec3(1e-6 * range, 0, 0), reaction, {}).force.x() == test::near(2e-6 * bound, 1e-6));  // but for x / 2 of it
+    CHECK(smooth.response(Vec3(1e-6 * range, 0, 0), reaction, {}).force.x() ==
+          test::near(2e-6 * bound, 1e-6));  // but for x / 2 of it
     CHECK(smooth.response(Vec3(5.0 * range, 0, 0), reaction, {}).dissipated == test::near(4.0 * range * bound, 1e-12));
     CHECK(smooth.response(Vec3(0.9 * range, 0, 0), reaction, {}).dissipated == 0.0);
     CHECK(smooth.response(Vec3(range, 0, 0), 0.0, {}).force == Vec3::Zero());
@@ -279,7 +282,8 @@ TEST_CASE("smooth friction owes what regularised friction owes, and its stiffnes
           "SmoothCoulomb.friction_coefficient = -1, but it must be finite and >= 0");
 }
 
-TEST_CASE_TEMPLATE("what friction does not dissipate of the work along its slip, it stores", Law, RegularisedCoulomb, law::SmoothCoulomb) {
+TEST_CASE_TEMPLATE("what friction does not dissipate of the work along its slip, it stores", Law, RegularisedCoulomb,
+                   law::SmoothCoulomb) {
     const Law friction{{.friction_coefficient = mu, .reversible_displacement = range}};
     typename Law::History history;
     double work = 0.0, dissipated = 0.0, force = 0.0;

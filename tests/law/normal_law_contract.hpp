@@ -56,11 +56,9 @@ void check_normal_law(const Law& law, double stiffness, double depth, bool slope
         const double step = 1e-6 * depth;
         if (slope_jumps && std::abs(gap) <= step) continue;
         const double reaction_rate =
-            (law.response(gap + step, stiffness).reaction - law.response(gap - step, stiffness).reaction) /
-            (2.0 * step);
+            (law.response(gap + step, stiffness).reaction - law.response(gap - step, stiffness).reaction) / (2.0 * step);
         CHECK(std::abs(reaction_rate - here.slope) <= 1e-6 * stiffness);
-        const double energy_rate =
-            (law.energy(gap + step, stiffness) - law.energy(gap - step, stiffness)) / (2.0 * step);
+        const double energy_rate = (law.energy(gap + step, stiffness) - law.energy(gap - step, stiffness)) / (2.0 * step);
         CHECK(std::abs(energy_rate + here.reaction) <= 1e-6 * force);
     }
 
@@ -70,10 +68,9 @@ void check_normal_law(const Law& law, double stiffness, double depth, bool slope
     const double width = 4.0 * depth / slices;
     for (int k = 0; k < slices; ++k) {
         const double shallow = -width * k, deep = -width * (k + 1);
-        work +=
-            width / 6.0 *
-            (law.response(shallow, stiffness).reaction +
-             4.0 * law.response(0.5 * (shallow + deep), stiffness).reaction + law.response(deep, stiffness).reaction);
+        work += width / 6.0 *
+                (law.response(shallow, stiffness).reaction + 4.0 * law.response(0.5 * (shallow + deep), stiffness).reaction +
+                 law.response(deep, stiffness).reaction);
     }
     CHECK(std::abs(law.energy(-4.0 * depth, stiffness) - work) <= 1e-12 * force * depth);
 }

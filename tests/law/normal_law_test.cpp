@@ -26,9 +26,8 @@ TEST_CASE("a normal law pushes fibres apart and never pulls them together") {
             test::check_normal_law(RegularisedPenalty{{.regularisation_depth = depth}}, stiffness, depth);
             test::check_normal_law(LinearPenalty{}, stiffness, depth, true);
             // The wrapper moves the gap before the law sees it; the law itself is unchanged.
-            test::check_normal_law(
-                LimitedGap<RegularisedPenalty>{{.law = {.regularisation_depth = depth}, .limit = 2.0 * depth}},
-                stiffness, depth);
+            test::check_normal_law(LimitedGap<RegularisedPenalty>{{.law = {.regularisation_depth = depth}, .limit = 2.0 * depth}},
+                                   stiffness, depth);
             test::check_normal_law(LimitedGap<LinearPenalty>{{.law = {}, .limit = depth}}, stiffness, depth, true);
         }
 }
@@ -53,15 +52,14 @@ TEST_CASE("the regularised penalty is continuous with its slope at the threshold
     CHECK(at.reaction == test::near(before.reaction, 1e-14));
     CHECK(at.slope == test::near(before.slope, 1e-14));
     CHECK(at.reaction == test::near(0.5 * stiffness * depth, 1e-14));
-    CHECK(law.energy(-depth, stiffness) ==
-          test::near(law.energy(std::nextafter(-depth, 0.0), stiffness), 1e-14));
+    CHECK(law.energy(-depth, stiffness) == test::near(law.energy(std::nextafter(-depth, 0.0), stiffness), 1e-14));
 }
 
 TEST_CASE("a law tells the depth that its quadratic start loses, and the linear one loses none") {
     CHECK(law::regularisation_depth(RegularisedPenalty{{.regularisation_depth = 0.25}}) == 0.25);
     CHECK(law::regularisation_depth(LinearPenalty{}) == 0.0);
-    CHECK(law::regularisation_depth(
-              LimitedGap<RegularisedPenalty>{{.law = {.regularisation_depth = 0.25}, .limit = 1.0}}) == 0.25);
+    CHECK(law::regularisation_depth(LimitedGap<RegularisedPenalty>{{.law = {.regularisation_depth = 0.25}, .limit = 1.0}}) ==
+          0.25);
     static_assert(!law::Regularised<LimitedGap<LinearPenalty>>);
     static_assert(law::GapShifting<LimitedGap<LinearPenalty>>);
     static_assert(!law::GapShifting<RegularisedPenalty>);
@@ -127,9 +125,11 @@ TEST_CASE("a law that can be inverted tells the penetration of every reaction") 
 }
 
 TEST_CASE("multipliers leave a law as it is, and a law without them is not one that has") {
-    test::check_normal_law(law::Augmented<RegularisedPenalty>{{.law = {.regularisation_depth = 1e-3}, .largest_penetration = 1e-6}}, 50.0, 1e-3);
+    test::check_normal_law(
+        law::Augmented<RegularisedPenalty>{{.law = {.regularisation_depth = 1e-3}, .largest_penetration = 1e-6}}, 50.0, 1e-3);
     static_assert(law::Augmenting<law::Augmented<LinearPenalty>> && !law::Augmenting<RegularisedPenalty>);
-    CHECK(test::refusal([] { law::Augmented<LinearPenalty>{{}}; }) == "Augmented.largest_penetration = nan, but it must be finite and > 0");
+    CHECK(test::refusal([] { law::Augmented<LinearPenalty>{{}}; }) ==
+          "Augmented.largest_penetration = nan, but it must be finite and > 0");
 }
 
 }  // namespace normal_law_test

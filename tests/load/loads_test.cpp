@@ -123,9 +123,16 @@ TEST_CASE("loads that nothing carries are refused by name") {
         change(all);
         simulation::Simulator<Weighted> simulator(assembly, all);
     };
-    CHECK(test::refusal([&] { build([](auto& all) { all.acts.gravity.weight[1] = core::unset; }); }).find("Gravity.weight") != std::string::npos);
-    CHECK(test::refusal([&] { build([](auto& all) { all.acts.lines.loads.push_back({.fibre = 1, .force = Vec3::UnitX()}); }); }).find("LineLoads.Load.fibre = 1") != std::string::npos);
-    CHECK(test::refusal([&] { build([](auto& all) { all.acts.lines.loads.push_back({.fibre = 0, .force = Vec3::UnitX(), .from = 0.5, .to = 0.5}); }); }).find("LineLoads.Load.to = 0.5") != std::string::npos);
+    CHECK(test::refusal([&] { build([](auto& all) { all.acts.gravity.weight[1] = core::unset; }); }).find("Gravity.weight") !=
+          std::string::npos);
+    CHECK(test::refusal([&] {
+              build([](auto& all) { all.acts.lines.loads.push_back({.fibre = 1, .force = Vec3::UnitX()}); });
+          }).find("LineLoads.Load.fibre = 1") != std::string::npos);
+    CHECK(test::refusal([&] {
+              build([](auto& all) {
+                  all.acts.lines.loads.push_back({.fibre = 0, .force = Vec3::UnitX(), .from = 0.5, .to = 0.5});
+              });
+          }).find("LineLoads.Load.to = 0.5") != std::string::npos);
 }
 
 }  // namespace loads_test

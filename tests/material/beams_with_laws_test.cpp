@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Beams whose sections obey laws: the elastic law is that of the beam itself, and with any law force and tangent are derivatives.
-#include <near.hpp>
 #include <beam/beam_element_contract.hpp>
 #include <beam/elements.hpp>
+#include <near.hpp>
 #include <refusal.hpp>
 
 #include <fibrant/beam/with_law.hpp>
@@ -37,8 +37,10 @@ beam::ElementVector<RigidSectionRod> rod_element(double angle) {
 }
 template <class B>
 beam::ElementVector<B> at_rest_of() {
-    if constexpr (B::nodes == 3) return curved_element<B>(length, 0.8);
-    else return rod_element(0.6);
+    if constexpr (B::nodes == 3)
+        return curved_element<B>(length, 0.8);
+    else
+        return rod_element(0.6);
 }
 template <class B>
 beam::ElementVector<B> moved_by(double size, unsigned seed) {
@@ -62,13 +64,18 @@ TEST_CASE_TEMPLATE("with the elastic law a beam is what it is by itself", B, Met
     const auto scaled = [&](const auto& v) { return v.cwiseProduct(scale).eval(); };
     // The same sums in another order.
     CHECK(with.energy(own, y) / beam.energy(rest, y) == test::near(1.0, 1e-13));
-    CHECK(scaled(with.internal_force(own, y) - beam.internal_force(rest, y)).norm() < 1e-13 * scaled(beam.internal_force(rest, y)).norm());
-    const auto difference = (scale.asDiagonal() * (with.tangent_stiffness(own, y, with.predicted_stresses(own, y, step)) -
-                                                   beam.tangent_stiffness(rest, y, beam.predicted_stresses(rest, y, step))) * scale.asDiagonal()).eval();
+    CHECK(scaled(with.internal_force(own, y) - beam.internal_force(rest, y)).norm() <
+          1e-13 * scaled(beam.internal_force(rest, y)).norm());
+    const auto difference = (scale.asDiagonal() *
+                             (with.tangent_stiffness(own, y, with.predicted_stresses(own, y, step)) -
+                              beam.tangent_stiffness(rest, y, beam.predicted_stresses(rest, y, step))) *
+                             scale.asDiagonal())
+                                .eval();
     CHECK(difference.norm() < 1e-13 * (scale.asDiagonal() * beam.tangent_stiffness(rest, y) * scale.asDiagonal()).norm());
 }
 
-TEST_CASE_TEMPLATE("transversely isotropic elements derive from an energy that rigid motions leave alone", B, Metric, Turn, RigidSectionRod) {
+TEST_CASE_TEMPLATE("transversely isotropic elements derive from an energy that rigid motions leave alone", B, Metric, Turn,
+                   RigidSectionRod) {
     using L = beam::With<B, material::Elastic>;
     const L with;
     const auto y0 = at_rest_of<L>();
@@ -113,10 +120,12 @@ void check_path(const typename M::Parameters& law, double size, const scene::Cro
     CHECK(dissipated > 0.0);
 }
 
-TEST_CASE_TEMPLATE("elements that yield, and that bend with a loop, have the force and the tangent of what they store and lose", B, Metric, Turn, RigidSectionRod) {
+TEST_CASE_TEMPLATE("elements that yield, and that bend with a loop, have the force and the tangent of what they store and lose",
+                   B, Metric, Turn, RigidSectionRod) {
     check_path<B, Wire>({.yield_stress = 40.0, .hardening = 500.0}, 0.02, round_section);
     using Hysteretic = material::Composed<material::NoCompression, material::BendingStops<4>>;
-    check_path<B, Hysteretic>({.axial = {}, .bending = {.share = {0.3, 0.2, 0.2, 0.1}, .curvature = {0.05, 0.1, 0.2, 0.4}}}, 0.02, flat_section);
+    check_path<B, Hysteretic>({.axial = {}, .bending = {.share = {0.3, 0.2, 0.2, 0.1}, .curvature = {0.05, 0.1, 0.2, 0.4}}}, 0.02,
+                              flat_section);
 }
 
 }  // namespace beams_with_laws_test

@@ -12,12 +12,13 @@
 
 namespace fibrant::test {
 
-/// Tangent against differences of the stress, stress against those of stored + dissipated where the law has no rate, on a random path of
-/// accepted increments; nothing negative is dissipated.
+/// Tangent against differences of the stress, stress against those of stored + dissipated where the law has no rate, on a random
+/// path of accepted increments; nothing negative is dissipated.
 /// @param size      of the strains [1], those of a gradient over `radius` [length]
 /// @param duration  of an increment
 template <beam::SectionMaterial M>
-void check_section_material(const M& law, const typename M::Section& section, double size, double radius, double duration = 0.0, double amplitude = 0.0) {
+void check_section_material(const M& law, const typename M::Section& section, double size, double radius, double duration = 0.0,
+                            double amplitude = 0.0) {
     using beam::SectionStrains;
     std::mt19937_64 generator(7);
     std::normal_distribution<double> normal;
@@ -52,15 +53,19 @@ void check_section_material(const M& law, const typename M::Section& section, do
             const auto a = law.response(section, ahead, memory, drive), b = law.response(section, behind, memory, drive);
             for (std::size_t r = 0; r < 12; ++r) {
                 const double slope = (a.stress[r] - b.stress[r]) / (2.0 * h);
-                worst_tangent = std::max(worst_tangent, scale(r) * scale(c) * std::abs(slope - C(static_cast<Index>(r), static_cast<Index>(c))) / largest);
+                worst_tangent =
+                    std::max(worst_tangent,
+                             scale(r) * scale(c) * std::abs(slope - C(static_cast<Index>(r), static_cast<Index>(c))) / largest);
             }
             if constexpr (!M::has_rate)
-                worst_stress = std::max(worst_stress, scale(c) * std::abs((a.stored + a.dissipated - b.stored - b.dissipated) / (2.0 * h) - now.stress[c]) / force);
+                worst_stress = std::max(
+                    worst_stress,
+                    scale(c) * std::abs((a.stored + a.dissipated - b.stored - b.dissipated) / (2.0 * h) - now.stress[c]) / force);
         }
         memory = now.history;
     }
-    // Central differences at 1e-6 of the strains: their square, and rounding 1e-16/1e-6; a point of many that begins to yield within the
-    // step is a kink, of the order of the step.
+    // Central differences at 1e-6 of the strains: their square, and rounding 1e-16/1e-6; a point of many that begins to yield
+    // within the step is a kink, of the order of the step.
     CHECK(worst_tangent < 1e-6);
     CHECK(worst_stress < 1e-6);
 }

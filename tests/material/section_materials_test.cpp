@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <near.hpp>
 #include "section_material_contract.hpp"
+#include <near.hpp>
 
 #include <refusal.hpp>
 
@@ -26,10 +26,12 @@ namespace section_materials_test {
 using test::refusal;
 const scene::ElasticMaterial isotropic{1000.0, 0.3};
 const scene::ElasticMaterial carbon{230.0, 0.2, {15.0, 0.3, 15.0}};
-const beam::SectionConstants round_section = beam::section_constants(scene::circular(0.1)), flat_section = beam::section_constants(scene::elliptical(0.15, 0.08));
+const beam::SectionConstants round_section = beam::section_constants(scene::circular(0.1)),
+                             flat_section = beam::section_constants(scene::elliptical(0.15, 0.08));
 
 template <class M>
-typename M::Section section_of(const M& law, const scene::ElasticMaterial& material = isotropic, const beam::SectionConstants& shape = round_section) {
+typename M::Section section_of(const M& law, const scene::ElasticMaterial& material = isotropic,
+                               const beam::SectionConstants& shape = round_section) {
     return law.section(shape, material, 1.0);
 }
 
@@ -38,7 +40,8 @@ TEST_CASE("every law's tangent is its derivative, its stress that of a potential
     SUBCASE("isotropic") { test::check_section_material(elastic, section_of(elastic, isotropic, flat_section), 0.01, 0.1); }
     SUBCASE("carbon") { test::check_section_material(elastic, section_of(elastic, carbon, flat_section), 0.01, 0.1); }
     SUBCASE("eigenstrain") {
-        const material::Eigenstrain<material::Elastic> law({.base = {}, .along = 0.02, .across = -0.01, .curvature_1 = 0.3, .curvature_2 = -0.2, .twist = 0.5});
+        const material::Eigenstrain<material::Elastic> law(
+            {.base = {}, .along = 0.02, .across = -0.01, .curvature_1 = 0.3, .curvature_2 = -0.2, .twist = 0.5});
         auto section = section_of(law, carbon, flat_section);
         test::check_section_material(law, section, 0.01, 0.1);
         const Drive warm{0.0, 0.7};
@@ -60,7 +63,8 @@ TEST_CASE("every law's tangent is its derivative, its stress that of a potential
         const auto now = law.response(section, bent, law.fresh(section, {}), Drive{0.5, 0.0});
         CHECK(now.stress[strain::b1] / section.diagonal[strain::b1] == test::near(0.02 + 0.2 * 0.02 / 0.5));
         CHECK(now.dissipated / section.diagonal[strain::b1] == test::near(0.2 * 0.02 * 0.02 / 0.5));
-        CHECK(refusal([] { material::Damped<material::Elastic>({.bending = -1.0}); }).find("Damped.bending = -1") != std::string::npos);
+        CHECK(refusal([] { material::Damped<material::Elastic>({.bending = -1.0}); }).find("Damped.bending = -1") !=
+              std::string::npos);
     }
     SUBCASE("wire") {
         const material::Wire law({.yield_stress = 5.0, .hardening = 100.0});
@@ -74,15 +78,16 @@ TEST_CASE("every law's tangent is its derivative, its stress that of a potential
         const material::Composed<material::NoCompression, material::BendingStops<4>> law(
             {.axial = {}, .bending = {.share = {0.3, 0.2, 0.2, 0.1}, .curvature = {0.02, 0.05, 0.08, 0.2}}});
         test::check_section_material(law, section_of(law, isotropic, flat_section), 0.01, 0.1);
-        const material::Composed<material::LinearStretch, material::SofteningBending> soft({.axial = {}, .bending = {.left_over = 0.1, .curvature = 0.05}});
+        const material::Composed<material::LinearStretch, material::SofteningBending> soft(
+            {.axial = {}, .bending = {.left_over = 0.1, .curvature = 0.05}});
         test::check_section_material(soft, section_of(soft, isotropic, flat_section), 0.01, 0.1);
     }
 }
 
-
 /// The stress of a strain that is alone.
 template <class M>
-auto alone(const M& law, const typename M::Section& section, int c, double e, const typename M::History& memory, double duration = 0.0) {
+auto alone(const M& law, const typename M::Section& section, int c, double e, const typename M::History& memory,
+           double duration = 0.0) {
     SectionStrains strains{};
     strains[core::at(c)] = e;
     return law.response(section, strains, memory, {duration, 0.0});
@@ -94,7 +99,8 @@ TEST_CASE("a transversely isotropic section has the constants of Hashin and Rose
         double bulk, shear, E33, flat;
     };
     const double A = round_section.area;
-    for (const Row& row : {Row{carbon, 10.794743, 5.769231, 231.727159, 15.039233}, Row{{112.0, 0.36, {2.5, 0.3, 2.0}}, 1.800597, 0.961538, 112.933429, 2.507253},
+    for (const Row& row : {Row{carbon, 10.794743, 5.769231, 231.727159, 15.039233},
+                           Row{{112.0, 0.36, {2.5, 0.3, 2.0}}, 1.800597, 0.961538, 112.933429, 2.507253},
                            Row{{72.0, 0.22, {72.0, 0.22, 72.0 / 2.44}}, 52.693208, 29.508197, 82.201405, 75.662043}}) {
         const material::ElasticSection s(round_section, row.material, 1.0);
         const double C00 = s.diagonal[strain::e11], C01 = s.lateral, nu = row.material.poisson_ratio;
@@ -104,7 +110,9 @@ TEST_CASE("a transversely isotropic section has the constants of Hashin and Rose
         CHECK((C00 - C01 * C01 / C00) / A == test::near(row.flat, 1e-7));  // at held length, free sideways
         CHECK(row.material.section_modulus() == test::near(row.flat, 1e-7));
     }
-    const auto refused = [](double nu, scene::TransverseConstants t) { return refusal([&] { scene::ElasticMaterial{230.0, nu, t}.validate(); }); };
+    const auto refused = [](double nu, scene::TransverseConstants t) {
+        return refusal([&] { scene::ElasticMaterial{230.0, nu, t}.validate(); });
+    };
     CHECK(refused(2.4, {15.0, 0.3, 15.0}).find("ElasticMaterial.poisson_ratio = 2.4") != std::string::npos);
     CHECK(refused(2.3, {15.0, 0.3, 15.0}).empty());
     CHECK(refused(0.2, {15.0, 1.0, 15.0}).find("transverse.poisson_ratio = 1") != std::string::npos);
@@ -115,7 +123,8 @@ TEST_CASE("a Prony series relaxes, is ramped, creeps and damps as its closed for
     const material::Viscoelastic<2> law({.share = {0.3, 0.2}, .time = {1.0, 10.0}});
     const auto section = section_of(law);
     const double EA = section.diagonal[strain::e33], e = 0.01;
-    const double relaxed[][3] = {{0.1, 0.969461, 0.984491}, {1.0, 0.791331, 0.879961}, {10.0, 0.573590, 0.656423}, {100.0, 0.500009, 0.522999}};
+    const double relaxed[][3] = {
+        {0.1, 0.969461, 0.984491}, {1.0, 0.791331, 0.879961}, {10.0, 0.573590, 0.656423}, {100.0, 0.500009, 0.522999}};
     for (const auto& [time, after, ramp] : relaxed) {
         const auto stepped = alone(law, section, strain::e33, e, {});
         CHECK(stepped.stress[strain::e33] == test::near(EA * e));
@@ -148,11 +157,13 @@ TEST_CASE("a Prony series relaxes, is ramped, creeps and damps as its closed for
         lost += end.dissipated, stored = end.stored, before = end.stress[strain::e33], memory = end.history;
     }
     CHECK(work / (stored + lost) == test::near(1.0, 1e-6));  // Simpson: (0.05/2)^4
-    // tan delta of omega tau = 1 is 1/3: loss of a steady cycle over pi amplitude^2 is the loss modulus g/2, the storage one is 1 - g/2.
+    // tan delta of omega tau = 1 is 1/3: loss of a steady cycle over pi amplitude^2 is the loss modulus g/2, the storage one is 1
+    // - g/2.
     memory = {}, lost = 0.0;
     const int steps = 400;
     for (int k = 1; k <= 4 * steps; ++k) {
-        const auto end = alone(one, section, strain::e33, 0.01 * std::sin(2.0 * std::numbers::pi * k / steps), memory, 2.0 * std::numbers::pi / steps);
+        const auto end = alone(one, section, strain::e33, 0.01 * std::sin(2.0 * std::numbers::pi * k / steps), memory,
+                               2.0 * std::numbers::pi / steps);
         if (k > 3 * steps) lost += end.dissipated;
         memory = end.history;
     }
@@ -168,7 +179,9 @@ TEST_CASE("a Prony series relaxes, is ramped, creeps and damps as its closed for
         memory = alone(one, section, strain::e33, strain_now, memory, 1e-3).history;
     }
     CHECK(strain_now / e == test::near(1.393469, 1e-4));
-    CHECK(refusal([] { material::Viscoelastic<2>({.share = {0.6, 0.4}, .time = {1.0, 2.0}}); }).find("share: sum = 1") != std::string::npos);
+    CHECK(refusal([] {
+              material::Viscoelastic<2>({.share = {0.6, 0.4}, .time = {1.0, 2.0}});
+          }).find("share: sum = 1") != std::string::npos);
 }
 
 TEST_CASE("a wire bends, twists and springs back beyond yield as its section says") {
@@ -176,7 +189,11 @@ TEST_CASE("a wire bends, twists and springs back beyond yield as its section say
     const material::Wire law({.yield_stress = sy});
     const auto section = section_of(law);
     const double first = sy / (E * r), yield_moment = std::numbers::pi * r * r * r * sy / 4.0;  // curvature and moment
-    const double bent[][3] = {{1.5, 1.347091, 0.101939}, {2, 1.493660, 0.253170}, {3, 1.604932, 0.465023}, {5, 1.663904, 0.667219}, {10, 1.689177, 0.831082}};
+    const double bent[][3] = {{1.5, 1.347091, 0.101939},
+                              {2, 1.493660, 0.253170},
+                              {3, 1.604932, 0.465023},
+                              {5, 1.663904, 0.667219},
+                              {10, 1.689177, 0.831082}};
     double worst = 0.0;
     for (const auto& [times, moment, left] : bent) {
         const auto now = alone(law, section, strain::b1, times * first, {});
@@ -190,7 +207,9 @@ TEST_CASE("a wire bends, twists and springs back beyond yield as its section say
         const material::Wire hard({.yield_stress = sy, .hardening = h});
         const double with = alone(hard, section, strain::b1, times * first, {}).stress[strain::b1];
         // The same yield stress is reached at the same strain; beyond it the slope is E_t instead of 0.
-        CHECK(with / (tangent_share * section.diagonal[strain::b1] * times * first + (1.0 - tangent_share) * now.stress[strain::b1]) == test::near(1.0, 1e-12));
+        CHECK(with / (tangent_share * section.diagonal[strain::b1] * times * first +
+                      (1.0 - tangent_share) * now.stress[strain::b1]) ==
+              test::near(1.0, 1e-12));
     }
     CHECK(worst < 0.014);  // 48 points, any direction
     const double G = E / 2.6, first_twist = sy / std::sqrt(3.0) / (G * r);
@@ -198,7 +217,8 @@ TEST_CASE("a wire bends, twists and springs back beyond yield as its section say
         SectionStrains e{};
         e[strain::c21] = times * first_twist, e[strain::c12] = -times * first_twist;
         const auto now = law.response(section, e, {}, {});
-        const double T = now.stress[strain::c21] - now.stress[strain::c12], Ty = std::numbers::pi * r * r * r * sy / std::sqrt(3.0) / 2.0;
+        const double T = now.stress[strain::c21] - now.stress[strain::c12],
+                     Ty = std::numbers::pi * r * r * r * sy / std::sqrt(3.0) / 2.0;
         CHECK(T / Ty == test::near(torque, 0.02));  // three rings
         // In torsion and in shear hardening is a third of that, beside G.
         const double h = 250.0, share = h / 3.0 / (G + h / 3.0);
@@ -224,7 +244,8 @@ TEST_CASE("a wire bends, twists and springs back beyond yield as its section say
         for (int k = 1; k <= steps; ++k) {
             const double t = 2.0 * std::numbers::pi * k / steps;
             SectionStrains e{};
-            e[strain::e33] = 0.002 * std::sin(t), e[strain::b1] = 0.03 * (1.0 - std::cos(t)), e[strain::c21] = 0.02 * std::sin(2.0 * t);
+            e[strain::e33] = 0.002 * std::sin(t), e[strain::b1] = 0.03 * (1.0 - std::cos(t)),
+            e[strain::c21] = 0.02 * std::sin(2.0 * t);
             auto free = section;
             free.keep_shape();
             const auto now = law.response(free, e, memory, {});
@@ -242,12 +263,16 @@ TEST_CASE("strengths are Weibull's, bending is weighed by flaws, and a bundle ho
     CHECK(infinite < 1e-3);
     for (const auto& [m, surface, volume] : {std::tuple{5.0, 0.701406, 0.545954}, {10.0, 0.810974, 0.677941}}) {
         for (const bool on_surface : {true, false}) {
-            const material::Brittle law({.strength = 1.0, .modulus = m, .reference_length = 1.0, .flaws = on_surface ? material::Flaws::surface : material::Flaws::volume});
+            const material::Brittle law({.strength = 1.0,
+                                         .modulus = m,
+                                         .reference_length = 1.0,
+                                         .flaws = on_surface ? material::Flaws::surface : material::Flaws::volume});
             const auto section = section_of(law);
             SectionStrains e{};
             e[strain::b1] = 0.006, e[strain::b2] = 0.008;
             // Over the volume by the points of the section: 2.2e-3 of m = 10.
-            CHECK(law.acting_stress(section, e) / (1000.0 * 0.1 * 0.01) == test::near(on_surface ? surface : volume, on_surface ? 1e-6 : 2.5e-3));
+            CHECK(law.acting_stress(section, e) / (1000.0 * 0.1 * 0.01) ==
+                  test::near(on_surface ? surface : volume, on_surface ? 1e-6 : 2.5e-3));
         }
     }
     const double m = 5.0;
@@ -279,7 +304,8 @@ TEST_CASE("strengths are Weibull's, bending is weighed by flaws, and a bundle ho
     CHECK(law.utilisation(section, e, memory) == test::near(0.999));
     law.break_now(memory);
     CHECK(law.utilisation(section, e, memory) == 0.0);
-    CHECK(law.response(section, e, memory, {}).stress[strain::e33] / (1e-6 * section.diagonal[strain::e33] * e[strain::e33]) == test::near(1.0));
+    CHECK(law.response(section, e, memory, {}).stress[strain::e33] / (1e-6 * section.diagonal[strain::e33] * e[strain::e33]) ==
+          test::near(1.0));
 }
 
 TEST_CASE(
@@ -312,8 +338,7 @@ TEST_CASE(
     CHECK(law.utilisation(section, drawn, held.history) == test::near(0.999, 1e-9));
     // Memories go over to other points in proportion.
     const auto mean = Law::History::between(held.history, {}, 0.25);
-    for (std::size_t c = 0; c < free.size(); ++c)
-        CHECK(mean.stress[c] == test::near(0.75 * held.history.stress[c], 1e-12));
+    for (std::size_t c = 0; c < free.size(); ++c) CHECK(mean.stress[c] == test::near(0.75 * held.history.stress[c], 1e-12));
     material::Viscoelastic<2>::History slow;
     slow.branch[1][strain::e33] = 0.4;
     CHECK(material::Viscoelastic<2>::History::between(slow, {}, 0.25).branch[1][strain::e33] == test::near(0.3, 1e-12));
@@ -353,8 +378,11 @@ TEST_CASE("stops meet the curve that they are made of, and their loops are Masin
     const material::Composed<material::NoCompression, material::LinearBending> string({.axial = {}, .bending = {}});
     auto section = section_of(string);
     section.keep_shape();
-    CHECK(alone(string, section, strain::e33, -0.01, {}).stress[strain::e33] / (-1e-5 * section.diagonal[strain::e33]) == test::near(1.0));
-    CHECK(alone(string, section, strain::e33, 0.01, {}).stress[strain::e33] / ((0.01 - 0.5 * 0.999e-3) * section.diagonal[strain::e33]) == test::near(1.0));
+    CHECK(alone(string, section, strain::e33, -0.01, {}).stress[strain::e33] / (-1e-5 * section.diagonal[strain::e33]) ==
+          test::near(1.0));
+    CHECK(alone(string, section, strain::e33, 0.01, {}).stress[strain::e33] /
+              ((0.01 - 0.5 * 0.999e-3) * section.diagonal[strain::e33]) ==
+          test::near(1.0));
 }
 
 }  // namespace section_materials_test

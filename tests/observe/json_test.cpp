@@ -55,8 +55,7 @@ TEST_CASE("what is not a finite number is null, for JSON has no other word") {
 
 TEST_CASE("a text is escaped, and bytes that are not UTF-8 are replaced") {
     CHECK(json_quoted("a\"b\\c\n\t\x01") == R"("a\"b\\c\n\t\u0001")");
-    CHECK(json_quoted("m\xc3\xbctze \xe2\x82\xac \xf0\x9f\xa7\xb6") ==
-          "\"m\xc3\xbctze \xe2\x82\xac \xf0\x9f\xa7\xb6\"");
+    CHECK(json_quoted("m\xc3\xbctze \xe2\x82\xac \xf0\x9f\xa7\xb6") == "\"m\xc3\xbctze \xe2\x82\xac \xf0\x9f\xa7\xb6\"");
     CHECK(json_quoted("\xff") == R"("\ufffd")");
     CHECK(json_quoted("\xc0\xaf") == R"("\ufffd\ufffd")");            // overlong
     CHECK(json_quoted("\xed\xa0\x80") == R"("\ufffd\ufffd\ufffd")");  // a surrogate

@@ -24,7 +24,8 @@ Vec3 heading(double degrees) { return {std::cos(degrees * pi / 180.0), std::sin(
 
 /// A fibre along a curve, its first director `tilt` from the horizontal, turned by `twist` per length.
 template <class Curve>
-observe::FibreSnapshot fibre(double a, double b, const Curve& curve, double from, double to, int elements, double tilt, double twist = 0.0) {
+observe::FibreSnapshot fibre(double a, double b, const Curve& curve, double from, double to, int elements, double tilt,
+                             double twist = 0.0) {
     observe::FibreSnapshot made;
     made.section = {a, b};
     for (int k = 0; k <= 2 * elements; ++k) {
@@ -39,18 +40,22 @@ observe::FibreSnapshot fibre(double a, double b, const Curve& curve, double from
     return made;
 }
 observe::FibreSnapshot straight(double a, double b, const Vec3& middle, const Vec3& along, double half, double tilt) {
-    return fibre(a, b, [&](double s) { return Vec3(middle + s * along); }, -half, half, 12, tilt);
+    return fibre(
+        a, b, [&](double s) { return Vec3(middle + s * along); }, -half, half, 12, tilt);
 }
 
-/// Distance of two surfaces, point against point: a grid over both, refined about its best places. It knows of no normal and no extent.
+/// Distance of two surfaces, point against point: a grid over both, refined about its best places. It knows of no normal and no
+/// extent.
 double sampled_distance(const observe::FibreSnapshot& one, const observe::FibreSnapshot& other, int along = 40, int around = 20) {
     struct Surface {
         const observe::FibreSnapshot* fibre;
         observe::NodalCurve curve;
         Vec3 at(double place, double angle) const {  // beyond either end: on the flat end, towards its middle
             const double t = std::clamp(place, 0.0, curve.end()), out = 1.0 - std::abs(place - t);
-            const Vec3 g_1 = curve.interpolate(std::span<const Vec3>{fibre->director_1}, t), g_2 = curve.interpolate(std::span<const Vec3>{fibre->director_2}, t);
-            return curve.position(t) + out * (fibre->section.semi_axis_1 * std::cos(angle) * g_1 + fibre->section.semi_axis_2 * std::sin(angle) * g_2);
+            const Vec3 g_1 = curve.interpolate(std::span<const Vec3>{fibre->director_1}, t),
+                       g_2 = curve.interpolate(std::span<const Vec3>{fibre->director_2}, t);
+            return curve.position(t) + out * (fibre->section.semi_axis_1 * std::cos(angle) * g_1 +
+                                              fibre->section.semi_axis_2 * std::sin(angle) * g_2);
         }
     };
     const Surface i{&one, observe::NodalCurve{one.position}}, j{&other, observe::NodalCurve{other.position}};
@@ -70,7 +75,9 @@ double sampled_distance(const observe::FibreSnapshot& one, const observe::FibreS
             for (std::size_t k = 0; k < on_j.size(); ++k) {
                 const double square = (on_j[k] - x).squaredNorm();
                 if (square < best.square)
-                    best = {square, {t, angle, j.curve.end() * static_cast<double>(static_cast<int>(k) / around) / along, 2.0 * pi * static_cast<double>(static_cast<int>(k) % around) / around}};
+                    best = {square,
+                            {t, angle, j.curve.end() * static_cast<double>(static_cast<int>(k) / around) / along,
+                             2.0 * pi * static_cast<double>(static_cast<int>(k) % around) / around}};
             }
             places.push_back(best);
         }
@@ -103,16 +110,20 @@ double found(const std::vector<observe::FibreSnapshot>& fibres, observe::OwnTurn
 }
 
 TEST_CASE("two parallel ellipses that are askew are apart, not deep in each other") {
-    const auto one = straight(2.0, 1.0, Vec3::Zero(), heading(0), 40.0, 0.0), other = straight(2.0, 1.0, {0.0, 2.0, 1.8}, heading(0), 40.0, 0.0);
+    const auto one = straight(2.0, 1.0, Vec3::Zero(), heading(0), 40.0, 0.0),
+               other = straight(2.0, 1.0, {0.0, 2.0, 1.8}, heading(0), 40.0, 0.0);
     CHECK(std::abs(found({one, other}) - 0.0653) < 1e-4);
     CHECK(std::abs(found({one, other}) - sampled_distance(one, other)) < 1e-6);
 }
 
-TEST_CASE("flat fibres that cross at any angle, flat, tilted, on edge, are as far apart as their surfaces, and as deep in each other as they were moved") {
+TEST_CASE(
+    "flat fibres that cross at any angle, flat, tilted, on edge, are as far apart as their surfaces, and as deep in each other "
+    "as they were moved") {
     for (const double ratio : {2.0, 5.0, 10.0})
         for (const double degrees : {5.0, 10.0, 20.0, 45.0, 90.0})
             for (int kind = 0; kind < 6; ++kind) {
-                const std::array<double, 6> tilt_i{0.0, 0.0, 0.5 * pi, 0.4, 0.3, 0.0}, tilt_j{0.0, 0.5 * pi, 0.5 * pi, -0.4, 1.1, 0.0};
+                const std::array<double, 6> tilt_i{0.0, 0.0, 0.5 * pi, 0.4, 0.3, 0.0},
+                    tilt_j{0.0, 0.5 * pi, 0.5 * pi, -0.4, 1.1, 0.0};
                 const std::array<double, 6> a_i{ratio, ratio, ratio, ratio, ratio, 1.0};
                 const std::size_t k = core::at(kind);
                 const auto height = [](double a, double tilt) { return std::hypot(a * std::sin(tilt), std::cos(tilt)); };
@@ -133,11 +144,16 @@ TEST_CASE("bent, twisted and tapered fibres are as far apart as points of their 
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     int tried = 0;
     for (int n = 0; n < 60; ++n) {
-        const double degrees = 90.0 * std::abs(unit(generator)), bend = 0.01 * unit(generator), other_bend = 0.01 * unit(generator);
+        const double degrees = 90.0 * std::abs(unit(generator)), bend = 0.01 * unit(generator),
+                     other_bend = 0.01 * unit(generator);
         const double twist = 0.03 * unit(generator), tilt = 3.0 * unit(generator), ratio = 1.0 + 2.0 * std::abs(unit(generator));
-        const Vec3 u = heading(0), v = heading(degrees), apart(unit(generator), unit(generator), 3.5 + 2.0 * std::abs(unit(generator)));
-        auto one = fibre(ratio, 1.0, [&](double s) { return Vec3(s * u + bend * s * s * Vec3::UnitZ()); }, -20.0, 20.0, 10, tilt, twist);
-        const auto other = fibre(2.0, 0.7, [&](double s) { return Vec3(apart + s * v + other_bend * s * s * Vec3(0.2, 0.3, 1.0)); }, -15.0, 18.0, 9, -0.7 * tilt, -twist);
+        const Vec3 u = heading(0), v = heading(degrees),
+                   apart(unit(generator), unit(generator), 3.5 + 2.0 * std::abs(unit(generator)));
+        auto one = fibre(
+            ratio, 1.0, [&](double s) { return Vec3(s * u + bend * s * s * Vec3::UnitZ()); }, -20.0, 20.0, 10, tilt, twist);
+        const auto other = fibre(
+            2.0, 0.7, [&](double s) { return Vec3(apart + s * v + other_bend * s * s * Vec3(0.2, 0.3, 1.0)); }, -15.0, 18.0, 9,
+            -0.7 * tilt, -twist);
         if (n % 3 == 0)  // pressed flat in its middle
             for (std::size_t k = 0; k < one.position.size(); ++k) {
                 const double part = 0.4 * std::exp(-0.01 * one.position[k].squaredNorm());
@@ -158,7 +174,8 @@ TEST_CASE("a round fibre that is pressed flat is further from another beside it,
     const auto round = straight(1.0, 1.0, Vec3::Zero(), heading(0), 20.0, 0.0);
     auto pressed = straight(1.0, 1.0, Vec3(0, 1.9, 1.4), heading(0), 20.0, 0.0);
     for (std::size_t k = 0; k < pressed.position.size(); ++k) pressed.director_1[k] *= 1.25, pressed.director_2[k] *= 0.8;
-    CHECK(std::abs(found({round, straight(1.0, 1.0, Vec3(0, 1.9, 1.4), heading(0), 20.0, 0.0)}) - (std::hypot(1.9, 1.4) - 2.0)) < 1e-12);
+    CHECK(std::abs(found({round, straight(1.0, 1.0, Vec3(0, 1.9, 1.4), heading(0), 20.0, 0.0)}) - (std::hypot(1.9, 1.4) - 2.0)) <
+          1e-12);
     CHECK(std::abs(found({round, pressed}) - sampled_distance(round, pressed)) < 1e-6);
 }
 
@@ -173,7 +190,8 @@ TEST_CASE("the end of a flat fibre that faces the side of another counts as it i
 }
 
 TEST_CASE("the turns of one fibre are held against each other where that is asked for") {
-    // A hairpin of a flat fibre, legs 5 apart over each other: flat on flat, and a straight one, which is nowhere close to itself.
+    // A hairpin of a flat fibre, legs 5 apart over each other: flat on flat, and a straight one, which is nowhere close to
+    // itself.
     const double leg = 30.0, radius = 2.5;
     const auto hairpin = [&](double s) {
         if (s < leg) return Vec3(s, 0.0, 0.0);
@@ -184,7 +202,10 @@ TEST_CASE("the turns of one fibre are held against each other where that is aske
     observe::FibreSnapshot flat = fibre(2.0, 0.9, hairpin, 0.0, 2.0 * leg + pi * radius, 60, 0.0);
     for (std::size_t k = 0; k < flat.position.size(); ++k) {  // across the plane of the bend
         flat.director_1[k] = Vec3::UnitY();
-        flat.director_2[k] = Vec3::UnitY().cross(k + 1 < flat.position.size() ? Vec3(flat.position[k + 1] - flat.position[k]) : Vec3(flat.position[k] - flat.position[k - 1])).normalized();
+        flat.director_2[k] = Vec3::UnitY()
+                                 .cross(k + 1 < flat.position.size() ? Vec3(flat.position[k + 1] - flat.position[k])
+                                                                     : Vec3(flat.position[k] - flat.position[k - 1]))
+                                 .normalized();
     }
     CHECK(std::isinf(found({flat})));
     CHECK(std::abs(found({flat}, observe::OwnTurns::counted) - (2.0 * radius - 1.8)) < 2e-3);  // the bend in elements
@@ -192,7 +213,8 @@ TEST_CASE("the turns of one fibre are held against each other where that is aske
 }
 
 TEST_CASE("every search finds the same gap, and neither order nor place of the fibres matters") {
-    const auto one = straight(5.0, 1.0, Vec3::Zero(), heading(-5), 60.0, 0.2), other = straight(3.0, 1.0, {1.0, 2.0, 2.3}, heading(9), 60.0, -0.1);
+    const auto one = straight(5.0, 1.0, Vec3::Zero(), heading(-5), 60.0, 0.2),
+               other = straight(3.0, 1.0, {1.0, 2.0, 2.3}, heading(9), 60.0, -0.1);
     observe::Snapshot snapshot;
     snapshot.fibres = {one, other};
     const double gap = observe::least_gap(snapshot, proximity::BruteSearch{}).gap;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Linking integrals of known links, of pieces in closed form, and of far runs against all pairs.
-#include <near.hpp>
 #include "../refusal.hpp"
+#include <near.hpp>
 
 #include <fibrant/observe/linking.hpp>
 
@@ -67,8 +67,7 @@ TEST_CASE("two pieces across each other link by what their distance says") {
     for (const double half : {2.0, 6.0, 12.0}) {
         const double d = 2.0;
         const double found = segment_linking(Vec3(-half, 0, 0), Vec3(half, 0, 0), Vec3(0, -half, d), Vec3(0, half, d));
-        CHECK(std::abs(found) ==
-              test::near(std::atan(half * half / (d * std::sqrt(2.0 * half * half + d * d))) / pi, 1e-12));
+        CHECK(std::abs(found) == test::near(std::atan(half * half / (d * std::sqrt(2.0 * half * half + d * d))) / pi, 1e-12));
     }
 }
 

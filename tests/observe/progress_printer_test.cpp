@@ -18,7 +18,8 @@ namespace progress_printer_test {
 simulation::IncrementReport increment(Index number, double progress, double seconds) {
     simulation::IncrementReport report;
     report.number = number, report.stage = "separation", report.progress = progress, report.seconds = seconds;
-    report.counts.newton = 7, report.counts.linear_iterations = 93, report.contact.greatest_penetration = 0.005, report.contact.elements = 1234567;
+    report.counts.newton = 7, report.counts.linear_iterations = 93, report.contact.greatest_penetration = 0.005,
+    report.contact.elements = 1234567;
     return report;
 }
 
@@ -72,15 +73,20 @@ TEST_CASE("an attempt that was given up says why") {
     std::ostringstream out;
     const observe::ProgressPrinter printer({.radius = 1.0}, out);
     simulation::FailedAttempt attempt;
-    attempt.number = 3, attempt.stage = "stretch", attempt.attempts = 2, attempt.newton = 30, attempt.seconds = 75.0, attempt.reason = "the residual stands still";
+    attempt.number = 3, attempt.stage = "stretch", attempt.attempts = 2, attempt.newton = 30, attempt.seconds = 75.0,
+    attempt.reason = "the residual stands still";
     printer.gave_up(attempt);
-    CHECK(out.str() == "   3 stretch    attempt 2 given up after 30 Newton iterations, 1:15 since the increment began: the residual stands still\n");
+    CHECK(out.str() ==
+          "   3 stretch    attempt 2 given up after 30 Newton iterations, 1:15 since the increment began: the residual stands "
+          "still\n");
 }
 
 TEST_CASE("a printer without a radius is refused by name") {
     std::ostringstream out;
     CHECK(test::refusal([&] { observe::ProgressPrinter({}, out); }).find("ProgressPrinter.radius") != std::string::npos);
-    CHECK(test::refusal([&] { observe::ProgressPrinter({.radius = 1.0, .heading_every = 0}, out); }).find("ProgressPrinter.heading_every") != std::string::npos);
+    CHECK(test::refusal([&] {
+              observe::ProgressPrinter({.radius = 1.0, .heading_every = 0}, out);
+          }).find("ProgressPrinter.heading_every") != std::string::npos);
 }
 
 }  // namespace progress_printer_test

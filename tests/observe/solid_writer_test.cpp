@@ -20,10 +20,12 @@ observe::SolidSnapshot two_cells() {
     observe::SolidSnapshot solid;
     for (int k = 0; k < 2; ++k)
         for (int j = 0; j < 2; ++j)
-            for (int i = 0; i < 3; ++i) solid.position.push_back(Vec3(i, j, k)), solid.displacement.push_back(Vec3(0, 0, 0.1 * i));
+            for (int i = 0; i < 3; ++i)
+                solid.position.push_back(Vec3(i, j, k)), solid.displacement.push_back(Vec3(0, 0, 0.1 * i));
     const auto node = [](Index i, Index j, Index k) { return (k * 2 + j) * 3 + i; };
     for (Index i = 0; i < 2; ++i)
-        solid.cells.push_back({node(i, 0, 0), node(i + 1, 0, 0), node(i + 1, 1, 0), node(i, 1, 0), node(i, 0, 1), node(i + 1, 0, 1), node(i + 1, 1, 1), node(i, 1, 1)});
+        solid.cells.push_back({node(i, 0, 0), node(i + 1, 0, 0), node(i + 1, 1, 0), node(i, 1, 0), node(i, 0, 1),
+                               node(i + 1, 0, 1), node(i + 1, 1, 1), node(i, 1, 1)});
     for (const double size : {1.0, 2.0}) {
         Mat3 stress = Mat3::Zero();
         stress(0, 0) = size;

@@ -32,10 +32,11 @@ TEST_CASE("the fitted order of a power law is its power, whatever its factor") {
 }
 
 TEST_CASE("decades are equally far apart, and a power law is a straight line") {
-    LogLogPlot plot{"title <1>", "time [s]", "error", {{"a", {{1e-3, 1.0}, {1e-2, 1e-2}, {1e-1, 1e-4}}}, {"b", {{1e-2, 0.0}, {-1.0, 1.0}}}}};
+    LogLogPlot plot{
+        "title <1>", "time [s]", "error", {{"a", {{1e-3, 1.0}, {1e-2, 1e-2}, {1e-1, 1e-4}}}, {"b", {{1e-2, 0.0}, {-1.0, 1.0}}}}};
     const std::string page = observe::log_log_svg(plot);
     CHECK(page.find("title &lt;1&gt;") != std::string::npos);
-    CHECK(times(page, "<circle") == 3);        // nothing of what has no logarithm
+    CHECK(times(page, "<circle") == 3);          // nothing of what has no logarithm
     CHECK(times(page, "class=\"g\"") == 3 + 5);  // 1e-3 to 1e-1, and 1e-4 to 1
     // left 78 to right 470, bottom 384 to top 46: the middle point is half-way
     CHECK(page.find("M78 46L274 215L470 384") != std::string::npos);
@@ -54,7 +55,9 @@ TEST_CASE("within a decade its multiples are marked") {
 }
 
 TEST_CASE("a plot of nothing is refused") {
-    CHECK(test::refusal([] { observe::log_log_svg({"", "", "", {{"a", {{1.0, 0.0}}}}}); }) == "LogLogPlot.lines = no point, but it must be a point with both numbers > 0");
+    CHECK(test::refusal([] {
+              observe::log_log_svg({"", "", "", {{"a", {{1.0, 0.0}}}}});
+          }) == "LogLogPlot.lines = no point, but it must be a point with both numbers > 0");
 }
 
 }  // namespace svg_plot_test

@@ -64,7 +64,7 @@ TEST_CASE("a fibre that runs in the plane shows a strip as wide as the chord at 
     REQUIRE(strip.size() == 1);
     CHECK(strip[0].along);
     CHECK(area(strip[0].outline) == test::near(2.0 * 2.0 * 0.08, 1e-12));  // length 2, half chord sqrt(0.1^2 - 0.06^2)
-    CHECK(slice_shapes(snapshot, 0, -0.05).empty());                     // 0.11 away
+    CHECK(slice_shapes(snapshot, 0, -0.05).empty());                       // 0.11 away
 }
 
 TEST_CASE("a fibre that leaves the plane slowly shows the tip of a cut cylinder") {
@@ -85,7 +85,8 @@ TEST_CASE("a slice names its plane, draws its scale, and says where nothing is c
     const std::string slice = svg_slice(crossing_pair(), parameters);
     CHECK(slice.find("two &lt;fibres&gt;, y = 0.5 mm") != std::string::npos);
     parameters.position = 0.123456789;
-    CHECK(svg_slice(crossing_pair(), parameters).find("y = 0.1235 mm") != std::string::npos);  // to a thousandth of a picture 0.2 wide
+    CHECK(svg_slice(crossing_pair(), parameters).find("y = 0.1235 mm") !=
+          std::string::npos);  // to a thousandth of a picture 0.2 wide
     CHECK(slice.find("mm</text>") != std::string::npos);
     CHECK(occurrences(slice, "<path fill=") == 1);
     parameters.position = 5.0;

@@ -75,14 +75,12 @@ TEST_CASE("a resumed series keeps earlier increments and drops those that are re
     VtkWriter first(folder / "deep" / "run");
     for (const Index increment : {1, 2, 3}) first.accepted(crossing_pair(increment));
     const auto run = folder / "deep" / "run";
-    CHECK(entries(run / "fibres.pvd") ==
-          std::vector<std::string>{"fibres_0001.vtp", "fibres_0002.vtp", "fibres_0003.vtp"});
+    CHECK(entries(run / "fibres.pvd") == std::vector<std::string>{"fibres_0001.vtp", "fibres_0002.vtp", "fibres_0003.vtp"});
 
     VtkWriter resumed(run, Start::resumed);
     resumed.accepted(crossing_pair(3));
     resumed.accepted(crossing_pair(4));
-    const std::vector<std::string> all{"contacts_0001.vtp", "contacts_0002.vtp", "contacts_0003.vtp",
-                                       "contacts_0004.vtp"};
+    const std::vector<std::string> all{"contacts_0001.vtp", "contacts_0002.vtp", "contacts_0003.vtp", "contacts_0004.vtp"};
     CHECK(entries(run / "contacts.pvd") == all);
     CHECK(entries(run / "fibres.pvd").size() == 4);
     for (const std::string& file : all) CHECK(std::filesystem::exists(run / file));

@@ -40,12 +40,14 @@ double extent(const ProximityZone& zone) { return zone.b_i - zone.a_i + std::abs
 TEST_CASE("linked rings have one zone at their crossing, around either seam") {
     const auto find = [](int first_a, int first_b) {
         const std::vector<Vec3> a = around(ring, 60, first_a), b = around(linked, 60, first_b);
-        const std::vector<Centreline> lines{{.points = a, .radius = 0.05, .closed = true}, {.points = b, .radius = 0.05, .closed = true}};
+        const std::vector<Centreline> lines{{.points = a, .radius = 0.05, .closed = true},
+                                            {.points = b, .radius = 0.05, .closed = true}};
         return proximity::GridSearch().find(lines, 0.02);
     };
     const std::vector<ProximityZone> away = find(17, 11);
     REQUIRE(away.size() == 1);
-    for (const auto& [first_a, first_b] : {std::pair{0, 0}, std::pair{0, 30}, std::pair{59, 30}, std::pair{1, 29}, std::pair{30, 31}}) {
+    for (const auto& [first_a, first_b] :
+         {std::pair{0, 0}, std::pair{0, 30}, std::pair{59, 30}, std::pair{1, 29}, std::pair{30, 31}}) {
         const std::vector<ProximityZone> zones = find(first_a, first_b);
         REQUIRE(zones.size() == 1);
         const ProximityZone& zone = zones.front();
@@ -64,7 +66,8 @@ TEST_CASE("linked rings have one zone at their crossing, around either seam") {
 TEST_CASE("a zone that goes all around covers a closed fibre once") {
     for (const int first : {0, 23}) {
         const std::vector<Vec3> a = around(ring, 60, 0), b = around(beside, 60, first);
-        const std::vector<Centreline> lines{{.points = a, .radius = 0.05, .closed = true}, {.points = b, .radius = 0.05, .closed = true}};
+        const std::vector<Centreline> lines{{.points = a, .radius = 0.05, .closed = true},
+                                            {.points = b, .radius = 0.05, .closed = true}};
         const std::vector<ProximityZone> zones = proximity::GridSearch().find(lines, 0.02);
         REQUIRE(zones.size() == 1);
         CHECK(zones.front().b_i - zones.front().a_i >= 60.0);
@@ -88,7 +91,8 @@ TEST_CASE("a closed fibre does not meet its neighbours across the seam, and itse
     CHECK(covered < 130.0);
     for (const int first : {1, 33, 60, 119}) {
         CHECK(find(trefoil, 120, first, 0.3).first == pairs);
-        CHECK(std::abs(find(trefoil, 120, first, 0.3).second - covered) < 6.0);  // how far its ends overlap depends on where they are
+        CHECK(std::abs(find(trefoil, 120, first, 0.3).second - covered) <
+              6.0);  // how far its ends overlap depends on where they are
     }
 }
 

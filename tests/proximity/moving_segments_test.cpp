@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Segments on the move: the first time at which two are close, against times looked at one by one, and the tree, against all pairs.
+// Segments on the move: the first time at which two are close, against times looked at one by one, and the tree, against all
+// pairs.
 #include <fibrant/proximity/moving_segments.hpp>
 
 #include <doctest/doctest.h>
@@ -43,19 +44,25 @@ double least_of(const MovingSegment& a, const MovingSegment& b, int n, double un
     return std::sqrt(least);
 }
 
-TEST_CASE("two moving segments are close at the first time at which their distance is what was asked for, and never if it never is") {
+TEST_CASE(
+    "two moving segments are close at the first time at which their distance is what was asked for, and never if it never is") {
     Uniform uniform{7};
     const auto never = [](double, double) { return false; };
     int close = 0;
     for (int trial = 0; trial < 1000; ++trial) {
         CAPTURE(trial);
         MovingSegment a = random_segment(uniform, 0.8, 1.5), b = random_segment(uniform, 0.8, 1.5);
-        if (trial % 4 == 1) for (Vec3* x : {&a.start, &a.end, &a.start_motion, &a.end_motion, &b.start, &b.end, &b.start_motion, &b.end_motion}) x->z() = 0.0;  // in one plane
-        if (trial % 4 == 2) b.end = b.start + (a.end - a.start), a.end_motion = a.start_motion, b.end_motion = b.start_motion;  // parallel, and stay so
+        if (trial % 4 == 1)
+            for (Vec3* x : {&a.start, &a.end, &a.start_motion, &a.end_motion, &b.start, &b.end, &b.start_motion, &b.end_motion})
+                x->z() = 0.0;  // in one plane
+        if (trial % 4 == 2)
+            b.end = b.start + (a.end - a.start), a.end_motion = a.start_motion,
+            b.end_motion = b.start_motion;  // parallel, and stay so
         const double near = 0.1, least = least_of(a, b, 4000), motion = proximity::relative_motion(a, b);
         const proximity::Approach at = proximity::first_approach(a, b, near, near, never);
         if (least < 0.1) CHECK(at.close);
-        if (least > 0.102 + motion / 8000.0) CHECK_FALSE(at.close);  // times looked at are so far apart; a fiftieth is as good as nothing
+        if (least > 0.102 + motion / 8000.0)
+            CHECK_FALSE(at.close);  // times looked at are so far apart; a fiftieth is as good as nothing
         if (!at.close) continue;
         ++close;
         CHECK(at.distance < 0.1021);

@@ -194,7 +194,8 @@ inline std::vector<FibreSet> search_cases() {
         set.name = "two crowds and some fibres very far apart from each other, at a slant";
         const FibreSet other = random_fibres(16, 30, 10, 0.2, 0.2, 0.6).turned(Mat3::Identity(), {3e9, -1e3, 2e11});
         for (std::size_t f = 0; f < other.points.size(); ++f) set.add(other.points[f], other.radius[f]);
-        for (const double far : {1e4, 1e7, 1e12}) set.add({{far, 0.1, 0.2}, {far, 0.1, 1.2}}, 0.05), set.add({{far, 0.15, 0.2}, {far, 0.15, 1.2}}, 0.05);
+        for (const double far : {1e4, 1e7, 1e12})
+            set.add({{far, 0.1, 0.2}, {far, 0.1, 1.2}}, 0.05), set.add({{far, 0.15, 0.2}, {far, 0.15, 1.2}}, 0.05);
         cases.push_back(set.turned(Eigen::AngleAxisd(0.7, Vec3(1, -2, 2).normalized()).toRotationMatrix(), {1, 2, 3}));
     }
     {
@@ -203,7 +204,9 @@ inline std::vector<FibreSet> search_cases() {
         for (int f = 0; f < 60; ++f) {
             const Vec3 start = 20.0 * uniform_vector(random);
             const double r = f % 2 == 0 ? 1.0 : 0.01;
-            set.add(random_fibre(random, 12, 4.0 * r, 0.3, f % 2 == 0 ? start : Vec3(set.points.back()[5] + 0.8 * uniform_vector(random))), r);
+            set.add(random_fibre(random, 12, 4.0 * r, 0.3,
+                                 f % 2 == 0 ? start : Vec3(set.points.back()[5] + 0.8 * uniform_vector(random))),
+                    r);
         }
         cases.push_back(set);
     }

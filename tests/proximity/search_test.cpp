@@ -87,8 +87,9 @@ struct Threads {  // OpenMP's number of threads, put back at the end
     int before = core::threads();
 };
 
-#define EVERY_SEARCH \
-    AutomaticSearch, BruteSearch, BvhSearch, GridSearch, KdTreeSearch, TestPointSearch, VerletSearch<GridSearch>, VerletSearch<KdTreeSearch>
+#define EVERY_SEARCH                                                                                              \
+    AutomaticSearch, BruteSearch, BvhSearch, GridSearch, KdTreeSearch, TestPointSearch, VerletSearch<GridSearch>, \
+        VerletSearch<KdTreeSearch>
 
 TEST_CASE_TEMPLATE("a search finds the close pairs and zones that brute force finds, and no other", Search, EVERY_SEARCH) {
     static const std::vector<FibreSet> sets = test::search_cases();
@@ -119,7 +120,8 @@ TEST_CASE("brute force agrees with the definition of a close pair on sampled seg
                         double least = 1e300;
                         for (int a = 0; a <= 10; ++a)
                             for (int b = 0; b <= 10; ++b)
-                                least = std::min(least, Vec3(set.points[f][k] + a / 10.0 * u - set.points[g][l] - b / 10.0 * v).norm());
+                                least = std::min(least,
+                                                 Vec3(set.points[f][k] + a / 10.0 * u - set.points[g][l] - b / 10.0 * v).norm());
                         const double threshold = set.radius[f] + set.radius[g] + set.reach;
                         const SegmentPair pair{static_cast<std::int32_t>(first_f + static_cast<Index>(k)),
                                                static_cast<std::int32_t>(first_g + static_cast<Index>(l))};
@@ -136,8 +138,8 @@ TEST_CASE("brute force agrees with the definition of a close pair on sampled seg
     }
 }
 
-TEST_CASE_TEMPLATE("a search finds the published pairs of a random mat of 10,000 segments", Search, BvhSearch, GridSearch, KdTreeSearch,
-                   TestPointSearch, VerletSearch<GridSearch>) {
+TEST_CASE_TEMPLATE("a search finds the published pairs of a random mat of 10,000 segments", Search, BvhSearch, GridSearch,
+                   KdTreeSearch, TestPointSearch, VerletSearch<GridSearch>) {
     const FibreSet set = read_scene("mat10k.fpl");
     Search search = make_search<Search>(4.0 * set.radius[0], set.radius[0]);
     const auto pairs = search.pairs(set.centrelines(), set.reach);
@@ -157,7 +159,9 @@ TEST_CASE("the automatic search takes the tree for mixtures of sizes and straigh
     CHECK_FALSE(tree(few));
     FibreSet tow{.name = "tow", .reach = 0.05}, mat = tow;
     std::mt19937 random(3);
-    for (int f = 0; f < 40; ++f) tow.add({{2.02 * f, 0.0, 0.0}, {2.02 * f, 0.0, 1e3}}, 1.0), mat.add({Vec3::Zero(), Vec3(1e3 * test::uniform_vector(random))}, 1.0);
+    for (int f = 0; f < 40; ++f)
+        tow.add({{2.02 * f, 0.0, 0.0}, {2.02 * f, 0.0, 1e3}}, 1.0),
+            mat.add({Vec3::Zero(), Vec3(1e3 * test::uniform_vector(random))}, 1.0);
     CHECK(tree(tow));
     CHECK_FALSE(tree(mat));
 }
@@ -170,7 +174,8 @@ TEST_CASE("neither a stray fibre nor long straight ones cost the precision and t
     const detail::BoxFrame alone(detail::SegmentTable(lines, crowd.reach)), both(detail::SegmentTable(with, crowd.reach));
     CHECK(both.slack < 2.0 * alone.slack);  // it was a billion times as much
     FibreSet tow{.name = "tow", .reach = 0.05};
-    for (int f = 0; f < 400; ++f) tow.add({{2.02 * (f % 20), 2.02 * (f / 20), 0.0}, {2.02 * (f % 20), 2.02 * (f / 20), 3e5}}, 1.0);
+    for (int f = 0; f < 400; ++f)
+        tow.add({{2.02 * (f % 20), 2.02 * (f / 20), 0.0}, {2.02 * (f % 20), 2.02 * (f / 20), 3e5}}, 1.0);
     GridSearch search;
     CHECK(search.pairs(tow.centrelines(), tow.reach).size() == 2 * 20 * 19);
     CHECK(search.bytes() < 2000 * 400);  // eight pieces a segment at most
@@ -283,8 +288,8 @@ TEST_CASE_TEMPLATE("input that cannot be searched is refused by fibre and vertex
 }
 
 TEST_CASE("parameters of searches are refused by name") {
-    CHECK_THROWS_WITH_AS((TestPointSearch{{.spacing = 0.0}}),
-                         "TestPointSearch.spacing = 0, but it must be finite and > 0", std::invalid_argument);
+    CHECK_THROWS_WITH_AS((TestPointSearch{{.spacing = 0.0}}), "TestPointSearch.spacing = 0, but it must be finite and > 0",
+                         std::invalid_argument);
     CHECK_THROWS_WITH_AS((VerletSearch<GridSearch>{{.base = {}, .skin = -1.0}}),
                          "VerletSearch.skin = -1, but it must be finite and >= 0", std::invalid_argument);
     CHECK_THROWS_AS((TestPointSearch{TestPointSearch::Parameters{}}), std::invalid_argument);
@@ -389,7 +394,8 @@ TEST_CASE("curves cut into chords lose none of their contacts once the chords ar
                     const int per = samples / chords;
                     for (int a = p * per; a <= (p + 1) * per; ++a)
                         for (int b = q * per; b <= (q + 1) * per; ++b) {
-                            const double distance = (sampled[core::at(c)][core::at(a)] - sampled[core::at(d)][core::at(b)]).norm();
+                            const double distance =
+                                (sampled[core::at(c)][core::at(a)] - sampled[core::at(d)][core::at(b)]).norm();
                             if (distance < least) least = distance, s = a / double(per), t = b / double(per);
                         }
                     if (least >= 2 * radius + reach) continue;

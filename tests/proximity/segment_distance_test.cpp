@@ -77,7 +77,8 @@ TEST_CASE("the distance is right to 2e-12 at any angle, near-parallel first of a
         const Vec3 d = c + other_length * turned.normalized();
         const long double truth = true_distance(a, b, c, d);
         const SegmentDistance found = segment_distance(a, b - a, c, d - c);
-        worst = std::max(worst, std::abs(static_cast<double>((std::sqrt(static_cast<long double>(found.squared)) - truth) / truth)));
+        worst =
+            std::max(worst, std::abs(static_cast<double>((std::sqrt(static_cast<long double>(found.squared)) - truth) / truth)));
         // The distance belongs to the parameters.
         const Vec3 between = (a - c) + found.s * (b - a) - found.t * (d - c);
         worst_point = std::max(worst_point, std::abs(between.norm() / std::sqrt(found.squared) - 1.0));
@@ -90,7 +91,8 @@ TEST_CASE("the distance is right to 2e-12 at any angle, near-parallel first of a
 TEST_CASE("the branch-free form for whole vectors gives the same distance") {
     std::mt19937 random(2);
     for (int trial = 0; trial < 1000; ++trial) {
-        const Vec3 a = test::uniform_vector(random), u = test::uniform_vector(random), b = test::uniform_vector(random), v = test::uniform_vector(random);
+        const Vec3 a = test::uniform_vector(random), u = test::uniform_vector(random), b = test::uniform_vector(random),
+                   v = test::uniform_vector(random);
         using proximity::detail::plain;
         const double least = proximity::detail::least_squared(plain(a) - plain(b), plain(u), plain(v));
         CHECK(least == test::near(segment_distance(a, u, b, v).squared, 1e-13));  // but for fused operations

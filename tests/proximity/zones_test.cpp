@@ -112,7 +112,8 @@ TEST_CASE("fibres that meet twice make two zones") {
 }
 
 TEST_CASE("pairs that touch by a corner alone in the plane of their segment numbers are one zone, whichever way fibres run") {
-    // Two zigzags, one over the other, that cross in the middles of their segments: where one has its node the other's is too far.
+    // Two zigzags, one over the other, that cross in the middles of their segments: where one has its node the other's is too
+    // far.
     std::vector<Vec3> below, above;
     for (int k = 0; k <= 12; ++k) {
         const double aside = k % 2 == 0 ? 0.1 : -0.1;
@@ -146,7 +147,8 @@ TEST_CASE("every close pair has its closest points in a zone of its two fibres, 
             for (std::size_t z = 0; z < zones.size(); ++z) {
                 const ProximityZone& zone = zones[z];
                 if (zone.fibre_i != table.fibre(pair.i) || zone.fibre_j != table.fibre(pair.j)) continue;
-                if (p < zone.a_i || p > zone.b_i || q < std::min(zone.a_j, zone.b_j) || q > std::max(zone.a_j, zone.b_j)) continue;
+                if (p < zone.a_i || p > zone.b_i || q < std::min(zone.a_j, zone.b_j) || q > std::max(zone.a_j, zone.b_j))
+                    continue;
                 inside = true;
                 ++pairs_of[z];
             }

@@ -51,7 +51,8 @@ TEST_CASE("a fibre that cannot be is refused before any work, by field, value an
     CHECK(refused([](auto& f) { f.material = {}; }).starts_with("ElasticMaterial.young_modulus = nan"));
     CHECK(refused([](auto& f) { f.elements = 0; }) == "fibre.elements = 0, but it must be >= 1 (fibre 0)");
     CHECK(refused([](auto& f) { f.to = Vec3(0, core::unset, 0); }) == "fibre.to = (0, nan, 0), but it must be finite (fibre 0)");
-    CHECK(refused([](auto& f) { f.from = scene::FibreSpecification{}.from; }) == "fibre.from = (nan, nan, nan), but it must be finite (fibre 0)");
+    CHECK(refused([](auto& f) { f.from = scene::FibreSpecification{}.from; }) ==
+          "fibre.from = (nan, nan, nan), but it must be finite (fibre 0)");
     CHECK(refused([](auto& f) { f.group = 0; }) == "fibre.group = 0, but it must be -1 or a group of this assembly (fibre 0)");
     CHECK(refused([](auto& f) { f.group = -2; }).starts_with("fibre.group = -2"));
     CHECK(refused([](auto&) {}).empty());
@@ -64,13 +65,16 @@ TEST_CASE("groups, stations, loads and orders must name what the scene has") {
     CHECK(refusal([&] { assembly.hold_position({7, 0.0}); }) == "Station.fibre = 7, but it must be a fibre of this assembly");
     CHECK(refusal([&] { assembly.hold_position({f, 1.5}); }) == "Station.fraction = 1.5, but it must be in [0, 1] (fibre 0)");
     CHECK(refusal([&] { assembly.hold_position({f, core::unset}); }).starts_with("Station.fraction = nan"));
-    CHECK(refusal([&] { assembly.apply(scene::DeadForce{scene::first_end(f), {}, Vec3(0, core::unset, 0), "load"}); }) ==
-          "DeadForce.force = (0, nan, 0), but it must be finite (fibre 0, at 0 of its length)");
-    CHECK(refusal([&] { assembly.apply(scene::Moment{scene::first_end(f), scene::NodeVector::position, Vec3::UnitX(), "load"}); }) ==
-          "Moment.director = position, but it must be a director (fibre 0, at 0 of its length)");
+    CHECK(refusal([&] {
+              assembly.apply(scene::DeadForce{scene::first_end(f), {}, Vec3(0, core::unset, 0), "load"});
+          }) == "DeadForce.force = (0, nan, 0), but it must be finite (fibre 0, at 0 of its length)");
+    CHECK(refusal([&] {
+              assembly.apply(scene::Moment{scene::first_end(f), scene::NodeVector::position, Vec3::UnitX(), "load"});
+          }) == "Moment.director = position, but it must be a director (fibre 0, at 0 of its length)");
     const Index group = assembly.add_group("one");
-    CHECK(refusal([&] { assembly.force_order({group, group + 1, Vec3::UnitZ()}); }) ==
-          "ForcedOrder.group = 1, but it must be a group of this assembly");
+    CHECK(refusal([&] {
+              assembly.force_order({group, group + 1, Vec3::UnitZ()});
+          }) == "ForcedOrder.group = 1, but it must be a group of this assembly");
 }
 
 TEST_CASE("a clamp holds position and rotation of a section, and leaves it free to stretch") {

@@ -23,7 +23,8 @@ TEST_CASE("area and second moments are those of the ellipse") {
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
             const double ring = (i + 0.5) / n, angle = 2.0 * pi * (j + 0.5) / n;
-            const double x = 0.03 * ring * std::cos(angle), y = 0.01 * ring * std::sin(angle), cell = 0.03 * 0.01 * ring / n * 2.0 * pi / n;
+            const double x = 0.03 * ring * std::cos(angle), y = 0.01 * ring * std::sin(angle),
+                         cell = 0.03 * 0.01 * ring / n * 2.0 * pi / n;
             area += cell, first += x * x * cell, second += y * y * cell;
         }
     CHECK(section.area() == test::near(area, 1e-6));
@@ -31,8 +32,7 @@ TEST_CASE("area and second moments are those of the ellipse") {
     CHECK(section.second_moment_2() == test::near(second, 1e-6));
     CHECK(section.radius() == 0.03);
     // St Venant: pi a^3 b^3 / (a^2 + b^2) over the polar moment pi a b (a^2 + b^2) / 4.
-    CHECK(section.torsion_factor() ==
-          test::near(pi * std::pow(3e-4, 3) / 1e-3 / (pi * 3e-4 * 1e-3 / 4.0), 1e-12));
+    CHECK(section.torsion_factor() == test::near(pi * std::pow(3e-4, 3) / 1e-3 / (pi * 3e-4 * 1e-3 / 4.0), 1e-12));
     CHECK(scene::circular(0.02).torsion_factor() == test::near(1.0, 1e-12));
 }
 
@@ -54,11 +54,11 @@ TEST_CASE("sections and materials that cannot be are refused by name") {
     CHECK(refusal([] { scene::elliptical(0.02, core::unset); }) ==
           "CrossSection.semi_axis_2 = nan, but it must be finite and > 0");
     CHECK(refusal([] { scene::CrossSection{}.validate(); }).starts_with("CrossSection.semi_axis_1 = nan,"));
-    CHECK(refusal([] { scene::macro_fibre(19, 0.04, 20); }) ==
-          "macro_fibre.fibres = 19, but it must be >= macro_fibres = 20");
+    CHECK(refusal([] { scene::macro_fibre(19, 0.04, 20); }) == "macro_fibre.fibres = 19, but it must be >= macro_fibres = 20");
     CHECK(refusal([] { scene::macro_fibre(19, 0.04, 0.5); }).starts_with("macro_fibre.macro_fibres = 0.5,"));
-    CHECK(refusal([] { scene::ElasticMaterial{7300.0, 0.5}.validate(); }) ==
-          "ElasticMaterial.poisson_ratio = 0.5, but it must be > -1 and < 0.5");
+    CHECK(refusal([] {
+              scene::ElasticMaterial{7300.0, 0.5}.validate();
+          }) == "ElasticMaterial.poisson_ratio = 0.5, but it must be > -1 and < 0.5");
     CHECK(refusal([] { scene::ElasticMaterial{-1.0, 0.3}.validate(); }).starts_with("ElasticMaterial.young_modulus = -1,"));
     CHECK(refusal([] { scene::ElasticMaterial{1.0, core::unset}.validate(); }).starts_with("ElasticMaterial.poisson_ratio"));
 }

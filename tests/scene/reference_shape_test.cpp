@@ -111,12 +111,15 @@ TEST_CASE("without a director, or with one along the fibre, any perpendicular on
 TEST_CASE("curves that are no fibre are refused by name") {
     const auto refused = [](const scene::Curve& curve) { return refusal([&] { scene::reference_frames(curve, 9); }); };
     CHECK(refused([](double) { return Vec3(1, 2, 3); }).starts_with("fibre.curve: length = 0,"));
-    CHECK(refused([](double t) { return Vec3(t, core::unset, 0); }).starts_with("fibre.curve: point = (0, nan, 0), but it must be finite, at parameter 0, point"));
+    CHECK(refused([](double t) {
+              return Vec3(t, core::unset, 0);
+          }).starts_with("fibre.curve: point = (0, nan, 0), but it must be finite, at parameter 0, point"));
     CHECK(refused([](double t) { return Vec3(std::max(t, 0.5), 0, 0); }).starts_with("fibre.curve: speed = 0,"));
     CHECK(refusal([] { scene::reference_frames([](double t) { return Vec3(t, 0, 0); }, 1); }) ==
           "reference_frames.nodes = 1, but it must be >= 2");
-    CHECK(refusal([] { scene::straight_frames(Vec3(1, 1, 1), Vec3(1, 1, 1), 2); })
-              .starts_with("fibre.to: distance from fibre.from = 0,"));
+    CHECK(refusal([] {
+              scene::straight_frames(Vec3(1, 1, 1), Vec3(1, 1, 1), 2);
+          }).starts_with("fibre.to: distance from fibre.from = 0,"));
 }
 
 }  // namespace reference_shape_test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Curves through points and beside paths: order of their error, continuity, closure, lengths in closed form.
-#include <near.hpp>
 #include "../refusal.hpp"
+#include <near.hpp>
 
 #include <fibrant/scene/spline.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What an accepted increment keeps: residual, depth of contact and sections as the parameters state them, turns that can be followed; and what
-// the report says where a stage asks for less.
+// What an accepted increment keeps: residual, depth of contact and sections as the parameters state them, turns that can be
+// followed; and what the report says where a stage asks for less.
 #include "simulation/scenes.hpp"
 
 #include <fibrant/beam/rigid_section_rod.hpp>
@@ -37,7 +37,8 @@ scene::FibreSpecification fibre(const Vec3& from, const Vec3& to, Index elements
     return {.from = from, .to = to, .section = scene::circular(r), .material = {young, poisson}, .elements = elements};
 }
 
-TEST_CASE_TEMPLATE("a straight rod whose end is turned by any number of turns in one increment has the torque of all of them", M, Smooth, Rigid) {
+TEST_CASE_TEMPLATE("a straight rod whose end is turned by any number of turns in one increment has the torque of all of them", M,
+                   Smooth, Rigid) {
     const double length = 400.0 * r, stiffness = young / (2.0 * (1.0 + poisson)) * 0.5 * pi * std::pow(r, 4);
     for (const double turns : {0.1, 0.25, 0.45, 0.55, 1.0, 1.5, -1.25}) {
         CAPTURE(turns);  // fewer than 1.86, where it buckles (Greenhill)
@@ -60,7 +61,8 @@ TEST_CASE_TEMPLATE("a straight rod whose end is turned by any number of turns in
         CAPTURE(report.reason);
         REQUIRE(report.converged);
         // The twist is even, so what is stored tells the torque; of the director beam it is less by (r t)^2 (1 - nu) / (1 + nu).
-        const double stored = simulator.equilibrium().elastic_energy(simulator.state()), expected = 0.5 * stiffness * angle * angle / length;
+        const double stored = simulator.equilibrium().elastic_energy(simulator.state()),
+                     expected = 0.5 * stiffness * angle * angle / length;
         CHECK(std::abs(stored / expected - 1.0) < 3e-3);
         if (std::abs(turns) > 0.33) {
             REQUIRE_FALSE(failures.attempts.empty());
@@ -83,7 +85,8 @@ TEST_CASE("two parallel rods under a line load: the residual that is accepted is
                 const Index of = scene.add(fibre({-0.5 * length, 0, z * r}, {0.5 * length, 0, z * r}, 10));
                 scene.clamp(scene::first_end(of)), scene.clamp(scene::last_end(of));
             }
-            for (int k = 1; k < 20; ++k) scene.apply(scene::DeadForce{{1, k / 20.0}, scene::NodeVector::position, Vec3(0, 0, -load), "motion"});
+            for (int k = 1; k < 20; ++k)
+                scene.apply(scene::DeadForce{{1, k / 20.0}, scene::NodeVector::position, Vec3(0, 0, -load), "motion"});
             simulation::Simulator<Smooth> simulator(scene, test::model_parameters<Smooth>(r));
             const simulation::Report report = simulator.run({.increments = increments});
             CAPTURE(report.reason);
@@ -104,18 +107,24 @@ scene::Assembly crossed(double half, double gap, double approach, Index elements
     scene::Assembly scene;
     const double height = (2.0 + gap) * r;
     for (const double end : {0.0, 1.0}) {
-        if (end == 0.0) scene.add(fibre({0, -half * r, 0}, {0, half * r, 0}, elements)), scene.add(fibre({-half * r, 0, height}, {half * r, 0, height}, elements));
+        if (end == 0.0)
+            scene.add(fibre({0, -half * r, 0}, {0, half * r, 0}, elements)),
+                scene.add(fibre({-half * r, 0, height}, {half * r, 0, height}, elements));
         scene.clamp({0, end}), scene.clamp({1, end}, {0, 0, -approach * r});
     }
     return scene;
 }
 
 TEST_CASE("fibres that are pressed hard in one increment are no deeper in each other than allowed") {
-    struct Case { double half, gap, approach; Index elements; };
+    struct Case {
+        double half, gap, approach;
+        Index elements;
+    };
     for (const Case& c : {Case{100, 0, 30, 16}, Case{50, 0, 30, 16}, Case{50, 10, 30, 10}, Case{25, 0, 10, 8}}) {
         CAPTURE(c.half);
         CAPTURE(c.approach);
-        simulation::Simulator<Smooth> simulator(crossed(c.half, c.gap, c.approach, c.elements), test::model_parameters<Smooth>(r));
+        simulation::Simulator<Smooth> simulator(crossed(c.half, c.gap, c.approach, c.elements),
+                                                test::model_parameters<Smooth>(r));
         const simulation::Report report = simulator.run({.increments = 1});
         CAPTURE(report.reason);
         REQUIRE(report.converged);
@@ -123,7 +132,8 @@ TEST_CASE("fibres that are pressed hard in one increment are no deeper in each o
         CHECK(report.contact.greatest_penetration <= 1e-2 * r);
         // Places that were too deep beside contact points are held to less.
         CHECK(report.use.penetration >= report.contact.greatest_penetration / (1e-2 * r) - 1e-3);
-        std::printf("pressed %g of %g: depth %.3f of what is allowed, %ld iterations\n", c.approach, c.half, report.use.penetration, static_cast<long>(report.counts.newton));
+        std::printf("pressed %g of %g: depth %.3f of what is allowed, %ld iterations\n", c.approach, c.half,
+                    report.use.penetration, static_cast<long>(report.counts.newton));
     }
 }
 
@@ -154,14 +164,16 @@ TEST_CASE("a stage that is loose by its own word is taken by its word, and the r
     REQUIRE(report.converged);
     REQUIRE(report.increments.size() >= 2);  // one more where the true gap is mended
     CHECK(report.increments[0].use.penetration > 1.0);
-    CHECK(report.increments[0].use.penetration == test::near(report.increments[0].contact.greatest_penetration / (1e-2 * r), 1e-3));
+    CHECK(report.increments[0].use.penetration ==
+          test::near(report.increments[0].contact.greatest_penetration / (1e-2 * r), 1e-3));
     CHECK(report.most_use.penetration == report.increments[0].use.penetration);
     CHECK(report.use.greatest() <= 1.0);
 }
 
 TEST_CASE("a penalty that is given as one number stays it, however deep that is, and the report says so") {
     auto parameters = test::model_parameters<Smooth>(r);
-    parameters.contact.stiffness.initial_fraction = parameters.contact.stiffness.floor_fraction = parameters.contact.stiffness.cap_fraction = 1e-3;
+    parameters.contact.stiffness.initial_fraction = parameters.contact.stiffness.floor_fraction =
+        parameters.contact.stiffness.cap_fraction = 1e-3;
     simulation::Simulator<Smooth> simulator(crossed(50, 0, 10, 16), parameters);
     const simulation::Report report = simulator.run({.increments = 4});
     REQUIRE(report.converged);
@@ -171,7 +183,8 @@ TEST_CASE("a penalty that is given as one number stays it, however deep that is,
 
 TEST_CASE("contact that even the stiffest penalty leaves too deep is refused by its depth") {
     auto parameters = test::model_parameters<Smooth>(r);
-    parameters.contact.stiffness.cap_fraction = 0.06, parameters.contact.stiffness.reserve = 1.0;  // a little above where it begins
+    parameters.contact.stiffness.cap_fraction = 0.06,
+    parameters.contact.stiffness.reserve = 1.0;  // a little above where it begins
     simulation::Simulator<Smooth> simulator(crossed(25, 0, 10, 8), parameters);
     const simulation::Report report = simulator.run({.increments = 4});
     CHECK_FALSE(report.converged);

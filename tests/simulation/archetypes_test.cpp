@@ -35,7 +35,9 @@ struct LeastBeam {
     explicit LeastBeam(const Parameters&) {}
     static std::array<Vec3, 1> nodal_vectors(const scene::NodeFrame& frame) { return {frame.position}; }
     static Vec3 axis(const V& y) { return y.tail<3>() - y.head<3>(); }
-    static double strain(const Rest& rest, const V& y) { return 0.5 * (axis(y).squaredNorm() / (rest.length * rest.length) - 1.0); }
+    static double strain(const Rest& rest, const V& y) {
+        return 0.5 * (axis(y).squaredNorm() / (rest.length * rest.length) - 1.0);
+    }
     Rest rest(const scene::CrossSection& section, const scene::ElasticMaterial& material, const V& y) const {
         return {material.young_modulus * section.area(), axis(y).norm()};
     }
@@ -79,7 +81,8 @@ struct LeastSearch {
         all.fibre_i = 0, all.fibre_j = 1, all.b_i = all.b_j = 1.0, all.closest_i = all.closest_j = 0.5;
         if (fibres.size() < 2) return {};
         all.distance = (fibres[0].points[0] - fibres[1].points[0]).norm();
-        return all.distance < fibres[0].radius + fibres[1].radius + reach ? std::vector{all} : std::vector<proximity::ProximityZone>{};
+        return all.distance < fibres[0].radius + fibres[1].radius + reach ? std::vector{all}
+                                                                          : std::vector<proximity::ProximityZone>{};
     }
     std::vector<proximity::SegmentPair> pairs(std::span<const proximity::Centreline>, double) { return {}; }
 };
@@ -110,7 +113,9 @@ struct LeastSolver {
     template <assembly::LinearSystem T>
     void analyse(const T&) {}
     template <assembly::LinearSystem T>
-    solver::SolveStatus prepare(const T&) { return solver::SolveStatus::converged; }
+    solver::SolveStatus prepare(const T&) {
+        return solver::SolveStatus::converged;
+    }
     template <assembly::LinearSystem T>
     solver::SolveReport solve(const T& system, const Vector& b, double tolerance, Vector& x) {
         Vector r = b, p = b, q(b.size());
@@ -151,7 +156,8 @@ struct WithBlocks : LeastModel {
 
 /// Bars along x at the height z, held on their axis.
 Index add_bar(scene::Assembly& assembly, double z) {
-    const Index bar = assembly.add({.from = {0, 0, z}, .to = {2, 0, z}, .section = scene::circular(0.1), .material = {1000.0, 0.3}, .elements = 4});
+    const Index bar = assembly.add(
+        {.from = {0, 0, z}, .to = {2, 0, z}, .section = scene::circular(0.1), .material = {1000.0, 0.3}, .elements = 4});
     for (int node = 0; node <= 4; ++node) {
         const Vec3 held = node == 0 ? Vec3(1, 1, 1) : Vec3(0, 1, 1);
         assembly.hold_position({bar, 0.25 * node}, held.asDiagonal());

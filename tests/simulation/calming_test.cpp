@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Leaps: an equilibrium ends, and the next one is far.
-#include <near.hpp>
 #include "simulation/scenes.hpp"
+#include <near.hpp>
 
 #include <doctest/doctest.h>
 
@@ -43,7 +43,8 @@ struct Twisted {
         loading.stages.push_back({.name = "turn", .increments = 30, .ramps = {{"turn", 1.0}}, .damping = damping});
         loading.stages.push_back({.name = "slack", .increments = 30, .ramps = {{"slack", 1.0}}, .damping = damping});
         if (damping > 0.0) {
-            loading.stages.push_back({.name = "rest", .increments = 1, .damping = damping, .damping_decay = 0.3, .damping_share = 1e-8});
+            loading.stages.push_back(
+                {.name = "rest", .increments = 1, .damping = damping, .damping_decay = 0.3, .damping_share = 1e-8});
             loading.stages.back().until = [](const simulation::IncrementReport&) { return true; };
         }
         return loading;
@@ -67,14 +68,16 @@ TEST_CASE("a twisted rod that leaps is followed to the equilibrium that a rod da
     REQUIRE(report.converged);
     REQUIRE(slow.converged);
     const double force = simulator.reaction(scene::last_end(0)).x(), expected = other.reaction(scene::last_end(0)).x();
-    std::printf("four turns: force %.9f and %.9f, energy %.9f and %.9f, damped %.3e and %.3e, missing %.2e and %.2e\n", force, expected, report.energy.elastic, slow.energy.elastic,
-                report.energy.damped, slow.energy.damped, report.energy.error(), slow.energy.error());
+    std::printf("four turns: force %.9f and %.9f, energy %.9f and %.9f, damped %.3e and %.3e, missing %.2e and %.2e\n", force,
+                expected, report.energy.elastic, slow.energy.elastic, report.energy.damped, slow.energy.damped,
+                report.energy.error(), slow.energy.error());
     // Residuals are at most 1e-4 of the reactions.
     CHECK(force == test::near(expected, 1e-3));
     CHECK(report.energy.elastic == test::near(slow.energy.elastic, 1e-4));
     CHECK(report.energy.damped > 0.0);
     CHECK(report.increments.back().damping == 0.0);
-    // What is missing is the work of the turning ends, booked by the mean of two moments: a leap at ends that stand adds nothing to it.
+    // What is missing is the work of the turning ends, booked by the mean of two moments: a leap at ends that stand adds nothing
+    // to it.
     CHECK(std::abs(report.energy.error() - slow.energy.error()) < 0.2 * std::abs(slow.energy.error()));
 
     simulation::Simulator<Smooth> alone(rod.assembly(), rod.parameters());

@@ -130,7 +130,8 @@ TEST_CASE("an interrupted run in which one fibre is held harder than the others 
     const Rod rod;
     const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3);  // of the tip
     Loading<Smooth> loading;
-    loading.stages = {{.increments = 4, .ramps = {{"load", 1.0}}, .damping = 1e-3 * stiffness, .largest_displacement = 0.02 * rod.length}};
+    loading.stages = {
+        {.increments = 4, .ramps = {{"load", 1.0}}, .damping = 1e-3 * stiffness, .largest_displacement = 0.02 * rod.length}};
     check_resumes<Smooth>(rod.row(0.1, 10.0), test::model_parameters<Smooth>(rod.radius), loading);
 }
 

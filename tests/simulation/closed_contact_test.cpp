@@ -40,8 +40,8 @@ scene::Station at(Index fibre, Index nodes, double share, double shift) {
     return {fibre, place - std::floor(place)};
 }
 
-/// Two rings of unit radius and bending stiffness, one through the other at a right angle, pulled until each is 2.0702675 R long, as under
-/// F R^2 / EI = 0.5 in the plane elastica.
+/// Two rings of unit radius and bending stiffness, one through the other at a right angle, pulled until each is 2.0702675 R long,
+/// as under F R^2 / EI = 0.5 in the plane elastica.
 struct LinkedRings {
     double shift_a = 0.0, shift_b = 0.5;  // where the first nodes lie; they meet at 0 and 0.5
     double friction = 0.0;
@@ -52,10 +52,12 @@ struct LinkedRings {
         const Index nodes = 2 * elements;
         scene::Assembly assembly;
         for (const bool second : {false, true})
-            assembly.add({.curve = [second, shift = second ? shift_b : shift_a](double t) {
-                              const double a = 2.0 * pi * (t + shift);
-                              return second ? Vec3(2.0 - 2.0 * radius + std::cos(a), 0, std::sin(a)) : Vec3(std::cos(a), std::sin(a), 0);
-                          },
+            assembly.add({.curve =
+                              [second, shift = second ? shift_b : shift_a](double t) {
+                                  const double a = 2.0 * pi * (t + shift);
+                                  return second ? Vec3(2.0 - 2.0 * radius + std::cos(a), 0, std::sin(a))
+                                                : Vec3(std::cos(a), std::sin(a), 0);
+                              },
                           .section = scene::circular(radius),
                           .material = {.young_modulus = 4.0 / (pi * std::pow(radius, 4)), .poisson_ratio = 0.3},
                           .elements = elements,
@@ -128,7 +130,8 @@ TEST_CASE("an interrupted run of closed fibres goes on to the same bits, and its
     for (Index f = 0; f < 2; ++f)
         for (double u = -3.0; u < 43.0; u += 0.37)
             CHECK((fine.position(refined, f, 2.0 * u) - coarse.position(whole.state(), f, u)).norm() < 1e-12);
-    for (const scene::ImageVector& one : fine.layout().images) CHECK(refined.segment<3>(3 * one.image) == refined.segment<3>(3 * one.source));
+    for (const scene::ImageVector& one : fine.layout().images)
+        CHECK(refined.segment<3>(3 * one.image) == refined.segment<3>(3 * one.source));
     std::filesystem::remove(file);
 }
 
@@ -138,21 +141,24 @@ TEST_CASE("a trefoil of a straight fibre relaxes to a circle that it runs throug
         const Index elements = 48;
         const double radius = 0.1, shift = static_cast<double>(first) / static_cast<double>(elements);
         scene::Assembly assembly;
-        assembly.add({.start = [=](double t) {
-                          const double a = 2.0 * pi * (t + shift), rho = 1.0 + 0.4 * std::cos(3.0 * a);
-                          return Vec3(rho * std::cos(2.0 * a), rho * std::sin(2.0 * a), 0.4 * std::sin(3.0 * a));
-                      },
+        assembly.add({.start =
+                          [=](double t) {
+                              const double a = 2.0 * pi * (t + shift), rho = 1.0 + 0.4 * std::cos(3.0 * a);
+                              return Vec3(rho * std::cos(2.0 * a), rho * std::sin(2.0 * a), 0.4 * std::sin(3.0 * a));
+                          },
                       .section = scene::circular(radius),
                       .material = {.young_modulus = 4.0 / (pi * std::pow(radius, 4)), .poisson_ratio = 0.3},
                       .elements = elements,
                       .closed = true});
         assembly.hold_position(at(0, 2 * elements, 0.0, shift));
-        for (const double third : {1.0 / 3.0, 2.0 / 3.0}) assembly.hold_position(at(0, 2 * elements, third, shift), Vec3(0, 0, 1).asDiagonal());
+        for (const double third : {1.0 / 3.0, 2.0 / 3.0})
+            assembly.hold_position(at(0, 2 * elements, third, shift), Vec3(0, 0, 1).asDiagonal());
         simulation::ModelParameters<Rubbing> p = parameters(radius, 0.0);
         p.contact.detection.self_contact = true;
         simulation::Stage<Rubbing> relax;
         relax.name = "relax", relax.increments = 1, relax.most_increments = 100;
-        relax.damping = 2.0, relax.damping_decay = 0.7, relax.damping_calm = 0.3 * radius, relax.largest_displacement = 2.0 * radius;
+        relax.damping = 2.0, relax.damping_decay = 0.7, relax.damping_calm = 0.3 * radius,
+        relax.largest_displacement = 2.0 * radius;
         relax.damping_share = 1e-4;  // the fibre may spin about its own axis, which nothing else holds
         relax.until = simulation::until_settled(1e-3 * radius, 0.02 * radius);
         simulation::Simulator<Rubbing> simulator(assembly, p);
@@ -162,11 +168,12 @@ TEST_CASE("a trefoil of a straight fibre relaxes to a circle that it runs throug
         const double length = simulator.mesh().fibre(0).length();
         // Two turns of a helix on a torus: curvature a little below that of the circle.
         const double circle = 0.5 * std::pow(4.0 * pi, 2) / length;
-        std::printf("trefoil: elastic energy %.6f, of the circle twice %.6f, %td contacts, deepest %.4f r\n", report.energy.elastic, circle,
-                    report.contact.active, report.contact.greatest_penetration / radius);
+        std::printf("trefoil: elastic energy %.6f, of the circle twice %.6f, %td contacts, deepest %.4f r\n",
+                    report.energy.elastic, circle, report.contact.active, report.contact.greatest_penetration / radius);
         CHECK(report.energy.elastic > circle);
         CHECK(report.energy.elastic < 1.1 * circle);
-        CHECK(report.contact.active >= 48);  // it lies beside itself all along: once half-way around its length, two points an element
+        CHECK(report.contact.active >=
+              48);  // it lies beside itself all along: once half-way around its length, two points an element
         CHECK(report.contact.greatest_penetration < 0.01 * radius);
         if (first > 0) CHECK(std::abs(report.energy.elastic / energy - 1.0) < 1e-5);
         energy = report.energy.elastic;

@@ -74,8 +74,9 @@ TEST_CASE("a ring under two opposite forces is that of thin rings wherever its f
         for (const Index shift : {0, 2, 37}) {  // of whole elements
             Ring ring{.elements = 80, .shift = static_cast<double>(2 * shift) / 160.0, .straight = straight};
             const Diameters d = pulled<beam::DirectorBeam<3>>(ring, 1e-4, "sparse_cholesky");
-            std::printf("director ring, %s, first node at %.4f: along %.10f (off by %.1e), across %.10f (%.1e)\n", straight ? "straight by nature" : "round",
-                        ring.shift, d.along, d.along / growth - 1.0, d.across, -d.across / loss - 1.0);
+            std::printf("director ring, %s, first node at %.4f: along %.10f (off by %.1e), across %.10f (%.1e)\n",
+                        straight ? "straight by nature" : "round", ring.shift, d.along, d.along / growth - 1.0, d.across,
+                        -d.across / loss - 1.0);
             CHECK(std::abs(d.along / growth - 1.0) < 1e-4);
             CHECK(std::abs(d.across / -loss - 1.0) < 1e-4);
             if (shift == 0) first = d;
@@ -113,7 +114,8 @@ TEST_CASE("Love's ring: under line pressure an ellipse grows as 1 / (1 - p / p_c
         assembly.hold_position(ring.at<B>(0.25), Vec3(1, 0, 1).asDiagonal());
         assembly.apply(scene::LinePressure{.fibre = 0, .pressure = load});
         auto p = parameters<B>(ring, "automatic");
-        p.iteration.step_tolerance = 1e-5;  // rounding, 1e-16 E A, moves a ring by a thousand times as much that is about to buckle
+        p.iteration.step_tolerance =
+            1e-5;  // rounding, 1e-16 E A, moves a ring by a thousand times as much that is about to buckle
         simulation::Simulator<M> simulator(assembly, p);
         const auto ellipse = [&] {
             return 0.5 * ((simulator.value(ring.at<B>(0.0)) - simulator.value(ring.at<B>(0.5))).norm() -
@@ -124,7 +126,8 @@ TEST_CASE("Love's ring: under line pressure an ellipse grows as 1 / (1 - p / p_c
         CAPTURE(report.reason);
         REQUIRE(report.converged);
         const double factor = ellipse() / before, critical = load * factor / (factor - 1.0);
-        std::printf("Love's ring at %.1f EI / R^3: an ellipse grows by %.4f, critical pressure %.5f, %td Newton iterations\n", load, factor, critical, report.counts.newton);
+        std::printf("Love's ring at %.1f EI / R^3: an ellipse grows by %.4f, critical pressure %.5f, %td Newton iterations\n",
+                    load, factor, critical, report.counts.newton);
         CHECK(std::abs(critical / 3.0 - 1.0) < 2e-3);  // of a ring of 40 elements
         CHECK(report.counts.newton <= 4 * 6);          // the load's own stiffness is in the tangent
     }
@@ -144,7 +147,8 @@ TEST_CASE("Michell's ring: a straight rod that is closed with a twist leaves its
         const Vec3 tangent = Vec3(-1, 1, 0).normalized();
         assembly.hold_position(ring.at<B>(0.125), tangent * tangent.transpose());
         const double force = 1e-7;
-        for (int k = 0; k < 4; ++k) assembly.apply(scene::DeadForce{.at = ring.at<B>(0.25 * k), .force = Vec3(0, 0, k % 2 == 0 ? force : -force)});
+        for (int k = 0; k < 4; ++k)
+            assembly.apply(scene::DeadForce{.at = ring.at<B>(0.25 * k), .force = Vec3(0, 0, k % 2 == 0 ? force : -force)});
         simulation::Simulator<M> simulator(assembly, parameters<B>(ring, "two_level_pcg"));
         const simulation::Report report = simulator.run({.increments = 1});
         CAPTURE(report.reason);
@@ -166,7 +170,8 @@ TEST_CASE("a closed fibre is refused where it does not close") {
     fibre.curve = [](double t) { return Vec3(std::cos(3.0 * t), std::sin(3.0 * t), 0.0); };
     scene::Assembly open;
     open.add(fibre);
-    CHECK(test::refusal([&] { beam::Mesh<beam::DirectorBeam<3>>(open, beam::DirectorBeam<3>{}); }).find("closed") != std::string::npos);
+    CHECK(test::refusal([&] { beam::Mesh<beam::DirectorBeam<3>>(open, beam::DirectorBeam<3>{}); }).find("closed") !=
+          std::string::npos);
     fibre.curve = {}, fibre.from = Vec3::Zero(), fibre.to = Vec3::UnitX();
     CHECK(test::refusal([&] { fibre.validate(); }).find("fibre.closed") != std::string::npos);
     fibre = ring.specification<beam::DirectorBeam<3>>();

@@ -18,11 +18,11 @@ inline constexpr double pi = std::numbers::pi;
 /// Around z, anticlockwise; its first node is `shift` of its length from the x axis.
 struct Ring {
     Index elements = 40;
-    double radius = 0.002;   ///< of the fibre
+    double radius = 0.002;  ///< of the fibre
     double shift = 0.0;
-    bool straight = false;   ///< at rest
+    bool straight = false;  ///< at rest
     double twist = 0.0;
-    double ellipse = 0.0;    ///< of its radius, with cos 2 theta
+    double ellipse = 0.0;  ///< of its radius, with cos 2 theta
 
     template <beam::BeamElement B>
     scene::FibreSpecification specification() const {

@@ -11,12 +11,14 @@ namespace deep_places_test {
 
 constexpr double radius = 0.02, allowed = 0.01 * radius;
 
-// A hard fibre pressed across a soft one of few elements, whose sections it flattens within a part of one: beside the one contact element of a
-// crossing they are deeper in each other than that says.
-scene::Assembly pressed(double hardness, double half = 0.4, Index elements = 6, double approach = 1.0, double angle = 0.5 * std::numbers::pi) {
+// A hard fibre pressed across a soft one of few elements, whose sections it flattens within a part of one: beside the one contact
+// element of a crossing they are deeper in each other than that says.
+scene::Assembly pressed(double hardness, double half = 0.4, Index elements = 6, double approach = 1.0,
+                        double angle = 0.5 * std::numbers::pi) {
     scene::Assembly assembly;
     for (const bool upper : {false, true}) {
-        const Vec3 along = upper ? Vec3(std::cos(angle), std::sin(angle), 0.0) : Vec3(Vec3::UnitX()), middle = upper ? Vec3(0.1 * radius, 0.0, 2.0 * radius) : Vec3::Zero();
+        const Vec3 along = upper ? Vec3(std::cos(angle), std::sin(angle), 0.0) : Vec3(Vec3::UnitX()),
+                   middle = upper ? Vec3(0.1 * radius, 0.0, 2.0 * radius) : Vec3::Zero();
         scene::FibreSpecification fibre;
         fibre.from = middle - half * along, fibre.to = middle + half * along;
         fibre.section = scene::circular(radius), fibre.material = {upper ? 7300.0 : 7300.0 / hardness, 0.3};
@@ -76,7 +78,8 @@ TEST_CASE("what is clean is left as it is, and a stricter bound is kept by stiff
 TEST_CASE("what cannot be reached is told: the fibres, how deep they are, the bound and what to do") {
     const Ended ended = run(pressed(10.0), true, 1e-5);
     CHECK_FALSE(ended.report.converged);
-    for (const char* words : {"stage loading did not reach its end in ", ": fibres 0 and 1 stay ", " radii deep in each other at (", "allowed are 1e-05: more elements"})
+    for (const char* words : {"stage loading did not reach its end in ", ": fibres 0 and 1 stay ",
+                              " radii deep in each other at (", "allowed are 1e-05: more elements"})
         CHECK(ended.report.reason.find(words) != std::string::npos);
 }
 

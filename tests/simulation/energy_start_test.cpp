@@ -18,8 +18,8 @@ using test::Crossing;
 using test::Rod;
 using test::Smooth;
 
-/// A straight fibre laid in an arc of a quarter turn, both of its ends clamped as they lie; the last one is taken to where it ends in an
-/// arc of (1 - a) of that.
+/// A straight fibre laid in an arc of a quarter turn, both of its ends clamped as they lie; the last one is taken to where it
+/// ends in an arc of (1 - a) of that.
 struct Laid {
     Rod rod;
     Index fibre = 0;
@@ -37,7 +37,8 @@ struct Laid {
         scene::FibreSpecification fibre = rod.specification();
         fibre.director = Vec3::UnitY();
         const double length = rod.length, all = angle;
-        const scene::Curve arc = [=](double t) { return place(length, all, t * length); }, line = [=](double t) { return Vec3(0, 0, t * length); };
+        const scene::Curve arc = [=](double t) { return place(length, all, t * length); },
+                           line = [=](double t) { return Vec3(0, 0, t * length); };
         fibre.curve = curved ? arc : line, fibre.start = curved ? line : arc;
         assembly.add(fibre);
         assembly.clamp(scene::first_end(0));
@@ -71,7 +72,8 @@ TEST_CASE("a straight fibre laid in an arc misses no energy, there or on its way
         const Report there = simulator.run(to("turn", 1e-9, 1));
         REQUIRE_MESSAGE(there.converged, there.reason);
         const double stored = laid.stored();
-        std::printf("laid %s: stored %.6f of E I angle^2 / 2 L, missing %.1e", curved ? "straight" : "in an arc", there.energy.elastic / stored, missing(there, stored));
+        std::printf("laid %s: stored %.6f of E I angle^2 / 2 L, missing %.1e", curved ? "straight" : "in an arc",
+                    there.energy.elastic / stored, missing(there, stored));
         CHECK(std::abs(there.energy.elastic / stored - 1.0) < 1e-3);
         CHECK(std::abs(there.energy.external / stored - 1.0) < 1e-3);
         CHECK(std::abs(missing(there, stored)) < 1e-6);
@@ -79,7 +81,8 @@ TEST_CASE("a straight fibre laid in an arc misses no energy, there or on its way
         REQUIRE_MESSAGE(back.converged, back.reason);
         std::printf("; back at rest stored %.1e, missing %.1e\n", back.energy.elastic / stored, missing(back, stored));
         CHECK(std::abs(back.energy.elastic / stored) < 1e-6);
-        CHECK(std::abs(missing(back, stored)) < 5e-4);  // forces turn by 3 degrees an increment: the trapezium's error, 6.3e-3 with 8 of them
+        CHECK(std::abs(missing(back, stored)) <
+              5e-4);  // forces turn by 3 degrees an increment: the trapezium's error, 6.3e-3 with 8 of them
     }
 }
 
@@ -121,7 +124,8 @@ TEST_CASE("contacts and fibres that press when a run begins are in its balance, 
     const Report before = first.run(loading);
     REQUIRE_MESSAGE(before.converged, before.reason);
     const double stored = before.energy.elastic + before.energy.contact;
-    std::printf("pressed: elastic %.3f of what is stored, missing %.1e\n", before.energy.elastic / stored, missing(before, stored));
+    std::printf("pressed: elastic %.3f of what is stored, missing %.1e\n", before.energy.elastic / stored,
+                missing(before, stored));
     const auto go_on = [&](const char* name, Simulator<Smooth>& next, double factor) {
         double error[2];
         for (const Index increments : {1, 4}) {

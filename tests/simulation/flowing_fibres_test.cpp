@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Laws of sections in whole runs: what a fibre does with them, what it remembers, and that its energy is all there.
-#include <near.hpp>
 #include "simulation/lawful.hpp"
+#include <near.hpp>
 #include <refusal.hpp>
 
 #include <fibrant/beam/with_law.hpp>
@@ -60,7 +60,8 @@ TEST_CASE("a wire that is bent beyond yield springs back to what its section kee
     simulation::Simulator<M> fine(fine_rod.clamped(), parameters);
     const auto refined = simulation::refined(simulation::read_state<M>(file, coarse.mesh()), coarse.mesh(), fine.mesh(), 2);
     simulation::write_state<M>(file, fine.mesh(), refined);
-    CHECK(left(fine_rod.clamped(), [&](auto& released) { released.start_from(file); }) == test::near(own, 0.04));  // it sees what the coarse mesh rounds off: (h kappa)^2 of stretch within an element
+    CHECK(left(fine_rod.clamped(), [&](auto& released) { released.start_from(file); }) ==
+          test::near(own, 0.04));  // it sees what the coarse mesh rounds off: (h kappa)^2 of stretch within an element
     std::filesystem::remove(file);
 }
 

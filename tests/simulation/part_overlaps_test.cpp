@@ -21,7 +21,12 @@ using Beam = Model::Beam;
 constexpr double r = 0.05, length = 40.0 * r, allowed = 1e-2;  // of the thinnest radius
 
 scene::FibreSpecification straight(const Vec3& from, const Vec3& to, double radius = r) {
-    return {.from = from, .to = to, .section = scene::circular(radius), .material = {1e4, 0.3}, .elements = 12, .director = Vec3(0.1, 0.7, 0.4)};
+    return {.from = from,
+            .to = to,
+            .section = scene::circular(radius),
+            .material = {1e4, 0.3},
+            .elements = 12,
+            .director = Vec3(0.1, 0.7, 0.4)};
 }
 scene::FibreSpecification curved(const scene::Curve& curve, double radius = r, Index elements = 24) {
     scene::FibreSpecification fibre = straight(Vec3::Zero(), Vec3::UnitX(), radius);
@@ -54,7 +59,8 @@ double least_distance(const scene::Assembly& assembly, const Vector& state) {
     for (int a = 0; a <= n; ++a)
         for (int b = 0; b <= n; ++b)
             least = std::min(least, (mesh.position(state, 0, static_cast<double>(mesh.fibre(0).elements) * a / n) -
-                                     mesh.position(state, 1, static_cast<double>(mesh.fibre(1).elements) * b / n)).norm());
+                                     mesh.position(state, 1, static_cast<double>(mesh.fibre(1).elements) * b / n))
+                                        .norm());
     return least;
 }
 /// Parts the scene, and runs it from there without any limit of a gap.
@@ -68,7 +74,8 @@ simulation::Parting part(scene::Assembly assembly, double thinnest, bool self = 
     simulation::Loading<Model> loading;
     loading.stages.resize(1);
     // A fibre that nothing holds needs some damping.
-    loading.stages[0].increments = 2, loading.stages[0].damping = assembly.holds().size() < 6 * assembly.fibres().size() ? 1e-3 : 0.0;
+    loading.stages[0].increments = 2,
+    loading.stages[0].damping = assembly.holds().size() < 6 * assembly.fibres().size() ? 1e-3 : 0.0;
     const simulation::Report report = simulator.run(loading);
     INFO(report.reason);
     CHECK(report.converged);
@@ -83,13 +90,12 @@ TEST_CASE("fibres side by side, on one line, across each other or end in end par
             std::string what;
             scene::FibreSpecification second;
         };
-        for (const Case& one : std::vector<Case>{
-                 {"side by side", straight(aside, along + aside)},
-                 {"on one line", straight(Vec3::Zero(), along)},
-                 {"against each other on one line", straight(along, Vec3::Zero())},
-                 {"axes that meet", straight(0.5 * (along - across), 0.5 * (along + across))},
-                 {"at eleven degrees", straight(-0.1 * across, along + 0.1 * across)},
-                 {"end in end", straight(0.99 * along, 1.99 * along)}}) {
+        for (const Case& one : std::vector<Case>{{"side by side", straight(aside, along + aside)},
+                                                 {"on one line", straight(Vec3::Zero(), along)},
+                                                 {"against each other on one line", straight(along, Vec3::Zero())},
+                                                 {"axes that meet", straight(0.5 * (along - across), 0.5 * (along + across))},
+                                                 {"at eleven degrees", straight(-0.1 * across, along + 0.1 * across)},
+                                                 {"end in end", straight(0.99 * along, 1.99 * along)}}) {
             CAPTURE(one.what);
             const scene::Assembly assembly = scene_of({straight(Vec3::Zero(), along), one.second}, held);
             const simulation::Parting parting = part(assembly, r);
@@ -108,7 +114,8 @@ TEST_CASE("a thin fibre leaves a thick one by one side, all along, however it wi
         scene::Assembly assembly;
         assembly.add(straight(Vec3::Zero(), Vec3(length, 0, 0)));
         clamp_ends(assembly, 0);
-        assembly.add(curved([=](double t) { return Vec3(length * t, 0.3 * r * std::sin(6.0 * std::numbers::pi * t), off); }, thin));
+        assembly.add(
+            curved([=](double t) { return Vec3(length * t, 0.3 * r * std::sin(6.0 * std::numbers::pi * t), off); }, thin));
         const simulation::Parting parting = part(assembly, thin);
         CHECK(least_distance(assembly, parting.start) > (1.3 - 2.0 * 0.3 * allowed) * r);
         const beam::Mesh<Beam> mesh(assembly, Beam());
@@ -118,8 +125,10 @@ TEST_CASE("a thin fibre leaves a thick one by one side, all along, however it wi
             for (int n = 0; n <= 48; ++n) {
                 Vec3 from = mesh.position(parting.start, 1, 0.5 * n);
                 from.x() = 0.0;
-                if (sum) side += from.normalized();
-                else worst = std::min(worst, from.normalized().dot(side.normalized()));
+                if (sum)
+                    side += from.normalized();
+                else
+                    worst = std::min(worst, from.normalized().dot(side.normalized()));
             }
         CHECK(worst > 0.3);  // nowhere on the other side
     }
@@ -144,7 +153,8 @@ TEST_CASE("orders that are given decide, against the places where fibres lie") {
     scene::Assembly assembly;
     const Index lower = assembly.add_group("lower"), upper = assembly.add_group("upper");
     scene::FibreSpecification first = straight(Vec3::Zero(), Vec3(length, 0, 0));
-    scene::FibreSpecification second = straight(Vec3(0.5 * length, -0.5 * length, 0.3 * r), Vec3(0.5 * length, 0.5 * length, 0.3 * r));
+    scene::FibreSpecification second =
+        straight(Vec3(0.5 * length, -0.5 * length, 0.3 * r), Vec3(0.5 * length, 0.5 * length, 0.3 * r));
     first.group = upper, second.group = lower;
     clamp_ends(assembly, assembly.add(first)), clamp_ends(assembly, assembly.add(second));
     assembly.force_order({upper, lower, Vec3::UnitZ()});
@@ -156,7 +166,8 @@ TEST_CASE("orders that are given decide, against the places where fibres lie") {
 TEST_CASE("by which side fibres on one line part turns with the scene, and does not hang on their numbers") {
     const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
     const auto scene_at = [&](const Mat3& Q, bool swapped) {
-        scene::FibreSpecification thick = straight(Vec3::Zero(), Q * Vec3(length, 0, 0)), thin = straight(Vec3::Zero(), Q * Vec3(length, 0, 0), 0.5 * r);
+        scene::FibreSpecification thick = straight(Vec3::Zero(), Q * Vec3(length, 0, 0)),
+                                  thin = straight(Vec3::Zero(), Q * Vec3(length, 0, 0), 0.5 * r);
         thick.director = Q * Vec3(0, 1, 0.2), thin.director = Q * Vec3(0, 1, 0.2);
         return swapped ? scene_of({thin, thick}, false) : scene_of({thick, thin}, false);
     };
@@ -191,7 +202,8 @@ TEST_CASE("what cannot part is refused with both fibres, the depth and the place
 TEST_CASE("a plain run does not begin where the axis of a fibre is in another one, and says which and how deep") {
     for (const double apart : {0.0, 0.9, 1.4}) {
         CAPTURE(apart);
-        const scene::Assembly assembly = scene_of({straight(Vec3::Zero(), Vec3(length, 0, 0)), straight(Vec3(0, apart * r, 0), Vec3(length, apart * r, 0))}, false);
+        const scene::Assembly assembly = scene_of(
+            {straight(Vec3::Zero(), Vec3(length, 0, 0)), straight(Vec3(0, apart * r, 0), Vec3(length, apart * r, 0))}, false);
         simulation::Simulator<Model> simulator(assembly, parameters(r));
         simulation::Loading<Model> loading;
         loading.stages.resize(1);

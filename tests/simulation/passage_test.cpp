@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Fibres that are driven through each other, through themselves and into tools, in too large increments: held back or refused, never behind.
+// Fibres that are driven through each other, through themselves and into tools, in too large increments: held back or refused,
+// never behind.
 #include "simulation/scenes.hpp"
 
 #include <fibrant/contact/contacts_with_tools.hpp>
@@ -26,7 +27,8 @@ struct Unchecked : Smooth {
     using Passage = contact::NoPassage;
 };
 // Left out, there is not a byte of it.
-static_assert(std::is_empty_v<simulation::Simulator<Unchecked>::Passage> && !core::Active<simulation::Simulator<Unchecked>::Passage>);
+static_assert(std::is_empty_v<simulation::Simulator<Unchecked>::Passage> &&
+              !core::Active<simulation::Simulator<Unchecked>::Passage>);
 static_assert(core::Active<simulation::Simulator<Smooth>::Passage>);
 
 struct Failures {
@@ -55,7 +57,8 @@ struct Crossed {
         const double height = (lower + upper + gap) * r;
         scene::Assembly scene;
         clamp(scene, scene.add(fibre({0, -half_lower * r, 0}, {0, half_lower * r, 0}, lower * r, elements)), {0, 0, rise * r});
-        clamp(scene, scene.add(fibre({-half_upper * r, 0, height}, {half_upper * r, 0, height}, upper * r, elements)), {0, 0, -approach * r});
+        clamp(scene, scene.add(fibre({-half_upper * r, 0, height}, {half_upper * r, 0, height}, upper * r, elements)),
+              {0, 0, -approach * r});
         return scene;
     }
     /// Of the middle of the upper one over the lower one, over the distance at which they touch.
@@ -73,9 +76,11 @@ double run(const Crossed& scene, simulation::Report& report, Failures& failures,
 }
 
 TEST_CASE("a fibre that is driven past another one in a single increment ends on it, not behind it") {
-    for (const Crossed& scene : {Crossed{}, Crossed{.gap = 4.0, .approach = 12.0}, Crossed{.gap = 3.0, .approach = 3.5, .rise = 3.5},
-                                 Crossed{.upper = 5.0, .gap = 3.0, .approach = 13.0, .half_upper = 250.0}, Crossed{.upper = 10.0, .gap = 10.0, .approach = 30.0, .half_upper = 500.0},
-                                 Crossed{.upper = 50.0, .gap = 60.0, .approach = 70.0, .half_lower = 500.0, .half_upper = 2500.0}}) {
+    for (const Crossed& scene :
+         {Crossed{}, Crossed{.gap = 4.0, .approach = 12.0}, Crossed{.gap = 3.0, .approach = 3.5, .rise = 3.5},
+          Crossed{.upper = 5.0, .gap = 3.0, .approach = 13.0, .half_upper = 250.0},
+          Crossed{.upper = 10.0, .gap = 10.0, .approach = 30.0, .half_upper = 500.0},
+          Crossed{.upper = 50.0, .gap = 60.0, .approach = 70.0, .half_lower = 500.0, .half_upper = 2500.0}}) {
         CAPTURE(scene.upper);
         CAPTURE(scene.gap);
         CAPTURE(scene.approach);
@@ -124,7 +129,8 @@ TEST_CASE("parallel fibres do not pass through each other, in one plane or a lit
             CAPTURE(way);
             scene::Assembly scene;
             clamp(scene, scene.add(fibre({0, -50 * r, 0}, {0, 50 * r, 0}, r, 10)), {-0.5 * way * r, 0, 0});
-            clamp(scene, scene.add(fibre({-5 * r, -50 * r, beside * r}, {-5 * r, 50 * r, beside * r}, r, 10)), {0.5 * way * r, 0, 0});
+            clamp(scene, scene.add(fibre({-5 * r, -50 * r, beside * r}, {-5 * r, 50 * r, beside * r}, r, 10)),
+                  {0.5 * way * r, 0, 0});
             simulation::Simulator<Smooth> simulator(scene, test::model_parameters<Smooth>(r));
             Failures failures;
             const simulation::Report report = simulator.run({.increments = 1}, failures);
@@ -161,18 +167,21 @@ TEST_CASE("what passes is named, with its place and its motion, and the attempt 
     CHECK_FALSE(swept.first(unchecked.state(), unchecked.state(), unchecked.contacts(), false, true));
     Vector together = unchecked.state();
     for (Index f = 0; f < 2; ++f)
-        for (Index a = 0; a < unchecked.mesh().node_count(f); ++a) together.segment<3>(3 * unchecked.mesh().node_vector(f, a)) += Vec3(100 * r, -70 * r, 3 * r);
+        for (Index a = 0; a < unchecked.mesh().node_count(f); ++a)
+            together.segment<3>(3 * unchecked.mesh().node_vector(f, a)) += Vec3(100 * r, -70 * r, 3 * r);
     CHECK_FALSE(swept.first(unchecked.state(), together, unchecked.contacts(), false, true));
 }
 
-TEST_CASE("a fibre that creeps through another one in many small motions is held up half way into it, unless it was there before") {
+TEST_CASE(
+    "a fibre that creeps through another one in many small motions is held up half way into it, unless it was there before") {
     Crossed scene;
     scene.gap = 0.0;
     simulation::Simulator<Unchecked> unchecked(scene.assembly(), test::model_parameters<Unchecked>(r));
     const contact::Swept::Of<Smooth::Beam> swept(unchecked.mesh(), contact::Detection{});
     const auto lowered = [&](double by) {  // in touching distances
         Vector state = unchecked.state();
-        for (Index a = 0; a < unchecked.mesh().node_count(1); ++a) state[3 * unchecked.mesh().node_vector(1, a) + 2] -= 2.0 * r * by;
+        for (Index a = 0; a < unchecked.mesh().node_count(1); ++a)
+            state[3 * unchecked.mesh().node_vector(1, a) + 2] -= 2.0 * r * by;
         return state;
     };
     // Steps of 0.03 come no closer on their way than half of what they leave.
@@ -192,7 +201,8 @@ TEST_CASE("a fibre that slips off past the end of another one is free to go") {
     // The upper one lies across, 3 radii before the end of the lower one, and is moved off it and down, in one increment.
     scene::Assembly scene;
     scene.clamp(scene::first_end(scene.add(fibre({0, -50 * r, 0}, {0, 0, 0}, r, 10))));
-    clamp(scene, scene.add(fibre({-50 * r, -3 * r, 2.5 * r}, {50 * r, -3 * r, 2.5 * r}, r, 10)), {0, 6 * r, -4 * r});  // half a radius above the end
+    clamp(scene, scene.add(fibre({-50 * r, -3 * r, 2.5 * r}, {50 * r, -3 * r, 2.5 * r}, r, 10)),
+          {0, 6 * r, -4 * r});  // half a radius above the end
     simulation::Simulator<Smooth> simulator(scene, test::model_parameters<Smooth>(r));
     Failures failures;
     const simulation::Report report = simulator.run({.increments = 1}, failures);
@@ -202,7 +212,8 @@ TEST_CASE("a fibre that slips off past the end of another one is free to go") {
 }
 
 TEST_CASE("a fibre does not pass through itself") {
-    // Two straight spans, one across the other six radii above it, joined by three quarters of a circle; the end of the upper one is driven down.
+    // Two straight spans, one across the other six radii above it, joined by three quarters of a circle; the end of the upper one
+    // is driven down.
     const double span = 60.0 * r, half = 0.5 * span, arc = 1.5 * pi * half, total = 2.0 * span + arc, lift = 6.0 * r;
     const auto curve = [=](double t) {
         const double s = t * total;
@@ -227,7 +238,8 @@ TEST_CASE("a fibre does not pass through itself") {
             double least = 1e300, there = 0.0;
             for (double u = 0.5; u < 14.0; u += 0.02)
                 for (double v = 38.0; v < 51.5; v += 0.02) {
-                    const Vec3 apart = simulator.mesh().position(simulator.state(), 0, v) - simulator.mesh().position(simulator.state(), 0, u);
+                    const Vec3 apart =
+                        simulator.mesh().position(simulator.state(), 0, v) - simulator.mesh().position(simulator.state(), 0, u);
                     if (apart.head<2>().norm() < least) least = apart.head<2>().norm(), there = apart.z();
                 }
             REQUIRE(least < 0.1 * r);

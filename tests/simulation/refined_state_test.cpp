@@ -37,7 +37,8 @@ TEST_CASE("two fibres that are pressed and dragged go on on a finer mesh with th
     const auto parameters = test::tight_parameters<Rough>(crossing.radius);
     const std::string file = (std::filesystem::temp_directory_path() / "fibrant_refined_state_test.bin").string();
     simulation::Loading<Rough> loading;
-    loading.stages = {{.name = "press", .increments = 3, .ramps = {{"approach", 1.0}}}, {.name = "drag", .increments = 2, .ramps = {{"drag", 1.0}}}};
+    loading.stages = {{.name = "press", .increments = 3, .ramps = {{"approach", 1.0}}},
+                      {.name = "drag", .increments = 2, .ramps = {{"drag", 1.0}}}};
     loading.checkpoint = file;
     simulation::Simulator<Rough> simulator(crossing.assembly(), parameters);
     REQUIRE(simulator.run(loading).converged);
@@ -49,7 +50,8 @@ TEST_CASE("two fibres that are pressed and dragged go on on a finer mesh with th
     for (Index f = 0; f < 2; ++f)
         for (const double share : {0.0, 0.11, 0.37, 0.5, 0.83, 1.0})
             for (const double xi : {0.0, 0.7})
-                CHECK((place(mesh, simulator.state(), f, share, xi, -xi) - place(cut, stored.state, f, share, xi, -xi)).norm() < 1e-15 * crossing.length);
+                CHECK((place(mesh, simulator.state(), f, share, xi, -xi) - place(cut, stored.state, f, share, xi, -xi)).norm() <
+                      1e-15 * crossing.length);
     simulation::write_state<Rough>(file, cut, stored);
 
     // Supports stay where they are. Halves of elements give way more by what the whole ones left out, a thousandth; contact and

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a simulator refuses before it moves anything: holds that contradict each other, paths to nowhere, scenes that nothing holds.
+// What a simulator refuses before it moves anything: holds that contradict each other, paths to nowhere, scenes that nothing
+// holds.
 #include "refusal.hpp"
 #include "scenes.hpp"
 
@@ -24,7 +25,8 @@ scene::Assembly free_rod() {
     return assembly;
 }
 
-std::string refused(const std::function<void(scene::Assembly&)>& change, const simulation::Loading<Model>& loading = {.increments = 2}) {
+std::string refused(const std::function<void(scene::Assembly&)>& change,
+                    const simulation::Loading<Model>& loading = {.increments = 2}) {
     scene::Assembly assembly = free_rod();
     change(assembly);
     return test::refusal([&] {
@@ -52,7 +54,8 @@ TEST_CASE("holds of one vector that ask for different places are refused by fibr
              a.clamp(foot);
              for (const Vec3& along : {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}) {  // the third follows from the others
                  scene::Hold hold;
-                 hold.at = scene::last_end(0), hold.directions = along * along.transpose() / along.squaredNorm(), hold.displacement = 1e-3 * along.squaredNorm() * along;
+                 hold.at = scene::last_end(0), hold.directions = along * along.transpose() / along.squaredNorm(),
+                 hold.displacement = 1e-3 * along.squaredNorm() * along;
                  a.hold(hold);
              }
          }),
@@ -97,7 +100,8 @@ TEST_CASE("a scene that nothing holds is not begun, and the report says what wou
         CHECK((report.converged || report.counts.newton == 0));
         return report.reason;
     };
-    says(reason(false, 0.0), "stage loading: assembly.holds = none, but it must be such that the scene cannot move as a whole: hold a station");
+    says(reason(false, 0.0),
+         "stage loading: assembly.holds = none, but it must be such that the scene cannot move as a whole: hold a station");
     says(reason(true, 0.0), "assembly.holds = none along (0, 0, 1)");
     CHECK(reason(false, 1.0).empty());
 }

@@ -27,10 +27,12 @@ simulation::Report pressed(const simulation::ModelParameters<M>& parameters) {
     return simulator.run(loading);
 }
 
-TEST_CASE("a run with a solver that chooses says which strategies it used and why it left one, and finds what a direct solver finds") {
+TEST_CASE(
+    "a run with a solver that chooses says which strategies it used and why it left one, and finds what a direct solver finds") {
     simulation::ModelParameters<Choosing> parameters = test::model_parameters<Choosing>(Crossing{}.radius);
     parameters.solver.few_couplings = 0.0, parameters.solver.two_level_limit = 1;  // one iteration is never enough here
-    const simulation::Report chosen = pressed<Choosing>(parameters), direct = pressed<Smooth>(test::model_parameters<Smooth>(Crossing{}.radius));
+    const simulation::Report chosen = pressed<Choosing>(parameters),
+                             direct = pressed<Smooth>(test::model_parameters<Smooth>(Crossing{}.radius));
     REQUIRE(chosen.converged);
     REQUIRE(direct.converged);
     CAPTURE(chosen.solver);

@@ -37,7 +37,8 @@ struct Rod {
         assembly.apply(scene::DeadForce{scene::last_end(0), scene::NodeVector::position, Vec3(force, 0, 0), "load"});
         return assembly;
     }
-    /// Eleven of them side by side, each pushed by P L^2 / EI = `load`, and if asked for a twelfth that is `softness` times as soft.
+    /// Eleven of them side by side, each pushed by P L^2 / EI = `load`, and if asked for a twelfth that is `softness` times as
+    /// soft.
     scene::Assembly row(double load, double softness = 0.0) const {
         scene::Assembly assembly;
         const double force = load * bending_stiffness() / (length * length);

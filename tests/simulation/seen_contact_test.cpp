@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Laws of contact that see, in whole runs: lines of contact carry what their length says, however many elements they are cut into.
-#include <near.hpp>
+// Laws of contact that see, in whole runs: lines of contact carry what their length says, however many elements they are cut
+// into.
 #include "simulation/scenes.hpp"
+#include <near.hpp>
 
 #include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/law/directed_friction.hpp>
@@ -34,7 +35,12 @@ const double K = 300.0, m = 2.4, a = 0.2, across = 0.4, n = 0.8;
 simulation::ModelParameters<Seen> parameters(double points) {
     simulation::ModelParameters<Seen> all;
     all.normal = {.line_stiffness = K, .line_exponent = m, .crossing_stiffness = 50.0};
-    all.friction = {.along = a, .across = across, .exponent = n, .crossing_along = 0.15, .crossing_across = 0.3, .reversible_displacement = 1e-4};
+    all.friction = {.along = a,
+                    .across = across,
+                    .exponent = n,
+                    .crossing_along = 0.15,
+                    .crossing_across = 0.3,
+                    .reversible_displacement = 1e-4};
     all.contact.spacing.points_per_element = points;
     all.contact.stiffness.allowed_penetration = r;  // no matter: nothing adapts
     all.iteration.residual_tolerance = 1e-9;
@@ -48,14 +54,17 @@ simulation::Loading<Seen> loading() {
 }
 /// A fibre all of whose nodes are led down and aside.
 Index led(scene::Assembly& assembly, const Vec3& from, const Vec3& to, Index elements, bool moves, const Vec3& aside) {
-    const Index fibre = assembly.add({.from = from, .to = to, .section = scene::circular(r), .material = {1000.0, 0.3}, .elements = elements});
+    const Index fibre =
+        assembly.add({.from = from, .to = to, .section = scene::circular(r), .material = {1000.0, 0.3}, .elements = elements});
     for (Index k = 0; k <= elements; ++k) {
         const scene::Station at{fibre, static_cast<double>(k) / static_cast<double>(elements)};
         scene::Hold hold;
         hold.at = at;
-        hold.directions = Vec3::UnitY() * Vec3::UnitY().transpose(), hold.channel = "press", hold.displacement = moves ? Vec3(0, -sink, 0) : Vec3(0, 0, 0);
+        hold.directions = Vec3::UnitY() * Vec3::UnitY().transpose(), hold.channel = "press",
+        hold.displacement = moves ? Vec3(0, -sink, 0) : Vec3(0, 0, 0);
         assembly.hold(hold);
-        hold.directions = Mat3::Identity() - hold.directions, hold.channel = "slide", hold.displacement = moves ? aside : Vec3(0, 0, 0);
+        hold.directions = Mat3::Identity() - hold.directions, hold.channel = "slide",
+        hold.displacement = moves ? aside : Vec3(0, 0, 0);
         assembly.hold(hold);
         assembly.hold_rotation(at);
     }
@@ -63,7 +72,8 @@ Index led(scene::Assembly& assembly, const Vec3& from, const Vec3& to, Index ele
 }
 Vec3 force_on(const simulation::Simulator<Seen>& simulator, Index fibre, Index elements) {
     Vec3 sum = Vec3::Zero();
-    for (Index k = 0; k <= elements; ++k) sum += simulator.reaction({fibre, static_cast<double>(k) / static_cast<double>(elements)});
+    for (Index k = 0; k <= elements; ++k)
+        sum += simulator.reaction({fibre, static_cast<double>(k) / static_cast<double>(elements)});
     return sum;
 }
 
@@ -72,14 +82,17 @@ TEST_CASE("rods side by side carry what a line of their length does, in twice th
         for (const double points : {1.0, 2.0}) {
             scene::Assembly assembly;
             led(assembly, {0, 0, 0}, {0, 0, length}, 8, false, Vec3::Zero());
-            const Index upper = led(assembly, {0, 2.0 * r, 0}, {0, 2.0 * r, length}, 8, true, sideways ? Vec3(1e-3, 0, 0) : Vec3(0, 0, slide));
+            const Index upper =
+                led(assembly, {0, 2.0 * r, 0}, {0, 2.0 * r, length}, 8, true, sideways ? Vec3(1e-3, 0, 0) : Vec3(0, 0, slide));
             simulation::Simulator<Seen> simulator(assembly, parameters(points));
             const simulation::Report report = simulator.run(loading());
             REQUIRE_MESSAGE(report.converged, report.reason);
             const Vec3 force = force_on(simulator, upper, 8);
             const double line = K * std::pow(sink, m);
-            std::printf("%s, %g points: N/N0 %.6f, T %.6f %.6f\n", sideways ? "across" : "along", points, -force.y() / (line * length), force.x(), force.z());
-            // Slid by a hundredth of its length the line is shorter by that; slid aside, the normal leans by 0.01, and friction with it.
+            std::printf("%s, %g points: N/N0 %.6f, T %.6f %.6f\n", sideways ? "across" : "along", points,
+                        -force.y() / (line * length), force.x(), force.z());
+            // Slid by a hundredth of its length the line is shorter by that; slid aside, the normal leans by 0.01, and friction
+            // with it.
             CHECK(-force.y() / (line * length) == test::near(sideways ? 1.0 : 0.99, sideways ? 0.02 : 1e-4));
             const double bound = (sideways ? across : a) * std::pow(line, n) * length;
             CHECK((sideways ? force.x() : force.z()) / bound == test::near(sideways ? 1.0 : 0.99, sideways ? 0.02 : 1e-3));
@@ -91,7 +104,8 @@ TEST_CASE("a crossing sinks by the power law, and the pair's ellipse turns the f
     led(assembly, {0, 0, -0.5}, {0, 0, 0.5}, 4, false, Vec3::Zero());
     const double angle = std::numbers::pi / 3.0;
     const Vec3 way(std::sin(angle), 0, std::cos(angle));
-    const Index upper = led(assembly, Vec3(0, 2.0 * r, 0) - 0.5 * way, Vec3(0, 2.0 * r, 0) + 0.5 * way, 4, true, Vec3(0, 0, slide));
+    const Index upper =
+        led(assembly, Vec3(0, 2.0 * r, 0) - 0.5 * way, Vec3(0, 2.0 * r, 0) + 0.5 * way, 4, true, Vec3(0, 0, slide));
     simulation::Simulator<Seen> simulator(assembly, parameters(1.0));
     const simulation::Report report = simulator.run(loading());
     REQUIRE_MESSAGE(report.converged, report.reason);

@@ -30,12 +30,12 @@ TEST_CASE("a cantilever under P L^2 / EI = 5 reaches the elastica's tip in one l
         Simulator simulator(rod.pushed(5.0), test::tight_parameters<Smooth>(rod.radius));
         const simulation::Report report = simulator.run(Loading{.increments = 1});
         CAPTURE(report.reason);
-    REQUIRE(report.converged);
+        REQUIRE(report.converged);
         const Vec3 tip = simulator.value(scene::last_end(0));
         const double error = std::hypot(tip.x() - c.tip_x, tip.z() - c.tip_z) / rod.length;
         std::printf("L/r = %g: tip off by %.1e L, energy by %.1e, %td Newton iterations\n", c.slenderness, error,
                     report.energy.elastic / c.energy - 1.0, report.counts.newton);
-        CHECK(error < 1e-6);                     // 32 node intervals
+        CHECK(error < 1e-6);  // 32 node intervals
         CHECK(std::abs(tip.y()) < 1e-12 * rod.length);
         CHECK(report.rejected_increments == 0);
         CHECK(report.counts.newton <= 12);
@@ -60,7 +60,8 @@ TEST_CASE("a moment rolls a fibre up into a full circle") {
     for (Index node = 0; node <= 2 * rod.elements; ++node) {
         scene::Hold plane;
         plane.at = {0, static_cast<double>(node) / static_cast<double>(2 * rod.elements)};
-        for (const scene::NodeVector vector : {scene::NodeVector::position, scene::NodeVector::director_1, scene::NodeVector::director_2}) {
+        for (const scene::NodeVector vector :
+             {scene::NodeVector::position, scene::NodeVector::director_1, scene::NodeVector::director_2}) {
             const Mat3 across = Vec3::UnitY() * Vec3::UnitY().transpose();
             plane.vector = vector;
             plane.directions = vector == scene::NodeVector::director_2 ? Mat3(Mat3::Identity() - across) : across;
@@ -114,7 +115,7 @@ TEST_CASE("the work of the loads is the energy stored, within the order of the t
         Simulator simulator(assembly, test::tight_parameters<Smooth>(rod.radius));
         const simulation::Report report = simulator.run(Loading{.increments = increments});
         CAPTURE(report.reason);
-    REQUIRE(report.converged);
+        REQUIRE(report.converged);
         REQUIRE(report.rejected_increments == 0);
         REQUIRE(report.energy.dissipated == 0.0);
         return std::abs(report.energy.error()) / report.energy.elastic;

@@ -109,7 +109,10 @@ TEST_CASE("damping that decays slows a fibre down and leaves no force on it, and
     Simulator<Smooth> direct(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
     REQUIRE(direct.run({.increments = 1}).converged);
     Loading<Smooth> loading;
-    loading.stages = {{.increments = 1, .ramps = {{"load", 1.0}}, .damping = stiffness, .damping_decay = 0.5,
+    loading.stages = {{.increments = 1,
+                       .ramps = {{"load", 1.0}},
+                       .damping = stiffness,
+                       .damping_decay = 0.5,
                        .until = simulation::until_settled(1e-3 * rod.radius, 0.0)}};
     Simulator<Smooth> simulator(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
     Record<Smooth> record(simulator);
@@ -136,14 +139,19 @@ TEST_CASE("damping is not lowered while fibres still move far, and where they co
     Simulator<Smooth> direct(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
     REQUIRE(direct.run({.increments = 1}).converged);
     Loading<Smooth> loading;
-    loading.stages = {{.increments = 1, .ramps = {{"load", 1.0}}, .damping = stiffness, .damping_decay = 0.5,
-                       .damping_calm = 0.02 * rod.length, .until = simulation::until_settled(1e-3 * rod.radius, 0.0)}};
+    loading.stages = {{.increments = 1,
+                       .ramps = {{"load", 1.0}},
+                       .damping = stiffness,
+                       .damping_decay = 0.5,
+                       .damping_calm = 0.02 * rod.length,
+                       .until = simulation::until_settled(1e-3 * rod.radius, 0.0)}};
     Simulator<Smooth> simulator(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
     const Report report = simulator.run(loading);
     REQUIRE(report.converged);
     // What is left falls by a constant factor while damping stays, and damping falls in ten halvings.
     Index far = 0;
-    for (const simulation::IncrementReport& increment : report.increments) far += increment.displacement > 0.02 * rod.length ? 1 : 0;
+    for (const simulation::IncrementReport& increment : report.increments)
+        far += increment.displacement > 0.02 * rod.length ? 1 : 0;
     CHECK(far >= 2);
     CHECK(core::count(report.increments) >= far + 10);
     CHECK((simulator.state() - direct.state()).cwiseAbs().maxCoeff() < 1e-7);
@@ -155,7 +163,8 @@ TEST_CASE("damping is not lowered while fibres still move far, and where they co
     CHECK(short_report.increments.size() == 1);
 }
 
-TEST_CASE("damping that is carried along does not hold back what is driven steadily, to or fro, and what is not driven it holds") {
+TEST_CASE(
+    "damping that is carried along does not hold back what is driven steadily, to or fro, and what is not driven it holds") {
     const Rod rod;
     const double step = 0.1 * rod.radius, stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3);  // of the tip
     scene::Assembly assembly;
@@ -170,7 +179,9 @@ TEST_CASE("damping that is carried along does not hold back what is driven stead
     };
     std::vector<Drag> drags;
     Loading<Smooth> loading;
-    loading.stages = {{.increments = 4, .ramps = {{"drag", 4.0}}}, {.increments = 4, .ramps = {{"drag", 0.0}}}, {.increments = 1, .ramps = {{"load", 1.0}}}};
+    loading.stages = {{.increments = 4, .ramps = {{"drag", 4.0}}},
+                      {.increments = 4, .ramps = {{"drag", 0.0}}},
+                      {.increments = 1, .ramps = {{"load", 1.0}}}};
     for (const bool carried : {false, true}) {
         for (Stage<Smooth>& stage : loading.stages) stage.damping = 1e-4 * stiffness, stage.damping_carried = carried;
         Simulator<Smooth> simulator(assembly, test::tight_parameters<Smooth>(rod.radius));
@@ -184,13 +195,15 @@ TEST_CASE("damping that is carried along does not hold back what is driven stead
         CHECK(drags[0].forces[k] == test::near(sign * whole, 5e-3));
         CHECK(std::abs(drags[1].forces[k]) < 5e-3 * whole);  // nor the first, of which nothing was known: it is solved twice
     }
-    // The other channel bends the fibre; of that, (3 L s^2 - s^3) / 2 L^3 of the tip's motion, a square of s leaves less than a thirtieth.
+    // The other channel bends the fibre; of that, (3 L s^2 - s^3) / 2 L^3 of the tip's motion, a square of s leaves less than a
+    // thirtieth.
     CHECK(drags[1].shares[8] < drags[0].shares[8] / 30.0);
 }
 
 TEST_CASE("damping that is carried along holds what moves otherwise than its group") {
     const Rod rod;
-    const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3), load = 0.01 * stiffness * rod.radius;  // of the tip
+    const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3),
+                 load = 0.01 * stiffness * rod.radius;  // of the tip
     scene::Assembly assembly;
     for (const double beside : {-1.0, 0.0, 1.0}) {  // sums and slopes of 1, -2 and 1 are nothing
         scene::FibreSpecification fibre = rod.specification();
@@ -221,7 +234,8 @@ TEST_CASE("a mean motion foretells how a long group bends, whichever way it lies
         Vector result = state;
         for (Index a = 0; a < mesh.node_count(0); ++a) {
             const Vec3 x = state.segment<3>(3 * mesh.node_vector(0, a));
-            result.segment<3>(3 * mesh.node_vector(0, a)) += part * 1e-3 * Vec3(0.1 * x.z() * x.z() - 0.2 * x.z(), 0.3 - 0.05 * x.z() * x.z(), 0);
+            result.segment<3>(3 * mesh.node_vector(0, a)) +=
+                part * 1e-3 * Vec3(0.1 * x.z() * x.z() - 0.2 * x.z(), 0.3 - 0.05 * x.z() * x.z(), 0);
         }
         return result;
     };
@@ -231,8 +245,10 @@ TEST_CASE("a mean motion foretells how a long group bends, whichever way it lies
     motion.learn(mesh, before, after, {1.0});
     CHECK(motion.foretells({0.1}));
     CHECK(!motion.foretells({-0.1}));
-    for (const double part : {1.0, 0.5, -1.0}) CHECK((motion.ahead(mesh, after, {part}) - bent(after, part)).cwiseAbs().maxCoeff() < 1e-12);
-    // A last bit is added to what was known: half of that and it. The group's axis has turned by a part of a thousandth meanwhile.
+    for (const double part : {1.0, 0.5, -1.0})
+        CHECK((motion.ahead(mesh, after, {part}) - bent(after, part)).cwiseAbs().maxCoeff() < 1e-12);
+    // A last bit is added to what was known: half of that and it. The group's axis has turned by a part of a thousandth
+    // meanwhile.
     const Vector further = bent(after, 0.02);
     motion.learn(mesh, after, further, {0.02});
     CHECK((motion.ahead(mesh, further, {0.52}) - bent(further, 0.52)).cwiseAbs().maxCoeff() < 1e-7);
@@ -259,8 +275,10 @@ TEST_CASE("a mean motion foretells a rigid or affine motion exactly, and in part
     CHECK(same_bits(motion.ahead(mesh, after, {1.0, 0.0}), after));  // nothing has been learnt
     motion.learn(mesh, before, after, {0.5, 0.0});
     const double rounding = 1e-10;  // the fibres lie apart by a twenty-fifth of their length, which the fit squares
-    for (const double part : {1.0, 0.25, -1.0}) CHECK((motion.ahead(mesh, after, {0.5 * part, 0.0}) - moved(after, part)).cwiseAbs().maxCoeff() < rounding);
-    CHECK((motion.ahead(mesh, after, {50.0, 0.0}) - moved(after, 2.0)).cwiseAbs().maxCoeff() < rounding);  // it is not trusted further
+    for (const double part : {1.0, 0.25, -1.0})
+        CHECK((motion.ahead(mesh, after, {0.5 * part, 0.0}) - moved(after, part)).cwiseAbs().maxCoeff() < rounding);
+    CHECK((motion.ahead(mesh, after, {50.0, 0.0}) - moved(after, 2.0)).cwiseAbs().maxCoeff() <
+          rounding);  // it is not trusted further
     CHECK(same_bits(motion.ahead(mesh, after, {0.0, 1.0}), after));
     // A last bit the same way does not make it forget, and one to the other side does.
     const Vector further = moved(after, 0.02);
@@ -277,8 +295,20 @@ TEST_CASE("a stage may end while its damping holds no more than a share of the f
     REQUIRE(direct.run({.increments = 1}).converged);
     const auto always = [](const simulation::IncrementReport&) { return true; };
     Loading<Smooth> loading;
-    loading.stages = {{.name = "early", .increments = 1, .ramps = {{"load", 1.0}}, .damping = stiffness, .damping_decay = 0.5, .damping_share = 0.01, .until = always},
-                      {.name = "late", .increments = 1, .damping = stiffness, .damping_goes_on = true, .damping_decay = 0.5, .damping_share = 1e-6, .until = always}};
+    loading.stages = {{.name = "early",
+                       .increments = 1,
+                       .ramps = {{"load", 1.0}},
+                       .damping = stiffness,
+                       .damping_decay = 0.5,
+                       .damping_share = 0.01,
+                       .until = always},
+                      {.name = "late",
+                       .increments = 1,
+                       .damping = stiffness,
+                       .damping_goes_on = true,
+                       .damping_decay = 0.5,
+                       .damping_share = 1e-6,
+                       .until = always}};
     Simulator<Smooth> simulator(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
     const Report report = simulator.run(loading);
     REQUIRE(report.converged);
@@ -294,14 +324,20 @@ TEST_CASE("a stage may end while its damping holds no more than a share of the f
     CHECK((simulator.state() - direct.state()).cwiseAbs().maxCoeff() < 1e-4 * (sag + rod.length));
 }
 
-TEST_CASE("damping that waits rises where forces balance and what a stage waits for is not there yet, and holds no more than it may") {
+TEST_CASE(
+    "damping that waits rises where forces balance and what a stage waits for is not there yet, and holds no more than it may") {
     const Rod rod;
     const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3), share = 0.05;  // stiffness of the tip
     const auto run = [&](bool waits) {
         Loading<Smooth> loading;
-        loading.stages = {{.increments = 1, .ramps = {{"load", 1.0}}, .damping = stiffness, .damping_decay = 0.5, .damping_share = share,
-                           .damping_waits = waits,
-                           .until = [&](const simulation::IncrementReport& increment) { return increment.displacement <= 1e-4 * rod.length; }}};
+        loading.stages = {
+            {.increments = 1,
+             .ramps = {{"load", 1.0}},
+             .damping = stiffness,
+             .damping_decay = 0.5,
+             .damping_share = share,
+             .damping_waits = waits,
+             .until = [&](const simulation::IncrementReport& increment) { return increment.displacement <= 1e-4 * rod.length; }}};
         Simulator<Smooth> simulator(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
         return simulator.run(loading);
     };
@@ -315,7 +351,8 @@ TEST_CASE("damping that waits rises where forces balance and what a stage waits 
         rises += before.damping < 0.5 * share ? 1 : 0;
     }
     CHECK(rises > 0);
-    for (std::size_t k = 1; k < falling.increments.size(); ++k) CHECK(falling.increments[k].springs < falling.increments[k - 1].springs);
+    for (std::size_t k = 1; k < falling.increments.size(); ++k)
+        CHECK(falling.increments[k].springs < falling.increments[k - 1].springs);
     CHECK(waiting.increments.back().damping <= share);
 }
 
@@ -340,10 +377,20 @@ TEST_CASE("one fibre of many that goes too far is held alone: increments stay, a
     const Rod rod;
     const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3);  // of the tip
     Loading<Smooth> loading;
-    loading.stages = {{.name = "push", .increments = 4, .ramps = {{"load", 1.0}}, .damping = 1e-3 * stiffness, .largest_displacement = 0.02 * rod.length},
-                      {.name = "rest", .increments = 1, .damping = 1e-3 * stiffness, .damping_goes_on = true, .damping_decay = 0.5,
-                       .largest_displacement = 0.02 * rod.length, .until = simulation::until_settled(1e-4 * rod.radius, 0.0)}};
-    const double push = 0.1;  // each tip goes by a thirtieth of the length, and that of the soft one by tenfold if nothing holds it
+    loading.stages = {{.name = "push",
+                       .increments = 4,
+                       .ramps = {{"load", 1.0}},
+                       .damping = 1e-3 * stiffness,
+                       .largest_displacement = 0.02 * rod.length},
+                      {.name = "rest",
+                       .increments = 1,
+                       .damping = 1e-3 * stiffness,
+                       .damping_goes_on = true,
+                       .damping_decay = 0.5,
+                       .largest_displacement = 0.02 * rod.length,
+                       .until = simulation::until_settled(1e-4 * rod.radius, 0.0)}};
+    const double push =
+        0.1;  // each tip goes by a thirtieth of the length, and that of the soft one by tenfold if nothing holds it
     Simulator<Smooth> alone(rod.row(push), test::tight_parameters<Smooth>(rod.radius));
     Record<Smooth> calm(alone);
     REQUIRE(alone.run(loading, calm).converged);
@@ -386,7 +433,8 @@ TEST_CASE("what is driven further than the last increment moved is found by the 
     const scene::Assembly still = crossing.assembly();
     for (const scene::FibreSpecification& fibre : still.fibres()) assembly.add(fibre);
     for (const Index f : {Index{0}, Index{1}})
-        for (const double end : {0.0, 1.0}) assembly.clamp({f, end}, Vec3(crossing.drag, 0, 0), Vec3::Zero(), Vec3::Zero(), "drag");
+        for (const double end : {0.0, 1.0})
+            assembly.clamp({f, end}, Vec3(crossing.drag, 0, 0), Vec3::Zero(), Vec3::Zero(), "drag");
     auto parameters = test::model_parameters<Smooth>(crossing.radius);
     parameters.iteration.largest_margin = 8.0;
     Loading<Smooth> loading;
@@ -428,11 +476,12 @@ TEST_CASE("a stage with a condition goes on at constant loads until it holds") {
     Record<Smooth> record(simulator);
     int asked = 0;
     Loading<Smooth> loading;
-    loading.stages = {{.name = "wait",
-                       .increments = 2,
-                       .ramps = {{"load", 1.0}},
-                       .until = [&](const simulation::IncrementReport& increment) { return ++asked == 4 && increment.number == 5; }},
-                      {.name = "then", .increments = 1, .ramps = {{"load", 0.5}}}};
+    loading.stages = {
+        {.name = "wait",
+         .increments = 2,
+         .ramps = {{"load", 1.0}},
+         .until = [&](const simulation::IncrementReport& increment) { return ++asked == 4 && increment.number == 5; }},
+        {.name = "then", .increments = 1, .ramps = {{"load", 0.5}}}};
     const Report report = simulator.run(loading, record);
     REQUIRE(report.converged);
     CHECK(report.increments.size() == 6);  // two of the ramp; asked at its end and after three more
@@ -464,16 +513,14 @@ TEST_CASE("a step too large is cut, and goes on from the same bits as if it had 
     crossing.approach = 20.0 * crossing.radius;
     crossing.drag = 0.1 * crossing.radius;
     simulation::ModelParameters<Rough> parameters = test::model_parameters<Rough>(crossing.radius);
-    parameters.iteration.newton_limit = 2;  // too few for ten radii at once
+    parameters.iteration.newton_limit = 2;                 // too few for ten radii at once
     parameters.contact.places = contact::Places::renewed;  // else the increment is tried in another way first
-    const auto stage = [](double to) {
-        return Stage<Rough>{.increments = 1, .ramps = {{"approach", to}, {"drag", to}}};
-    };
+    const auto stage = [](double to) { return Stage<Rough>{.increments = 1, .ramps = {{"approach", to}, {"drag", to}}}; };
     Simulator<Rough> cut(crossing.assembly(), parameters), direct(crossing.assembly(), parameters);
     Record<Rough> cut_record(cut), direct_record(direct);
     Amplitudes<Rough> reached{&cut, "approach"};
     Loading<Rough> large, accepted;
-    large.audited = accepted.audited = false;              // what is mended at the end would be an increment more
+    large.audited = accepted.audited = false;       // what is mended at the end would be an increment more
     large.stages = {stage(0.0625), stage(0.5625)};  // in contact when the large step comes
     Failures failures;
     const Report report = cut.run(large, cut_record, reached, failures);

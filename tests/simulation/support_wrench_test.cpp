@@ -21,7 +21,8 @@ struct Of : test::Smooth {
 };
 
 template <class B>
-double unbalanced(const char* name, const scene::Assembly& assembly, std::span<const scene::Station> sections, const Vec3& place, Index increments) {
+double unbalanced(const char* name, const scene::Assembly& assembly, std::span<const scene::Station> sections, const Vec3& place,
+                  Index increments) {
     simulation::Simulator<Of<B>> simulator(assembly, test::tight_parameters<Of<B>>(0.0201));
     const simulation::Report report = simulator.run({.increments = increments});
     REQUIRE_MESSAGE(report.converged, report.reason);
@@ -32,12 +33,14 @@ double unbalanced(const char* name, const scene::Assembly& assembly, std::span<c
         size = std::max(size, one.moment.norm());
         CHECK(one.moment.norm() > 0.0);
     }
-    for (const scene::DeadForce& load : assembly.forces()) sum.force += load.force, sum.moment += (simulator.value(load.at) - place).cross(load.force);
+    for (const scene::DeadForce& load : assembly.forces())
+        sum.force += load.force, sum.moment += (simulator.value(load.at) - place).cross(load.force);
     std::printf("%s: moment of a support %.3e, left over %.1e of it\n", name, size, sum.moment.norm() / size);
     return sum.moment.norm() / size;
 }
 
-TEST_CASE_TEMPLATE("a cantilever's support bears its load, about any place", B, beam::DirectorBeam<3>, beam::RigidSectionRod, beam::KirchhoffCable) {
+TEST_CASE_TEMPLATE("a cantilever's support bears its load, about any place", B, beam::DirectorBeam<3>, beam::RigidSectionRod,
+                   beam::KirchhoffCable) {
     // About the tip the load has no lever, so all is the support's own moment.
     const test::Rod rod;
     const scene::Assembly assembly = rod.pushed(3.0);
@@ -46,8 +49,8 @@ TEST_CASE_TEMPLATE("a cantilever's support bears its load, about any place", B, 
     CHECK(unbalanced<B>("cantilever, about elsewhere", assembly, ends, Vec3(0.3, -1.0, 2.0), 1) < 1e-7);
 }
 
-TEST_CASE_TEMPLATE("two supports of a fibre that is twisted by one and a quarter turns and moved aside balance each other", B, beam::DirectorBeam<3>,
-                   beam::RigidSectionRod) {
+TEST_CASE_TEMPLATE("two supports of a fibre that is twisted by one and a quarter turns and moved aside balance each other", B,
+                   beam::DirectorBeam<3>, beam::RigidSectionRod) {
     test::Rod rod;
     rod.elements = 24;
     scene::Assembly assembly = rod.clamped();

@@ -67,8 +67,12 @@ Scene tied(double length, double modulus) {
     end.translation[2] = end.rotation[0] = scene::Coordinate::loose();
     const Index body = scene.assembly.add(end);
     for (const double x : {-0.1 * length, 0.0, 0.1 * length}) {
-        const Index fibre = scene.assembly.add({.from = {x, 0, 0}, .to = Vec3(x, 0, 0) + far, .section = scene::circular(r * length),
-                                                .material = {young * modulus, 0.3}, .elements = 6, .director = Vec3::UnitX()});
+        const Index fibre = scene.assembly.add({.from = {x, 0, 0},
+                                                .to = Vec3(x, 0, 0) + far,
+                                                .section = scene::circular(r * length),
+                                                .material = {young * modulus, 0.3},
+                                                .elements = 6,
+                                                .director = Vec3::UnitX()});
         scene.assembly.clamp_to(0, scene::first_end(fibre), Mat3::Identity());
         scene.assembly.clamp_to(body, scene::last_end(fibre), Mat3::Identity());
     }
@@ -109,8 +113,10 @@ Outcome run(const Scene& scene, double length, double modulus, const typename M:
     outcome.report = simulator.run(loading);
     outcome.state = simulator.state();
     for (Index v = 0; v < outcome.state.size() / 3; ++v) {
-        const bool tangent = M::Beam::vectors_per_node == 2 && simulator.mesh().layout().kind[core::at(v)] == scene::VectorKind::direction;
-        if (tangent || simulator.mesh().layout().kind[core::at(v)] == scene::VectorKind::position) outcome.state.segment<3>(3 * v) /= length;
+        const bool tangent =
+            M::Beam::vectors_per_node == 2 && simulator.mesh().layout().kind[core::at(v)] == scene::VectorKind::direction;
+        if (tangent || simulator.mesh().layout().kind[core::at(v)] == scene::VectorKind::position)
+            outcome.state.segment<3>(3 * v) /= length;
     }
     const double work = modulus * std::pow(length, 3);
     const simulation::EnergyBalance& energy = outcome.report.energy;
@@ -126,11 +132,15 @@ struct Units {
 };
 
 /// What is left is the rounding of the scene's numbers, and what iterations make of it; of powers of two there is next to none.
-/// @param tolerance  of places; forces and energies of contact are those of a penetration of 1e-2 r, in which places are a hundredth as exact
+/// @param tolerance  of places; forces and energies of contact are those of a penetration of 1e-2 r, in which places are a
+/// hundredth as exact
 template <class B, class Linear>
-void check_any_units(const char* name, Scene (*build)(double, double), const typename Linear::Parameters& solver = {}, double tolerance = 1e-9) {
+void check_any_units(const char* name, Scene (*build)(double, double), const typename Linear::Parameters& solver = {},
+                     double tolerance = 1e-9) {
     using M = Model<B, Linear>;
-    const auto of = [&](const Units& units) { return run<M>(build(units.length, units.modulus), units.length, units.modulus, solver); };
+    const auto of = [&](const Units& units) {
+        return run<M>(build(units.length, units.modulus), units.length, units.modulus, solver);
+    };
     const Outcome one = of({1.0, 1.0});
     CAPTURE(name);
     REQUIRE_MESSAGE(one.report.converged, one.report.reason);
@@ -144,7 +154,8 @@ void check_any_units(const char* name, Scene (*build)(double, double), const typ
         off = std::max(off, (other.state - one.state).cwiseAbs().maxCoeff());
         figures = std::max(figures, (other.figures - one.figures).cwiseAbs().maxCoeff() / one.figures.cwiseAbs().maxCoeff());
     }
-    for (const Units& units : {Units{1.0 / two, 1.0}, Units{two, 1.0}, Units{1.0, 1.0 / two}, Units{1.0, two}, Units{1.0 / two, 1.0 / two}}) {
+    for (const Units& units :
+         {Units{1.0 / two, 1.0}, Units{two, 1.0}, Units{1.0, 1.0 / two}, Units{1.0, two}, Units{1.0 / two, 1.0 / two}}) {
         const Outcome other = of(units);
         CAPTURE(units.length);
         CAPTURE(units.modulus);
@@ -152,8 +163,8 @@ void check_any_units(const char* name, Scene (*build)(double, double), const typ
         // Solvers that keep parts in single precision round them in their own scale.
         CHECK((other.state - one.state).cwiseAbs().maxCoeff() < 1e-11);
     }
-    std::printf("%s: off by %.1e of the unit of length, energies and forces by %.1e; %td solves, %td linear iterations\n", name, off, figures,
-                one.report.counts.linear_solves, one.report.counts.linear_iterations);
+    std::printf("%s: off by %.1e of the unit of length, energies and forces by %.1e; %td solves, %td linear iterations\n", name,
+                off, figures, one.report.counts.linear_solves, one.report.counts.linear_iterations);
     CHECK(off < tolerance);
     CHECK(figures < 100.0 * tolerance);
 }

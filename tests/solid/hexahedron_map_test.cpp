@@ -46,14 +46,17 @@ void check_round_trips(int cells, int points) {
             const Vec3 xi = test::random_vector(draw, generator);
             const Vec3 x = nodes.transpose() * solid::shape(xi);
             const solid::MapResult map = solid::inverse_map(nodes, x);
-            if (map.status != solid::MapStatus::inside) ++lost;
-            else worst = std::max(worst, (map.xi - xi).cwiseAbs().maxCoeff());
+            if (map.status != solid::MapStatus::inside)
+                ++lost;
+            else
+                worst = std::max(worst, (map.xi - xi).cwiseAbs().maxCoeff());
             most = std::max(most, map.iterations);
             // The same point pushed out through a face.
             const int axis = p % 3;
             Vec3 beyond = xi;
             beyond[axis] = (xi[axis] < 0.0 ? -1.0 : 1.0) * (1.0 + 1e-6 + std::abs(draw(generator)) * 0.2);
-            if (solid::inverse_map(nodes, nodes.transpose() * solid::shape(beyond)).status == solid::MapStatus::inside) ++found_outside;
+            if (solid::inverse_map(nodes, nodes.transpose() * solid::shape(beyond)).status == solid::MapStatus::inside)
+                ++found_outside;
         }
     }
     CHECK(lost == 0);
@@ -80,7 +83,8 @@ TEST_CASE("points of faces, edges and corners are inside, and those 1e-6 beyond 
                     CHECK((map.xi - xi).cwiseAbs().maxCoeff() <= 1e-12);
                     if (xi.isZero()) continue;
                     const Vec3 beyond = (1.0 + 1e-6) * xi;
-                    CHECK(solid::inverse_map(nodes, nodes.transpose() * solid::shape(beyond)).status == solid::MapStatus::outside);
+                    CHECK(solid::inverse_map(nodes, nodes.transpose() * solid::shape(beyond)).status ==
+                          solid::MapStatus::outside);
                 }
     }
 }
@@ -121,8 +125,9 @@ TEST_CASE("the search finds the lowest cell of those that hold a point, as tryin
     for (Index k = 0; k < n; ++k)
         for (Index j = 0; j < n; ++j)
             for (Index i = 0; i < n; ++i)
-                solid.cells.push_back({node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k), node(i, j, k + 1),
-                                       node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)});
+                solid.cells.push_back({node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k),
+                                       node(i, j, k + 1), node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1),
+                                       node(i, j + 1, k + 1)});
     solid::require_valid_cells(solid);
     const solid::CellSearch search(solid);
     const auto check = [&](const Vec3& x) {
@@ -141,7 +146,8 @@ TEST_CASE("the search finds the lowest cell of those that hold a point, as tryin
     CHECK(inside > 500);
     CHECK(inside < 2500);
     for (const Vec3& x : solid.nodes) CHECK(check(x));  // corners, shared by up to eight
-    for (Index c = 0; c < core::count(solid.cells); ++c) CHECK(check(solid::cell_nodes(solid, c).transpose() * solid::shape(Vec3(1.0, 0.3, -0.2))));
+    for (Index c = 0; c < core::count(solid.cells); ++c)
+        CHECK(check(solid::cell_nodes(solid, c).transpose() * solid::shape(Vec3(1.0, 0.3, -0.2))));
 }
 
 }  // namespace hexahedron_map_test

@@ -48,7 +48,8 @@ CellVector random_step(std::mt19937& generator, double size) {
     return step;
 }
 
-TEST_CASE_TEMPLATE("force and tangent are derivatives of the energy, and the tangent is symmetric", Element, Plain, Enhanced, EnhancedNeoHookean) {
+TEST_CASE_TEMPLATE("force and tangent are derivatives of the energy, and the tangent is symmetric", Element, Plain, Enhanced,
+                   EnhancedNeoHookean) {
     const Element element;
     std::mt19937 generator(1);
     for (int sample = 0; sample < 5; ++sample) {
@@ -63,10 +64,10 @@ TEST_CASE_TEMPLATE("force and tangent are derivatives of the energy, and the tan
         for (int k = 0; k < 24; ++k) {
             const CellVector one = step * CellVector::Unit(k);
             const CellNodes more = moved(now, one), less = moved(now, -one);
-            CHECK(std::abs((element.energy(rest, material, more) - element.energy(rest, material, less)) / (2.0 * step) - force[k]) <=
-                  1e-7 * tangent.norm());
-            CHECK(((element.force(rest, material, more) - element.force(rest, material, less)) / (2.0 * step) - tangent.col(k)).norm() <=
-                  1e-7 * tangent.norm());
+            CHECK(std::abs((element.energy(rest, material, more) - element.energy(rest, material, less)) / (2.0 * step) -
+                           force[k]) <= 1e-7 * tangent.norm());
+            CHECK(((element.force(rest, material, more) - element.force(rest, material, less)) / (2.0 * step) - tangent.col(k))
+                      .norm() <= 1e-7 * tangent.norm());
         }
     }
 }
@@ -84,7 +85,8 @@ TEST_CASE_TEMPLATE("a cell has six motions without energy, and no other", Elemen
     CHECK(values[6] >= 1e-3 * values[23]);
 }
 
-TEST_CASE_TEMPLATE("a rigid motion leaves the energy, and turns the forces with it", Element, Plain, Enhanced, EnhancedNeoHookean) {
+TEST_CASE_TEMPLATE("a rigid motion leaves the energy, and turns the forces with it", Element, Plain, Enhanced,
+                   EnhancedNeoHookean) {
     const Element element;
     std::mt19937 generator(3);
     const CellNodes nodes = distorted(generator, 0.15), now = moved(nodes, random_step(generator, 0.1));
@@ -150,7 +152,8 @@ double plate_deflection(Index along, Index through, double length, double thickn
         for (Index j = 0; j < 2; ++j)
             for (Index k = 0; k <= through; ++k) {
                 const double z = thickness * (static_cast<double>(k) / static_cast<double>(through) - 0.5);
-                nodes.push_back({length * static_cast<double>(i) / static_cast<double>(along), width * static_cast<double>(j), z});
+                nodes.push_back(
+                    {length * static_cast<double>(i) / static_cast<double>(along), width * static_cast<double>(j), z});
                 if (i > 0 && i < along) nodes.back().x() += skew * (i % 2 == 0 ? 1.0 : -1.0) * width * (j == 0 ? 1.0 : -1.0);
             }
     std::vector<Eigen::Triplet<double, int>> entries;
@@ -205,7 +208,8 @@ TEST_CASE("a plate bends as plate theory says with one enhanced element through 
     CHECK(plate_deflection<Plain>(10, 1, 10.0, 0.2) < 0.12);
     CHECK(plate_deflection<Plain>(10, 4, 10.0, 0.2) < 0.12);  // more of them through the thickness do not help
     // Finer along the plate the error falls as 1/n^2.
-    const double coarse = 1.0 - plate_deflection<Enhanced>(5, 1, 10.0, 0.2), fine = 1.0 - plate_deflection<Enhanced>(20, 1, 10.0, 0.2);
+    const double coarse = 1.0 - plate_deflection<Enhanced>(5, 1, 10.0, 0.2),
+                 fine = 1.0 - plate_deflection<Enhanced>(20, 1, 10.0, 0.2);
     CHECK(coarse / fine == test::near(16.0, 0.1));
     // Trapezoids in the plane of the plate are a limit of the modes: bent, such thin cells shear. Grids that are regular in plan
     // have none.

@@ -27,7 +27,8 @@ std::vector<SectionPlace> wave(int axis, double at, double amplitude, double fla
     std::vector<SectionPlace> fibre;
     for (Index k = 0; k < nodes; ++k) {
         const double s = -2.0 + 4.0 * static_cast<double>(k) / static_cast<double>(nodes - 1);
-        const double z = amplitude * std::cos(std::numbers::pi * s), slope = -std::numbers::pi * amplitude * std::sin(std::numbers::pi * s);
+        const double z = amplitude * std::cos(std::numbers::pi * s),
+                     slope = -std::numbers::pi * amplitude * std::sin(std::numbers::pi * s);
         Vec3 along = Vec3::Zero(), across = Vec3::Zero(), centre(0, 0, z);
         along[axis] = 1.0, along.z() = slope, across[1 - axis] = 1.0;
         centre[axis] = s, centre[1 - axis] = at;
@@ -84,7 +85,8 @@ TEST_CASE("a wavy fibre is met over its crest and in its trough, without cracks"
         // The offset curve, a radius from the centreline along its normal: where it is over x.
         double low = x - radius, high = x + radius, exact = 0.0;
         for (int k = 0; k < 50; ++k) {
-            const double s = 0.5 * (low + high), slope = -0.12 * std::numbers::pi * std::sin(std::numbers::pi * s), secant = std::hypot(1.0, slope);
+            const double s = 0.5 * (low + high), slope = -0.12 * std::numbers::pi * std::sin(std::numbers::pi * s),
+                         secant = std::hypot(1.0, slope);
             (s - radius * slope / secant < x ? low : high) = s;
             exact = 0.12 * std::cos(std::numbers::pi * s) + radius / secant;
         }
@@ -110,12 +112,14 @@ TEST_CASE("layers lie on both sides of a sheet, reach into its fibres and span i
         CHECK(core::count(layer.solid.nodes) == 49 * 49 * 4);
         CHECK(core::count(layer.solid.cells) == 48 * 48 * 3);
         double least = 1.0;
-        for (Index c = 0; c < core::count(layer.solid.cells); ++c) least = std::min(least, solid::least_jacobian(solid::cell_nodes(layer.solid, c)));
+        for (Index c = 0; c < core::count(layer.solid.cells); ++c)
+            least = std::min(least, solid::least_jacobian(solid::cell_nodes(layer.solid, c)));
         CHECK(least > 0.0);
         double low = 1.0, high = -1.0;
         for (Index j = 0; j <= 48; ++j)
             for (Index i = 0; i <= 48; ++i) {
-                const Vec3 a = layer.solid.nodes[core::at(layer.node(i, j, inner))], b = layer.solid.nodes[core::at(layer.node(i, j, outer))];
+                const Vec3 a = layer.solid.nodes[core::at(layer.node(i, j, inner))],
+                           b = layer.solid.nodes[core::at(layer.node(i, j, outer))];
                 const Vec3 c = layer.solid.nodes[core::at(layer.node(i, j, next))];
                 CHECK(b.z() == test::near(sign * 0.35, 1e-14));
                 CHECK(std::hypot(a.x() - b.x(), a.y() - b.y()) <= 1e-14);
@@ -156,12 +160,15 @@ TEST_CASE("smoothing keeps a plane and takes the tip off a peak") {
 TEST_CASE("what cannot be meshed is refused by name, and inner faces that would cross are clipped") {
     const solid::FibreSurface surface(sheet());
     auto p = parameters();
-    const auto says = [&](const std::string& text) { return test::refusal([&] { solid::mesh_layers(surface, p); }).starts_with(text); };
+    const auto says = [&](const std::string& text) {
+        return test::refusal([&] { solid::mesh_layers(surface, p); }).starts_with(text);
+    };
     p.penetration_depth = 0.4;  // more than the sheet has
     const solid::Layers clipped = solid::mesh_layers(surface, p);
     CHECK(clipped.clipped > 1000);
     for (Index n = 0; n < 49 * 49; ++n)
-        CHECK(clipped.list[0].solid.nodes[core::at(n)].z() - clipped.list[1].solid.nodes[core::at(n + 2 * 49 * 49)].z() >= 0.01 - 1e-12);
+        CHECK(clipped.list[0].solid.nodes[core::at(n)].z() - clipped.list[1].solid.nodes[core::at(n + 2 * 49 * 49)].z() >=
+              0.01 - 1e-12);
     p.crossing = solid::Crossing::refuse;
     CHECK(says("LayerParameters.penetration_depth = 0.4"));
     p.sides = solid::Sides::upper;
@@ -186,7 +193,9 @@ TEST_CASE("what cannot be meshed is refused by name, and inner faces that would 
     CHECK(says("LayerParameters.least_thickness = 0"));
 }
 
-TEST_CASE("a layer without thickness, one thinner than the sheet is rough, and one of cells inside out are refused with place, value and bound") {
+TEST_CASE(
+    "a layer without thickness, one thinner than the sheet is rough, and one of cells inside out are refused with place, value "
+    "and bound") {
     const solid::FibreSurface surface(sheet());
     auto p = parameters();
     const auto refusal = [&] { return test::refusal([&] { solid::mesh_layers(surface, p); }); };
@@ -205,11 +214,15 @@ TEST_CASE("a layer without thickness, one thinner than the sheet is rough, and o
     const solid::Layers clipped = solid::mesh_layers(surface, p);
     CHECK(clipped.clipped == clipped.columns);
     for (const solid::Layer& layer : clipped.list)
-        for (Index c = 0; c < core::count(layer.solid.cells); ++c) REQUIRE(solid::least_jacobian(solid::cell_nodes(layer.solid, c)) > 0.0);
+        for (Index c = 0; c < core::count(layer.solid.cells); ++c)
+            REQUIRE(solid::least_jacobian(solid::cell_nodes(layer.solid, c)) > 0.0);
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const auto& [field, name] : {std::pair{&solid::LayerParameters::penetration_depth, "penetration_depth"}, {&solid::LayerParameters::upper_face, "upper_face"},
-                                      {&solid::LayerParameters::lower_face, "lower_face"}, {&solid::LayerParameters::clearance, "clearance"},
-                                      {&solid::LayerParameters::least_thickness, "least_thickness"}, {&solid::LayerParameters::grading, "grading"}}) {
+    for (const auto& [field, name] : {std::pair{&solid::LayerParameters::penetration_depth, "penetration_depth"},
+                                      {&solid::LayerParameters::upper_face, "upper_face"},
+                                      {&solid::LayerParameters::lower_face, "lower_face"},
+                                      {&solid::LayerParameters::clearance, "clearance"},
+                                      {&solid::LayerParameters::least_thickness, "least_thickness"},
+                                      {&solid::LayerParameters::grading, "grading"}}) {
         p = parameters();
         p.*field = nan;
         CHECK_MESSAGE(refusal().starts_with(std::string("LayerParameters.") + name + " = nan, but it must be"), refusal());

@@ -24,8 +24,8 @@ Voigt random_strain(std::mt19937& generator, double size) {
     return e;
 }
 
-TEST_CASE_TEMPLATE("stress and tangent are derivatives of the energy, and small strains meet Hooke's law", Law, solid::SaintVenantKirchhoff,
-                   solid::NeoHookean) {
+TEST_CASE_TEMPLATE("stress and tangent are derivatives of the energy, and small strains meet Hooke's law", Law,
+                   solid::SaintVenantKirchhoff, solid::NeoHookean) {
     const Law law;
     std::mt19937 generator(7);
     CHECK(law.response(material, Voigt::Zero()).energy == 0.0);
@@ -66,7 +66,9 @@ TEST_CASE("the neo-Hookean law resists compression to nothing, and knows no nega
         CHECK(nominal < last);
         last = nominal;
         // P = mu (f - 1/f) + lambda ln f / f
-        CHECK(nominal == test::near(material.shear_modulus() * (stretch - 1.0 / stretch) + material.lame() * std::log(stretch) / stretch, 1e-12));
+        CHECK(nominal ==
+              test::near(material.shear_modulus() * (stretch - 1.0 / stretch) + material.lame() * std::log(stretch) / stretch,
+                         1e-12));
     }
     Voigt inside_out = Voigt::Zero();
     inside_out[0] = -0.5;

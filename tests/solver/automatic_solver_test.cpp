@@ -50,7 +50,8 @@ TEST_CASE("a strategy that reaches its limit hands over to the next, and what wa
     CHECK(solver.use().fallbacks == 1);
     CHECK(solver.use().last_fallback.starts_with("TwoLevelPcg reached a residual of "));
     CHECK(solver.use().last_fallback.ends_with(" in 5 iterations, and 1.0e-09 was asked for"));
-    CHECK(solver.account() == "automatic: solves by FloatBlockCholesky 1; 1 after another one had failed, the last: " + solver.use().last_fallback);
+    CHECK(solver.account() ==
+          "automatic: solves by FloatBlockCholesky 1; 1 after another one had failed, the last: " + solver.use().last_fallback);
     solver.solve(system, b, 1e-9, x);
     CHECK(solver.use().float_block_cholesky == 2);
 }
@@ -123,8 +124,7 @@ TEST_CASE("what iterations call indefinite is factored: it is solved if it is no
     large.analyse(system);
     CHECK(!large.factored());
     solver::Confirmed<Doubting> none{{.largest_fill = 10.0}};  // no factor that is larger than that
-    CHECK(test::solve(none, system, b, 1e-9, x).status ==
-          solver::SolveStatus::indefinite);
+    CHECK(test::solve(none, system, b, 1e-9, x).status == solver::SolveStatus::indefinite);
     test::check_linear_solver(solver::Confirmed<solver::TwoLevelPcg>{});
 }
 

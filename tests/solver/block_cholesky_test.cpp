@@ -10,8 +10,8 @@ using namespace fibrant;
 
 namespace block_cholesky_test {
 
-// Two sets of vectors that are coupled to all of a hub and among themselves, but not to each other: one of them leaves a wide square to
-// the wide front that the rest is, more than any strip of a product.
+// Two sets of vectors that are coupled to all of a hub and among themselves, but not to each other: one of them leaves a wide
+// square to the wide front that the rest is, more than any strip of a product.
 struct Pair {
     static constexpr int set = 130, all = 2 * set + 540;
     std::vector<solver::Supernodes::Pair> pairs;
@@ -43,7 +43,8 @@ struct Pair {
     }
 };
 
-TEST_CASE_TEMPLATE("wide fronts are factored as exactly as narrow ones, and again in the memory of the first time", Real, float, double) {
+TEST_CASE_TEMPLATE("wide fronts are factored as exactly as narrow ones, and again in the memory of the first time", Real, float,
+                   double) {
     const Pair both;
     solver::BlockCholesky<Real> a;
     a.analyse(std::vector<int>(Pair::all, 3), both.pairs);

@@ -29,8 +29,10 @@ Index add_line(SyntheticSystem& system, const Vec3& from, const Vec3& to, Index 
 
 void touch(SyntheticSystem& system, Index c, Index d, Index times) {
     for (Index a = 0; a < times; ++a) {
-        system.points.push_back({{system.description.chains[core::at(c)].first_vector + a,
-                                  system.description.chains[core::at(d)].first_vector + a}, {1.0, -1.0}, Mat3::Identity()});
+        system.points.push_back(
+            {{system.description.chains[core::at(c)].first_vector + a, system.description.chains[core::at(d)].first_vector + a},
+             {1.0, -1.0},
+             Mat3::Identity()});
     }
 }
 
@@ -48,7 +50,8 @@ void check_partition(const std::vector<solver::ChainCluster>& clusters, Index ch
 TEST_CASE("a group is cut into compact parts of nearly equal number") {
     SyntheticSystem system;
     for (int row = 0; row < 5; ++row)
-        for (int column = 0; column < 15; ++column) add_line(system, {0, 1.0 * column, 1.0 * row}, {30, 1.0 * column, 1.0 * row}, 3);
+        for (int column = 0; column < 15; ++column)
+            add_line(system, {0, 1.0 * column, 1.0 * row}, {30, 1.0 * column, 1.0 * row}, 3);
     const auto clusters = solver::cluster_chains(system, 19);
     check_partition(clusters, 75);
     CHECK(clusters.size() == 4);
@@ -76,7 +79,8 @@ TEST_CASE("chains that run backwards are reversed, chains that run across form c
     check_partition(clusters, 10);
     REQUIRE(clusters.size() == 3);
     for (const auto& cluster : clusters) {
-        for (std::size_t k = 0; k < cluster.chains.size(); ++k) CHECK(cluster.reversed[k] == (cluster.chains[k] < 6 && cluster.chains[k] % 2 == 1));
+        for (std::size_t k = 0; k < cluster.chains.size(); ++k)
+            CHECK(cluster.reversed[k] == (cluster.chains[k] < 6 && cluster.chains[k] % 2 == 1));
     }
 }
 

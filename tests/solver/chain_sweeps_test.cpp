@@ -28,8 +28,12 @@ Vector free_load(const scene::DofLayout& layout, unsigned seed) {
 }
 
 test::SyntheticSystem few_contacts(Index vectors_per_node, int points) {
-    return test::random_system({.chains = std::vector<scene::Chain>(24, {.nodes = 5, .vectors_per_node = vectors_per_node, .reach = 4}),  // whole chains are bands
-                                .points = points, .held = 6, .radius = 0.1});
+    return test::random_system(
+        {.chains = std::vector<scene::Chain>(
+             24, {.nodes = 5, .vectors_per_node = vectors_per_node, .reach = 4}),  // whole chains are bands
+         .points = points,
+         .held = 6,
+         .radius = 0.1});
 }
 
 TEST_CASE("chains that a point couples are of different classes, and the classes are few") {
@@ -47,7 +51,9 @@ TEST_CASE("chains that a point couples are of different classes, and the classes
     CHECK(couplings.classes() <= *std::ranges::max_element(neighbours) + 1);  // chain after chain: as many as neighbours, and one
 }
 
-TEST_CASE("a cycle is (B + L)^-T (B + L Q L^T) (B + L)^-1, for chains of any number of vectors, held ones too; without Q its inverse is that of Gauss-Seidel") {
+TEST_CASE(
+    "a cycle is (B + L)^-T (B + L Q L^T) (B + L)^-1, for chains of any number of vectors, held ones too; without Q its inverse "
+    "is that of Gauss-Seidel") {
     for (const Index vectors : {1, 2, 3, 4}) {
         const auto system = few_contacts(vectors, 40);
         const scene::DofLayout& layout = system.layout();
@@ -65,7 +71,8 @@ TEST_CASE("a cycle is (B + L)^-T (B + L Q L^T) (B + L)^-1, for chains of any num
             for (Index j = 0; j < layout.vectors(); ++j) {
                 const Index p = places.chain(i), q = places.chain(j);
                 Matrix& to = p == q ? b : lower;
-                if (p == q || couplings.class_of()[core::at(p)] > couplings.class_of()[core::at(q)]) to.block<3, 3>(3 * i, 3 * j) = a.block<3, 3>(3 * i, 3 * j);
+                if (p == q || couplings.class_of()[core::at(p)] > couplings.class_of()[core::at(q)])
+                    to.block<3, 3>(3 * i, 3 * j) = a.block<3, 3>(3 * i, 3 * j);
             }
         INFO(vectors << " vectors a node");
         const Matrix m = (b + lower) * b.llt().solve(Matrix((b + lower).transpose()));
@@ -79,7 +86,8 @@ TEST_CASE("a cycle is (B + L)^-T (B + L Q L^T) (B + L)^-1, for chains of any num
             Vector z(r.size());
             sweeps.apply(layout, r, z, correct);
             scene::project_free(layout, z);
-            const Vector y = (b + lower).lu().solve(r), exact = (b + lower).transpose().lu().solve(Vector(b * y + lower * (q * (lower.transpose() * y))));
+            const Vector y = (b + lower).lu().solve(r),
+                         exact = (b + lower).transpose().lu().solve(Vector(b * y + lower * (q * (lower.transpose() * y))));
             CHECK((z - exact).norm() < 1e-4 * exact.norm());  // as below
             Vector same(z.size()), product(z.size());
             REQUIRE(sweeps.apply(layout, r, same, correct, &product));
@@ -108,7 +116,8 @@ TEST_CASE("sweeps are symmetric, positive, and the same bits on one thread and o
     sweeps.apply(layout, a, ma, without), sweeps.apply(layout, b, mb, without);
     CHECK(a.dot(ma) > 0.0);
     CHECK(b.dot(mb) > 0.0);
-    CHECK(std::abs(b.dot(ma) - a.dot(mb)) < 1e-3 * std::sqrt(a.dot(ma) * b.dot(mb)));  // float, and soft fibres: condition numbers of 1e6
+    CHECK(std::abs(b.dot(ma) - a.dot(mb)) <
+          1e-3 * std::sqrt(a.dot(ma) * b.dot(mb)));  // float, and soft fibres: condition numbers of 1e6
     test::with_threads(2, [&] {
         solver::ChainSweeps other;
         other.analyse(layout);
@@ -138,7 +147,9 @@ TEST_CASE("conjugate gradients take about half as many iterations as with the fa
     CHECK(10 * swept < 7 * alone);
 }
 
-TEST_CASE("products that a preconditioner passes on are used where they are good enough, and the residual is the true one in any case") {
+TEST_CASE(
+    "products that a preconditioner passes on are used where they are good enough, and the residual is the true one in any "
+    "case") {
     const test::FabricSystem system({.bundles = 1, .parallel = true, .fibres = 38, .elements = 8, .length = 1.1});
     solver::ChainSweeps sweeps;
     sweeps.analyse(system.layout());
@@ -163,7 +174,8 @@ TEST_CASE("products that a preconditioner passes on are used where they are good
         CHECK(report.status == solver::SolveStatus::converged);
         Vector product(b.size());
         system.apply(x, product);
-        CHECK(solver::scaled_norm(system.layout(), Vector(b - product)) <= tolerance * solver::scaled_norm(system.layout(), b) * (1.0 + 1e-9));
+        CHECK(solver::scaled_norm(system.layout(), Vector(b - product)) <=
+              tolerance * solver::scaled_norm(system.layout(), b) * (1.0 + 1e-9));
         return report.iterations;
     };
     const auto formed = [&](const Vector& r, Vector& z) { sweeps.apply(system.layout(), r, z, without); };
@@ -175,8 +187,11 @@ TEST_CASE("products that a preconditioner passes on are used where they are good
         CHECK(solve(Passing{&sweeps, &system.layout(), 0.1, &refused}, tolerance) == iterations);
         CHECK(refused <= 3);  // looked at once, and at each start anew
         CHECK(summed <= iterations + iterations / 10 + 1);
-        if (tolerance > 1e-6) CHECK(passed == summed);
-        else CHECK((10 * passed > summed && 10 * passed < 9 * summed));  // float errs by 1e-7 of the residual: not at first, but later on
+        if (tolerance > 1e-6)
+            CHECK(passed == summed);
+        else
+            CHECK((10 * passed > summed &&
+                   10 * passed < 9 * summed));  // float errs by 1e-7 of the residual: not at first, but later on
     }
 }
 

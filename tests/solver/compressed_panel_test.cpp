@@ -20,9 +20,12 @@ Matrix matrix_of(const Block& block) { return block.whole ? Matrix(block.left) :
 TEST_CASE("a block keeps what its rows can feel: of a smooth kernel little, of one that is as rough as can be all") {
     Matrix smooth(120, 90), rough(60, 60);
     for (Index i = 0; i < smooth.rows(); ++i)
-        for (Index j = 0; j < smooth.cols(); ++j) smooth(i, j) = 1.0 / (2.0 + static_cast<double>(i) / 120.0 + static_cast<double>(j) / 90.0);
+        for (Index j = 0; j < smooth.cols(); ++j)
+            smooth(i, j) = 1.0 / (2.0 + static_cast<double>(i) / 120.0 + static_cast<double>(j) / 90.0);
     for (Index i = 0; i < 60; ++i)
-        for (Index j = 0; j < 60; ++j) rough(i, j) = std::sqrt(2.0 / 60.0) * std::cos(std::acos(-1.0) * (static_cast<double>(i) + 0.5) * (static_cast<double>(j) + 0.5) / 60.0);
+        for (Index j = 0; j < 60; ++j)
+            rough(i, j) = std::sqrt(2.0 / 60.0) *
+                          std::cos(std::acos(-1.0) * (static_cast<double>(i) + 0.5) * (static_cast<double>(j) + 0.5) / 60.0);
     Block block;
     for (const double tolerance : {1e-2, 1e-4, 1e-8}) {
         block.compress(smooth, Vector::Ones(120), tolerance);
@@ -59,7 +62,8 @@ struct Cube {
                     for (int z = -1; z <= 1; ++z) {
                         const int a = k / (n * n) + x, b = k / n % n + y, c = k % n + z, other = (a * n + b) * n + c;
                         const int axes = x * x + y * y + z * z;
-                        if (a < n && b >= 0 && b < n && c >= 0 && c < n && other > k && axes > 0 && axes < 3) pairs.emplace_back(k, other);
+                        if (a < n && b >= 0 && b < n && c >= 0 && c < n && other > k && axes > 0 && axes < 3)
+                            pairs.emplace_back(k, other);
                     }
     }
     Index unknowns() const { return 3 * core::count(places); }
@@ -111,7 +115,7 @@ TEST_CASE("a compressed factor is nearly the inverse, in less memory, with the s
         const double now = error(left_out);
         CHECK(now < 20.0 * left_out);  // of a diagonal of 1, by a condition number below 20
         CHECK(now < 0.5 * before);
-        CHECK(now > exact);            // something is left out
+        CHECK(now > exact);  // something is left out
         CHECK(a.entries() < 0.95 * static_cast<double>(all));
         before = now;
     }
@@ -160,7 +164,8 @@ TEST_CASE("fibres are solved with a compressed factor, and with the whole one sh
     const auto fallen_back = solve(0.05, hardly);  // pivots turned negative
     CHECK(fallen_back.first);
     CHECK(fallen_back.second == 2);
-    const auto changed = solve(1.0, nothing);  // what columns of pieces are to each other was left out, and iterations did not end
+    const auto changed =
+        solve(1.0, nothing);  // what columns of pieces are to each other was left out, and iterations did not end
     CHECK_FALSE(changed.first);
     CHECK(changed.second > 50);
     for (const Vector& x : {compressed, hardly, nothing}) CHECK((x - exact).norm() < 1e-4 * exact.norm());  // residual 1e-8

@@ -40,17 +40,26 @@ void with_threads([[maybe_unused]] int threads, const Work& work) {
 inline std::vector<SyntheticSystem> solvable_systems() {
     std::vector<SyntheticSystem> systems;
     systems.push_back(random_system({.chains = {{.nodes = 9, .vectors_per_node = 3, .reach = 2}}, .held = 2}));
-    systems.push_back(random_system({.chains = std::vector<scene::Chain>(11, {.nodes = 9, .vectors_per_node = 3, .reach = 2, .group = 0}),
-                                     .points = 120, .held = 9, .seed = 2}));
+    systems.push_back(
+        random_system({.chains = std::vector<scene::Chain>(11, {.nodes = 9, .vectors_per_node = 3, .reach = 2, .group = 0}),
+                       .points = 120,
+                       .held = 9,
+                       .seed = 2}));
     systems.push_back(random_system({.chains = {{.nodes = 7, .vectors_per_node = 3, .reach = 2},
                                                 {.nodes = 12, .vectors_per_node = 2, .reach = 1},
                                                 {.nodes = 12, .vectors_per_node = 1, .reach = 1},
                                                 {.nodes = 9, .vectors_per_node = 1, .reach = 2},
                                                 {.nodes = 3, .vectors_per_node = 4, .reach = 2},
                                                 {.nodes = 1, .vectors_per_node = 3, .reach = 0}},
-                                     .points = 60, .held = 5, .seed = 3}));
-    systems.push_back(random_system({.chains = std::vector<scene::Chain>(5, {.nodes = 7, .vectors_per_node = 3, .reach = 2, .group = 0}),
-                                     .points = 60, .held = 3, .ties = 3, .seed = 4}));
+                                     .points = 60,
+                                     .held = 5,
+                                     .seed = 3}));
+    systems.push_back(
+        random_system({.chains = std::vector<scene::Chain>(5, {.nodes = 7, .vectors_per_node = 3, .reach = 2, .group = 0}),
+                       .points = 60,
+                       .held = 3,
+                       .ties = 3,
+                       .seed = 4}));
     return systems;
 }
 
@@ -114,7 +123,8 @@ void check_held(Solver solver) {
         Vector x;
         solve(solver, system, b, 1e-3, x);
         for (const scene::HeldVector& held : system.layout().held) {
-            const Vec3 difference = x.segment<3>(3 * held.vector) - b.segment<3>(3 * held.vector) / system.layout().held_stiffness(held.vector);
+            const Vec3 difference =
+                x.segment<3>(3 * held.vector) - b.segment<3>(3 * held.vector) / system.layout().held_stiffness(held.vector);
             // To the rounding of a projection of x, or of a factor that mixes its components.
             CHECK((difference - held.free * difference).norm() <= 1e-13 * x.segment<3>(3 * held.vector).norm());
         }

@@ -83,8 +83,8 @@ TEST_CASE_TEMPLATE("a solver takes the least system for what it is", Solver, sol
     run(FormedSystem(system));
 }
 
-TEST_CASE_TEMPLATE("a solver reaches the solution or says why not, with the same bits always", Solver, solver::SparseCholesky, solver::TwoLevelPcg,
-                   solver::FibreBlockPcg, solver::FloatBlockCholesky, solver::DoubleBlockCholesky) {
+TEST_CASE_TEMPLATE("a solver reaches the solution or says why not, with the same bits always", Solver, solver::SparseCholesky,
+                   solver::TwoLevelPcg, solver::FibreBlockPcg, solver::FloatBlockCholesky, solver::DoubleBlockCholesky) {
     test::check_linear_solver(Solver{});
 }
 

@@ -12,8 +12,8 @@ using namespace fibrant;
 
 namespace newton_test {
 
-/// One node whose energy is x atan x - log(1 + x^2) / 2 in each component: convex, and its force goes to a bound as that of contacts
-/// that let go. Beyond |x| = 1.3917 Newton's method goes further out with each step.
+/// One node whose energy is x atan x - log(1 + x^2) / 2 in each component: convex, and its force goes to a bound as that of
+/// contacts that let go. Beyond |x| = 1.3917 Newton's method goes further out with each step.
 struct Bounded {
     struct System {
         scene::DofLayout own;
@@ -34,7 +34,15 @@ struct Bounded {
         Index node_count(Index) const { return 0; }
         const Fibre& fibre(Index) const { return only; }
     };
-    System own{{.chains = {{.nodes = 1, .vectors_per_node = 1}}, .kind = {scene::VectorKind::position}, .value = {Vec3::Zero()}, .length = {1.0}, .held = {}, .images = {}, .ties = {}, .motions = {}}, 0.0};
+    System own{{.chains = {{.nodes = 1, .vectors_per_node = 1}},
+                .kind = {scene::VectorKind::position},
+                .value = {Vec3::Zero()},
+                .length = {1.0},
+                .held = {},
+                .images = {},
+                .ties = {},
+                .motions = {}},
+               0.0};
     Mesh fibres;
     Vector stiffness;
     const System& system() const { return own; }
@@ -107,7 +115,8 @@ TEST_CASE("a step that ends where the energy rises is cut, and Newton's method g
         const solver::NewtonReport report = newton.solve(x, 1e-4, x, std::numeric_limits<double>::infinity(), counts);
         const bool cut = std::isfinite(overshoot);
         CHECK((report.status == solver::NewtonStatus::converged) == cut);
-        if (cut) CHECK(x.norm() < 1e-6);  // the last step is below 1e-4, and Newton's method converges quadratically, here cubically
+        if (cut)
+            CHECK(x.norm() < 1e-6);  // the last step is below 1e-4, and Newton's method converges quadratically, here cubically
     }
 }
 
@@ -187,8 +196,7 @@ TEST_CASE(
     solver::Newton<Wells, Untouched, Definite> newton(problem, contacts, linear, parameters, 1.0, clock);
     solver::IterationCounts counts;
     Vector x = Vec3(0.1, 0.1, 0.1);
-    REQUIRE(newton.solve(x, 1e-4, x, std::numeric_limits<double>::infinity(), counts).status ==
-            solver::NewtonStatus::converged);
+    REQUIRE(newton.solve(x, 1e-4, x, std::numeric_limits<double>::infinity(), counts).status == solver::NewtonStatus::converged);
     CHECK((x - Vec3::Ones()).norm() < 1e-5);
     const std::vector<Wells::Asked>& first = problem.asked.front();
     REQUIRE(first.size() == 10);  // the tangent is -0.97 of the mean stiffness, and the last shift 1.64 of it
@@ -203,7 +211,9 @@ TEST_CASE(
     CHECK(problem.asked.back().back().shift < 0.1);
 }
 
-TEST_CASE("what the first step of a prescribed motion may leave over is a part of the forces, not of what the motion does to an end alone") {
+TEST_CASE(
+    "what the first step of a prescribed motion may leave over is a part of the forces, not of what the motion does to an end "
+    "alone") {
     Bounded problem;
     scene::DofLayout& layout = problem.own.own;
     layout.chains[0].nodes = 2;
@@ -249,7 +259,8 @@ struct Walls {
     void evaluate(const Vector& x) {
         state = x;
         states.clear();
-        for (Index k = 0; k < core::count(place); ++k) states.push_back({-depth(k), wall * std::max(0.0, depth(k)), depth(k) > 0.0 ? -wall : 0.0});
+        for (Index k = 0; k < core::count(place); ++k)
+            states.push_back({-depth(k), wall * std::max(0.0, depth(k)), depth(k) > 0.0 ? -wall : 0.0});
     }
     Vec3 force(Index k) const { return Vec3(-wall * std::max(0.0, depth(k)), 0.0, 0.0); }
     Mat3 tangent(Index k) const { return Vec3(depth(k) > 0.0 ? wall : 0.0, 0.0, 0.0).asDiagonal(); }
@@ -300,14 +311,17 @@ Index iterations(Index nodes) {
     return report.iterations;
 }
 
-TEST_CASE("a step that would go far into many contacts is solved again with what they turned out to be, and not cut for each of them") {
-    // The first step is cut for all of them at once, the second finds all walls, whatever their number, and the third has only rounding left.
-    // Else every wall takes steps of its own.
+TEST_CASE(
+    "a step that would go far into many contacts is solved again with what they turned out to be, and not cut for each of them") {
+    // The first step is cut for all of them at once, the second finds all walls, whatever their number, and the third has only
+    // rounding left. Else every wall takes steps of its own.
     CHECK(iterations<true>(16) <= 4);
     CHECK(iterations<false>(16) > 16);
 }
 
-TEST_CASE("a contact that closed is linear about where the step went, one that slid back has the secant, one that its tangent describes has nothing") {
+TEST_CASE(
+    "a contact that closed is linear about where the step went, one that slid back has the secant, one that its tangent "
+    "describes has nothing") {
     struct Pairs {
         struct Element {
             Vec3 normal = Vec3::UnitZ();
@@ -326,7 +340,8 @@ TEST_CASE("a contact that closed is linear about where the step went, one that s
     const double stiffness = 50.0, gap = 0.3, depth = 0.1, bound = 2.0, slip = 0.4;
     const Mat3 across = Vec3::UnitZ() * Vec3::UnitZ().transpose(), along = Vec3::UnitX() * Vec3::UnitX().transpose();
     Pairs pairs;
-    // One closes by a gap and a penetration; one slid to its bound and slides back to the other; one is pressed as its tangent says.
+    // One closes by a gap and a penetration; one slid to its bound and slides back to the other; one is pressed as its tangent
+    // says.
     pairs.all = {{.by = {0, 0, -(gap + depth)}}, {.by = {-slip, 0, 0}}, {.by = {0, 0, -depth}}};
     const Pairs start = [&] {
         Pairs at = pairs;

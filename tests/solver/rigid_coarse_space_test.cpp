@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "../support/random_vector.hpp"
 #include "support/fabric_system.hpp"
 #include "support/synthetic_system.hpp"
-#include "../support/random_vector.hpp"
 
 #include <fibrant/solver/rigid_coarse_space.hpp>
 
@@ -23,14 +23,18 @@ SyntheticSystem coupled(int held) {
                                                              {.nodes = 5, .vectors_per_node = 1, .reach = 1},
                                                              {.nodes = 4, .vectors_per_node = 1, .reach = 0},
                                                              {.nodes = 1, .vectors_per_node = 3, .reach = 0}},
-                                                  .points = 60, .held = held, .radius = 0.3, .seed = 5});
+                                                  .points = 60,
+                                                  .held = held,
+                                                  .radius = 0.3,
+                                                  .seed = 5});
     std::mt19937 generator(8);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     for (std::size_t c = 0; c < system.description.chains.size(); ++c) {
         const scene::Chain& chain = system.description.chains[c];
         for (Index k = 0; k < chain.nodes * chain.vectors_per_node; ++k) {
             Vec3 value = test::random_vector(uniform, generator);
-            if (k % chain.vectors_per_node == 0) value = Vec3(static_cast<double>(k / chain.vectors_per_node), static_cast<double>(c), 0) + 0.1 * value;
+            if (k % chain.vectors_per_node == 0)
+                value = Vec3(static_cast<double>(k / chain.vectors_per_node), static_cast<double>(c), 0) + 0.1 * value;
             system.description.value[core::at(chain.first_vector + k)] = value;
         }
     }
@@ -97,7 +101,7 @@ TEST_CASE("the coarse correction is the projection on rigid motions in the energ
                 CAPTURE(size);
                 CAPTURE(elements);
                 solver::RigidCoarseSpace<double> space;
-    prepare(system, size, elements, space);
+                prepare(system, size, elements, space);
                 Vector r(system.layout().unknowns()), z = Vector::Zero(r.size());
                 // A rigid motion of everything is in the space, whatever the clusters and stations: it comes back whole.
                 // Only if every entry of P^T A P is right.
@@ -107,7 +111,7 @@ TEST_CASE("the coarse correction is the projection on rigid motions in the energ
                 const assembly::HeldProjector projector(system.layout());
                 Vector inside = z;
                 projector.project(inside);
-                CHECK((inside - z).norm() < 1e-14 * z.norm());  // nothing moves where it is held
+                CHECK((inside - z).norm() < 1e-14 * z.norm());      // nothing moves where it is held
                 CHECK((z - motion).norm() < 1e-8 * motion.norm());  // a condition number of some 1e5 and the shift
                 // The correction of any error is the projection of it: made again, it changes nothing, and it is
                 // orthogonal in energy to what is left.
@@ -129,12 +133,15 @@ TEST_CASE("the coarse correction is the projection on rigid motions in the energ
 }
 
 TEST_CASE("a motion that is linear between stations along a cluster is in the coarse space") {
-    SyntheticSystem system = test::random_system({.chains = std::vector<scene::Chain>(4, {.nodes = 9, .vectors_per_node = 3, .reach = 2, .group = 0}),
-                                                  .points = 60, .seed = 3});
+    SyntheticSystem system =
+        test::random_system({.chains = std::vector<scene::Chain>(4, {.nodes = 9, .vectors_per_node = 3, .reach = 2, .group = 0}),
+                             .points = 60,
+                             .seed = 3});
     Vector motion(system.layout().unknowns());
     for (std::size_t c = 0; c < 4; ++c)
         for (Index k = 0; k < 27; ++k) {
-            const Index v = system.description.chains[c].first_vector + k, node = c == 2 ? 8 - k / 3 : k / 3;  // one runs backwards
+            const Index v = system.description.chains[c].first_vector + k,
+                        node = c == 2 ? 8 - k / 3 : k / 3;  // one runs backwards
             if (k % 3 == 0) system.description.value[core::at(v)] = Vec3(static_cast<double>(node), static_cast<double>(c), 0);
             const double t = std::max(0.0, static_cast<double>(node) - 4.0);
             motion.segment<3>(3 * v) = k % 3 == 0 ? Vec3(t, 2.0 - t, 1.0) : Vec3(Vec3::Zero());
@@ -142,7 +149,7 @@ TEST_CASE("a motion that is linear between stations along a cluster is in the co
     system.finish();
     for (const Index elements : {1, 2, 4}) {
         solver::RigidCoarseSpace<double> space;
-    prepare(system, 19, elements, space);
+        prepare(system, 19, elements, space);
         CHECK(space.clusters() == 1);
         CHECK(space.stations() == 4 / elements + 1);
         Vector r(motion.size()), z = Vector::Zero(motion.size());
@@ -189,7 +196,8 @@ TEST_CASE("a coarse matrix that is not positive definite is seen, and terms that
         return space.finish(system);
     };
     CHECK(refresh() == solver::SolveStatus::converged);
-    Vector motion = rigid_motion(system.layout(), {0.3, -0.2, 0.5}, {0.1, 0.4, -0.3}), r(motion.size()), z = Vector::Zero(motion.size());
+    Vector motion = rigid_motion(system.layout(), {0.3, -0.2, 0.5}, {0.1, 0.4, -0.3}), r(motion.size()),
+           z = Vector::Zero(motion.size());
     system.apply(motion, r);
     space.add_correction(system.layout(), r, z);
     held.project(z);
@@ -203,7 +211,8 @@ TEST_CASE("a coarse matrix that is not positive definite is seen, and terms that
 }
 
 TEST_CASE("a coarse matrix that is summed in several parts at once is the one that is summed in one go") {
-    static_assert(assembly::DivisibleCouplings<assembly::ChainSystem<beam::DirectorBeam<>>> && !assembly::DivisibleCouplings<Whole>);
+    static_assert(assembly::DivisibleCouplings<assembly::ChainSystem<beam::DirectorBeam<>>> &&
+                  !assembly::DivisibleCouplings<Whole>);
     const auto system = test::chain_system(test::FabricSystem({.bundles = 2, .fibres = 20, .elements = 16, .length = 2.2}));
     REQUIRE(system.couplings() > 4096);
     solver::RigidCoarseSpace<double> parts, whole;

@@ -129,8 +129,11 @@ TEST_CASE("files that are no whole system are refused, not half read") {
         std::ofstream(path, std::ios::binary).write(damaged.data(), static_cast<std::streamsize>(damaged.size()));
         CHECK(refused().ends_with("but it must be a whole saved system"));
     }
-    CHECK(test::refusal([&] { solver::write_system(path, system, Vector::Zero(3)); }).starts_with("SavedSystem.right_hand_side = 3 numbers"));
-    CHECK_THROWS_AS(solver::write_system(folder.path / "none" / "a.bin", system, test::random_load(system.layout(), 1)), std::runtime_error);
+    CHECK(test::refusal([&] {
+              solver::write_system(path, system, Vector::Zero(3));
+          }).starts_with("SavedSystem.right_hand_side = 3 numbers"));
+    CHECK_THROWS_AS(solver::write_system(folder.path / "none" / "a.bin", system, test::random_load(system.layout(), 1)),
+                    std::runtime_error);
     using Recording = solver::RecordingSolver<solver::FibreBlockPcg>;
     CHECK(test::refusal([] { Recording{{}}; }).starts_with("RecordingSolver.folder = \"\""));
     CHECK(test::refusal([] { Recording{{.folder = "x", .every = 0}}; }).starts_with("RecordingSolver.every = 0"));

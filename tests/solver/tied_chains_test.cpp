@@ -46,7 +46,10 @@ TEST_CASE("chains that nothing but ties joins are solved at once, whatever moves
     for (const int ties : {1, 4}) {  // of four, the first two move together
         CAPTURE(ties);
         const test::SyntheticSystem system = test::random_system(
-            {.chains = std::vector<scene::Chain>(6, {.nodes = 9, .vectors_per_node = 3, .reach = 2, .group = 0}), .held = 3, .ties = ties, .seed = 8});
+            {.chains = std::vector<scene::Chain>(6, {.nodes = 9, .vectors_per_node = 3, .reach = 2, .group = 0}),
+             .held = 3,
+             .ties = ties,
+             .seed = 8});
         const Vector b = test::random_load(system.layout(), 3);
         Vector x;
         solver::TwoLevelPcg solver;
@@ -60,11 +63,13 @@ TEST_CASE("chains that nothing but ties joins are solved at once, whatever moves
 TEST_CASE("fibre ends that are tied on the mean take hardly more iterations than ends that are held one by one") {
     for (const int fibres : {7, 38}) {
         CAPTURE(fibres);
-        const test::Fabric fabric{.bundles = 2, .parallel = true, .fibres = fibres, .elements = 16, .length = 2.2, .end_stiffness = 1e-6};
+        const test::Fabric fabric{
+            .bundles = 2, .parallel = true, .fibres = fibres, .elements = 16, .length = 2.2, .end_stiffness = 1e-6};
         const Vector load = test::contact_load(test::FabricSystem(fabric));
         const int held = iterations(bundles(fabric, false), load, 1e-4), tied = iterations(bundles(fabric, true), load, 1e-4);
         CAPTURE(held);
-        CHECK(tied <= held + 20);  // 60 of 42, 33 of 17; 84 of 61 and 46 of 29 with the coarse space beside the sweeps, 105 of 90 and 55 of 41 without sweeps
+        CHECK(tied <= held + 20);  // 60 of 42, 33 of 17; 84 of 61 and 46 of 29 with the coarse space beside the sweeps, 105 of 90
+                                   // and 55 of 41 without sweeps
     }
 }
 

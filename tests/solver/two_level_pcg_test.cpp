@@ -75,8 +75,11 @@ TEST_CASE("contact a hundred times stiffer is still solved, and agrees with the 
 }
 
 TEST_CASE("a cycle of two levels is symmetric, as conjugate gradients need it, where contact is beside held vectors too") {
-    const auto system = test::random_system({.chains = std::vector<scene::Chain>(24, {.nodes = 5, .vectors_per_node = 3, .reach = 4}),
-                                             .points = 40, .held = 12, .radius = 0.1});
+    const auto system =
+        test::random_system({.chains = std::vector<scene::Chain>(24, {.nodes = 5, .vectors_per_node = 3, .reach = 4}),
+                             .points = 40,
+                             .held = 12,
+                             .radius = 0.1});
     solver::TwoLevelPcg two{{.fibres_per_cluster = 4, .elements_per_station = 1}};
     two.analyse(system);
     REQUIRE(two.prepare(system) == solver::SolveStatus::converged);
@@ -89,7 +92,8 @@ TEST_CASE("a cycle of two levels is symmetric, as conjugate gradients need it, w
         const Vector a = free_load(seed), b = free_load(seed + 1);
         Vector ma(a.size()), mb(b.size());
         two.precondition(system, a, ma), two.precondition(system, b, mb);
-        CHECK(std::abs(b.dot(ma) - a.dot(mb)) < 1e-5 * std::sqrt(a.dot(ma) * b.dot(mb)));  // float, and condition numbers below 1e3
+        CHECK(std::abs(b.dot(ma) - a.dot(mb)) <
+              1e-5 * std::sqrt(a.dot(ma) * b.dot(mb)));  // float, and condition numbers below 1e3
     }
 }
 
@@ -118,8 +122,8 @@ TEST_CASE("a solve that takes long goes on with a finer space, which takes fewer
     CHECK(late.fine_unknowns() == 0);
 }
 
-TEST_CASE_TEMPLATE("two threads give the bits of one on systems large enough for both", Solver, solver::TwoLevelPcg, solver::FibreBlockPcg,
-                   solver::FloatBlockCholesky) {
+TEST_CASE_TEMPLATE("two threads give the bits of one on systems large enough for both", Solver, solver::TwoLevelPcg,
+                   solver::FibreBlockPcg, solver::FloatBlockCholesky) {
     const test::FabricSystem system(bundle);
     REQUIRE(system.layout().unknowns() > 8192);  // smaller ones stay on one thread
     const Vector b = contact_load(system);

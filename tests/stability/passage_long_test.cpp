@@ -6,6 +6,8 @@ using namespace fibrant;
 
 namespace passage_long_test {
 
-TEST_CASE("four hundred random scenes driven far in few increments: no accepted increment takes a fibre through another one") { test::check_passages(1001, 400); }
+TEST_CASE("four hundred random scenes driven far in few increments: no accepted increment takes a fibre through another one") {
+    test::check_passages(1001, 400);
+}
 
 }  // namespace passage_long_test

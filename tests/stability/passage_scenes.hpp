@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Random scenes whose fibres are driven far in few increments, and a look at every accepted one that shares no code with contact.
+/// @file Random scenes whose fibres are driven far in few increments, and a look at every accepted one that shares no code with
+/// contact.
 
 #include <stability/random_scenes.hpp>
 
@@ -11,8 +12,8 @@
 
 namespace fibrant::test {
 
-/// Two to four fibres of unequal radii that stand apart and are driven through where the others are, by up to fifty radii in one to four increments:
-/// crossing, side by side, both at once, some held at one end only.
+/// Two to four fibres of unequal radii that stand apart and are driven through where the others are, by up to fifty radii in one
+/// to four increments: crossing, side by side, both at once, some held at one end only.
 inline SmallScene far_scene(std::uint64_t seed) {
     Uniform uniform(seed);
     SmallScene scene;
@@ -62,12 +63,15 @@ struct Ways {
     void reported(const simulation::IncrementReport&) { see(); }
 };
 
-/// Least distance of two polylines over the touching one on the straight way from one state to the next, at times so close that no two points
-/// move by a twentieth of it between two of them; away from ends by a touching distance, where a fibre may slip off another.
-inline double closest_on_the_way(const std::vector<Vec3>& a, const std::vector<Vec3>& to_a, const std::vector<Vec3>& b, const std::vector<Vec3>& to_b, double touching) {
+/// Least distance of two polylines over the touching one on the straight way from one state to the next, at times so close that
+/// no two points move by a twentieth of it between two of them; away from ends by a touching distance, where a fibre may slip off
+/// another.
+inline double closest_on_the_way(const std::vector<Vec3>& a, const std::vector<Vec3>& to_a, const std::vector<Vec3>& b,
+                                 const std::vector<Vec3>& to_b, double touching) {
     double least = 1e300, motion = 0.0;
     for (std::size_t k = 0; k < a.size(); ++k)
-        for (std::size_t l : {std::size_t{0}, b.size() / 2, b.size() - 1}) motion = std::max(motion, (to_a[k] - a[k] - to_b[l] + b[l]).norm());
+        for (std::size_t l : {std::size_t{0}, b.size() / 2, b.size() - 1})
+            motion = std::max(motion, (to_a[k] - a[k] - to_b[l] + b[l]).norm());
     const auto far_from_ends = [&](const std::vector<Vec3>& line, std::size_t k) {
         return (line[k] - line.front()).norm() > touching && (line[k] - line.back()).norm() > touching;
     };
@@ -80,16 +84,19 @@ inline double closest_on_the_way(const std::vector<Vec3>& a, const std::vector<V
             if (now - 2.0 * motion > touching) continue;
             for (int n = 0; n <= times; ++n) {
                 const double t = static_cast<double>(n) / times;
-                const auto at = [t](const std::vector<Vec3>& from, const std::vector<Vec3>& to, std::size_t p) { return Vec3(from[p] + t * (to[p] - from[p])); };
-                least = std::min(least, closest_points(at(a, to_a, k - 1), at(a, to_a, k), at(b, to_b, l - 1), at(b, to_b, l)).distance);
+                const auto at = [t](const std::vector<Vec3>& from, const std::vector<Vec3>& to, std::size_t p) {
+                    return Vec3(from[p] + t * (to[p] - from[p]));
+                };
+                least = std::min(least,
+                                 closest_points(at(a, to_a, k - 1), at(a, to_a, k), at(b, to_b, l - 1), at(b, to_b, l)).distance);
             }
         }
     }
     return least / touching;
 }
 
-/// Runs far scenes of seeds first, first + 1, ...: no accepted increment takes a fibre through another one, whatever the run comes to, and what
-/// stops says why. Prints how many converged, and how close the straight way of any increment came.
+/// Runs far scenes of seeds first, first + 1, ...: no accepted increment takes a fibre through another one, whatever the run
+/// comes to, and what stops says why. Prints how many converged, and how close the straight way of any increment came.
 inline void check_passages(std::uint64_t first, std::uint64_t count, bool calmed = false) {
     std::uint64_t converged = 0, touching = 0, scenes = 0, passages = 0;
     double closest = 1e300;
@@ -110,15 +117,17 @@ inline void check_passages(std::uint64_t first, std::uint64_t count, bool calmed
         for (std::size_t n = 1; n < ways.lines.size(); ++n)
             for (std::size_t i = 0; i < scene.fibres.size(); ++i)
                 for (std::size_t j = i + 1; j < scene.fibres.size(); ++j)
-                    least = std::min(least, closest_on_the_way(ways.lines[n - 1][i], ways.lines[n][i], ways.lines[n - 1][j], ways.lines[n][j],
-                                                               scene.fibres[i].radius + scene.fibres[j].radius));
+                    least =
+                        std::min(least, closest_on_the_way(ways.lines[n - 1][i], ways.lines[n][i], ways.lines[n - 1][j],
+                                                           ways.lines[n][j], scene.fibres[i].radius + scene.fibres[j].radius));
         // What passes comes to zero. Half is where it is refused; an eighth that segments cut off curves, and times between.
         if (least < 0.4) ++passages, std::printf("seed %llu: %.3f\n", static_cast<unsigned long long>(seed), least);
         CHECK(least > 0.4);
         closest = std::min(closest, least);
     }
-    std::printf("%llu of %llu converged, %llu in contact at the end, %llu passed; closest on the way %.3f of touching\n", static_cast<unsigned long long>(converged),
-                static_cast<unsigned long long>(scenes), static_cast<unsigned long long>(touching), static_cast<unsigned long long>(passages), closest);
+    std::printf("%llu of %llu converged, %llu in contact at the end, %llu passed; closest on the way %.3f of touching\n",
+                static_cast<unsigned long long>(converged), static_cast<unsigned long long>(scenes),
+                static_cast<unsigned long long>(touching), static_cast<unsigned long long>(passages), closest);
     CHECK(touching > scenes / 10);
 }
 

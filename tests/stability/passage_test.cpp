@@ -6,9 +6,12 @@ using namespace fibrant;
 
 namespace passage_random_test {
 
-TEST_CASE("forty random scenes driven far in few increments: no accepted increment takes a fibre through another one") { test::check_passages(1, 40); }
+TEST_CASE("forty random scenes driven far in few increments: no accepted increment takes a fibre through another one") {
+    test::check_passages(1, 40);
+}
 
-// Two that touch along a line bend around each other until they cross: the line goes on beyond the stations that a crossing begins with.
+// Two that touch along a line bend around each other until they cross: the line goes on beyond the stations that a crossing
+// begins with.
 TEST_CASE("a line of contact that becomes a crossing goes on to hold all along") { test::check_passages(16, 1, true); }
 
 TEST_CASE("a hook in a straight fibre, rings through each other and around a fibre, flat fibres: held, and none passes") {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Small scenes as plain data, so that they can be moved, mirrored, scaled, renamed and drawn at random; and measures of what
-/// came of them that share no code with contact.
+/// @file Small scenes as plain data, so that they can be moved, mirrored, scaled, renamed and drawn at random; and measures of
+/// what came of them that share no code with contact.
 
 #include <support/models.hpp>
 
@@ -39,12 +39,12 @@ struct SmallFibre {
 struct SmallScene {
     std::vector<SmallFibre> fibres;
     double friction = 0.15;
-    double allowed = 1e-2;      ///< penetration [radius of the thinnest fibre]
-    double penalty = 0.0;       ///< stiffness that stays as it is, over that of a section; 0: adapted to the penetration
-    double spacing = 2.0;       ///< points an element
-    double damping = 0.0;       ///< [force / length]
+    double allowed = 1e-2;  ///< penetration [radius of the thinnest fibre]
+    double penalty = 0.0;   ///< stiffness that stays as it is, over that of a section; 0: adapted to the penetration
+    double spacing = 2.0;   ///< points an element
+    double damping = 0.0;   ///< [force / length]
     Index increments = 4;
-    bool tight = false;         ///< tolerances that leave rounding only
+    bool tight = false;              ///< tolerances that leave rounding only
     std::vector<double> cycle{1.0};  ///< amplitudes that the loading goes to, `increments` each
 
     double radius() const {
@@ -78,16 +78,17 @@ inline SmallScene permuted(SmallScene scene, const std::vector<std::size_t>& ord
     return scene;
 }
 inline SmallScene reversed(SmallScene scene) {
-    for (SmallFibre& f : scene.fibres) std::swap(f.from, f.to), std::swap(f.move_from, f.move_to), std::swap(f.held_from, f.held_to);
+    for (SmallFibre& f : scene.fibres)
+        std::swap(f.from, f.to), std::swap(f.move_from, f.move_to), std::swap(f.held_from, f.held_to);
     return scene;
 }
 
 struct SmallResult {
     simulation::Report report;
-    std::vector<std::vector<Vec3>> centreline;  ///< of each fibre, at eighths of its elements [length]
+    std::vector<std::vector<Vec3>> centreline;                  ///< of each fibre, at eighths of its elements [length]
     std::vector<std::vector<std::pair<Vec3, Vec3>>> directors;  ///< at the same places
-    std::vector<Vec3> support;                  ///< what holds each fibre at its two ends [force]
-    double reactions = 0.0;                     ///< sum of the sizes of all reactions at ends [force]
+    std::vector<Vec3> support;                                  ///< what holds each fibre at its two ends [force]
+    double reactions = 0.0;                                     ///< sum of the sizes of all reactions at ends [force]
     Vector state;
     observe::Snapshot snapshot;
     bool finite() const { return state.allFinite(); }
@@ -96,7 +97,8 @@ struct SmallResult {
 inline scene::Assembly assembly_of(const SmallScene& small) {
     scene::Assembly assembly;
     for (const SmallFibre& f : small.fibres) {
-        scene::FibreSpecification specification{.from = f.from, .to = f.to, .section = scene::circular(f.radius), .material = {f.young, 0.3}, .elements = f.elements};
+        scene::FibreSpecification specification{
+            .from = f.from, .to = f.to, .section = scene::circular(f.radius), .material = {f.young, 0.3}, .elements = f.elements};
         specification.director = f.director;
         const Index fibre = assembly.add(specification);
         for (const bool last : {false, true}) {
@@ -118,8 +120,11 @@ simulation::ModelParameters<M> parameters_of(const SmallScene& small) {
     simulation::ModelParameters<M> parameters;
     const double r = small.radius();
     const typename StableModel::Normal::Parameters penalty{.regularisation_depth = 0.1 * small.allowed * r};
-    if constexpr (law::Augmenting<typename M::Normal>) parameters.normal = {.law = penalty, .largest_penetration = small.allowed * r}, parameters.iteration.multiplier_limit = 1000;
-    else parameters.normal = penalty;
+    if constexpr (law::Augmenting<typename M::Normal>)
+        parameters.normal = {.law = penalty, .largest_penetration = small.allowed * r},
+        parameters.iteration.multiplier_limit = 1000;
+    else
+        parameters.normal = penalty;
     contact::StiffnessAdaptation& stiffness = parameters.contact.stiffness;
     stiffness.allowed_penetration = small.allowed * r;
     if (small.penalty > 0.0) stiffness.initial_fraction = stiffness.floor_fraction = stiffness.cap_fraction = small.penalty;
@@ -127,7 +132,8 @@ simulation::ModelParameters<M> parameters_of(const SmallScene& small) {
     parameters.friction = {.friction_coefficient = small.friction, .reversible_displacement = 0.02 * r};
     if (small.tight) {
         parameters.iteration.step_tolerance = 1e-10, parameters.iteration.residual_tolerance = 1e-11;
-        parameters.iteration.normal_tolerance = parameters.iteration.normal_step_tolerance = 1e-8, parameters.iteration.contact_tolerance = 1e-7;
+        parameters.iteration.normal_tolerance = parameters.iteration.normal_step_tolerance = 1e-8,
+        parameters.iteration.contact_tolerance = 1e-7;
         parameters.iteration.inexact = 0.01, parameters.iteration.linear_tolerance = 1e-10;
         parameters.iteration.newton_limit = 40, parameters.iteration.normal_limit = parameters.iteration.contact_limit = 30;
     }
@@ -177,7 +183,9 @@ inline ClosestPoints closest_points(const Vec3& a, const Vec3& b, const Vec3& c,
         const double distance = (w + s * u - t * v).norm();
         if (distance < best.distance) best = {distance, s, t};
     };
-    const auto on = [](const Vec3& from, const Vec3& along, const Vec3& x) { return std::clamp((x - from).dot(along) / std::max(along.squaredNorm(), 1e-300), 0.0, 1.0); };
+    const auto on = [](const Vec3& from, const Vec3& along, const Vec3& x) {
+        return std::clamp((x - from).dot(along) / std::max(along.squaredNorm(), 1e-300), 0.0, 1.0);
+    };
     see(0.0, on(c, v, a)), see(1.0, on(c, v, b)), see(on(a, u, c), 0.0), see(on(a, u, d), 1.0);
     if (n.squaredNorm() > 1e-20 * u.squaredNorm() * v.squaredNorm()) {
         const double s = v.cross(w).dot(n) / n.squaredNorm(), t = u.cross(w).dot(n) / n.squaredNorm();
@@ -209,7 +217,8 @@ inline double deepest(const SmallScene& scene, const SmallResult& result) {
 inline SmallScene dragged_three() {
     const double r = 0.0201;
     SmallScene scene;
-    SmallFibre lower{Vec3(0, -0.5, 0), Vec3(0, 0.5, 0)}, beside{Vec3(2.05 * r, -0.45, 0.0), Vec3(2.3 * r, 0.45, 0.3 * r)}, upper{Vec3(-0.5, 0.05, 2.02 * r), Vec3(0.5, -0.02, 2.02 * r)};
+    SmallFibre lower{Vec3(0, -0.5, 0), Vec3(0, 0.5, 0)}, beside{Vec3(2.05 * r, -0.45, 0.0), Vec3(2.3 * r, 0.45, 0.3 * r)},
+        upper{Vec3(-0.5, 0.05, 2.02 * r), Vec3(0.5, -0.02, 2.02 * r)};
     upper.move_from = upper.move_to = Vec3(-0.4, 0.1, -1.5) * r;
     lower.director = Vec3::UnitX(), beside.director = Vec3::UnitZ(), upper.director = Vec3::UnitZ();
     scene.fibres = {lower, upper, beside};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Sweeps over decades of slenderness, stiffness and penetration, friction whose history must not depend on how it is followed, and a
-// thousand random scenes. Prints a line a case, as CSV. The decades of a penalty that stays as it is are in stability_test.cpp.
+// Sweeps over decades of slenderness, stiffness and penetration, friction whose history must not depend on how it is followed,
+// and a thousand random scenes. Prints a line a case, as CSV. The decades of a penalty that stays as it is are in
+// stability_test.cpp.
 #include <stability/random_scenes.hpp>
 #include <stability/sweeps.hpp>
 
@@ -30,7 +31,8 @@ TEST_CASE("crossed fibres of any slenderness from 10 to 1e5 obey beam theory") {
         CAPTURE(result.report.reason);
         REQUIRE(result.report.converged);
         const double ratio = force_over_theory(scene, result);
-        std::printf("%g,%.6f,%ld,%ld,%ld\n", slenderness, ratio, static_cast<long>(result.report.contact.active), iterations(result), rejected(result));
+        std::printf("%g,%.6f,%ld,%ld,%ld\n", slenderness, ratio, static_cast<long>(result.report.contact.active),
+                    iterations(result), rejected(result));
         // At L/r = 10 elements are half a radius long and the section gives way under the load.
         CHECK(ratio == test::near(1.0, slenderness < 50.0 ? 0.1 : 5e-3));
     }
@@ -60,18 +62,22 @@ TEST_CASE("allowed penetrations from 1e-5 to 5e-2 of a radius cost no more than 
         REQUIRE(result.report.converged);
         const double force = result.support[0].z();
         if (hard == 0.0) hard = force;
-        std::printf("%g,%.6e,%.2e,%.3f,%ld,%ld\n", allowed, force, 1.0 - force / hard, result.report.contact.greatest_penetration / (allowed * r), iterations(result), rejected(result));
+        std::printf("%g,%.6e,%.2e,%.3f,%ld,%ld\n", allowed, force, 1.0 - force / hard,
+                    result.report.contact.greatest_penetration / (allowed * r), iterations(result), rejected(result));
         CHECK(result.report.contact.greatest_penetration < 1.5 * allowed * r);
-        CHECK(std::abs(1.0 - force / hard) < 2.0 * allowed + 1e-4);  // of an approach of a radius, in a force that grows a little faster
+        CHECK(std::abs(1.0 - force / hard) <
+              2.0 * allowed + 1e-4);  // of an approach of a radius, in a force that grows a little faster
     }
 }
 
 TEST_CASE("what friction has done does not depend on how finely it was followed") {
-    // Dragged across by a radius: the force on the dragged fibre and what was dissipated, over mesh, contact spacing and increments.
+    // Dragged across by a radius: the force on the dragged fibre and what was dissipated, over mesh, contact spacing and
+    // increments.
     SmallScene scene = dragged_three();
     std::printf("elements,spacing,increments,force,dissipated\n");
     std::vector<double> forces, losses;
-    for (const auto& [elements, spacing, increments] : {std::tuple(8, 2.0, 8), std::tuple(16, 2.0, 8), std::tuple(16, 4.0, 8), std::tuple(16, 2.0, 24), std::tuple(24, 2.0, 16)}) {
+    for (const auto& [elements, spacing, increments] : {std::tuple(8, 2.0, 8), std::tuple(16, 2.0, 8), std::tuple(16, 4.0, 8),
+                                                        std::tuple(16, 2.0, 24), std::tuple(24, 2.0, 16)}) {
         for (SmallFibre& f : scene.fibres) f.elements = elements;
         scene.spacing = spacing, scene.increments = increments;
         const SmallResult result = run(scene);
@@ -87,6 +93,8 @@ TEST_CASE("what friction has done does not depend on how finely it was followed"
     }
 }
 
-TEST_CASE("a thousand random small scenes neither crash nor leave a fibre in another one without saying so") { check_random_scenes(1, 1000); }
+TEST_CASE("a thousand random small scenes neither crash nor leave a fibre in another one without saying so") {
+    check_random_scenes(1, 1000);
+}
 
 }  // namespace stability_long_test

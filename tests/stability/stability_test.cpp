@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What a result must not depend on, degenerate geometries, and random small scenes: what is asserted is physics, measured without
 // the code of contact.
-#include <stability/small_scenes.hpp>
 #include <stability/random_scenes.hpp>
+#include <stability/small_scenes.hpp>
 #include <stability/sweeps.hpp>
 
 #include <near.hpp>
@@ -69,7 +69,8 @@ TEST_CASE("a rigid motion of the whole scene, far from the origin too, moves the
     for (const Vec3& shift : {Vec3(Vec3::Zero()), Vec3(3.0, -2.0, 1.0), Vec3(300.0, -200.0, 100.0)}) {
         const SmallResult other = run(moved(tight_three(), turn, shift));
         REQUIRE(other.report.converged);
-        // Coordinates of the size |shift| keep 1e-16 |shift| of a strain over an element; bending turns it to 1e3 of that in radii.
+        // Coordinates of the size |shift| keep 1e-16 |shift| of a strain over an element; bending turns it to 1e3 of that in
+        // radii.
         const double tolerance = 1e-9 + 1e-9 * shift.norm();
         CHECK(apart(three(), other, turn, shift) < tolerance);
         CHECK((other.support[1] - turn * three().support[1]).norm() < tolerance * three().support[1].norm());
@@ -93,7 +94,9 @@ TEST_CASE("neither the order of the fibres nor their directions matter") {
 }
 
 TEST_CASE("a penalty of any stiffness over six decades is a spring in a row with the fibres; with multipliers it is none") {
-    std::printf("penalty over a section's stiffness,force over theory without it,over three springs,newton,with multipliers,newton,contact passes,deepest in radii\n");
+    std::printf(
+        "penalty over a section's stiffness,force over theory without it,over three springs,newton,with "
+        "multipliers,newton,contact passes,deepest in radii\n");
     for (const double penalty : penalties) {
         CAPTURE(penalty);
         const SmallScene scene = held_at(penalty);
@@ -103,8 +106,10 @@ TEST_CASE("a penalty of any stiffness over six decades is a spring in a row with
         CHECK(alone.report.converged);
         CHECK(multiplied.report.converged);
         const double hard = theory_force(scene, small_approach), spring = theory_force_on_penalty(scene);
-        std::printf("%g,%.6f,%.6f,%ld,%.6f,%ld,%ld,%.1e\n", penalty, alone.support[0].z() / hard, alone.support[0].z() / spring, static_cast<long>(alone.report.counts.newton),
-                    multiplied.support[0].z() / hard, static_cast<long>(multiplied.report.counts.newton), static_cast<long>(multiplied.report.counts.contact_passes),
+        std::printf("%g,%.6f,%.6f,%ld,%.6f,%ld,%ld,%.1e\n", penalty, alone.support[0].z() / hard, alone.support[0].z() / spring,
+                    static_cast<long>(alone.report.counts.newton), multiplied.support[0].z() / hard,
+                    static_cast<long>(multiplied.report.counts.newton),
+                    static_cast<long>(multiplied.report.counts.contact_passes),
                     multiplied.report.contact.greatest_penetration / r);
         CHECK(std::abs(alone.support[0].z() / spring - 1.0) < 3e-4);  // tension is 5e-5 of it
         CHECK(std::abs(multiplied.support[0].z() / hard - 1.0) < 3e-4);
@@ -118,7 +123,8 @@ TEST_CASE("degenerate geometries converge without a fibre in another one, or say
         SmallScene scene;
         bool must = true;  ///< converge
     };
-    const auto pair = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& press, const Vec3& push = Vec3::Zero()) {
+    const auto pair = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& press,
+                         const Vec3& push = Vec3::Zero()) {
         SmallScene scene;
         SmallFibre lower{a, b}, upper{c, d};
         upper.move_from = upper.move_to = press, upper.push = push;
@@ -128,13 +134,15 @@ TEST_CASE("degenerate geometries converge without a fibre in another one, or say
     const double h = 2.0 * r, L = 0.4;
     std::vector<Case> cases;
     for (const double angle : {0.0, 1e-12, 1e-6, 1e-3, 0.05})
-        cases.push_back({"near-parallel", pair({-L, 0, 0}, {L, 0, 0}, {-L * std::cos(angle), -L * std::sin(angle), h}, {L * std::cos(angle), L * std::sin(angle), h}, Vec3::Zero(), {0, 0, -3e-3})});
+        cases.push_back({"near-parallel", pair({-L, 0, 0}, {L, 0, 0}, {-L * std::cos(angle), -L * std::sin(angle), h},
+                                               {L * std::cos(angle), L * std::sin(angle), h}, Vec3::Zero(), {0, 0, -3e-3})});
     cases.push_back({"exactly perpendicular", pair({-L, 0, 0}, {L, 0, 0}, {0, -L, h}, {0, L, h}, {0, 0, -r})});
     cases.push_back({"end to end", pair({-L, 0, 0}, {-r, 0, 0}, {r, 0, 0}, {L, 0, 0}, {-0.02 * r, 0, 0})});
     cases.back().scene.fibres[0].held_to = cases.back().scene.fibres[1].held_from = Held::free;
     cases.push_back({"end against side", pair({-L, 0, 0}, {L, 0, 0}, {0, 0, h}, {0, 0, h + L}, {0, 0, -0.5 * r})});
     cases.back().scene.fibres[1].held_from = Held::free;
-    cases.push_back({"very short fibre on a long one", pair({-L, 0, 0}, {L, 0, 0}, {-0.5 * r, 0, h}, {0.5 * r, 0, h}, {0, 0, -0.5 * r})});
+    cases.push_back(
+        {"very short fibre on a long one", pair({-L, 0, 0}, {L, 0, 0}, {-0.5 * r, 0, h}, {0.5 * r, 0, h}, {0, 0, -0.5 * r})});
     cases.back().scene.fibres[1].elements = 1;
     cases.push_back({"very short fibres", pair({-r, 0, 0}, {r, 0, 0}, {0, -r, h}, {0, r, h}, {0, 0, -0.02 * r})});
     cases.back().scene.fibres[0].elements = cases.back().scene.fibres[1].elements = 1;
@@ -151,8 +159,9 @@ TEST_CASE("degenerate geometries converge without a fibre in another one, or say
     for (const Case& c : cases) {
         CAPTURE(c.name);
         const SmallResult result = run(c.scene);
-        std::printf("%s: %s, %ld of %ld contacts, deepest %.1e r %s\n", c.name, result.report.converged ? "converged" : "stopped", static_cast<long>(result.report.contact.active),
-                    static_cast<long>(result.report.contact.elements), deepest(c.scene, result), result.report.reason.c_str());
+        std::printf("%s: %s, %ld of %ld contacts, deepest %.1e r %s\n", c.name, result.report.converged ? "converged" : "stopped",
+                    static_cast<long>(result.report.contact.active), static_cast<long>(result.report.contact.elements),
+                    deepest(c.scene, result), result.report.reason.c_str());
         CHECK(result.finite());
         if (c.must) REQUIRE(result.report.converged);
         if (!result.report.converged) {
@@ -184,7 +193,8 @@ TEST_CASE("slack fibres under a load they cannot carry yet find their shape, or 
     CHECK(result.report.contact.active > 0);
     CHECK(deepest(scene, result) < 0.05);
     double arc = 0.0;
-    for (std::size_t k = 1; k < result.centreline[1].size(); ++k) arc += (result.centreline[1][k] - result.centreline[1][k - 1]).norm();
+    for (std::size_t k = 1; k < result.centreline[1].size(); ++k)
+        arc += (result.centreline[1][k] - result.centreline[1][k - 1]).norm();
     CHECK(arc == test::near(1.0, 2e-3));  // it bends rather than being squeezed by a tenth
 }
 
@@ -202,9 +212,14 @@ Cycle second_cycle(double allowed, Index increments, Index beginning) {
     scene.tight = true, scene.allowed = allowed;
     scene::Assembly assembly;
     for (const bool upper : {false, true}) {
-        const Index fibre = assembly.add({.from = scene.fibres[upper].from, .to = scene.fibres[upper].to, .section = scene::circular(r), .material = {7300.0, 0.3}, .elements = 8});
+        const Index fibre = assembly.add({.from = scene.fibres[upper].from,
+                                          .to = scene.fibres[upper].to,
+                                          .section = scene::circular(r),
+                                          .material = {7300.0, 0.3},
+                                          .elements = 8});
         for (const double end : {0.0, 1.0})
-            assembly.clamp({fibre, end}, upper ? Vec3(0, 0, -r) : Vec3(0.6 * r, 0, 0), Vec3::Zero(), Vec3::Zero(), upper ? "press" : "drag");
+            assembly.clamp({fibre, end}, upper ? Vec3(0, 0, -r) : Vec3(0.6 * r, 0, 0), Vec3::Zero(), Vec3::Zero(),
+                           upper ? "press" : "drag");
     }
     simulation::Simulator<StableModel> simulator(assembly, parameters_of<StableModel>(scene));
     simulation::Report report;
@@ -233,8 +248,11 @@ Cycle second_cycle(double allowed, Index increments, Index beginning) {
         cycle.loop = (force - before).norm() / force.norm();
         if (!second) before = force;
     }
-    std::printf("penetration %.0e r, %ld increments a stroke and %ld at its beginning: work of a cycle %.6e, dissipated %.6e, balance off by %.2e of it, loop by %.1e\n", allowed,
-                static_cast<long>(increments), static_cast<long>(beginning), cycle.work, cycle.dissipated, cycle.error, cycle.loop);
+    std::printf(
+        "penetration %.0e r, %ld increments a stroke and %ld at its beginning: work of a cycle %.6e, dissipated %.6e, balance "
+        "off by %.2e of it, loop by %.1e\n",
+        allowed, static_cast<long>(increments), static_cast<long>(beginning), cycle.work, cycle.dissipated, cycle.error,
+        cycle.loop);
     return cycle;
 }
 
@@ -243,13 +261,15 @@ TEST_CASE("a fibre that goes there and back with friction closes its loop, and n
     double before = 1.0;
     for (const Index increments : {20, 40, 80}) {
         const Cycle cycle = second_cycle(1e-2, increments, 0);
-        CHECK(cycle.loop < (increments < 40 ? 1e-6 : 1e-8));  // the stiffness adapts an increment at a time, and is not done in the first
+        CHECK(cycle.loop <
+              (increments < 40 ? 1e-6 : 1e-8));  // the stiffness adapts an increment at a time, and is not done in the first
         CHECK(cycle.dissipated > 0.0);
         CHECK(std::abs(cycle.error) < 0.5 * before);
         before = std::abs(cycle.error);
     }
     CHECK(before < 3e-4);
-    // With that bend resolved the balance closes to a millionth, however far particles sink into each other: friction has no lever.
+    // With that bend resolved the balance closes to a millionth, however far particles sink into each other: friction has no
+    // lever.
     for (const auto& [allowed, missing] : {std::pair{1e-2, 2e-6}, {1e-4, 1e-6}}) {
         const Cycle fine = second_cycle(allowed, 160, 400);
         CHECK(std::abs(fine.error) < missing);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Small scenes with one number that goes over decades, and what their results are held to: for tests, and for the benchmark that draws them.
+/// @file Small scenes with one number that goes over decades, and what their results are held to: for tests, and for the
+/// benchmark that draws them.
 
 #include "small_scenes.hpp"
 
@@ -19,7 +20,8 @@ inline constexpr std::array penalties{1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0}; 
 inline SmallScene crossed(double length, double approach) {
     const double r = 0.0201;
     SmallScene scene;
-    SmallFibre lower{Vec3(0, -0.5 * length, 0), Vec3(0, 0.5 * length, 0)}, upper{Vec3(-0.5 * length, 0, 2.0 * r), Vec3(0.5 * length, 0, 2.0 * r)};
+    SmallFibre lower{Vec3(0, -0.5 * length, 0), Vec3(0, 0.5 * length, 0)},
+        upper{Vec3(-0.5 * length, 0, 2.0 * r), Vec3(0.5 * length, 0, 2.0 * r)};
     upper.move_from = upper.move_to = Vec3(0, 0, -approach);
     scene.fibres = {lower, upper};
     for (SmallFibre& f : scene.fibres) f.elements = 16;
@@ -31,7 +33,9 @@ inline double stiffness_of(const SmallFibre& f) {
     return 192.0 * f.young * inertia / std::pow(length, 3) / (1.0 + 24.0 * 1.3 * std::pow(f.radius / length, 2));
 }
 /// Force of crossed fibres whose middles give way by `approach` in all.
-inline double theory_force(const SmallScene& scene, double approach) { return approach / (1.0 / stiffness_of(scene.fibres[0]) + 1.0 / stiffness_of(scene.fibres[1])); }
+inline double theory_force(const SmallScene& scene, double approach) {
+    return approach / (1.0 / stiffness_of(scene.fibres[0]) + 1.0 / stiffness_of(scene.fibres[1]));
+}
 
 /// An approach so small that tension, (u / r)^2 / 8, stays below 1e-4.
 inline const double small_approach = 0.02 * 0.0201;
@@ -64,7 +68,8 @@ inline SmallScene held_at(double penalty) {
 /// Its stiffness [force / length].
 inline double penalty_stiffness(const SmallScene& scene) {
     const SmallFibre& f = scene.fibres[0];
-    return scene.penalty * contact::section_stiffness({f.young, 0.3}, 0.5 * (f.to - f.from).norm() / static_cast<double>(f.elements));
+    return scene.penalty *
+           contact::section_stiffness({f.young, 0.3}, 0.5 * (f.to - f.from).norm() / static_cast<double>(f.elements));
 }
 /// Force of the two fibres and the penalty, three springs in a row; the law's smooth start takes half of its depth.
 inline double theory_force_on_penalty(const SmallScene& scene) {

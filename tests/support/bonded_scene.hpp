@@ -17,7 +17,8 @@
 namespace fibrant::test {
 
 /// Cells of a box, each direction cut at the given places.
-inline scene::Solid block(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z, scene::ElasticMaterial material) {
+inline scene::Solid block(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z,
+                          scene::ElasticMaterial material) {
     scene::Solid solid;
     solid.material = material;
     const Index nx = core::count(x), ny = core::count(y);
@@ -28,8 +29,9 @@ inline scene::Solid block(const std::vector<double>& x, const std::vector<double
     for (Index k = 0; k + 1 < core::count(z); ++k)
         for (Index j = 0; j + 1 < ny; ++j)
             for (Index i = 0; i + 1 < nx; ++i)
-                solid.cells.push_back({node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k), node(i, j, k + 1),
-                                       node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)});
+                solid.cells.push_back({node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k),
+                                       node(i, j, k + 1), node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1),
+                                       node(i, j + 1, k + 1)});
     return solid;
 }
 inline std::vector<double> cuts(double from, double to, Index cells) {
@@ -54,9 +56,16 @@ struct BondedScene {
     using Equilibrium = assembly::Equilibrium<Beam, Contacts, connection::NoConnections, SolidPart>;
 
     explicit BondedScene(const scene::Assembly& assembly, const typename SolidPart::Parameters& parameters = {})
-        : mesh{assembly, beam}, channels{assembly},
-          contacts{assembly, mesh, contact_parameters(), proximity::BruteSearch(), law::RegularisedPenalty({.regularisation_depth = 1e-3}), law::Frictionless()},
-          equilibrium{assembly, mesh, beam, contacts, channels, SolidPart(parameters)}, state{equilibrium.solid().with_rest(mesh.start_state())} {
+        : mesh{assembly, beam},
+          channels{assembly},
+          contacts{assembly,
+                   mesh,
+                   contact_parameters(),
+                   proximity::BruteSearch(),
+                   law::RegularisedPenalty({.regularisation_depth = 1e-3}),
+                   law::Frictionless()},
+          equilibrium{assembly, mesh, beam, contacts, channels, SolidPart(parameters)},
+          state{equilibrium.solid().with_rest(mesh.start_state())} {
         Vector none;
         contacts.detect(state, state, 1e-9, false);
         contacts.evaluate(state);
@@ -101,7 +110,8 @@ struct BondedScene {
         for (Index f = 0; f < mesh.fibre_count(); ++f)
             for (Index a = 0; a < mesh.node_count(f); ++a) {
                 const Index v = mesh.node_vector(f, a);
-                if (where(mesh.start_state().template segment<3>(3 * v))) sum += equilibrium.reaction().template segment<3>(3 * v);
+                if (where(mesh.start_state().template segment<3>(3 * v)))
+                    sum += equilibrium.reaction().template segment<3>(3 * v);
             }
         return sum;
     }

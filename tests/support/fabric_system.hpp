@@ -20,23 +20,23 @@ namespace fibrant::test {
 
 /// Lengths in mm, forces in N; the values of the trial in the documentation unless changed.
 struct Fabric {
-    int bundles = 4;             ///< in each of two directions; 0 in the second if `parallel`
-    bool parallel = false;       ///< one direction only: bundles that do not cross
-    int fibres = 76;             ///< in a bundle, in an ellipse 2.5 : 1
-    int elements = 32;           ///< of a fibre
+    int bundles = 4;        ///< in each of two directions; 0 in the second if `parallel`
+    bool parallel = false;  ///< one direction only: bundles that do not cross
+    int fibres = 76;        ///< in a bundle, in an ellipse 2.5 : 1
+    int elements = 32;      ///< of a fibre
     double length = 4.4;
     double radius = 0.0201;
-    double spacing = 0.88;       ///< of bundles
+    double spacing = 0.88;  ///< of bundles
     double young_modulus = 7300.0;
     double inertia_factor = 0.2;
-    double tension = 9.27e-3;    ///< of every fibre
+    double tension = 9.27e-3;  ///< of every fibre
     double contact_stiffness = 50.0;
-    double tangential = 0.5;     ///< tangential over normal stiffness where a contact sticks
-    double sticking = 0.5;       ///< share of the contacts that stick
-    double active = 1.0;         ///< share of the contacts that are there
-    double misalignment = 0.1;   ///< of fibres along themselves, in elements
+    double tangential = 0.5;    ///< tangential over normal stiffness where a contact sticks
+    double sticking = 0.5;      ///< share of the contacts that stick
+    double active = 1.0;        ///< share of the contacts that are there
+    double misalignment = 0.1;  ///< of fibres along themselves, in elements
     double end_stiffness = 50.0;
-    bool grouped = true;         ///< whether the layout names the bundles
+    bool grouped = true;  ///< whether the layout names the bundles
     unsigned seed = 1;
 };
 
@@ -73,7 +73,8 @@ public:
             const Point& point = points_[core::at(k)];
             Vec3 sum = Vec3::Zero();
             for (Index side = 0; side < 2; ++side)
-                for (Index i = 0; i < 9; ++i) sum += point.weights[core::at(9 * side + i)] * x.segment<3>(3 * (point.first[core::at(side)] + i));
+                for (Index i = 0; i < 9; ++i)
+                    sum += point.weights[core::at(9 * side + i)] * x.segment<3>(3 * (point.first[core::at(side)] + i));
             force_[core::at(k)] = point.stiffness * sum;
         });
         core::parallel_for(core::count(layout_.chains), [&](Index c) {
@@ -106,12 +107,14 @@ public:
             const scene::Chain& chain = layout_.chains[core::at(c)];
             for (Index e = 0; e < fabric_.elements; ++e) {
                 for (Index i = 0; i < 9; ++i) vectors[core::at(i)] = chain.first_vector + 6 * e + i;
-                visitor.dense(assembly::DenseTerm{std::span<const Index>(vectors).first(9), elements_[core::at(c * fabric_.elements + e)]});
+                visitor.dense(
+                    assembly::DenseTerm{std::span<const Index>(vectors).first(9), elements_[core::at(c * fabric_.elements + e)]});
             }
             for (const Index node : {Index{0}, chain.nodes - 1})
                 for (Index i = 0; i < 3; ++i) {
                     vectors[0] = chain.first_vector + 3 * node + i;
-                    visitor.dense(assembly::DenseTerm{std::span<const Index>(vectors).first(1), Matrix(end_.segment<3>(3 * i).asDiagonal())});
+                    visitor.dense(assembly::DenseTerm{std::span<const Index>(vectors).first(1),
+                                                      Matrix(end_.segment<3>(3 * i).asDiagonal())});
                 }
         }
         for (const Point& point : points_) {
@@ -264,7 +267,8 @@ private:
             bool outermost = true;
             for (const Fibre& b : fibres_) {
                 if (b.direction == direction && b.bundle == bundle && std::abs(a.column - b.column) <= 0 &&
-                    (top ? b.height > a.height : b.height < a.height)) outermost = false;
+                    (top ? b.height > a.height : b.height < a.height))
+                    outermost = false;
             }
             if (outermost) outer.push_back(i);
         }
@@ -275,7 +279,8 @@ private:
         std::vector<std::vector<Index>> sides(layout_.chains.size());
         const assembly::VectorPlaces places(layout_);
         for (Index k = 0; k < contacts(); ++k)
-            for (Index side = 0; side < 2; ++side) sides[core::at(places.chain(points_[core::at(k)].first[core::at(side)]))].push_back(2 * k + side);
+            for (Index side = 0; side < 2; ++side)
+                sides[core::at(places.chain(points_[core::at(k)].first[core::at(side)]))].push_back(2 * k + side);
         side_first_.push_back(0);
         for (const auto& list : sides) {
             sides_.insert(sides_.end(), list.begin(), list.end());
@@ -316,7 +321,8 @@ assembly::ChainSystem<FabricSystem::Beam> chain_system(const System& other) {
         }
         void point(const assembly::PointTerm& term) {
             assembly::ChainSystem<FabricSystem::Beam>::Point point;
-            point.first_i = static_cast<std::int32_t>(3 * term.vectors[0]), point.first_j = static_cast<std::int32_t>(3 * term.vectors[9]);
+            point.first_i = static_cast<std::int32_t>(3 * term.vectors[0]),
+            point.first_j = static_cast<std::int32_t>(3 * term.vectors[9]);
             point.fibre_i = static_cast<std::int32_t>(places.chain(term.vectors[0]));
             point.fibre_j = static_cast<std::int32_t>(places.chain(term.vectors[9]));
             for (std::size_t k = 0; k < 9; ++k) point.weights_i[k] = -term.weights[k], point.weights_j[k] = term.weights[9 + k];
@@ -344,7 +350,8 @@ Vector contact_load(const System& system) {
         void dense(const assembly::DenseTerm&) const {}
         void point(const assembly::PointTerm& term) {
             Vec3 gap;
-            for (const Index k : {2, 1, 0}) gap[k] = normal(generator);  // one by one: as arguments, in an order that the compiler chooses
+            for (const Index k : {2, 1, 0})
+                gap[k] = normal(generator);  // one by one: as arguments, in an order that the compiler chooses
             const Vec3 force = term.stiffness * gap;
             for (std::size_t i = 0; i < term.vectors.size(); ++i) b.segment<3>(3 * term.vectors[i]) += term.weights[i] * force;
         }

@@ -15,8 +15,8 @@ namespace fibrant::test {
 struct Hooks {
     Index elements = 40, increments = 10;
     double friction = 0.0;
-    double pull = 0.5;        ///< of the ends from each other, over the radius of the rings
-    double angle_deg = 90.0;  ///< between the planes of both
+    double pull = 0.5;                              ///< of the ends from each other, over the radius of the rings
+    double angle_deg = 90.0;                        ///< between the planes of both
     double radius = 0.05, ring_over_radius = 20.0;  // mm
     contact::Places places = contact::Places::as_needed;
 };
@@ -24,11 +24,12 @@ struct Hooks {
 /// How a pair of hooks came out of its run.
 struct Hooked {
     simulation::Report report;
-    double force = 0.0;       ///< that pulls them apart [force]
-    double crossing = 0.0;    ///< by how much the lower one's lowest point lies below the upper one's highest [radius], > 0: still hooked
-    double closest = 0.0;     ///< least distance of the centrelines, by brute force [radius]
-    double asymmetry = 0.0;   ///< of both halves of each [radius]
-    double bend = 0.0;        ///< radius over the radius of curvature at the tip [1]
+    double force = 0.0;  ///< that pulls them apart [force]
+    double crossing =
+        0.0;  ///< by how much the lower one's lowest point lies below the upper one's highest [radius], > 0: still hooked
+    double closest = 0.0;    ///< least distance of the centrelines, by brute force [radius]
+    double asymmetry = 0.0;  ///< of both halves of each [radius]
+    double bend = 0.0;       ///< radius over the radius of curvature at the tip [1]
 };
 
 /// The first ring opens upwards and is pulled up; the second hangs in it and is pulled down. Their middles are free.
@@ -41,14 +42,17 @@ Hooked pull_hooks(const Hooks& hooks) {
     ring.section = scene::circular(r), ring.material = {1e4, 0.3}, ring.elements = hooks.elements;
     ring.curve = [=](double t) { return Vec3(-R * std::cos(pi * t), 0.0, R - R * std::sin(pi * t)); };
     const Index upper = assembly.add(ring);
-    ring.curve = [=](double t) { return Vec3(R * std::cos(pi * t) * along + (2.0 * r - R + R * std::sin(pi * t)) * Vec3::UnitZ()); };
+    ring.curve = [=](double t) {
+        return Vec3(R * std::cos(pi * t) * along + (2.0 * r - R + R * std::sin(pi * t)) * Vec3::UnitZ());
+    };
     const Index lower = assembly.add(ring);
     for (const Index fibre : {upper, lower})
         for (const scene::Station& end : {scene::first_end(fibre), scene::last_end(fibre)})
             assembly.clamp(end, (fibre == upper ? 0.5 : -0.5) * hooks.pull * R * Vec3::UnitZ());
     simulation::ModelParameters<M> parameters;
     parameters.normal.regularisation_depth = 1e-3 * r;
-    if constexpr (core::Active<typename M::Friction>) parameters.friction = {.friction_coefficient = hooks.friction, .reversible_displacement = 0.02 * r};
+    if constexpr (core::Active<typename M::Friction>)
+        parameters.friction = {.friction_coefficient = hooks.friction, .reversible_displacement = 0.02 * r};
     parameters.contact.stiffness.allowed_penetration = 1e-2 * r;
     parameters.contact.places = hooks.places;
     simulation::Simulator<M> simulator(assembly, parameters);
@@ -58,12 +62,14 @@ Hooked pull_hooks(const Hooks& hooks) {
     const Vector& state = simulator.state();
     std::vector<Vec3> points[2];
     for (const Index fibre : {upper, lower})
-        for (Index k = 0; k <= 20 * hooks.elements; ++k) points[fibre].push_back(mesh.position(state, fibre, static_cast<double>(k) / 20.0));
+        for (Index k = 0; k <= 20 * hooks.elements; ++k)
+            points[fibre].push_back(mesh.position(state, fibre, static_cast<double>(k) / 20.0));
     out.closest = std::numeric_limits<double>::infinity();
     double lowest = out.closest, highest = -out.closest;
     for (const Vec3& a : points[0]) {
         lowest = std::min(lowest, a.z());
-        for (const Vec3& b : points[1]) out.closest = std::min(out.closest, (b - a).norm() / r), highest = std::max(highest, b.z());
+        for (const Vec3& b : points[1])
+            out.closest = std::min(out.closest, (b - a).norm() / r), highest = std::max(highest, b.z());
     }
     out.crossing = (highest - lowest) / r;
     for (const Index fibre : {upper, lower}) {

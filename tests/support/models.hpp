@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Models that tests of several folders share: compiled once in models.cpp and in fibrant::compiled, not once in every file that
-/// runs one.
+/// @file Models that tests of several folders share: compiled once in models.cpp and in fibrant::compiled, not once in every file
+/// that runs one.
 
 #include <fibrant/compiled/rough_fibres.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
@@ -19,7 +19,8 @@ struct Pressing : Smooth {
 struct RoughPressing : Rough {
     using Tools = contact::RigidTools;
 };
-static_assert(simulation::Model<RoughPressing> && simulation::Model<Smooth> && simulation::Model<Rough> && simulation::Model<Pressing>);
+static_assert(simulation::Model<RoughPressing> && simulation::Model<Smooth> && simulation::Model<Rough> &&
+              simulation::Model<Pressing>);
 
 }  // namespace fibrant::test
 

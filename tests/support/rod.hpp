@@ -148,9 +148,7 @@ private:
         Vector prescribed;
     };
 
-    ElementVector of_element(const Vector& v, int e) const {
-        return v.template segment<9 * Beam::nodes>(9 * Beam::reach * e);
-    }
+    ElementVector of_element(const Vector& v, int e) const { return v.template segment<9 * Beam::nodes>(9 * Beam::reach * e); }
     Stresses current_stresses() const {
         Stresses s;
         for (int e = 0; e < elements(); ++e) s.push_back(stresses(e));
@@ -161,8 +159,7 @@ private:
         const Vec3 g1 = g.head<3>(), g2 = g.tail<3>(), n = g1.cross(g2).normalized();
         const Vec3 about_1 = m[0] * g2.cross(n) / g2.norm(), about_2 = m[1] * n.cross(g1) / g1.norm();
         Eigen::Matrix<double, 6, 1> f;
-        f << (about_2 + 0.5 * m[2] * n).cross(g1) / g1.squaredNorm(),
-            (about_1 + 0.5 * m[2] * n).cross(g2) / g2.squaredNorm();
+        f << (about_2 + 0.5 * m[2] * n).cross(g1) / g1.squaredNorm(), (about_1 + 0.5 * m[2] * n).cross(g2) / g2.squaredNorm();
         return f;
     }
     Vector external() const {

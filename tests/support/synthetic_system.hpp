@@ -149,9 +149,13 @@ inline SyntheticSystem random_system(const RandomSystem& options) {
         tie.count = 1 + t % 3;
         tie.first = t == 0 ? 0 : system.description.ties.back().first + system.description.ties.back().count;
         const auto taken = [&](Index vector) {
-            const auto in = [&](const scene::Tie& other) { return std::ranges::find(other.vectors, vector) != other.vectors.end(); };
-            return in(tie) || std::ranges::any_of(system.description.ties, in) || system.description.kind[core::at(vector)] != scene::VectorKind::position ||
-                   std::ranges::find(system.description.held, vector, &scene::HeldVector::vector) != system.description.held.end();
+            const auto in = [&](const scene::Tie& other) {
+                return std::ranges::find(other.vectors, vector) != other.vectors.end();
+            };
+            return in(tie) || std::ranges::any_of(system.description.ties, in) ||
+                   system.description.kind[core::at(vector)] != scene::VectorKind::position ||
+                   std::ranges::find(system.description.held, vector, &scene::HeldVector::vector) !=
+                       system.description.held.end();
         };
         while (tie.vectors.size() < 5) {
             const Index vector = below(system.description.vectors());

@@ -10,8 +10,6 @@
 
 namespace fibrant::test {
 
-
-
 /// A term of a scene, with its tangent as a full matrix.
 template <class B, class T>
 struct TermScene {
@@ -21,7 +19,9 @@ struct TermScene {
     term::For<T, B> term;
 
     TermScene(const scene::Assembly& of, const typename T::Parameters& parameters)
-        : assembly{of}, mesh{assembly, B()}, channels{assembly, term::For<T, B>::channels(parameters)},
+        : assembly{of},
+          mesh{assembly, B()},
+          channels{assembly, term::For<T, B>::channels(parameters)},
           term{term::SiteOf<B>(assembly, mesh, channels, mesh.layout()), parameters} {
         begin(1.0);
     }
@@ -63,7 +63,9 @@ struct TermScene {
         term.add_couplings(state, couplings);
         const scene::DofLayout& layout = mesh.layout();
         for (Index f = 0; f < mesh.fibre_count(); ++f)
-            scene::for_own_vectors(layout, f, [&](Index v, double length) { sink.add_diagonal(v, term.spring(f) * length * length * Mat3::Identity()); });
+            scene::for_own_vectors(layout, f, [&](Index v, double length) {
+                sink.add_diagonal(v, term.spring(f) * length * length * Mat3::Identity());
+            });
         return sink.all;
     }
 };
@@ -77,7 +79,8 @@ void check_term(const scene::Assembly& assembly, const typename T::Parameters& p
     term.detect(state, state, 1.0);
     const Vector forces = scene.forces(state);
     REQUIRE(forces.norm() > 0.0);
-    // Central differences: their error is of the order of h^2, and rounding of 1e-16 / h, of forces and lengths of the order of 1.
+    // Central differences: their error is of the order of h^2, and rounding of 1e-16 / h, of forces and lengths of the order
+    // of 1.
     const double h = 1e-5, bar = 1e-7;
     Matrix differences(state.size(), state.size());
     Vector slope(state.size());
@@ -103,8 +106,10 @@ void check_term(const scene::Assembly& assembly, const typename T::Parameters& p
     const auto numbers = [](auto& of) {
         std::vector<double> all;
         of.each([&]<class Value>(Value& value) {
-            if constexpr (std::is_same_v<Value, Vector>) all.insert(all.end(), value.begin(), value.end());
-            else all.push_back(static_cast<double>(value));
+            if constexpr (std::is_same_v<Value, Vector>)
+                all.insert(all.end(), value.begin(), value.end());
+            else
+                all.push_back(static_cast<double>(value));
         });
         return all;
     };
@@ -123,7 +128,8 @@ void check_term(const scene::Assembly& assembly, const typename T::Parameters& p
     again.term.each([&]<class Value>(Value& value) {
         if constexpr (std::is_same_v<Value, Vector>)
             for (double& entry : value) entry = accepted[next++];
-        else value = static_cast<Value>(accepted[next++]);
+        else
+            value = static_cast<Value>(accepted[next++]);
     });
     CHECK(next == accepted.size());
     again.term.restore();

@@ -41,7 +41,9 @@ public:
     void evaluate(const Vector& state) { force_ = stiffness_ * (between(state) - Vec3(rest_)); }
     double largest_part(const Vector&, double) const noexcept { return 1.0; }
     void add_forces(const Vector&, Vector& sum) const { j_.push(force_, sum), i_.push(-force_, sum); }
-    void add_couplings(const Vector&, term::Couplings& couplings) const { couplings.between(i_, j_, stiffness_ * Mat3::Identity()); }
+    void add_couplings(const Vector&, term::Couplings& couplings) const {
+        couplings.between(i_, j_, stiffness_ * Mat3::Identity());
+    }
     double stored(const Vector& state) const { return 0.5 * stiffness_ * (between(state) - Vec3(rest_)).squaredNorm(); }
     double dissipated(const Vector&) const noexcept { return 0.0; }
     void accept(const Vector& state) { rest_ += 0.5 * (between(state) - Vec3(rest_)); }
@@ -68,7 +70,8 @@ scene::Assembly two_fibres() {
     scene::Assembly assembly;
     for (const double y : {0.0, 0.3}) {
         scene::FibreSpecification one;
-        one.from = {0, y, 0}, one.to = {2, y, 0.1 * y}, one.section = scene::circular(0.01), one.material = {1000.0, 0.3}, one.elements = 4;
+        one.from = {0, y, 0}, one.to = {2, y, 0.1 * y}, one.section = scene::circular(0.01), one.material = {1000.0, 0.3},
+        one.elements = 4;
         assembly.add(one);
     }
     return assembly;
@@ -78,7 +81,8 @@ TEST_CASE("terms of a user keep the contract, on cables and on rods whose sectio
     const auto check = []<class B>(std::type_identity<B>) {
         const scene::Assembly assembly = two_fibres();
         const beam::Mesh<B> mesh(assembly, B());
-        const Vector state = mesh.rest_state() + 0.05 * Vector::LinSpaced(mesh.rest_state().size(), -1.0, 1.0).array().sin().matrix();
+        const Vector state =
+            mesh.rest_state() + 0.05 * Vector::LinSpaced(mesh.rest_state().size(), -1.0, 1.0).array().sin().matrix();
         test::check_term<B, SoftBed>(assembly, {.stiffness = 3.0}, state);
         test::check_term<B, Tether>(assembly, {.stiffness = 0.7}, state);
         // Fibres that are drawn apart, so that nothing of a bond's stiffness is left out.
@@ -105,7 +109,8 @@ using connection::FibreBonds;
 using Tied = ModelWith<term::List<Tether, FibreBonds>>;
 static_assert(simulation::Model<Tied>);
 // An empty list is nothing.
-static_assert(sizeof(simulation::Simulator<ModelWith<term::List<>>>::Equilibrium) + sizeof(Tether) + sizeof(FibreBonds) == sizeof(simulation::Simulator<Tied>::Equilibrium));
+static_assert(sizeof(simulation::Simulator<ModelWith<term::List<>>>::Equilibrium) + sizeof(Tether) + sizeof(FibreBonds) ==
+              sizeof(simulation::Simulator<Tied>::Equilibrium));
 
 struct Forces {
     std::vector<double> shown;
@@ -143,7 +148,9 @@ TEST_CASE("a tie of a user's own pulls two fibres alike, is shown, and goes thro
         CHECK(forces.shown.size() == 6);
         CHECK(forces.shown.back() == tether.force().norm());
         CHECK(tether.force().y() > 0.0);
-        const auto held = [&](Index f) { return Vec3(simulator.reaction(scene::first_end(f)) + simulator.reaction(scene::last_end(f))); };
+        const auto held = [&](Index f) {
+            return Vec3(simulator.reaction(scene::first_end(f)) + simulator.reaction(scene::last_end(f)));
+        };
         // The supports of either fibre carry what the tie pulls it by; residuals are converged to 1e-4 of that.
         CHECK((held(0) + tether.force()).norm() < 1e-3 * tether.force().norm());
         CHECK((held(1) - tether.force()).norm() < 1e-3 * tether.force().norm());
@@ -164,17 +171,20 @@ TEST_CASE("bonds carry force until they break, one that is stronger holds, and t
     const double k = 1e-7;
     const std::vector<FibreBonds::Bond> bonds{{.i = {0, 0.5}, .j = {1, 0.5}, .stiffness = k, .strength = 0.55 * 0.2 * k},
                                               {.i = {0, 0.25}, .j = {1, 0.25}, .stiffness = 0.5 * k, .span = 0.1}};
-    const simulation::Report report = run({.increments = 20}, 1e-12, [&](const auto& simulator, const Forces&) {
-        const FibreBonds& term = simulator.equilibrium().terms().template get<FibreBonds>();
-        CHECK(term.broken(0));
-        CHECK(!term.broken(1));
-        const Vec3 force = term.force(1, simulator.state());
-        CHECK(term.force(0, simulator.state()).norm() == 0.0);
-        // The supports of the second fibre carry what its bond pulls it back by, residuals to 1e-4 of that.
-        const Vec3 held = simulator.reaction(scene::first_end(1)) + simulator.reaction(scene::last_end(1));
-        CHECK((held + force).norm() < 1e-3 * force.norm());
-        CHECK(force.y() < 0.0);
-    }, bonds);
+    const simulation::Report report = run(
+        {.increments = 20}, 1e-12,
+        [&](const auto& simulator, const Forces&) {
+            const FibreBonds& term = simulator.equilibrium().terms().template get<FibreBonds>();
+            CHECK(term.broken(0));
+            CHECK(!term.broken(1));
+            const Vec3 force = term.force(1, simulator.state());
+            CHECK(term.force(0, simulator.state()).norm() == 0.0);
+            // The supports of the second fibre carry what its bond pulls it back by, residuals to 1e-4 of that.
+            const Vec3 held = simulator.reaction(scene::first_end(1)) + simulator.reaction(scene::last_end(1));
+            CHECK((held + force).norm() < 1e-3 * force.norm());
+            CHECK(force.y() < 0.0);
+        },
+        bonds);
     REQUIRE_MESSAGE(report.converged, report.reason);
     // It breaks in the increment that takes it over its strength: 0.55 to 0.6 of the way; 0.5 k u^2 is lost then.
     const double least = 0.5 * k * std::pow(0.55 * 0.2, 2), most = 0.5 * k * std::pow(0.6 * 0.2, 2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The Kirchhoff cable in the reference problems of a fibre that is straight at rest, and in contact. Its model lies between the two
-// of the references: inextensible, and extensible and shearable; they are (r/L)^2 apart in bending.
+// The Kirchhoff cable in the reference problems of a fibre that is straight at rest, and in contact. Its model lies between the
+// two of the references: inextensible, and extensible and shearable; they are (r/L)^2 apart in bending.
 #include <verification/elements.hpp>
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
@@ -25,14 +25,16 @@ TEST_CASE("a slender cantilever of cables converges with the fourth order") {
     const Eigen::Vector2d kirchhoff(14.347209624599, 12.308669949439);  // end_force.json, force_5_slender_1000
     double error[3];
     for (int k = 0; k < 3; ++k) error[k] = (test::pushed_tip<Model>(1000.0, 5.0, 4 << k) - kirchhoff).norm() / 20.1;
-    std::printf("P L^2 / EI = 5: %.2e %.2e %.2e of L, order %.2f %.2f\n", error[0], error[1], error[2], test::order(error[0], error[1]), test::order(error[1], error[2]));
+    std::printf("P L^2 / EI = 5: %.2e %.2e %.2e of L, order %.2f %.2f\n", error[0], error[1], error[2],
+                test::order(error[0], error[1]), test::order(error[1], error[2]));
     CHECK(error[0] < 3e-4);
     CHECK(test::order(error[0], error[1]) > 3.7);
     CHECK(error[2] < 2.6e-6);  // what the models are apart
 }
 
 TEST_CASE("a thick cantilever of cables is between the two models of the reference") {
-    const Eigen::Vector2d kirchhoff(0.28694419249199, 0.24617339898878), reissner(0.28878815435132, 0.24580979130175);  // slender_20
+    const Eigen::Vector2d kirchhoff(0.28694419249199, 0.24617339898878),
+        reissner(0.28878815435132, 0.24580979130175);  // slender_20
     const Eigen::Vector2d tip = test::pushed_tip<Model>(20.0, 5.0, 16);
     const double apart = (kirchhoff - reissner).norm();
     CHECK((tip - kirchhoff).norm() < apart);
@@ -49,13 +51,18 @@ TEST_CASE("a stretched cable between clamps has no membrane locking, and converg
     // prestretched.json, reissner
     const struct {
         double slenderness, strain, depth, force;
-    } cases[] = {{100.0, 0.0, 2.0, 0.0017101073583669}, {100.0, 0.01, 2.0, 0.0098088809558458}, {1000.0, 0.0, 10.0, 9.1576461780316e-05}, {1000.0, 0.01, 2.0, 0.00074918537055306}};
+    } cases[] = {{100.0, 0.0, 2.0, 0.0017101073583669},
+                 {100.0, 0.01, 2.0, 0.0098088809558458},
+                 {1000.0, 0.0, 10.0, 9.1576461780316e-05},
+                 {1000.0, 0.01, 2.0, 0.00074918537055306}};
     for (const auto& c : cases) {
         CAPTURE(c.slenderness);
         CAPTURE(c.strain);
         double error[3];
-        for (int k = 0; k < 3; ++k) error[k] = std::abs(test::sideways_force<Model>(c.slenderness, c.strain, c.depth, 8 << (2 * k)) / c.force - 1.0);
-        std::printf("L/r %g, stretch %g: %.2e %.2e %.2e with 8, 32, 128 elements\n", c.slenderness, c.strain, error[0], error[1], error[2]);
+        for (int k = 0; k < 3; ++k)
+            error[k] = std::abs(test::sideways_force<Model>(c.slenderness, c.strain, c.depth, 8 << (2 * k)) / c.force - 1.0);
+        std::printf("L/r %g, stretch %g: %.2e %.2e %.2e with 8, 32, 128 elements\n", c.slenderness, c.strain, error[0], error[1],
+                    error[2]);
         CHECK(error[0] < 0.1);
         CHECK(error[2] < shear_share(c.slenderness, c.strain) + 2e-4);
     }
@@ -70,13 +77,15 @@ TEST_CASE("a column of cables buckles and bends as the elastica does") {
 TEST_CASE("two crossed cables push each other apart as the rods of the reference do") {
     const struct {
         double length, strain, u, force;  // crossed_fibres.json, reissner
-    } cases[] = {{4.02, 0.0, 0.0402, 6.8765287357e-05}, {4.02, 0.002, 0.1608, 0.00260312107061}, {1.005, 0.0, 0.1608, 0.0618080596752}};
+    } cases[] = {
+        {4.02, 0.0, 0.0402, 6.8765287357e-05}, {4.02, 0.002, 0.1608, 0.00260312107061}, {1.005, 0.0, 0.1608, 0.0618080596752}};
     for (const auto& c : cases)
         for (const double angle : {90.0, 35.0}) {
             CAPTURE(c.u);
             CAPTURE(angle);
             const test::Pressed pressed = test::pressed_fibres<Model>(c.length, c.strain, c.u, angle, 32);
-            std::printf("crossed, L %g, stretch %g, u %g, %g degrees: error %+.2e, lost %.2e r\n", c.length, c.strain, c.u, angle, pressed.force / c.force - 1.0, pressed.lost / 0.0201);
+            std::printf("crossed, L %g, stretch %g, u %g, %g degrees: error %+.2e, lost %.2e r\n", c.length, c.strain, c.u, angle,
+                        pressed.force / c.force - 1.0, pressed.lost / 0.0201);
             const double strain = c.strain + 0.5 * std::pow(c.u / c.length, 2);  // half of u each, over half of the length
             CHECK(std::abs(pressed.force / c.force - 1.0) < shear_share(c.length / 0.0201, strain) + 5e-4);
             CHECK(pressed.unbalance < 1e-6);
@@ -85,7 +94,8 @@ TEST_CASE("two crossed cables push each other apart as the rods of the reference
 }
 
 TEST_CASE("two parallel cables pressed along their length lie on each other without an edge") {
-    // A fibre on a straight one that is held, both in contact along all their length: the force per length is the same everywhere.
+    // A fibre on a straight one that is held, both in contact along all their length: the force per length is the same
+    // everywhere.
     const double r = 0.0201, length = 1.0, load = 1e-3;
     scene::Assembly assembly;
     for (const double height : {0.0, 2.0 * r}) {

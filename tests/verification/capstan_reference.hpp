@@ -9,9 +9,12 @@
 
 namespace fibrant::test {
 
-/// Angle that a fibre turns through, clockwise in the plane of x and y, by the forces on its two ends [radian]. It is more than half a turn where the
-/// lines of the two forces meet above the cylinder: bending keeps the free parts further away from the axis the slacker they are.
-inline double turned_angle(const Vec3& slack, const Vec3& taut) { return std::numbers::pi - std::atan2(slack.cross(taut).z(), slack.dot(taut)); }
+/// Angle that a fibre turns through, clockwise in the plane of x and y, by the forces on its two ends [radian]. It is more than
+/// half a turn where the lines of the two forces meet above the cylinder: bending keeps the free parts further away from the axis
+/// the slacker they are.
+inline double turned_angle(const Vec3& slack, const Vec3& taut) {
+    return std::numbers::pi - std::atan2(slack.cross(taut).z(), slack.dot(taut));
+}
 
 struct Capstan {
     double fibre_radius, radius;  ///< of the fibre, of the cylinder [length]
@@ -34,9 +37,12 @@ inline double capstan_ratio(const Capstan& capstan, double low, double theta) {
         const int steps = 20000;
         const double h = contact_angle / steps;
         const auto slope = [&](const Arc& at) { return Arc{mu * R * at.load, (at.tension - rho * at.load) / (r * mu)}; };
-        const auto ahead = [](const Arc& at, const Arc& by, double factor) { return Arc{at.tension + factor * by.tension, at.load + factor * by.load}; };
+        const auto ahead = [](const Arc& at, const Arc& by, double factor) {
+            return Arc{at.tension + factor * by.tension, at.load + factor * by.load};
+        };
         for (int k = 0; k < steps; ++k) {
-            const Arc a = slope(arc), b = slope(ahead(arc, a, 0.5 * h)), c = slope(ahead(arc, b, 0.5 * h)), d = slope(ahead(arc, c, h));
+            const Arc a = slope(arc), b = slope(ahead(arc, a, 0.5 * h)), c = slope(ahead(arc, b, 0.5 * h)),
+                      d = slope(ahead(arc, c, h));
             arc = ahead(ahead(arc, a, h / 6), ahead(b, ahead(c, d, 0.5), 1.0), h / 3);
         }
         return arc;

@@ -34,14 +34,17 @@ struct CapstanScene {
             end.at = side < 0.0 ? scene::first_end(0) : scene::last_end(0);
             end.channel = "ends";
             end.path = [rho, side, given = *this](double amplitude) {
-                const double angle = 0.5 * std::numbers::pi * std::min(amplitude, 1.0), drawn = side * given.travel * std::max(0.0, amplitude - 1.0);
+                const double angle = 0.5 * std::numbers::pi * std::min(amplitude, 1.0),
+                             drawn = side * given.travel * std::max(0.0, amplitude - 1.0);
                 const double free = given.half * (1.0 + given.tension * std::min(1.0, 20.0 * amplitude)) - rho * angle;
-                return Vec3(side * (rho * std::sin(angle) + free * std::cos(angle) - given.half), rho * std::cos(angle) - free * std::sin(angle) - rho - drawn, 0.0);
+                return Vec3(side * (rho * std::sin(angle) + free * std::cos(angle) - given.half),
+                            rho * std::cos(angle) - free * std::sin(angle) - rho - drawn, 0.0);
             };
             assembly.hold(end);
         }
         const Mat3 across = Vec3(0, 0, 1).asDiagonal();
-        for (Index k = 0; k <= intervals; ++k) assembly.hold_position({0, static_cast<double>(k) / static_cast<double>(intervals)}, across);
+        for (Index k = 0; k <= intervals; ++k)
+            assembly.hold_position({0, static_cast<double>(k) / static_cast<double>(intervals)}, across);
         assembly.hold_axial_rotation(scene::first_end(0));
         return assembly;
     }

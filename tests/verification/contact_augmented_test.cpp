@@ -54,7 +54,8 @@ scene::Assembly crossing(double approach) {
 
 TEST_CASE("crossed fibres push each other apart as if neither could enter the other, however soft the penalty") {
     const double approach = 0.0402, expected = 0.00435476149304;  // crossed_fibres.json
-    simulation::Simulator<Smooth> hard(crossing(approach), parameters<Smooth>(10.0, 0.0)), soft(crossing(approach), parameters<Smooth>(0.001, 0.0));
+    simulation::Simulator<Smooth> hard(crossing(approach), parameters<Smooth>(10.0, 0.0)),
+        soft(crossing(approach), parameters<Smooth>(0.001, 0.0));
     REQUIRE(hard.run(test::stage<Smooth>({{"motion", 1.0}}, 4)).converged);
     const simulation::Report sunk = soft.run(test::stage<Smooth>({{"motion", 1.0}}, 4));
     REQUIRE(sunk.converged);
@@ -64,12 +65,15 @@ TEST_CASE("crossed fibres push each other apart as if neither could enter the ot
         simulation::Simulator<Held> held(crossing(approach), parameters<Held>(fraction, 1e-6 * r));
         const simulation::Report report = held.run(test::stage<Held>({{"motion", 1.0}}, 4));
         REQUIRE_MESSAGE(report.converged, report.reason);
-        std::printf("penalty %g: force %.9f, %.9f with a hard one (%+.1e), %.9f for rods (%+.1e); penetration %.1e r, alone %.1e r; %td contact passes\n", fraction,
-                    force(held), force(hard), force(held) / force(hard) - 1.0, expected, force(held) / expected - 1.0, report.contact.greatest_penetration / r,
-                    sunk.contact.greatest_penetration / r, report.counts.contact_passes);
+        std::printf(
+            "penalty %g: force %.9f, %.9f with a hard one (%+.1e), %.9f for rods (%+.1e); penetration %.1e r, alone %.1e r; %td "
+            "contact passes\n",
+            fraction, force(held), force(hard), force(held) / force(hard) - 1.0, expected, force(held) / expected - 1.0,
+            report.contact.greatest_penetration / r, sunk.contact.greatest_penetration / r, report.counts.contact_passes);
         CHECK(report.contact.greatest_penetration < 1e-6 * r);
         CHECK(std::abs(force(held) / force(hard) - 1.0) < 5e-4);  // the hard penalty sinks by 5e-4 r, of an approach of 2 r
-        CHECK(std::abs(force(held) / expected - 1.0) < 3e-3);   // the pinch, which the reference does not have, takes 2e-3 off the approach
+        CHECK(std::abs(force(held) / expected - 1.0) <
+              3e-3);  // the pinch, which the reference does not have, takes 2e-3 off the approach
         CHECK(std::abs(report.contact.reaction_sum / force(held) - 1.0) < 1e-6);
         if (first == 0.0) first = force(held);
         CHECK(std::abs(force(held) / first - 1.0) < 2e-6);  // 1e-6 r of 2 r, which the force follows
@@ -100,7 +104,8 @@ TEST_CASE("multipliers hold a fibre on a plate without a penetration") {
     simulation::Simulator<HeldTool> simulator(assembly, soft);
     const simulation::Report report = simulator.run(test::stage<HeldTool>({{"tools", 1.0}}, 2));
     REQUIRE_MESSAGE(report.converged, report.reason);
-    std::printf("plate: %.6f N, penetration %.1e r\n", simulator.contacts().tools().reaction(0).force.z(), report.contact.greatest_penetration / r);
+    std::printf("plate: %.6f N, penetration %.1e r\n", simulator.contacts().tools().reaction(0).force.z(),
+                report.contact.greatest_penetration / r);
     CHECK(report.contact.greatest_penetration < 1e-6 * r);
     CHECK(report.contact.reaction_sum > 0.0);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A fibre drawn over a fixed cylinder with friction: a rigid tool, and a guide that is a fibre itself. Reference: elastica arms and sliding contact at the surface, for
-// the forces at the two ends as they are measured.
+// A fibre drawn over a fixed cylinder with friction: a rigid tool, and a guide that is a fibre itself. Reference: elastica arms
+// and sliding contact at the surface, for the forces at the two ends as they are measured.
 #include <contact/contact_model.hpp>
 #include <verification/capstan_reference.hpp>
 
@@ -25,15 +25,19 @@ using test::Rough;
 const double r = 0.0201, R = 0.5, rho = R + r, pi = std::numbers::pi;
 const double stiffness = 0.25 * pi * r * r * r * r * test::glass.young_modulus;  // E I
 
-double reference_ratio(double mu, double bending, double low, double theta) { return test::capstan_ratio({r, R, bending, mu}, low, theta); }
+double reference_ratio(double mu, double bending, double low, double theta) {
+    return test::capstan_ratio({r, R, bending, mu}, low, theta);
+}
 
-/// The same with friction on the centreline (capstan.json, centreline_friction_with_bending): point forces at both ends of the arc, and e^(mu angle) between them.
+/// The same with friction on the centreline (capstan.json, centreline_friction_with_bending): point forces at both ends of the
+/// arc, and e^(mu angle) between them.
 double centreline_ratio(double mu, double bending, double low, double theta) {
     const auto turn = [&](double force) { return std::acos(1.0 - bending / (2.0 * rho * rho * force)); };
     const double entry = turn(low);
     double high = low;
     for (int pass = 0; pass < 100; ++pass) {
-        const double exit = turn(high), tension = low * (std::cos(entry) + mu * std::sin(entry)) * std::exp(mu * (theta - entry - exit));
+        const double exit = turn(high),
+                     tension = low * (std::cos(entry) + mu * std::sin(entry)) * std::exp(mu * (theta - entry - exit));
         high = tension / (std::cos(exit) - mu * std::sin(exit));
     }
     return high / low;
@@ -42,12 +46,12 @@ double centreline_ratio(double mu, double bending, double low, double theta) {
 struct Drawn {
     bool converged = false;
     std::string reason;
-    double ratio = 0.0;     ///< of the tensions, taut over slack
-    double low = 0.0;       ///< the slack one [force]
-    double angle = 0.0;     ///< that the fibre turns through, by the directions of the two forces [radian]
+    double ratio = 0.0;  ///< of the tensions, taut over slack
+    double low = 0.0;    ///< the slack one [force]
+    double angle = 0.0;  ///< that the fibre turns through, by the directions of the two forces [radian]
     double penetration = 0.0;
     Index active = 0;
-    double moment = 0.0;    ///< on the tool about its axis, over what the two forces at the ends exert [1]
+    double moment = 0.0;  ///< on the tool about its axis, over what the two forces at the ends exert [1]
 };
 
 using Tooled = test::RoughPressing;
@@ -86,7 +90,8 @@ std::vector<Drawn> draw(double mu, double travel, double tension, double spacing
             },
             tube, 40));
         for (Index k = 0; k <= 80; ++k)
-            for (const auto vector : {scene::NodeVector::position, scene::NodeVector::director_1, scene::NodeVector::director_2}) {
+            for (const auto vector :
+                 {scene::NodeVector::position, scene::NodeVector::director_1, scene::NodeVector::director_2}) {
                 scene::Hold still;
                 still.at = {guide, static_cast<double>(k) / 80.0}, still.vector = vector;
                 assembly.hold(still);
@@ -106,7 +111,8 @@ std::vector<Drawn> draw(double mu, double travel, double tension, double spacing
         assembly.hold(end);
     }
     const Mat3 across = Vec3(0, 0, 1).asDiagonal();
-    for (Index k = 0; k <= intervals * elements; ++k) assembly.hold_position({fibre, static_cast<double>(k) / static_cast<double>(intervals * elements)}, across);
+    for (Index k = 0; k <= intervals * elements; ++k)
+        assembly.hold_position({fibre, static_cast<double>(k) / static_cast<double>(intervals * elements)}, across);
     assembly.hold_axial_rotation(scene::first_end(fibre));
 
     simulation::ModelParameters<M> parameters;
@@ -114,7 +120,7 @@ std::vector<Drawn> draw(double mu, double travel, double tension, double spacing
     parameters.contact.stiffness.allowed_penetration = allowed;
     const double range = 0.02 * r;
     parameters.friction = {.friction_coefficient = 0.0, .reversible_displacement = range};
-    parameters.iteration.contact_tolerance = 2e-3;  // a tenth of the reversible displacement
+    parameters.iteration.contact_tolerance = 2e-3;                                  // a tenth of the reversible displacement
     parameters.iteration.margin = 2.0, parameters.iteration.largest_margin = 20.0;  // ends swing far, and a search is cheap here
     simulation::Simulator<M> simulator(assembly, parameters);
 
@@ -133,7 +139,8 @@ std::vector<Drawn> draw(double mu, double travel, double tension, double spacing
         now.angle = test::turned_angle(slack, taut);
         now.penetration = report.contact.greatest_penetration / allowed, now.active = report.contact.active;
         if constexpr (simulation::HasTools<M>) {
-            const Vec3 ends = simulator.value(scene::first_end(fibre)).cross(slack) + simulator.value(scene::last_end(fibre)).cross(taut);
+            const Vec3 ends =
+                simulator.value(scene::first_end(fibre)).cross(slack) + simulator.value(scene::last_end(fibre)).cross(taut);
             now.moment = simulator.contacts().tools().reaction(0).moment.z() / ends.z();
         }
         results.push_back(now);
@@ -142,23 +149,27 @@ std::vector<Drawn> draw(double mu, double travel, double tension, double spacing
     return results;
 }
 
-
 template <class M>
 void check_drawn(double mu, double tension, double spacing, double tolerance) {
     const std::vector<Drawn> drawn = draw<M>(mu, 0.06, tension, spacing);
     CAPTURE(drawn.back().reason);
     REQUIRE(drawn.back().converged);
-    CHECK(std::abs(drawn[0].ratio - 1.0) < 1e-3);  // without friction: residual tolerance, and the sinking of single points
+    CHECK(std::abs(drawn[0].ratio - 1.0) < 1e-3);     // without friction: residual tolerance, and the sinking of single points
     for (std::size_t k = 2; k < drawn.size(); ++k) {  // by half of the way all of it slides
-        const double expected = beam::TouchedOnCentreline<typename M::Beam> ? centreline_ratio(mu, stiffness, drawn[k].low, drawn[k].angle)
-                                                                            : reference_ratio(mu, stiffness, drawn[k].low, drawn[k].angle);
-        std::printf("drawn %zu/4: %.5f at the slack end, %.2f degrees, ratio %.5f, %.5f expected, error %+.2e, %.5f by Euler; penetration %.2f of the allowed\n", k,
-                    drawn[k].low, drawn[k].angle * 180.0 / pi, drawn[k].ratio, expected, drawn[k].ratio / expected - 1.0, std::exp(mu * drawn[k].angle), drawn[k].penetration);
+        const double expected = beam::TouchedOnCentreline<typename M::Beam>
+                                    ? centreline_ratio(mu, stiffness, drawn[k].low, drawn[k].angle)
+                                    : reference_ratio(mu, stiffness, drawn[k].low, drawn[k].angle);
+        std::printf(
+            "drawn %zu/4: %.5f at the slack end, %.2f degrees, ratio %.5f, %.5f expected, error %+.2e, %.5f by Euler; "
+            "penetration %.2f of the allowed\n",
+            k, drawn[k].low, drawn[k].angle * 180.0 / pi, drawn[k].ratio, expected, drawn[k].ratio / expected - 1.0,
+            std::exp(mu * drawn[k].angle), drawn[k].penetration);
         CHECK(std::abs(drawn[k].angle - pi) < 0.1);
         CHECK(std::abs(drawn[k].ratio / expected - 1.0) < tolerance);  // single points come on and go off the guide
         CHECK(drawn[k].penetration < 1.0);
         CHECK(drawn[k].active > 20);
-        if constexpr (simulation::HasTools<M> && !beam::TouchedOnCentreline<typename M::Beam>) CHECK(std::abs(drawn[k].moment - 1.0) < 1e-3);
+        if constexpr (simulation::HasTools<M> && !beam::TouchedOnCentreline<typename M::Beam>)
+            CHECK(std::abs(drawn[k].moment - 1.0) < 1e-3);
     }
 }
 

@@ -27,10 +27,10 @@ struct Case {
     double force;                     ///< results.director.F of crossed_fibres.json
 };
 const Case cases[] = {
-    {1.005, 0.0, 0.01005, 0.000891765717759},   {1.005, 0.0, 0.0402, 0.00435476149304},   {1.005, 0.0, 0.1608, 0.0633797883783},
-    {1.005, 0.002, 0.01005, 0.0013308761241},   {1.005, 0.002, 0.0402, 0.006092824582},   {1.005, 0.002, 0.1608, 0.0697693127822},
-    {4.02, 0.0, 0.01005, 1.40955675038e-05},    {4.02, 0.0, 0.0402, 6.87757191388e-05},   {4.02, 0.0, 0.1608, 0.00100444166353},
-    {4.02, 0.002, 0.01005, 0.000119498335719},  {4.02, 0.002, 0.0402, 0.000488522645452}, {4.02, 0.002, 0.1608, 0.00261459377761},
+    {1.005, 0.0, 0.01005, 0.000891765717759},  {1.005, 0.0, 0.0402, 0.00435476149304},   {1.005, 0.0, 0.1608, 0.0633797883783},
+    {1.005, 0.002, 0.01005, 0.0013308761241},  {1.005, 0.002, 0.0402, 0.006092824582},   {1.005, 0.002, 0.1608, 0.0697693127822},
+    {4.02, 0.0, 0.01005, 1.40955675038e-05},   {4.02, 0.0, 0.0402, 6.87757191388e-05},   {4.02, 0.0, 0.1608, 0.00100444166353},
+    {4.02, 0.002, 0.01005, 0.000119498335719}, {4.02, 0.002, 0.0402, 0.000488522645452}, {4.02, 0.002, 0.1608, 0.00261459377761},
 };
 
 /// Takes off what a force on the surface does beside one on the centre line: it flattens the section there, and the fibre
@@ -117,7 +117,8 @@ TEST_CASE("two crossed fibres push each other apart as the rods of the reference
         REQUIRE(pinched.press());
         const double force = crossing.support(0).z();
         std::printf("L/r %3.0f, stretch %.3f, u %.5f: F %.8g, error %+.2e (%+.2e with the pinch), lost %.2e r\n", c.length / r,
-                    c.strain, c.approach, force, force / c.force - 1.0, pinched.support(0).z() / c.force - 1.0, crossing.lost() / r);
+                    c.strain, c.approach, force, force / c.force - 1.0, pinched.support(0).z() / c.force - 1.0,
+                    crossing.lost() / r);
         CHECK(std::abs(force / c.force - 1.0) < 2e-4);
         // The pinch lengthens a fibre by 1e-4 of a radius or two, which matters where its tension comes from the deflection.
         CHECK(std::abs(pinched.support(0).z() / c.force - 1.0) < (c.length < 2.0 && c.approach > 0.1 ? 4e-3 : 1e-3));
@@ -139,7 +140,8 @@ TEST_CASE("contact on centrelines needs no relief: the force of the reference is
         Crossing<Centred> crossing(c, 90.0, Pinch::kept, test::tight_parameters<Centred>(1e-3 * r));
         REQUIRE(crossing.press());
         const double force = crossing.support(0).z();
-        std::printf("centrelines: L/r %3.0f, stretch %.3f, u %.5f: error %+.2e, lost %.2e r\n", c.length / r, c.strain, c.approach, force / c.force - 1.0, crossing.lost() / r);
+        std::printf("centrelines: L/r %3.0f, stretch %.3f, u %.5f: error %+.2e, lost %.2e r\n", c.length / r, c.strain,
+                    c.approach, force / c.force - 1.0, crossing.lost() / r);
         CHECK(std::abs(force / c.force - 1.0) < 3e-5);  // penetration and mesh
         CHECK((crossing.support(0) + crossing.support(1)).norm() < 1e-6 * c.force);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Flat fibres pressed together askew and crossing at small angles come to rest where their surfaces touch. Reference: the least gap of
-// the surfaces, which knows nothing of contact elements.
+// Flat fibres pressed together askew and crossing at small angles come to rest where their surfaces touch. Reference: the least
+// gap of the surfaces, which knows nothing of contact elements.
 #include <contact/contact_model.hpp>
 
 #include <fibrant/observe/least_gap.hpp>
@@ -17,10 +17,12 @@ namespace contact_flat_sections_test {
 
 using test::Smooth;
 
-const double b = 0.02;          // thickness / 2
+const double b = 0.02;  // thickness / 2
 const double allowed = 0.01 * b;
 
-Vec3 heading(double degrees) { return {std::cos(degrees * std::numbers::pi / 180.0), std::sin(degrees * std::numbers::pi / 180.0), 0.0}; }
+Vec3 heading(double degrees) {
+    return {std::cos(degrees * std::numbers::pi / 180.0), std::sin(degrees * std::numbers::pi / 180.0), 0.0};
+}
 
 scene::FibreSpecification flat_fibre(double ratio, const Vec3& middle, const Vec3& along, double half, double tilt) {
     scene::FibreSpecification fibre = test::straight_fibre(middle - half * along, middle + half * along, b, 8);
@@ -32,7 +34,7 @@ scene::FibreSpecification flat_fibre(double ratio, const Vec3& middle, const Vec
 struct Outcome {
     bool converged = false;
     double contact_gap = 0.0, true_gap = 0.0;  ///< over b
-    double push = 0.0;                          ///< of the lower fibre's supports, upwards [force]
+    double push = 0.0;                         ///< of the lower fibre's supports, upwards [force]
 };
 
 /// The second fibre's ends are moved by a way towards the first one, whose ends are clamped.
@@ -47,7 +49,8 @@ Outcome pressed(const std::vector<scene::FibreSpecification>& fibres, const Vec3
     const observe::Snapshot snapshot = simulator.snapshot();
     Outcome outcome;
     outcome.converged = report.converged;
-    for (const observe::ContactSnapshot& contact : snapshot.contacts) outcome.contact_gap = std::min(outcome.contact_gap, contact.gap / b);
+    for (const observe::ContactSnapshot& contact : snapshot.contacts)
+        outcome.contact_gap = std::min(outcome.contact_gap, contact.gap / b);
     outcome.true_gap = observe::least_gap(snapshot, proximity::GridSearch{}).gap / b;
     outcome.push = simulator.reaction({0, 0.0}).z() + simulator.reaction({0, 1.0}).z();
     return outcome;
@@ -62,7 +65,8 @@ void check(const Outcome& outcome) {
 }
 
 TEST_CASE("two parallel flat fibres that are pressed together askew come to rest where their surfaces touch") {
-    const std::vector<scene::FibreSpecification> fibres{flat_fibre(2.0, Vec3::Zero(), heading(0), 20.0 * b, 0.0), flat_fibre(2.0, b * Vec3(0.0, 2.0, 1.8), heading(0), 20.0 * b, 0.0)};
+    const std::vector<scene::FibreSpecification> fibres{flat_fibre(2.0, Vec3::Zero(), heading(0), 20.0 * b, 0.0),
+                                                        flat_fibre(2.0, b * Vec3(0.0, 2.0, 1.8), heading(0), 20.0 * b, 0.0)};
     // Apart by 0.065 b: 0.05 b nearer they do not touch yet, 0.2 b nearer they press.
     const Outcome apart = pressed(fibres, {0.0, 0.0, -0.05 * b}, 1);
     CHECK(apart.converged);
@@ -77,8 +81,9 @@ TEST_CASE("flat fibres that cross at small angles come to rest where their surfa
             CAPTURE(degrees);
             CAPTURE(tilt);
             const double height = 2.0 * b * std::hypot(3.0 * std::sin(tilt), std::cos(tilt));
-            const std::vector<scene::FibreSpecification> fibres{flat_fibre(3.0, Vec3::Zero(), heading(-0.5 * degrees), 40.0 * b, tilt),
-                                                                flat_fibre(3.0, {0.0, 0.0, height + 0.1 * b}, heading(0.5 * degrees), 40.0 * b, -tilt)};
+            const std::vector<scene::FibreSpecification> fibres{
+                flat_fibre(3.0, Vec3::Zero(), heading(-0.5 * degrees), 40.0 * b, tilt),
+                flat_fibre(3.0, {0.0, 0.0, height + 0.1 * b}, heading(0.5 * degrees), 40.0 * b, -tilt)};
             const Outcome apart = pressed(fibres, {0.0, 0.0, -0.05 * b}, 1);
             CHECK(apart.converged);
             CHECK(std::abs(apart.true_gap - 0.05) < 1e-6);

@@ -14,12 +14,14 @@ using test::Hooked;
 using test::Hooks;
 
 void check_held(const Hooked& hooked, const char* name, Index given_up = 1) {
-    std::printf("%s: %td increments, %td Newton iterations, force %.5f, hooked by %.4f radii, r kappa %.3f, asymmetry %.1e radii\n", name,
-                core::count(hooked.report.increments), hooked.report.counts.newton, hooked.force, hooked.crossing, hooked.bend, hooked.asymmetry);
+    std::printf(
+        "%s: %td increments, %td Newton iterations, force %.5f, hooked by %.4f radii, r kappa %.3f, asymmetry %.1e radii\n", name,
+        core::count(hooked.report.increments), hooked.report.counts.newton, hooked.force, hooked.crossing, hooked.bend,
+        hooked.asymmetry);
     CAPTURE(hooked.report.reason);
     CHECK(hooked.report.converged);
     CHECK(hooked.report.rejected_increments <= given_up);  // with places that are renewed: from there they are followed
-    CHECK(hooked.crossing > 1.5);  // still in each other, sections flattened
+    CHECK(hooked.crossing > 1.5);                          // still in each other, sections flattened
     CHECK(hooked.closest > 1.5);
 }
 
@@ -46,10 +48,13 @@ TEST_CASE("hooks with friction hold as well, and stay symmetric") {
 TEST_CASE("hooks at a slant touch along a valley, and hold as well") {
     for (const double angle : {60.0, 45.0}) {
         const Hooked smooth = test::pull_hooks<test::Smooth>({.elements = 20, .increments = 10, .angle_deg = angle});
-        const Hooked rough = test::pull_hooks<test::Rough>({.elements = 20, .increments = 10, .friction = 0.1, .angle_deg = angle});
+        const Hooked rough =
+            test::pull_hooks<test::Rough>({.elements = 20, .increments = 10, .friction = 0.1, .angle_deg = angle});
         CAPTURE(angle);
-        check_held(smooth, "slant", 5), check_held(rough, "slant, friction 0.1");  // without friction they swing out of their symmetric state
-        // The loops turn until they are square to each other, but for what bending and friction hold: nearly the force of those that are at the start.
+        check_held(smooth, "slant", 5),
+            check_held(rough, "slant, friction 0.1");  // without friction they swing out of their symmetric state
+        // The loops turn until they are square to each other, but for what bending and friction hold: nearly the force of those
+        // that are at the start.
         const double upright = 5.34;
         CHECK(smooth.force > upright);
         CHECK(smooth.force < 1.1 * upright);

@@ -69,8 +69,10 @@ TEST_CASE("a fibre that crosses itself is held apart as two fibres are") {
     const Index last_of_first = node_at(span), first_of_second = node_at(span + arc);
     for (Index k = 0; k <= nodes; ++k) {
         const double fraction = static_cast<double>(k) / static_cast<double>(nodes);
-        if (k == 0 || (k >= last_of_first && k < (last_of_first + first_of_second) / 2)) hold(assembly, 0, fraction, Vec3::Zero());
-        if (k == nodes || (k >= (last_of_first + first_of_second) / 2 && k <= first_of_second)) hold(assembly, 0, fraction, Vec3(0, 0, -approach));
+        if (k == 0 || (k >= last_of_first && k < (last_of_first + first_of_second) / 2))
+            hold(assembly, 0, fraction, Vec3::Zero());
+        if (k == nodes || (k >= (last_of_first + first_of_second) / 2 && k <= first_of_second))
+            hold(assembly, 0, fraction, Vec3(0, 0, -approach));
     }
     simulation::Simulator<Smooth> simulator(assembly, parameters());
     const simulation::Report report = simulator.run(test::stage<Smooth>({{"motion", 1.0}}, 5));
@@ -84,8 +86,8 @@ TEST_CASE("a fibre that crosses itself is held apart as two fibres are") {
     const double h = total / static_cast<double>(nodes);
     const double first = static_cast<double>(last_of_first) * h, second = total - static_cast<double>(first_of_second) * h;
     const double force = report.contact.reaction_sum, lost = report.contact.greatest_penetration;
-    std::printf("spans %.4f and %.4f of %.4f: force %.8f, %.8f expected, %+.2e, penetration %.1e r\n", first, second, span, force, expected,
-                force / expected - 1.0, lost / r);
+    std::printf("spans %.4f and %.4f of %.4f: force %.8f, %.8f expected, %+.2e, penetration %.1e r\n", first, second, span, force,
+                expected, force / expected - 1.0, lost / r);
     CHECK(std::abs(first / span - 1.0) < 0.003);
     CHECK(std::abs(second / span - 1.0) < 0.003);
     CHECK(std::abs(force / expected - 1.0) < 0.015);  // 3 times the error of a span, and what the pinch takes off the approach
@@ -96,7 +98,8 @@ TEST_CASE("a fibre does not touch what is next to it along itself, however short
     for (const double length : {0.3, 1.0, 3.0}) {
         const double leg = 12.0 * r, R = 1.5 * r;
         scene::Assembly assembly;
-        assembly.add(test::curved_fibre(hairpin(leg, R), r, static_cast<Index>(std::lround((2.0 * leg + pi * R) / (length * r)))));
+        assembly.add(
+            test::curved_fibre(hairpin(leg, R), r, static_cast<Index>(std::lround((2.0 * leg + pi * R) / (length * r)))));
         hold(assembly, 0, 0.0, Vec3::Zero());
         simulation::Simulator<Smooth> simulator(assembly, parameters());
         const simulation::Report report = simulator.run({.increments = 1});
@@ -114,7 +117,8 @@ TEST_CASE("the legs of a hairpin that is pressed shut touch each other") {
     hold(assembly, 0, 0.0, Vec3::Zero());
     hold(assembly, 0, 1.0, Vec3::Zero());
     for (const double side : {0.0, 1.0})
-        assembly.apply(scene::DeadForce{{0, 0.25 + 0.5 * side}, scene::NodeVector::position, Vec3(0, (1.0 - 2.0 * side) * push, 0), "load"});
+        assembly.apply(
+            scene::DeadForce{{0, 0.25 + 0.5 * side}, scene::NodeVector::position, Vec3(0, (1.0 - 2.0 * side) * push, 0), "load"});
     const auto apart = [](const auto& simulator) { return simulator.value({0, 0.75}).y() - simulator.value({0, 0.25}).y(); };
     auto seeing = parameters();
     seeing.contact.stiffness.initial_fraction = 1.0;
@@ -122,8 +126,9 @@ TEST_CASE("the legs of a hairpin that is pressed shut touch each other") {
     const simulation::Report report = simulator.run(test::stage<Smooth>({{"load", 1.0}}, 6));
     REQUIRE_MESSAGE(report.converged, report.reason);
     const Vec3 first = simulator.reaction(scene::first_end(0));
-    std::printf("hairpin: %td active, %.5f N in contact, %.5f N at an end, %.5f r apart, penetration %.1e r\n", report.contact.active,
-                report.contact.reaction_sum, first.y(), apart(simulator) / r, report.contact.greatest_penetration / r);
+    std::printf("hairpin: %td active, %.5f N in contact, %.5f N at an end, %.5f r apart, penetration %.1e r\n",
+                report.contact.active, report.contact.reaction_sum, first.y(), apart(simulator) / r,
+                report.contact.greatest_penetration / r);
     CHECK(report.contact.active >= 1);
     CHECK(report.contact.greatest_penetration < 5e-3 * r);
     CHECK(apart(simulator) > 1.98 * r);  // sections flatten a little

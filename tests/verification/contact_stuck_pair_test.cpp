@@ -85,7 +85,8 @@ void check_turning_pair(double angle_deg, Index increments) {
     simulation::ModelParameters<Rough> parameters = test::tight_parameters<Rough>(1e-2 * r);
     parameters.friction = {.friction_coefficient = 0.3, .reversible_displacement = range};
     // As it is given, or the penetration would creep while the pair turns.
-    parameters.contact.stiffness.initial_fraction = parameters.contact.stiffness.floor_fraction = parameters.contact.stiffness.cap_fraction = 0.01;
+    parameters.contact.stiffness.initial_fraction = parameters.contact.stiffness.floor_fraction =
+        parameters.contact.stiffness.cap_fraction = 0.01;
     parameters.iteration.step_tolerance = 1e-8;  // tolerances are in radii, and friction lives on a fiftieth of one
     parameters.iteration.residual_tolerance = 1e-9;
     parameters.iteration.normal_step_tolerance = 1e-7;
@@ -103,10 +104,12 @@ void check_turning_pair(double angle_deg, Index increments) {
     REQUIRE_MESSAGE(turned.converged, turned.reason);
     const Carried after = carried(simulator);
     const Mat3 turn = moving.turn(3.0);
-    std::printf("%2.0f degrees, %ld increments: R_T / R_N %.4f; turned: friction off by %.1e, its direction by %.1e, R_N by %.1e, dissipated %.1e, penetration %.1e r\n",
-                angle_deg, static_cast<long>(increments), before.size / before.normal, after.size / before.size - 1.0,
-                (after.friction - turn * before.friction).norm() / before.size, after.normal / before.normal - 1.0,
-                turned.energy.dissipated - dissipated, turned.contact.greatest_penetration / r);
+    std::printf(
+        "%2.0f degrees, %ld increments: R_T / R_N %.4f; turned: friction off by %.1e, its direction by %.1e, R_N by %.1e, "
+        "dissipated %.1e, penetration %.1e r\n",
+        angle_deg, static_cast<long>(increments), before.size / before.normal, after.size / before.size - 1.0,
+        (after.friction - turn * before.friction).norm() / before.size, after.normal / before.normal - 1.0,
+        turned.energy.dissipated - dissipated, turned.contact.greatest_penetration / r);
     CHECK(after.active == before.active);
     CHECK(std::abs(after.normal / before.normal - 1.0) < 1e-6);
     CHECK((after.reaction - turn * before.reaction).norm() < 1e-6 * before.normal);
@@ -159,7 +162,8 @@ TEST_CASE("a fibre between two others gives way elastically, slips at twice the 
     const double rest = pull() - start;
     const simulation::Report back = draw(-0.5, 2);
     const double minus = pull() - start;
-    std::printf("R_N %.5f, start %.1e, half way %.5f, back at %.1e, other way %.5f, 2 mu N %.5f\n", normal, start, half, rest, minus, 2 * mu * normal);
+    std::printf("R_N %.5f, start %.1e, half way %.5f, back at %.1e, other way %.5f, 2 mu N %.5f\n", normal, start, half, rest,
+                minus, 2 * mu * normal);
     CHECK(back.energy.dissipated == lost);
     CHECK(forth.energy.dissipated == lost);
     CHECK(std::abs(rest) < 1e-4 * 2 * mu * normal);
@@ -173,7 +177,8 @@ TEST_CASE("a fibre between two others gives way elastically, slips at twice the 
         if (last == lost) loop_start = report.energy;
         loop_end = report.energy;
         const double now = 0.5 * carried(simulator).normal;
-        std::printf("drawn to %+.0f: pull %.6f, 2 mu N %.6f, dissipated %.3e\n", to, pull(), 2 * mu * now, report.energy.dissipated);
+        std::printf("drawn to %+.0f: pull %.6f, 2 mu N %.6f, dissipated %.3e\n", to, pull(), 2 * mu * now,
+                    report.energy.dissipated);
         CHECK(std::abs(pull() / (std::copysign(2.0, to) * mu * now) - 1.0) < 1e-3);
         for (const simulation::IncrementReport& increment : report.increments) {
             CHECK(increment.energy.dissipated >= last);

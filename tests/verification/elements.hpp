@@ -39,7 +39,8 @@ simulation::ModelParameters<M> exact_parameters() {
     parameters.iteration.contact_tolerance = 1e-4;
     parameters.iteration.inexact = 0.05;
     parameters.iteration.normal_limit = parameters.iteration.contact_limit = 20;
-    if constexpr (core::Active<typename M::Friction>) parameters.friction = {.friction_coefficient = 0.0, .reversible_displacement = 4e-4};
+    if constexpr (core::Active<typename M::Friction>)
+        parameters.friction = {.friction_coefficient = 0.0, .reversible_displacement = 4e-4};
     return parameters;
 }
 
@@ -52,8 +53,12 @@ struct ReferenceRod {
     static double area() { return std::numbers::pi * radius * radius; }
     static double bending() { return 0.25 * young * area() * radius * radius; }
     scene::FibreSpecification specification() const {
-        return {.from = Vec3::Zero(), .to = Vec3(0, 0, length), .section = scene::circular(radius), .material = {young, 0.3},
-                .elements = elements, .director = Vec3::UnitX()};
+        return {.from = Vec3::Zero(),
+                .to = Vec3(0, 0, length),
+                .section = scene::circular(radius),
+                .material = {young, 0.3},
+                .elements = elements,
+                .director = Vec3::UnitX()};
     }
 };
 
@@ -81,7 +86,8 @@ Eigen::Vector2d pushed_tip(double slenderness, double load, Index elements) {
     scene::Assembly assembly;
     const Index fibre = assembly.add(rod.specification());
     assembly.clamp(scene::first_end(fibre));
-    assembly.apply(scene::DeadForce{scene::last_end(fibre), scene::NodeVector::position, Vec3(load * rod.bending() / (rod.length * rod.length), 0, 0), "load"});
+    assembly.apply(scene::DeadForce{scene::last_end(fibre), scene::NodeVector::position,
+                                    Vec3(load * rod.bending() / (rod.length * rod.length), 0, 0), "load"});
     Solved<M> solved(assembly);
     if (!solved.run({{"load", 1.0}}, 4)) return Eigen::Vector2d::Constant(core::unset);
     const Vec3 tip = solved.simulator.value(scene::last_end(fibre));
@@ -95,7 +101,8 @@ Eigen::Vector2d rolled_tip(double turns, Index elements, Index increments) {
     scene::Assembly assembly;
     const Index fibre = assembly.add(rod.specification());
     assembly.clamp(scene::first_end(fibre));
-    assembly.apply(scene::Moment{scene::last_end(fibre), scene::NodeVector::director_1, Vec3(0, 2.0 * std::numbers::pi * turns * rod.bending() / rod.length, 0), "load"});
+    assembly.apply(scene::Moment{scene::last_end(fibre), scene::NodeVector::director_1,
+                                 Vec3(0, 2.0 * std::numbers::pi * turns * rod.bending() / rod.length, 0), "load"});
     Solved<M> solved(assembly);
     if (!solved.run({{"load", 1.0}}, increments)) return Eigen::Vector2d::Constant(core::unset);
     const Vec3 tip = solved.simulator.value(scene::last_end(fibre));
@@ -121,8 +128,8 @@ double sideways_force(double slenderness, double strain, double depth, Index ele
     return solved.simulator.reaction({fibre, 0.5}).x();
 }
 
-/// The 45-degree bend of Bathe and Bolourchi: radius 100 in x-y, from the origin along x, square section of side 1 or less (by its
-/// area and second moments), E = 1e7, nu = 0, dead force along z.
+/// The 45-degree bend of Bathe and Bolourchi: radius 100 in x-y, from the origin along x, square section of side 1 or less (by
+/// its area and second moments), E = 1e7, nu = 0, dead force along z.
 template <simulation::Model M>
 Vec3 bend_tip(double side, double force, Index elements) {
     const double quarter = 0.25 * std::numbers::pi;
@@ -153,7 +160,8 @@ Eigen::Vector2d buckled_column(double shortening, Index elements) {
     assembly.clamp(scene::last_end(0), Vec3(0, 0, -shortening), Vec3::Zero(), Vec3::Zero(), "press");
     assembly.apply(scene::DeadForce{{0, 0.5}, scene::NodeVector::position, Vec3(1e-3, 0, 0), "push"});
     Solved<M> solved(assembly);
-    if (!solved.run({{"push", 1.0}}, 2) || !solved.run({{"press", 1.0}}, 8) || !solved.run({{"push", 0.0}}, 2)) return Eigen::Vector2d::Constant(core::unset);
+    if (!solved.run({{"push", 1.0}}, 2) || !solved.run({{"press", 1.0}}, 8) || !solved.run({{"push", 0.0}}, 2))
+        return Eigen::Vector2d::Constant(core::unset);
     return {solved.simulator.reaction(scene::first_end(0)).z(), solved.simulator.value({0, 0.5}).x()};
 }
 
@@ -168,7 +176,8 @@ Pressed pressed_fibres(double length, double strain, double u, double angle_deg,
     const double r = ReferenceRod::radius, angle = angle_deg * std::numbers::pi / 180.0;
     scene::Assembly assembly;
     for (const bool upper : {false, true}) {
-        const Vec3 along = upper ? Vec3(std::cos(angle), std::sin(angle), 0.0) : Vec3::UnitX(), centre = upper ? Vec3(0.0, 0.0, 2.0 * r) : Vec3(Vec3::Zero());
+        const Vec3 along = upper ? Vec3(std::cos(angle), std::sin(angle), 0.0) : Vec3::UnitX(),
+                   centre = upper ? Vec3(0.0, 0.0, 2.0 * r) : Vec3(Vec3::Zero());
         scene::FibreSpecification fibre = ReferenceRod{length, elements}.specification();
         fibre.from = centre - 0.5 * length * along, fibre.to = centre + 0.5 * length * along, fibre.director = Vec3::UnitZ();
         const Index f = assembly.add(fibre);

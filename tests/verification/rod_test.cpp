@@ -31,7 +31,8 @@ TEST_CASE("a cantilever of rods converges with the second order at any slenderne
     for (const auto& c : cases) {
         double error[3];
         for (int k = 0; k < 3; ++k) error[k] = (test::pushed_tip<Model>(c.slenderness, 5.0, 8 << k) - c.tip).norm() / c.length;
-        std::printf("L/r %g: %.2e %.2e %.2e of L, order %.2f %.2f\n", c.slenderness, error[0], error[1], error[2], test::order(error[0], error[1]), test::order(error[1], error[2]));
+        std::printf("L/r %g: %.2e %.2e %.2e of L, order %.2f %.2f\n", c.slenderness, error[0], error[1], error[2],
+                    test::order(error[0], error[1]), test::order(error[1], error[2]));
         CHECK(error[0] < 2e-3);
         CHECK(std::abs(test::order(error[1], error[2]) - 2.0) < 0.1);
     }
@@ -41,7 +42,8 @@ TEST_CASE("a moment rolls a rod to the arc of a circle, whose chords the element
     // end_moment.json. Positions are on a polygon: sections turn exactly, and a chord is angle^2 / 24 too long.
     for (const Index elements : {8, 16}) {
         const double angle = 0.5 * pi / static_cast<double>(elements);
-        CHECK((test::rolled_tip<Model>(0.25, elements, 2) - Eigen::Vector2d(1.2796057424588, 1.2796057424588)).norm() < 1.1 * angle * angle / 24.0 * 1.81);
+        CHECK((test::rolled_tip<Model>(0.25, elements, 2) - Eigen::Vector2d(1.2796057424588, 1.2796057424588)).norm() <
+              1.1 * angle * angle / 24.0 * 1.81);
     }
 }
 
@@ -61,7 +63,8 @@ TEST_CASE("an end that is turned by a whole turn and more closes the rod to a ci
     for (const double turns : {1.0, 1.25}) {
         REQUIRE(solved.run({{"turn", turns}}, 10));
         const double curvature = 2.0 * pi * turns / rod.length, angle = 2.0 * pi * turns;
-        const Vec3 tip = solved.simulator.value(scene::last_end(0)), circle = Vec3(1.0 - std::cos(angle), 0.0, std::sin(angle)) / curvature;
+        const Vec3 tip = solved.simulator.value(scene::last_end(0)),
+                   circle = Vec3(1.0 - std::cos(angle), 0.0, std::sin(angle)) / curvature;
         CHECK((tip - circle).norm() < 4e-3 / curvature);  // chords: 14 degrees, (14 degrees)^2 / 24 = 2.5e-3 of the distance
         CHECK(solved.simulator.value(scene::last_end(0), scene::NodeVector::director_1).norm() < pi * (1.0 + 1e-12));
         CHECK(solved.report.energy.elastic == test::near(0.5 * rod.bending() * curvature * curvature * rod.length, 1e-9));
@@ -73,12 +76,14 @@ TEST_CASE("the 45-degree bend of rods converges with the second order to the ref
     const struct {
         double side, force;
         Vec3 tip;  // arc45.json
-    } cases[] = {{1.0, 300.0, {58.779122489683, 22.244780945368, 40.191891670151}}, {1.0, 600.0, {47.150438573629, 15.684800534039, 53.474858791825}},
+    } cases[] = {{1.0, 300.0, {58.779122489683, 22.244780945368, 40.191891670151}},
+                 {1.0, 600.0, {47.150438573629, 15.684800534039, 53.474858791825}},
                  {0.1, 0.06, {47.151285842085, 15.685075385944, 53.468661045426}}};
     for (const auto& c : cases) {
         double error[3];
         for (int k = 0; k < 3; ++k) error[k] = (test::bend_tip<Model>(c.side, c.force, 8 << k) - c.tip).norm() / 100.0;
-        std::printf("arc, side %g, force %g: %.2e %.2e %.2e of R, order %.2f %.2f\n", c.side, c.force, error[0], error[1], error[2], test::order(error[0], error[1]), test::order(error[1], error[2]));
+        std::printf("arc, side %g, force %g: %.2e %.2e %.2e of R, order %.2f %.2f\n", c.side, c.force, error[0], error[1],
+                    error[2], test::order(error[0], error[1]), test::order(error[1], error[2]));
         CHECK(error[2] < 3e-4);
         CHECK(std::abs(test::order(error[1], error[2]) - 2.0) < 0.1);
     }
@@ -87,7 +92,10 @@ TEST_CASE("the 45-degree bend of rods converges with the second order to the ref
 TEST_CASE("a stretched rod between clamps has no membrane locking") {
     const struct {
         double slenderness, strain, depth, force;  // prestretched.json, reissner
-    } cases[] = {{10.0, 0.01, 0.05, 0.018638640717466}, {100.0, 0.0, 2.0, 0.0017101073583669}, {1000.0, 0.01, 2.0, 0.00074918537055306}, {10000.0, 0.001, 10.0, 3.7334227647816e-05}};
+    } cases[] = {{10.0, 0.01, 0.05, 0.018638640717466},
+                 {100.0, 0.0, 2.0, 0.0017101073583669},
+                 {1000.0, 0.01, 2.0, 0.00074918537055306},
+                 {10000.0, 0.001, 10.0, 3.7334227647816e-05}};
     for (const auto& c : cases) {
         CAPTURE(c.slenderness);
         const double coarse = std::abs(test::sideways_force<Model>(c.slenderness, c.strain, c.depth, 16) / c.force - 1.0);
@@ -107,8 +115,14 @@ TEST_CASE("a column of rods buckles and bends as the elastica does") {
 TEST_CASE("rods with a placed and turned end stand in space as the reference does") {
     const struct {
         Vec3 position, rotation, mid, force;  // spatial.json, placed_end_1 and 2
-    } cases[] = {{{0.62, 0.86, 1.54}, {-0.95, 0.7, 0.3}, {0.19567625582788, 0.20139006978148, 0.94279591911281}, {-0.00014422185637306, -0.00042699749898836, -0.00070215538048704}},
-                 {{0.2, -0.5, 1.93}, {0.5, 0.3, 1.5}, {0.066443691456943, -0.24022181191651, 0.97246855207853}, {0.0042110889237365, -0.014904423167386, 0.05225184685774}}};
+    } cases[] = {{{0.62, 0.86, 1.54},
+                  {-0.95, 0.7, 0.3},
+                  {0.19567625582788, 0.20139006978148, 0.94279591911281},
+                  {-0.00014422185637306, -0.00042699749898836, -0.00070215538048704}},
+                 {{0.2, -0.5, 1.93},
+                  {0.5, 0.3, 1.5},
+                  {0.066443691456943, -0.24022181191651, 0.97246855207853},
+                  {0.0042110889237365, -0.014904423167386, 0.05225184685774}}};
     for (const auto& c : cases) {
         double error[2], force[2];
         for (int k = 0; k < 2; ++k) {
@@ -136,7 +150,8 @@ TEST_CASE("a rod under dead forces on its end and on material points of its end 
     assembly.add(rod.specification());
     assembly.clamp(scene::first_end(0));
     assembly.apply(scene::DeadForce{scene::last_end(0), scene::NodeVector::position, Vec3(4e-05, 8e-05, -4e-05), "load"});
-    assembly.apply(scene::DeadForce{scene::last_end(0), scene::NodeVector::director_1, 2.0 * r * Vec3(0.0, 0.004, 0.002), "load"});
+    assembly.apply(
+        scene::DeadForce{scene::last_end(0), scene::NodeVector::director_1, 2.0 * r * Vec3(0.0, 0.004, 0.002), "load"});
     test::Solved<Model> solved(assembly);
     REQUIRE(solved.run({{"load", 1.0}}, 8));
     const Vec3 tip = solved.simulator.value(scene::last_end(0));
@@ -164,13 +179,16 @@ TEST_CASE("a rod that is twisted by three turns counts them") {
 TEST_CASE("two crossed rods push each other apart as the rods of the reference do") {
     const struct {
         double length, strain, u, force;  // crossed_fibres.json, reissner
-    } cases[] = {{1.005, 0.0, 0.0402, 0.00434436794292}, {4.02, 0.002, 0.1608, 0.00260312107061}, {1.005, 0.0, 0.1608, 0.0618080596752}};
+    } cases[] = {
+        {1.005, 0.0, 0.0402, 0.00434436794292}, {4.02, 0.002, 0.1608, 0.00260312107061}, {1.005, 0.0, 0.1608, 0.0618080596752}};
     for (const auto& c : cases)
         for (const double angle : {90.0, 35.0}) {
             const test::Pressed pressed = test::pressed_fibres<Model>(c.length, c.strain, c.u, angle, 48);
-            std::printf("crossed, L %g, stretch %g, u %g, %g degrees: error %+.2e, lost %.2e r, %td contacts\n", c.length, c.strain, c.u, angle, pressed.force / c.force - 1.0, pressed.lost / 0.0201, pressed.active);
+            std::printf("crossed, L %g, stretch %g, u %g, %g degrees: error %+.2e, lost %.2e r, %td contacts\n", c.length,
+                        c.strain, c.u, angle, pressed.force / c.force - 1.0, pressed.lost / 0.0201, pressed.active);
             if (angle < 90.0 && c.u > 0.1 * c.length) {
-                // Here r kappa nears sin^2 (angle / 2), and the fibres touch on both sides of the middle: no force on a point any more, as the reference has it.
+                // Here r kappa nears sin^2 (angle / 2), and the fibres touch on both sides of the middle: no force on a point any
+                // more, as the reference has it.
                 CHECK(std::abs(pressed.force / c.force - 1.0) < 1e-2);
                 CHECK(pressed.active > 1);
                 continue;
@@ -194,7 +212,9 @@ TEST_CASE("a rod drawn half a turn around a rigid cylinder is held back as the r
     parameters.iteration.margin = 2.0, parameters.iteration.largest_margin = 20.0;
     test::Solved<Model> solved(assembly, parameters);
     REQUIRE(solved.run({{"ends", 1.0}}, 30));
-    const auto tensions = [&] { return std::pair(solved.simulator.reaction(scene::first_end(0)), solved.simulator.reaction(scene::last_end(0))); };
+    const auto tensions = [&] {
+        return std::pair(solved.simulator.reaction(scene::first_end(0)), solved.simulator.reaction(scene::last_end(0)));
+    };
     CHECK(tensions().second.norm() / tensions().first.norm() == test::near(1.0, 1e-3));
     simulation::Stage<Model> draw;
     draw.increments = 24, draw.ramps = {{"ends", 2.0}};
@@ -230,7 +250,8 @@ TEST_CASE("every strategy solves the tangent of touching rods, whose points have
     const auto& system = solved.simulator.equilibrium().system();
     Vector b(system.layout().unknowns()), exact, product;
     for (Index k = 0; k < b.size(); ++k) b[k] = std::sin(1.0 + 3.0 * static_cast<double>(k));
-    for (const scene::HeldVector& held : system.layout().held) b.segment<3>(3 * held.vector) = (held.free * b.segment<3>(3 * held.vector)).eval();
+    for (const scene::HeldVector& held : system.layout().held)
+        b.segment<3>(3 * held.vector) = (held.free * b.segment<3>(3 * held.vector)).eval();
     const auto solve = [&](auto&& solver, Vector& x) {
         solver.analyse(system);
         REQUIRE(solver.prepare(system) == solver::SolveStatus::converged);
@@ -249,7 +270,8 @@ TEST_CASE("every strategy solves the tangent of touching rods, whose points have
     CHECK((x - exact).norm() < 1e-5 * exact.norm());
     const Index blocks = solve(solver::FibreBlockPcg{{}}, x);
     CHECK((x - exact).norm() < 1e-5 * exact.norm());
-    std::printf("iterations: %ld with rigid motions of the sections, %ld with the factors of fibres\n", static_cast<long>(two_level), static_cast<long>(blocks));
+    std::printf("iterations: %ld with rigid motions of the sections, %ld with the factors of fibres\n",
+                static_cast<long>(two_level), static_cast<long>(blocks));
     CHECK(blocks < 60);
     CHECK(two_level < 60);
 }

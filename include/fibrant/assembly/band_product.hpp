@@ -27,14 +27,17 @@ public:
     template <class RowOf>
     void pack(const scene::DofLayout& layout, const RowOf& row) {
         if (!fits(layout)) arrange(layout);
-        core::parallel_for(packs(), [&](Index p) {
-            Pack& pack = packs_[core::at(p)];
-            if (pack.wide) {
-                copy<lanes>(pack, row);
-            } else {
-                copy<1>(pack, row);
-            }
-        }, scene::grain(layout, packs()));
+        core::parallel_for(
+            packs(),
+            [&](Index p) {
+                Pack& pack = packs_[core::at(p)];
+                if (pack.wide) {
+                    copy<lanes>(pack, row);
+                } else {
+                    copy<1>(pack, row);
+                }
+            },
+            scene::grain(layout, packs()));
     }
 
     Index packs() const noexcept { return core::count(packs_); }
@@ -71,7 +74,8 @@ private:
         for (const Pack& pack : packs_) {
             for (Index k = 0; k < pack.chains; ++k, ++chains) {
                 if (chains >= core::count(layout.chains) || layout.chains[core::at(chains)].nodes != pack.nodes ||
-                    3 * layout.chains[core::at(chains)].first_vector != pack.first[core::at(k)]) return false;
+                    3 * layout.chains[core::at(chains)].first_vector != pack.first[core::at(k)])
+                    return false;
             }
         }
         return chains == core::count(layout.chains);
@@ -81,10 +85,12 @@ private:
         for (Index c = 0; c < core::count(layout.chains);) {
             const Index nodes = layout.chains[core::at(c)].nodes;
             Index same = 1;
-            while (same < lanes && c + same < core::count(layout.chains) && layout.chains[core::at(c + same)].nodes == nodes) ++same;
+            while (same < lanes && c + same < core::count(layout.chains) && layout.chains[core::at(c + same)].nodes == nodes)
+                ++same;
             const bool wide = same > 2;  // fewer leave most lanes idle
             Pack pack{c, wide ? same : 1, nodes, {}, wide, {}};
-            for (Index k = 0; k < lanes; ++k) pack.first[core::at(k)] = 3 * layout.chains[core::at(k < pack.chains ? c + k : c)].first_vector;
+            for (Index k = 0; k < lanes; ++k)
+                pack.first[core::at(k)] = 3 * layout.chains[core::at(k < pack.chains ? c + k : c)].first_vector;
             Index entries = 0;
             for (Index a = 0; a < nodes; ++a) entries += triangle + before(a) * Block * Block;
             pack.values.assign(core::at(wide ? entries : (entries + lanes - 1) / lanes), Wide<lanes>::Zero());

@@ -59,8 +59,8 @@ public:
     std::vector<Point>& points() noexcept { return points_; }
     const std::vector<Point>& points() const noexcept { return points_; }
 
-    /// Stiffness of contacts whose places slide: few scenes have any. It reaches beyond elements: bands and node blocks do without, products
-    /// and terms have it.
+    /// Stiffness of contacts whose places slide: few scenes have any. It reaches beyond elements: bands and node blocks do
+    /// without, products and terms have it.
     std::vector<contact::SlidingStiffness>& slides() noexcept { return slides_; }
 
     /// Part of a point term that is not symmetric: `column` (x) `row` beside its stiffness [force / length, 1].
@@ -77,7 +77,8 @@ public:
         free_.setZero(x.size());
         for (const Skew& skew : skews_) {
             const Point& point = points_[core::at(skew.point)];
-            const Vec3 apart = beam::Mesh<B>::motion(x, point.first_j, point.weights_j) - beam::Mesh<B>::motion(x, point.first_i, point.weights_i);
+            const Vec3 apart = beam::Mesh<B>::motion(x, point.first_j, point.weights_j) -
+                               beam::Mesh<B>::motion(x, point.first_i, point.weights_i);
             const Vec3 force = skew.row.dot(apart) * skew.column;
             beam::spread(point.weights_j, force, point.first_j, free_);
             beam::spread(point.weights_i, Vec3(-force), point.first_i, free_);
@@ -106,8 +107,8 @@ public:
                 row(fibre, element * (B::nodes - 1) + a).template block<block, block>(0, (reach - (a - b)) * block) +=
                     stiffness.template block<block, block>(a * block, b * block);
     }
-    /// Adds (w w^T) (x) stiffness on the vectors of one element; of a particle whose section turns J^T stiffness J with the derivatives J
-    /// of its place.
+    /// Adds (w w^T) (x) stiffness on the vectors of one element; of a particle whose section turns J^T stiffness J with the
+    /// derivatives J of its place.
     /// @param first_unknown  of the element
     template <class Weights>
     void add_rank_one(Index fibre, Index first_unknown, const Weights& weights, const Mat3& stiffness) {
@@ -127,10 +128,12 @@ public:
     /// To be called once bands and points are complete: arranges them for products.
     void index_points() {
         band_.pack(layout_, [this](Index fibre, Index node) -> const Row& { return row(fibre, node); });
-        pairs_.pack(points_, core::count(rows_), [](const Point& point, int side) { return (side == 0 ? point.first_i : point.first_j) / block; });
+        pairs_.pack(points_, core::count(rows_),
+                    [](const Point& point, int side) { return (side == 0 ? point.first_i : point.first_j) / block; });
         supports_.clear();
         for (const scene::Tie& tie : layout_.ties)
-            for (const Index vector : tie.vectors) supports_.emplace_back(vector, tie.support * layout_.length[core::at(vector)] * layout_.length[core::at(vector)]);
+            for (const Index vector : tie.vectors)
+                supports_.emplace_back(vector, tie.support * layout_.length[core::at(vector)] * layout_.length[core::at(vector)]);
         std::sort(supports_.begin(), supports_.end());
     }
 
@@ -140,7 +143,8 @@ public:
             const Vec3 own = x.segment<3>(3 * held.vector), free = held.free * own;
             return free[0] == own[0] && free[1] == own[1] && free[2] == own[2];
         };
-        if (layout_.ties.empty() && std::all_of(layout_.held.begin(), layout_.held.end(), is_free)) {  // as directions of a solver are
+        if (layout_.ties.empty() &&
+            std::all_of(layout_.held.begin(), layout_.held.end(), is_free)) {  // as directions of a solver are
             apply_unheld(x, y);
         } else {
             free_ = x;
@@ -160,17 +164,21 @@ public:
     void apply_unheld(const Vector& free, Vector& y) const {
         const Vector& x = with_images(free);
         const Index grain = scene::grain(layout_, band_.packs());
-        core::parallel_for(band_.packs(), [&](Index p) {
-            band_.apply(p, x, y);
-            pairs_.find_motions(sides(p), x);
-        }, grain);
-        core::parallel_for(band_.packs(), [&](Index p) { pairs_.add_forces(sides(p), y); }, grain);
+        core::parallel_for(
+            band_.packs(),
+            [&](Index p) {
+                band_.apply(p, x, y);
+                pairs_.find_motions(sides(p), x);
+            },
+            grain);
+        core::parallel_for(
+            band_.packs(), [&](Index p) { pairs_.add_forces(sides(p), y); }, grain);
         for (const contact::SlidingStiffness& slide : slides_) add_slide(slide, x, y);
         scene::fold_images(layout_, y);
     }
 
-    /// Lower block band of a fibre with its own part of every contact: block (a, d) is A(a, a - d). The last nodes of a closed fibre are not coupled
-    /// with its first one in it: positive semidefinite where its elements are.
+    /// Lower block band of a fibre with its own part of every contact: block (a, d) is A(a, a - d). The last nodes of a closed
+    /// fibre are not coupled with its first one in it: positive semidefinite where its elements are.
     void chain_band(Index fibre, Matrix& blocks) const {
         unheld_band(fibre, blocks);
         const scene::Chain& chain = layout_.chains[core::at(fibre)];
@@ -182,7 +190,8 @@ public:
         }
         project_band(fibre, blocks);
     }
-    /// Of a closed fibre the columns of its first node in the last nodes, as many as are coupled with it, in order: what chain_band leaves out.
+    /// Of a closed fibre the columns of its first node in the last nodes, as many as are coupled with it, in order: what
+    /// chain_band leaves out.
     void chain_corner(Index fibre, Matrix& corner) const {
         Matrix blocks;
         unheld_band(fibre, blocks);
@@ -194,7 +203,8 @@ public:
         for (const scene::HeldVector& held : layout_.held) {
             const Index v = held.vector - chain.first_vector, last = v - (own - reach) * B::vectors_per_node;
             if (v >= 0 && v < B::vectors_per_node) corner.middleCols<3>(3 * v) = (corner.middleCols<3>(3 * v) * held.free).eval();
-            if (last >= 0 && last < reach * B::vectors_per_node) corner.middleRows<3>(3 * last) = (held.free * corner.middleRows<3>(3 * last)).eval();
+            if (last >= 0 && last < reach * B::vectors_per_node)
+                corner.middleRows<3>(3 * last) = (held.free * corner.middleRows<3>(3 * last)).eval();
         }
     }
 
@@ -214,7 +224,8 @@ public:
         const double one = 1.0;
         for (const auto& [vector, stiffness] : supports_) {
             const Index alone = vector;
-            terms.point(PointTerm{std::span<const Index>(&alone, 1), std::span<const double>(&one, 1), Mat3(stiffness * Mat3::Identity())});
+            terms.point(PointTerm{std::span<const Index>(&alone, 1), std::span<const double>(&one, 1),
+                                  Mat3(stiffness * Mat3::Identity())});
         }
         visit_couplings(terms, 0, core::count(points_) + core::count(slides_));
     }
@@ -242,7 +253,8 @@ public:
         }
         first = std::min(first, points), last = std::min(last, points);
         for (const Point& point : std::span<const Point>(points_).subspan(core::at(first), core::at(last - first))) {
-            for (Index k = 0; k < weighted; ++k) both[core::at(k)] = point.first_i / 3 + stride * k, both[core::at(weighted + k)] = point.first_j / 3 + stride * k;
+            for (Index k = 0; k < weighted; ++k)
+                both[core::at(k)] = point.first_i / 3 + stride * k, both[core::at(weighted + k)] = point.first_j / 3 + stride * k;
             if (!closed_.empty()) {
                 replace_images(point.fibre_i, std::span(both).first(core::at(weighted)));
                 replace_images(point.fibre_j, std::span(both).last(core::at(weighted)));
@@ -251,7 +263,8 @@ public:
                 visit_turning(point, both, terms);
             } else {
                 for (Index k = 0; k < weighted; ++k)
-                    weights[core::at(k)] = -point.weights_i[core::at(k)], weights[core::at(weighted + k)] = point.weights_j[core::at(k)];
+                    weights[core::at(k)] = -point.weights_i[core::at(k)],
+                    weights[core::at(weighted + k)] = point.weights_j[core::at(k)];
                 terms.point(PointTerm{both, weights, point.stiffness});
             }
         }
@@ -264,14 +277,15 @@ private:
         blocks.setZero(size * block, (reach + 1) * block);
         for (Index a = 0; a < size; ++a)
             for (Index d = 0; d <= std::min<Index>(a, reach); ++d)
-                blocks.block<block, block>(a * block, d * block) = row(fibre, a).template block<block, block>(0, (reach - d) * block);
+                blocks.block<block, block>(a * block, d * block) =
+                    row(fibre, a).template block<block, block>(0, (reach - d) * block);
         pairs_.add_own(pairs_.sides(first_node_[core::at(fibre)], first_node_[core::at(fibre + 1)]),
                        [&](std::int32_t first, const beam::Particle<B>& weights, const Mat3& stiffness) {
-            const Index node = (first - first_unknown(fibre)) / block;
-            each_pair(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
-                blocks.block<3, 3>((node + a) * block + 3 * v, (a - b) * block + 3 * w) += product;
-            });
-        });
+                           const Index node = (first - first_unknown(fibre)) / block;
+                           each_pair(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
+                               blocks.block<3, 3>((node + a) * block + 3 * v, (a - b) * block + 3 * w) += product;
+                           });
+                       });
     }
     /// Vectors of images become those of their sources.
     void replace_images(Index fibre, std::span<Index> numbers) const noexcept {
@@ -319,25 +333,27 @@ private:
                 const double left = weights[core::at(a * B::vectors_per_node + v)];
                 if (left == 0.0) continue;
                 for (Index b = 0; b <= a; ++b)
-                    for (Index w = 0; w < B::vectors_per_node; ++w) see(a, v, b, w, Mat3(left * weights[core::at(b * B::vectors_per_node + w)] * stiffness));
+                    for (Index w = 0; w < B::vectors_per_node; ++w)
+                        see(a, v, b, w, Mat3(left * weights[core::at(b * B::vectors_per_node + w)] * stiffness));
             }
     }
     /// The same of a particle of the centreline.
     template <class See>
-    static void each_pair(const beam::CentreWeights<B::nodes, B::vectors_per_node>& centre, const Mat3& stiffness, const See& see) {
+    static void each_pair(const beam::CentreWeights<B::nodes, B::vectors_per_node>& centre, const Mat3& stiffness,
+                          const See& see) {
         for (Index a = 0; a < B::nodes; ++a)
             for (Index b = 0; b <= a; ++b) see(a, 0, b, 0, Mat3(centre[core::at(a)] * centre[core::at(b)] * stiffness));
     }
     /// The same of J^T stiffness J.
     template <class See>
-    static void each_pair(const beam::Particle<B>& particle, const Mat3& stiffness, const See& see)
-        requires beam::TurningSections<B>
-    {
+    static void each_pair(const beam::Particle<B>& particle, const Mat3& stiffness,
+                          const See& see) requires beam::TurningSections<B> {
         for (Index a = 0; a < B::nodes; ++a)
             for (Index v = 0; v < B::vectors_per_node; ++v) {
                 const Mat3 left = particle.slope(a * B::vectors_per_node + v).transpose() * stiffness;
                 for (Index b = 0; b <= a; ++b)
-                    for (Index w = 0; w < B::vectors_per_node; ++w) see(a, v, b, w, Mat3(left * particle.slope(b * B::vectors_per_node + w)));
+                    for (Index w = 0; w < B::vectors_per_node; ++w)
+                        see(a, v, b, w, Mat3(left * particle.slope(b * B::vectors_per_node + w)));
             }
     }
     /// Particles that turn have no scalar weights: the whole matrix of the point.
@@ -345,7 +361,8 @@ private:
     static void visit_turning(const Point& point, const std::array<Index, core::at(2 * vectors)>& both, Terms& terms) {
         Eigen::Matrix<double, 3, 6 * vectors> J;
         for (Index k = 0; k < vectors; ++k)
-            J.template middleCols<3>(3 * k) = -point.weights_i.slope(k), J.template middleCols<3>(3 * (vectors + k)) = point.weights_j.slope(k);
+            J.template middleCols<3>(3 * k) = -point.weights_i.slope(k),
+                                         J.template middleCols<3>(3 * (vectors + k)) = point.weights_j.slope(k);
         const Matrix whole = J.transpose() * point.stiffness * J;
         terms.dense(DenseTerm{both, whole});
     }
@@ -361,12 +378,16 @@ private:
         auto held = std::lower_bound(layout_.held.begin(), layout_.held.end(), chain.first_vector,
                                      [](const scene::HeldVector& h, Index v) { return h.vector < v; });
         for (; held != layout_.held.end() && held->vector < last; ++held) {
-            const Index local = held->vector - chain.first_vector, a = local / B::vectors_per_node, v = local % B::vectors_per_node;
+            const Index local = held->vector - chain.first_vector, a = local / B::vectors_per_node,
+                        v = local % B::vectors_per_node;
             for (Index d = 0; d <= std::min<Index>(a, reach); ++d)  // its row
-                blocks.block<3, block>(a * block + 3 * v, d * block) = (held->free * blocks.block<3, block>(a * block + 3 * v, d * block)).eval();
+                blocks.block<3, block>(a * block + 3 * v, d * block) =
+                    (held->free * blocks.block<3, block>(a * block + 3 * v, d * block)).eval();
             for (Index d = 0; d <= std::min<Index>(chain.nodes - 1 - a, reach); ++d)  // its column, in rows below
-                blocks.block<block, 3>((a + d) * block, d * block + 3 * v) = (blocks.block<block, 3>((a + d) * block, d * block + 3 * v) * held->free).eval();
-            blocks.block<3, 3>(a * block + 3 * v, 3 * v) += layout_.held_stiffness(held->vector) * (Mat3::Identity() - held->free);
+                blocks.block<block, 3>((a + d) * block, d * block + 3 * v) =
+                    (blocks.block<block, 3>((a + d) * block, d * block + 3 * v) * held->free).eval();
+            blocks.block<3, 3>(a * block + 3 * v, 3 * v) +=
+                layout_.held_stiffness(held->vector) * (Mat3::Identity() - held->free);
         }
     }
 

@@ -35,7 +35,8 @@ struct ResidualFigures {
 /// @tparam Connections  of ends of fibres to rigid bodies
 /// @tparam Solid        that the fibres are bonded to; its unknowns come after theirs
 /// @tparam Acts         what else pushes: term::List<...>
-template <beam::BeamElement B, class Contacts, class Connections = connection::NoConnections, class Solid = solid::NoSolid, class Acts = term::List<>>
+template <beam::BeamElement B, class Contacts, class Connections = connection::NoConnections, class Solid = solid::NoSolid,
+          class Acts = term::List<>>
 class Equilibrium;
 
 template <beam::BeamElement B, class Contacts, class Connections, class Solid, class... T>
@@ -56,9 +57,15 @@ public:
 
     Equilibrium(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const B& beam, Contacts& contacts,
                 const connection::Channels& channels, const Solid& solid = Solid(), const Parameters& terms = {})
-        : mesh_{&mesh}, beam_{beam}, contacts_{&contacts}, motion_{assembly, mesh, channels},
-          ties_{assembly, mesh, channels}, solid_{taken(solid, assembly, mesh, channels)}, system_{system(mesh, solid_)},
-          terms_{term::SiteOf<B>(assembly, mesh, channels, std::as_const(system_).layout()), terms}, stresses_(core::at(mesh.element_count())) {
+        : mesh_{&mesh},
+          beam_{beam},
+          contacts_{&contacts},
+          motion_{assembly, mesh, channels},
+          ties_{assembly, mesh, channels},
+          solid_{taken(solid, assembly, mesh, channels)},
+          system_{system(mesh, solid_)},
+          terms_{term::SiteOf<B>(assembly, mesh, channels, std::as_const(system_).layout()), terms},
+          stresses_(core::at(mesh.element_count())) {
         // Strains keep the digits of coordinates over an element's length, and E A of them is a force at each node.
         const double extent = scene::extent_of(mesh.layout(), mesh.rest_state());
         double sum = 0.0;
@@ -90,7 +97,8 @@ public:
     /// @param damping  of a spring from every centre to its place in `state`, >= 0 [force / length]; directors count at the
     ///                 surface. It holds what nothing else holds, and leaves no force once nothing moves.
     /// @param holding  factor on it of each fibre, >= 1; none: 1
-    void begin(std::span<const double> amplitudes, const Vector& state, double damping = 0.0, std::span<const double> holding = {}) {
+    void begin(std::span<const double> amplitudes, const Vector& state, double damping = 0.0,
+               std::span<const double> holding = {}) {
         terms_.template get<damping::PlaceSprings>().set(damping, holding);
         terms_.each([&](auto& term) { term.begin(amplitudes, state); });
         motion_.at(amplitudes, state, system_.layout().held, targets_);
@@ -171,8 +179,8 @@ public:
     /// Last nodes of closed fibres go where the first ones do.
     void close_chains(Vector& step) const noexcept { scene::copy_to_images(system_.layout(), step); }
 
-    /// Moves tied vectors of a state whose residual is known onto their conditions: where a body turns freely, a step leaves these missed by
-    /// the square of what it turned, and how far is not in the residual.
+    /// Moves tied vectors of a state whose residual is known onto their conditions: where a body turns freely, a step leaves
+    /// these missed by the square of what it turned, and how far is not in the residual.
     void close_ties([[maybe_unused]] Vector& state) {
         if constexpr (core::Active<Ties>) {
             for (int pass = 0; pass < 3 && !ties_.met(); ++pass) {
@@ -193,18 +201,21 @@ public:
         terms_.template of<term::Role::structure>([&](const auto& term) { term.add_forces(state, forces); });
     }
     void add_fibre_forces(const Vector& state, Vector& forces, [[maybe_unused]] bool iterated) {
-        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
-            for (Index e = 0; e < mesh_->fibre(f).elements; ++e) {
-                if constexpr (iterated_strains)
-                    if (iterated) {
-                        forces.template segment<element_unknowns>(mesh_->first_unknown(f, e)) +=
-                            beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e), stress(f, e));
-                        continue;
-                    }
-                forces.template segment<element_unknowns>(mesh_->first_unknown(f, e)) +=
-                    beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e));
-            }
-        }, mesh_->grain());
+        core::parallel_for(
+            mesh_->fibre_count(),
+            [&](Index f) {
+                for (Index e = 0; e < mesh_->fibre(f).elements; ++e) {
+                    if constexpr (iterated_strains)
+                        if (iterated) {
+                            forces.template segment<element_unknowns>(mesh_->first_unknown(f, e)) +=
+                                beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e), stress(f, e));
+                            continue;
+                        }
+                    forces.template segment<element_unknowns>(mesh_->first_unknown(f, e)) +=
+                        beam_.internal_force(mesh_->rest(f, e), mesh_->element(state, f, e));
+                }
+            },
+            mesh_->grain());
     }
 
     /// Residual of a state whose contacts have been evaluated.
@@ -222,16 +233,17 @@ public:
         external_.setZero(state.size());
         terms_.template of<term::Role::external>([&](const auto& term) { term.add_forces(state, external_); });
         scene::fold_images(system_.layout(), external_);
-        if constexpr (moves) terms_.moving([&](auto& term) {  // fibres and loads act by a mean over the step
-            terms_.template of<term::Role::structure>(add);
-            fibres_.setZero(state.size());
-            add_fibre_forces(state, fibres_, true);
-            fibres_ -= external_;
-            scene::fold_images(system_.layout(), fibres_);
-            term.add_averaged(state, fibres_, residual);
-            residual += external_;
-            scene::fold_images(system_.layout(), residual);
-        });
+        if constexpr (moves)
+            terms_.moving([&](auto& term) {  // fibres and loads act by a mean over the step
+                terms_.template of<term::Role::structure>(add);
+                fibres_.setZero(state.size());
+                add_fibre_forces(state, fibres_, true);
+                fibres_ -= external_;
+                scene::fold_images(system_.layout(), fibres_);
+                term.add_averaged(state, fibres_, residual);
+                residual += external_;
+                scene::fold_images(system_.layout(), residual);
+            });
         if constexpr (core::Active<Ties>) {
             ties_.hold_forces(system_.layout(), residual - external_);
             ties_.add_forces(system_.layout(), external_);
@@ -248,7 +260,10 @@ public:
         figures.rounding = rounding_;
         const double reaction = std::sqrt(std::max(0.0, all * all - figures.residual * figures.residual));
         figures.scale = std::sqrt(contact * contact + load * load + reaction * reaction);
-        if constexpr (moves) terms_.moving([&](const auto& term) { figures.scale = std::hypot(figures.scale, norm(fibres_)), figures.rounding += term.rounding(); });
+        if constexpr (moves)
+            terms_.moving([&](const auto& term) {
+                figures.scale = std::hypot(figures.scale, norm(fibres_)), figures.rounding += term.rounding();
+            });
         return figures;
     }
 
@@ -259,19 +274,29 @@ public:
         system_.place(state);
         [[maybe_unused]] double share = 1.0;
         if constexpr (moves) terms_.moving([&](const auto& term) { share = term.share(); });
-        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
-            system_.clear(f);
-            for (Index e = 0; e < mesh_->fibre(f).elements; ++e) {
-                const typename B::Stresses geometric = tension_only ? B::without_compression(stress(f, e)) : stress(f, e);
-                if constexpr (moves) system_.add(f, e, beam::ElementMatrix<B>(share * beam_.tangent_stiffness(mesh_->rest(f, e), mesh_->element(state, f, e), geometric)));
-                else system_.add(f, e, beam_.tangent_stiffness(mesh_->rest(f, e), mesh_->element(state, f, e), geometric));
-            }
-            contacts_->section_stiffness_terms(f, state, [&](Index first, const auto& weights, const Mat3& stiffness) {
-                system_.add_rank_one(f, first, weights, stiffness);
-            });
-            if (const double springs = spring(f, shift); springs > 0.0)
-                scene::for_own_vectors(system_.layout(), f, [&](Index v, double length) { system_.add_diagonal(v, springs * length * length * Mat3::Identity()); });
-        }, mesh_->grain());
+        core::parallel_for(
+            mesh_->fibre_count(),
+            [&](Index f) {
+                system_.clear(f);
+                for (Index e = 0; e < mesh_->fibre(f).elements; ++e) {
+                    const typename B::Stresses geometric = tension_only ? B::without_compression(stress(f, e)) : stress(f, e);
+                    if constexpr (moves)
+                        system_.add(
+                            f, e,
+                            beam::ElementMatrix<B>(
+                                share * beam_.tangent_stiffness(mesh_->rest(f, e), mesh_->element(state, f, e), geometric)));
+                    else
+                        system_.add(f, e, beam_.tangent_stiffness(mesh_->rest(f, e), mesh_->element(state, f, e), geometric));
+                }
+                contacts_->section_stiffness_terms(f, state, [&](Index first, const auto& weights, const Mat3& stiffness) {
+                    system_.add_rank_one(f, first, weights, stiffness);
+                });
+                if (const double springs = spring(f, shift); springs > 0.0)
+                    scene::for_own_vectors(system_.layout(), f, [&](Index v, double length) {
+                        system_.add_diagonal(v, springs * length * length * Mat3::Identity());
+                    });
+            },
+            mesh_->grain());
         Sink sink{this, state};
         term::Bands bands(sink);
         terms_.each([&]<class One>(const One& term) {
@@ -298,10 +323,13 @@ public:
 
     double elastic_energy(const Vector& state) const {
         std::vector<double> part(core::at(mesh_->fibre_count()));
-        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
-            for (Index e = 0; e < mesh_->fibre(f).elements; ++e)
-                part[core::at(f)] += beam_.energy(mesh_->rest(f, e), mesh_->element(state, f, e));
-        }, mesh_->grain());
+        core::parallel_for(
+            mesh_->fibre_count(),
+            [&](Index f) {
+                for (Index e = 0; e < mesh_->fibre(f).elements; ++e)
+                    part[core::at(f)] += beam_.energy(mesh_->rest(f, e), mesh_->element(state, f, e));
+            },
+            mesh_->grain());
         double sum = 0.0;
         for (const double value : part) sum += value;
         if constexpr (has_solid) sum += solid_.energy(state);
@@ -328,8 +356,11 @@ public:
     /// Scalar product of the displacements of two steps, directors counted at the surface [length^2].
     double product(const Vector& a, const Vector& b) const { return product_of(system_.layout(), a, b); }
 
-    /// Of each fibre the greatest displacement of a step, directors counted at the surface [length]; empty if the step is not finite.
-    std::vector<double> greatest_by_fibre(const Vector& step) const { return greatest_of_chains(system_.layout(), mesh_->fibre_count(), step); }
+    /// Of each fibre the greatest displacement of a step, directors counted at the surface [length]; empty if the step is not
+    /// finite.
+    std::vector<double> greatest_by_fibre(const Vector& step) const {
+        return greatest_of_chains(system_.layout(), mesh_->fibre_count(), step);
+    }
 
 private:
     /// Supports carry forces of the end of a step.
@@ -347,8 +378,10 @@ private:
         return solid;
     }
     static System system(const beam::Mesh<B>& mesh, [[maybe_unused]] const Solid& solid) {
-        if constexpr (has_solid) return System(mesh, solid);
-        else return System(mesh);
+        if constexpr (has_solid)
+            return System(mesh, solid);
+        else
+            return System(mesh);
     }
     void gather_points([[maybe_unused]] const Vector& state) {
         auto& points = system_.points();
@@ -369,7 +402,8 @@ private:
                               element.weights_j, tangent});
             if (!contacts_->follows()) continue;
             const Vec3 column = contacts_->friction_by_gap(k);
-            if (!column.isZero(0.0)) system_.skews().push_back({static_cast<std::int32_t>(points.size() - 1), column, element.normal});
+            if (!column.isZero(0.0))
+                system_.skews().push_back({static_cast<std::int32_t>(points.size() - 1), column, element.normal});
         }
         Sink sink{this, state};
         term::Couplings couplings(sink);
@@ -380,7 +414,8 @@ private:
         system_.slides().clear();
         if (contacts_->places().none()) return;
         for (Index k = 0; k < core::count(contacts_->elements()); ++k)
-            if (contacts_->slides(k) && contacts_->responses()[core::at(k)].slope != 0.0) system_.slides().push_back(contacts_->sliding(k, positive));
+            if (contacts_->slides(k) && contacts_->responses()[core::at(k)].slope != 0.0)
+                system_.slides().push_back(contacts_->sliding(k, positive));
     }
     /// What a term's stiffness goes into.
     struct Sink {
@@ -388,17 +423,22 @@ private:
         const Vector& state;
         [[no_unique_address]] std::conditional_t<moves, double, core::Inactive> factor{};  ///< on what is added to bands
         void add_diagonal(Index vector, const Mat3& stiffness) {
-            if constexpr (moves) to->system_.add_diagonal(vector, Mat3(factor * stiffness));
-            else to->system_.add_diagonal(vector, stiffness);
+            if constexpr (moves)
+                to->system_.add_diagonal(vector, Mat3(factor * stiffness));
+            else
+                to->system_.add_diagonal(vector, stiffness);
         }
         void add_element(Index f, Index e, const double* entries) {
             const Eigen::Map<const beam::ElementMatrix<B>> stiffness(entries);
-            if constexpr (moves) to->system_.add(f, e, beam::ElementMatrix<B>(factor * stiffness));
-            else to->system_.add(f, e, stiffness);
+            if constexpr (moves)
+                to->system_.add(f, e, beam::ElementMatrix<B>(factor * stiffness));
+            else
+                to->system_.add(f, e, stiffness);
         }
         void add_coupling(const term::CentrePoint& i, const term::CentrePoint& j, const Mat3& stiffness) {
-            to->system_.points().push_back({static_cast<std::int32_t>(3 * i.first_vector), static_cast<std::int32_t>(3 * j.first_vector),
-                                            static_cast<std::int32_t>(i.fibre), static_cast<std::int32_t>(j.fibre), particle(i), particle(j), stiffness});
+            to->system_.points().push_back({static_cast<std::int32_t>(3 * i.first_vector),
+                                            static_cast<std::int32_t>(3 * j.first_vector), static_cast<std::int32_t>(i.fibre),
+                                            static_cast<std::int32_t>(j.fibre), particle(i), particle(j), stiffness});
         }
         beam::Particle<B> particle(const term::CentrePoint& at) const {
             if constexpr (beam::TouchedOnCentreline<B>) {
@@ -418,9 +458,12 @@ private:
     typename B::Stresses& stress(Index f, Index e) noexcept { return stresses_[core::at(mesh_->element_index(f, e))]; }
     template <class Body>
     void for_elements(const Body& body) {
-        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
-            for (Index e = 0; e < mesh_->fibre(f).elements; ++e) body(f, e);
-        }, mesh_->grain());
+        core::parallel_for(
+            mesh_->fibre_count(),
+            [&](Index f) {
+                for (Index e = 0; e < mesh_->fibre(f).elements; ++e) body(f, e);
+            },
+            mesh_->grain());
     }
 
     const beam::Mesh<B>* mesh_;

@@ -29,8 +29,7 @@ namespace fibrant::assembly {
 /// `blocks` is resized by the system. node_blocks and chain_band may be called from several threads at once, for
 /// different chains. Every vector belongs to exactly one chain.
 template <class T>
-concept LinearSystem = requires(const T system, const Vector& x, Vector& y, Index chain, Matrix& blocks,
-                                IgnoredTerms& terms) {
+concept LinearSystem = requires(const T system, const Vector& x, Vector& y, Index chain, Matrix& blocks, IgnoredTerms& terms) {
     { system.layout() } -> std::same_as<const scene::DofLayout&>;
     system.apply(x, y);
     system.node_blocks(chain, blocks);
@@ -42,8 +41,10 @@ concept LinearSystem = requires(const T system, const Vector& x, Vector& y, Inde
 /// else they are among all of its terms.
 template <class T, class Visitor>
 void visit_couplings(const T& system, Visitor& visitor) {
-    if constexpr (requires { system.visit_couplings(visitor); }) system.visit_couplings(visitor);
-    else system.visit(visitor);
+    if constexpr (requires { system.visit_couplings(visitor); })
+        system.visit_couplings(visitor);
+    else
+        system.visit(visitor);
 }
 
 /// A system whose couplings are numbered, so that parts of them are visited, from several threads at once.
@@ -55,7 +56,9 @@ concept DivisibleCouplings = requires(const T system, IgnoredTerms& terms, Index
 
 /// A system that forms its matrix: all of A, both triangles, F included. The pattern depends on the terms' vectors only.
 template <class T>
-concept AssembledSystem = LinearSystem<T> && requires(const T system, SparseMatrix& a) { system.assemble(a); };
+concept AssembledSystem = LinearSystem<T> && requires(const T system, SparseMatrix& a) {
+    system.assemble(a);
+};
 
 /// The projector F of a layout's held vectors. A view: the layout must outlive it.
 class HeldProjector {
@@ -83,7 +86,9 @@ public:
         scene::complete_ties(*layout_, x, y);
     }
     /// (I - F) H of a held vector.
-    Mat3 held_part(const scene::HeldVector& held) const { return layout_->held_stiffness(held.vector) * (Mat3::Identity() - held.free); }
+    Mat3 held_part(const scene::HeldVector& held) const {
+        return layout_->held_stiffness(held.vector) * (Mat3::Identity() - held.free);
+    }
     /// block <- F_i block F_j, for a 3 x 3 block of K between the vectors i and j. (I - F) H is left to the caller.
     void project(Index i, Index j, Mat3& block) const noexcept {
         if (const Mat3* left = free(i)) block = (*left * block).eval();

@@ -19,7 +19,8 @@ namespace fibrant::assembly {
 /// are at hand, and so are the forces that they pass on. Every element has its own sums, in a fixed order.
 ///
 /// @tparam Vectors  of an element
-/// @tparam Weights  scalars, of all vectors or of each `stride`-th of them, or a particle whose section turns: then (J^T K J) with the
+/// @tparam Weights  scalars, of all vectors or of each `stride`-th of them, or a particle whose section turns: then (J^T K J)
+/// with the
 ///                  derivatives J of its place
 template <int Vectors, class Weights = std::array<double, core::at(Vectors)>>
 class PointProduct {
@@ -37,7 +38,8 @@ public:
         weights_.resize(core::at(2 * n));
         motion_.resize(core::at(2 * n));
         for (Index k = 0; k < n; ++k)
-            for (int side = 0; side < 2; ++side) slot_[core::at(2 * k + side)] = next[core::at(place(points[core::at(k)], side))]++;
+            for (int side = 0; side < 2; ++side)
+                slot_[core::at(2 * k + side)] = next[core::at(place(points[core::at(k)], side))]++;
         first_ = std::move(next);
         core::parallel_for((n + 1023) / 1024, [&](Index part) {
             for (Index k = 1024 * part; k < std::min(n, 1024 * (part + 1)); ++k) {
@@ -65,21 +67,23 @@ public:
         std::array<Padded, weighted> values;
         for (Index s = range.first; s < range.second;) {
             const std::int32_t start = sides_[core::at(s)].first;
-            for (std::size_t a = 0; a < values.size(); ++a) values[a] << x.segment<3>(start + 3 * stride * static_cast<Index>(a)).array(), 0.0;
+            for (std::size_t a = 0; a < values.size(); ++a)
+                values[a] << x.segment<3>(start + 3 * stride * static_cast<Index>(a)).array(), 0.0;
             for (; s < range.second && sides_[core::at(s)].first == start; ++s) {
                 const Weights& weights = weights_[core::at(s)];
                 if constexpr (turning) {
                     Vec3 motion = Vec3::Zero();
-                    for (std::size_t a = 0; a < values.size(); ++a) motion += weights.slope(static_cast<Index>(a)) * values[a].template head<3>().matrix();
+                    for (std::size_t a = 0; a < values.size(); ++a)
+                        motion += weights.slope(static_cast<Index>(a)) * values[a].template head<3>().matrix();
                     motion_[core::at(s)] << motion.array(), 0.0;
                 } else {
-                Padded even = Padded::Zero(), odd = Padded::Zero();  // two sums, neither of which waits for the other
-                for (std::size_t a = 0; a + 1 < values.size(); a += 2) {
-                    even += weights[a] * values[a];
-                    odd += weights[a + 1] * values[a + 1];
-                }
-                if constexpr (weighted % 2 == 1) even += weights.back() * values.back();
-                motion_[core::at(s)] = even + odd;
+                    Padded even = Padded::Zero(), odd = Padded::Zero();  // two sums, neither of which waits for the other
+                    for (std::size_t a = 0; a + 1 < values.size(); a += 2) {
+                        even += weights[a] * values[a];
+                        odd += weights[a + 1] * values[a + 1];
+                    }
+                    if constexpr (weighted % 2 == 1) even += weights.back() * values.back();
+                    motion_[core::at(s)] = even + odd;
                 }
             }
         }
@@ -107,7 +111,8 @@ public:
                     for (std::size_t a = 0; a < forces.size(); ++a) forces[a] += weights[a] * force;
                 }
             }
-            for (std::size_t a = 0; a < forces.size(); ++a) y.segment<3>(start + 3 * stride * static_cast<Index>(a)) += forces[a].template head<3>().matrix();
+            for (std::size_t a = 0; a < forces.size(); ++a)
+                y.segment<3>(start + 3 * stride * static_cast<Index>(a)) += forces[a].template head<3>().matrix();
         }
     }
 
@@ -125,13 +130,15 @@ private:
     using Unaligned = Eigen::Map<const Padded>;
     static constexpr bool turning = requires(const Weights& weights) { weights.slope(Index{}); };
     static constexpr Index stride = [] {
-        if constexpr (requires { Weights::stride; }) return Weights::stride;
-        else return 1;
+        if constexpr (requires { Weights::stride; })
+            return Weights::stride;
+        else
+            return 1;
     }();
     static constexpr std::size_t weighted = core::at(Vectors / stride);  // vectors that count
     struct Side {
-        std::int32_t first;    // unknown of the element
-        std::int32_t partner;  // slot of the other side
+        std::int32_t first;                  // unknown of the element
+        std::int32_t partner;                // slot of the other side
         std::array<double, 10> stiffness{};  // columns, and a zero to be read with the last
     };
     std::vector<std::int32_t> slot_, first_;  // first_ of a place: the end of its sides

@@ -24,7 +24,9 @@ public:
     using Row = typename Fibres::Row;
 
     /// @param solid  must outlive the system
-    SolidSystem(const beam::Mesh<B>& mesh, const Solid& solid) : fibres_{mesh}, solid_{&solid}, layout_{mesh.layout()} { solid.add_to(layout_); }
+    SolidSystem(const beam::Mesh<B>& mesh, const Solid& solid) : fibres_{mesh}, solid_{&solid}, layout_{mesh.layout()} {
+        solid.add_to(layout_);
+    }
     SolidSystem(const SolidSystem&) = delete;  // it looks at a solid
     SolidSystem& operator=(const SolidSystem&) = delete;
 
@@ -35,7 +37,8 @@ public:
 
     /// To be called when what is held has changed.
     void share_held() {
-        const auto end = std::partition_point(layout_.held.begin(), layout_.held.end(), [&](const scene::HeldVector& h) { return h.vector < solid_->first_vector(); });
+        const auto end = std::partition_point(layout_.held.begin(), layout_.held.end(),
+                                              [&](const scene::HeldVector& h) { return h.vector < solid_->first_vector(); });
         fibres_.layout().held.assign(layout_.held.begin(), end);
     }
     void place(const Vector& state) {
@@ -88,11 +91,14 @@ public:
     void chain_band(Index chain, Matrix& blocks) const {
         if (chain < core::count(fibres_.layout().chains)) return fibres_.chain_band(chain, blocks);
         blocks.resize(3 * solid_->nodes(), 3);
-        for (Index n = 0; n < solid_->nodes(); ++n) blocks.block<3, 3>(3 * n, 0) = solid_->diagonal(n) + support(n) * Mat3::Identity();
+        for (Index n = 0; n < solid_->nodes(); ++n)
+            blocks.block<3, 3>(3 * n, 0) = solid_->diagonal(n) + support(n) * Mat3::Identity();
         for (const scene::HeldVector& held : layout_.held) {
             const Index n = held.vector - solid_->first_vector();
             if (n < 0) continue;
-            blocks.block<3, 3>(3 * n, 0) = (held.free * blocks.block<3, 3>(3 * n, 0) * held.free + layout_.held_stiffness(held.vector) * (Mat3::Identity() - held.free)).eval();
+            blocks.block<3, 3>(3 * n, 0) = (held.free * blocks.block<3, 3>(3 * n, 0) * held.free +
+                                            layout_.held_stiffness(held.vector) * (Mat3::Identity() - held.free))
+                                               .eval();
         }
     }
     void chain_corner(Index chain, Matrix& corner) const { fibres_.chain_corner(chain, corner); }
@@ -106,8 +112,10 @@ public:
     void visit_solid_blocks(const See& see) const {
         if (supports_.empty()) return solid_->visit_blocks(see);
         solid_->visit_blocks([&](Index i, Index j, const Mat3& stiffness) {
-            if (i == j) see(i, j, Mat3(stiffness + support(i) * Mat3::Identity()));
-            else see(i, j, stiffness);
+            if (i == j)
+                see(i, j, Mat3(stiffness + support(i) * Mat3::Identity()));
+            else
+                see(i, j, stiffness);
         });
     }
 
@@ -171,7 +179,7 @@ private:
     const Solid* solid_;
     scene::DofLayout layout_;
     std::vector<double> supports_;  // of tied nodes of the solid; empty if there are no ties
-    mutable Vector free_;  // scratch of a product: one system serves one thread at a time
+    mutable Vector free_;           // scratch of a product: one system serves one thread at a time
 };
 
 /// The system of a model: fibres alone where it has no solid.

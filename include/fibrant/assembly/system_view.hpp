@@ -15,7 +15,8 @@ class VisitorView {
 public:
     template <class Visitor>
     explicit VisitorView(Visitor& visitor) noexcept
-        : visitor_{&visitor}, point_{[](void* own, const PointTerm& term) { static_cast<Visitor*>(own)->point(term); }},
+        : visitor_{&visitor},
+          point_{[](void* own, const PointTerm& term) { static_cast<Visitor*>(own)->point(term); }},
           dense_{[](void* own, const DenseTerm& term) { static_cast<Visitor*>(own)->dense(term); }} {}
     void point(const PointTerm& term) const { point_(visitor_, term); }
     void dense(const DenseTerm& term) const { dense_(visitor_, term); }
@@ -28,15 +29,15 @@ private:
 
 class SystemView;
 
-/// A system that has all that strategies may ask one of chains for: its couplings are numbered, chains may close, and a part of it
-/// may be unsymmetric.
+/// A system that has all that strategies may ask one of chains for: its couplings are numbered, chains may close, and a part of
+/// it may be unsymmetric.
 template <class T>
 concept WholeChainSystem = !std::same_as<T, SystemView> && DivisibleCouplings<T> && LinearSystem<T> &&
-    requires(const T system, const Vector& x, Vector& y, Index chain, Matrix& blocks) {
-        { system.unsymmetric() } -> std::same_as<bool>;
-        system.apply_skews(x, y);
-        system.chain_corner(chain, blocks);
-    };
+                           requires(const T system, const Vector& x, Vector& y, Index chain, Matrix& blocks) {
+    { system.unsymmetric() } -> std::same_as<bool>;
+    system.apply_skews(x, y);
+    system.chain_corner(chain, blocks);
+};
 
 /// A system of chains, whatever its beams: a call through a pointer for each question, a few of which are asked an iteration, and
 /// for each term that is visited. The system must outlive it.
@@ -86,17 +87,18 @@ private:
         return *static_cast<const System*>(system);
     }
     template <class System>
-    static constexpr Calls calls_of{
-        [](const void* s) -> const scene::DofLayout& { return as<System>(s).layout(); },
-        [](const void* s, const Vector& x, Vector& y) { as<System>(s).apply(x, y); },
-        [](const void* s, Index chain, Matrix& blocks) { as<System>(s).node_blocks(chain, blocks); },
-        [](const void* s, Index chain, Matrix& blocks) { as<System>(s).chain_band(chain, blocks); },
-        [](const void* s, Index chain, Matrix& corner) { as<System>(s).chain_corner(chain, corner); },
-        [](const void* s) { return as<System>(s).unsymmetric(); },
-        [](const void* s, const Vector& x, Vector& y) { as<System>(s).apply_skews(x, y); },
-        [](const void* s) { return as<System>(s).couplings(); },
-        [](const void* s, const VisitorView& visitor) { as<System>(s).visit(visitor); },
-        [](const void* s, const VisitorView& visitor, Index first, Index last) { as<System>(s).visit_couplings(visitor, first, last); }};
+    static constexpr Calls calls_of{[](const void* s) -> const scene::DofLayout& { return as<System>(s).layout(); },
+                                    [](const void* s, const Vector& x, Vector& y) { as<System>(s).apply(x, y); },
+                                    [](const void* s, Index chain, Matrix& blocks) { as<System>(s).node_blocks(chain, blocks); },
+                                    [](const void* s, Index chain, Matrix& blocks) { as<System>(s).chain_band(chain, blocks); },
+                                    [](const void* s, Index chain, Matrix& corner) { as<System>(s).chain_corner(chain, corner); },
+                                    [](const void* s) { return as<System>(s).unsymmetric(); },
+                                    [](const void* s, const Vector& x, Vector& y) { as<System>(s).apply_skews(x, y); },
+                                    [](const void* s) { return as<System>(s).couplings(); },
+                                    [](const void* s, const VisitorView& visitor) { as<System>(s).visit(visitor); },
+                                    [](const void* s, const VisitorView& visitor, Index first, Index last) {
+                                        as<System>(s).visit_couplings(visitor, first, last);
+                                    }};
 
     const void* system_;
     const Calls* calls_;

@@ -17,7 +17,7 @@ struct PointTerm {
 
 /// Symmetric stiffness on the vectors listed: a beam element, a hexahedron.
 struct DenseTerm {
-    std::span<const Index> vectors;             ///< 3-vectors of unknowns, each at most once
+    std::span<const Index> vectors;            ///< 3-vectors of unknowns, each at most once
     const Eigen::Ref<const Matrix> stiffness;  ///< 3 vectors.size() square, both triangles
 };
 

@@ -115,8 +115,7 @@ void chain_bands_from_terms(const System& system, std::vector<Matrix>& bands) {
         const Index a = places.number(i) / per_node, b = places.number(j) / per_node;
         if (a < b || a - b > layout.chains[core::at(c)].reach) return;
         held.project(i, j, block);
-        bands[core::at(c)].block<3, 3>(3 * places.number(i), 3 * ((a - b) * per_node + places.number(j) % per_node)) +=
-            block;
+        bands[core::at(c)].block<3, 3>(3 * places.number(i), 3 * ((a - b) * per_node + places.number(j) % per_node)) += block;
     });
     for (const scene::HeldVector& vector : layout.held) {
         const Index c = places.chain(vector.vector), k = places.number(vector.vector);

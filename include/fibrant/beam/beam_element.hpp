@@ -25,13 +25,13 @@ using ElementMatrix = Eigen::Matrix<double, B::nodes * B::dofs_per_node, B::node
 
 /// One scalar for each nodal 3-vector y_a of an element: a point of the fibre is x = sum of w_a y_a.
 template <class B>
-using ElementWeights = std::array<double, static_cast<std::size_t>(B::nodes * B::vectors_per_node)>;
+using ElementWeights = std::array<double, static_cast<std::size_t>(B::nodes* B::vectors_per_node)>;
 
 /// A beam whose particles turn with rotations has a type for them: where they are in a state, and how they move.
 template <class B>
 concept TurningSections = requires(typename B::Particle particle, const ElementVector<B>& y) {
-    { particle.place(y) } -> std::same_as<Vec3>;  // of the particle in a state
-    particle.follow(y);                           // its derivatives are those of this state from now on
+    { particle.place(y) } -> std::same_as<Vec3>;        // of the particle in a state
+    particle.follow(y);                                 // its derivatives are those of this state from now on
     { particle.slope(Index{}) } -> std::same_as<Mat3>;  // derivative of the place by a nodal vector
 };
 /// Contact acts on the beam's centreline and leaves its sections alone, though it knows them: contact takes the radius off.
@@ -59,7 +59,9 @@ using Particle = typename detail::ParticleOf<B>::Type;
 
 /// The beam knows its centreline only: contact takes the radius off between centrelines, and needs no director.
 template <class B>
-concept CentrelineOnly = requires { requires B::centreline_particles; };
+concept CentrelineOnly = requires {
+    requires B::centreline_particles;
+};
 /// Particles that touch are those of the centreline: a force has no lever.
 template <class B>
 concept CentreTouched = CentrelineOnly<B> || TouchedOnCentreline<B>;
@@ -103,12 +105,12 @@ concept BeamElement = core::Policy<B> && requires {
     requires TouchedOnCentreline<B> || std::same_as<decltype(B::particle_weights(xi, xi, xi)), Particle<B>>;
 };
 
-/// A beam whose stresses may bend over: in an iteration its points have strains of their own, predicted by the step, around which force
-/// and tangent are those of a linear law (mixed integration points, Magisano, Leonetti, Garcea 2017). The second order of a turn, which
-/// is a stretch that the next iteration takes back, would make them yield else.
+/// A beam whose stresses may bend over: in an iteration its points have strains of their own, predicted by the step, around which
+/// force and tangent are those of a linear law (mixed integration points, Magisano, Leonetti, Garcea 2017). The second order of a
+/// turn, which is a stretch that the next iteration takes back, would make them yield else.
 template <class B>
-concept IteratedStrains = BeamElement<B> && requires(const B beam, const typename B::Rest& rest, const ElementVector<B>& current,
-                                                     const typename B::Stresses& iterated) {
+concept IteratedStrains = BeamElement<B> &&
+    requires(const B beam, const typename B::Rest& rest, const ElementVector<B>& current, const typename B::Stresses& iterated) {
     { beam.internal_force(rest, current, iterated) } -> std::same_as<ElementVector<B>>;
 };
 

@@ -17,7 +17,8 @@ namespace fibrant::beam {
 template <BeamElement B>
 void closed_frames(const scene::FibreSpecification& fibre, Index nodes, std::vector<scene::NodeFrame>& starts,
                    std::vector<scene::NodeFrame>& frames) {
-    if constexpr (CentrelineOnly<B>) core::require(fibre.twist == 0.0, "fibre.twist", fibre.twist, "0, of a beam that does not turn");
+    if constexpr (CentrelineOnly<B>)
+        core::require(fibre.twist == 0.0, "fibre.twist", fibre.twist, "0, of a beam that does not turn");
     starts = scene::reference_frames(fibre.start ? fibre.start : fibre.curve, nodes, fibre.director, true);
     constexpr double turn = 2.0 * std::numbers::pi;
     const double closing = scene::closing_angle(starts) + turn * std::round(fibre.twist / turn);
@@ -25,8 +26,7 @@ void closed_frames(const scene::FibreSpecification& fibre, Index nodes, std::vec
         const auto at = [&](Index k, Index parts) { return fibre.start(static_cast<double>(k) / static_cast<double>(parts)); };
         const auto chords = [&](Index parts) {
             double sum = 0.0;
-            for (Index k = 0; k < parts; ++k)
-                sum += (at(k + 1, parts) - at(k, parts)).norm();
+            for (Index k = 0; k < parts; ++k) sum += (at(k + 1, parts) - at(k, parts)).norm();
             return sum;
         };
         // What chords miss goes with the square of their length; straight elements are chords, and would be stretched.

@@ -25,8 +25,9 @@ struct DirectorBeamOptions {
 /// Beam x = x_0 + xi_1 g_1 + xi_2 g_2 with 9 unknowns a node (Durville, eq. 1 and 2), Nodes - 1 Gauss points.
 ///
 /// All strains are quadratic in the unknowns, eps_c = y.H_c y/2 - rest; the force is sum w S_c H_c y and the tangent
-/// sum w (B^T C B + S_c H_c (x) I_3), exact and symmetric; but for TwistStrain::turn, a quotient of two such. Two Gauss points on three nodes and section strains sampled at
-/// the nodes leave no locking; exactly the six rigid motions have no energy. Keep an element below 90 degrees of turn.
+/// sum w (B^T C B + S_c H_c (x) I_3), exact and symmetric; but for TwistStrain::turn, a quotient of two such. Two Gauss points on
+/// three nodes and section strains sampled at the nodes leave no locking; exactly the six rigid motions have no energy. Keep an
+/// element below 90 degrees of turn.
 template <int Nodes = 3, DirectorBeamOptions Options = DirectorBeamOptions{}>
 class DirectorBeam {
 protected:
@@ -122,8 +123,8 @@ public:
         return tangent;
     }
     /// Both at once, the geometric part made of given stresses.
-    void residual_and_tangent(const Rest& rest, const ElementVector& current, const Stresses& geometric,
-                              ElementVector& force, ElementMatrix& tangent) const {
+    void residual_and_tangent(const Rest& rest, const ElementVector& current, const Stresses& geometric, ElementVector& force,
+                              ElementMatrix& tangent) const {
         const typename Interpolation::Fields fields = Interpolation::all_fields(rest.point, current);
         write_force(rest, current, fields, stresses(rest, current), force);
         write_tangent(rest, current, fields, geometric, tangent);
@@ -209,21 +210,17 @@ protected:
             const double xi = k == 0 ? -1.0 : k <= points ? Interpolation::gauss[core::at(k - 1)].xi : 1.0;
             const Vec3 here = tangent(shape_derivative(xi), y);
             const double length = here.norm();
-            core::require(std::isfinite(length) && length > 0.0, "DirectorBeam.rest: |dx_0/dxi|", length,
-                          "finite and > 0");
+            core::require(std::isfinite(length) && length > 0.0, "DirectorBeam.rest: |dx_0/dxi|", length, "finite and > 0");
             if (k > 0) {
                 core::require(here.dot(before) > 0.0, "DirectorBeam.rest: turn of the tangent, cosine",
-                              here.dot(before) / (length * before.norm()),
-                              "> 0: nodes in order, less than 90 degrees apart");
+                              here.dot(before) / (length * before.norm()), "> 0: nodes in order, less than 90 degrees apart");
             }
             before = here;
         }
     }
 
     /// A displacement keeps more digits than the two configurations it is the difference of.
-    static ElementVector change(const Rest& rest, const ElementVector& current) noexcept {
-        return current - rest.configuration;
-    }
+    static ElementVector change(const Rest& rest, const ElementVector& current) noexcept { return current - rest.configuration; }
     static std::array<Strains, points> strains(const Rest& rest, const ElementVector& u) noexcept {
         std::array<Strains, points> e{};
         const typename Interpolation::Fields du = Interpolation::all_fields(rest.point, u);
@@ -252,8 +249,8 @@ protected:
                               const Stresses& geometric, ElementMatrix& tangent) noexcept {
         std::array<typename Kernel::FieldTangent, points> D;
         for (std::size_t p = 0; p < D.size(); ++p) {
-            Kernel::tangent(rest.law, y[p], Kernel::geometric(rest.law, y[p], geometric.value[p]), geometric.value[p], rest.point[p].weight,
-                            D[p]);
+            Kernel::tangent(rest.law, y[p], Kernel::geometric(rest.law, y[p], geometric.value[p]), geometric.value[p],
+                            rest.point[p].weight, D[p]);
         }
         double* out = tangent.data();
         const auto write = [&](const auto& add_to) {

@@ -53,7 +53,8 @@ struct LawTangent {
                 const double factor = weight * (k() == strain::e33 ? C33 : C[k()]);
                 unrolled<0, 5>([&](auto q) {
                     unrolled<0, q() + 1>([&](auto p) {
-                        if constexpr ((mask(a) >> p() & 1u) != 0 && (mask(b) >> q() & 1u) != 0) add(p, q, factor, B[a].col(p()), B[b].col(q()));
+                        if constexpr ((mask(a) >> p() & 1u) != 0 && (mask(b) >> q() & 1u) != 0)
+                            add(p, q, factor, B[a].col(p()), B[b].col(q()));
                         if constexpr (a != b && (mask(b) >> p() & 1u) != 0 && (mask(a) >> q() & 1u) != 0)
                             add(p, q, factor, B[b].col(p()), B[a].col(q()));
                     });
@@ -85,15 +86,17 @@ struct LawTangent {
 
 }  // namespace detail
 
-/// DirectorBeam whose section obeys a law: sections flatten, contract and turn as ever. E_11, E_22, 2 E_12 are sampled at the nodes and
-/// interpolated to the points before the law sees them, so that a law never knows the sampling.
+/// DirectorBeam whose section obeys a law: sections flatten, contract and turn as ever. E_11, E_22, 2 E_12 are sampled at the
+/// nodes and interpolated to the points before the law sees them, so that a law never knows the sampling.
 template <SectionMaterial M, int Nodes = 3, DirectorBeamOptions Options = DirectorBeamOptions{}>
 class DirectorBeamWith : public DirectorBeam<Nodes, Options>, public Lawful<DirectorBeamWith<M, Nodes, Options>, M> {
     using Base = DirectorBeam<Nodes, Options>;
     using Laws = Lawful<DirectorBeamWith<M, Nodes, Options>, M>;
     friend Laws;
-    static_assert(Options.law == ElasticLaw::split && Options.quadratic == QuadraticStrain::none && Options.sampling == SectionSampling::nodal,
-                  "a law replaces the split law of the director beam, with section strains at the nodes and none that are quadratic");
+    static_assert(
+        Options.law == ElasticLaw::split && Options.quadratic == QuadraticStrain::none &&
+            Options.sampling == SectionSampling::nodal,
+        "a law replaces the split law of the director beam, with section strains at the nodes and none that are quadratic");
 
 public:
     using Parameters = LawParameters<Base, M>;
@@ -129,7 +132,9 @@ public:
         return rest;
     }
     double energy(const Rest& rest, const ElementVector& y) const { return Laws::figures(rest, y).stored; }
-    ElementVector internal_force(const Rest& rest, const ElementVector& y) const { return internal_force(rest, y, stresses(rest, y)); }
+    ElementVector internal_force(const Rest& rest, const ElementVector& y) const {
+        return internal_force(rest, y, stresses(rest, y));
+    }
     /// S(e*) + C(e*) (e - e*) for the strains e* of the iteration.
     ElementVector internal_force(const Rest& rest, const ElementVector& y, const Stresses& iterated) const {
         std::array<SectionStrains, Base::points> e = law_strains(rest, y), s = iterated.law;
@@ -145,7 +150,9 @@ public:
         Base::write_force(rest, y, Interpolation::all_fields(rest.point, y), of_law(rest, s), force);
         return force;
     }
-    ElementMatrix tangent_stiffness(const Rest& rest, const ElementVector& y) const { return tangent_stiffness(rest, y, stresses(rest, y)); }
+    ElementMatrix tangent_stiffness(const Rest& rest, const ElementVector& y) const {
+        return tangent_stiffness(rest, y, stresses(rest, y));
+    }
     /// With the stresses and the tangents of an iteration.
     ElementMatrix tangent_stiffness(const Rest& rest, const ElementVector& y, const Stresses& iterated) const {
         ElementMatrix tangent;
@@ -160,7 +167,8 @@ public:
     Stresses stresses(const Rest& rest, const ElementVector& y) const { return stresses_at(rest, law_strains(rest, y)); }
     /// At the strains e(q) + B(q) step.
     Stresses predicted_stresses(const Rest& rest, const ElementVector& y, const ElementVector& step) const {
-        const typename Interpolation::Fields f = Interpolation::all_fields(rest.point, y), df = Interpolation::all_fields(rest.point, step);
+        const typename Interpolation::Fields f = Interpolation::all_fields(rest.point, y),
+                                             df = Interpolation::all_fields(rest.point, step);
         std::array<SectionStrains, Base::points> e = Base::strains(rest, Base::change(rest, y));
         for (std::size_t p = 0; p < e.size(); ++p) Kernel::add_rate(rest.law, f[p], df[p], e[p]);
         const typename Base::Section::Three section = Base::Section::rate(y, step);
@@ -188,7 +196,8 @@ public:
 private:
     using Interpolation = detail::DirectorPoints<Nodes>;
     using Kernel = typename Base::Kernel;
-    static constexpr int e33_11 = detail::entry_of(M::entries, strain::e11, strain::e33), e33_22 = detail::entry_of(M::entries, strain::e22, strain::e33);
+    static constexpr int e33_11 = detail::entry_of(M::entries, strain::e11, strain::e33),
+                         e33_22 = detail::entry_of(M::entries, strain::e22, strain::e33);
     static constexpr int e11_22 = detail::entry_of(M::entries, strain::e11, strain::e22);
 
     static SectionStrains to_law(const Rest& rest, SectionStrains e) noexcept {
@@ -198,7 +207,8 @@ private:
     }
     static typename Base::Stresses of_law(const Rest& rest, const std::array<SectionStrains, Base::points>& s) noexcept {
         typename Base::Stresses all{s};
-        for (SectionStrains& at : all.value) at[strain::e33] += rest.memory.section.contraction * (at[strain::e11] + at[strain::e22]);
+        for (SectionStrains& at : all.value)
+            at[strain::e33] += rest.memory.section.contraction * (at[strain::e11] + at[strain::e22]);
         return all;
     }
     Stresses stresses_at(const Rest& rest, const std::array<SectionStrains, Base::points>& e) const {
@@ -211,7 +221,8 @@ private:
         static_cast<typename Base::Stresses&>(s) = of_law(rest, s.law);
         return s;
     }
-    static void write_tangent(const Rest& rest, const ElementVector& y, const Stresses& iterated, ElementMatrix& tangent) noexcept {
+    static void write_tangent(const Rest& rest, const ElementVector& y, const Stresses& iterated,
+                              ElementMatrix& tangent) noexcept {
         const typename Interpolation::Fields f = Interpolation::all_fields(rest.point, y);
         std::array<typename Kernel::FieldTangent, Base::points> D;
         std::array<Eigen::Matrix4d, Base::points> C;  // of E_11, E_22, 2 E_12, and between them and E_33
@@ -222,8 +233,9 @@ private:
             const double c01 = number(e11_22), l0 = number(e33_11), l1 = number(e33_22);
             const double c03 = l0 + nu * (t[0] + c01), c13 = l1 + nu * (t[1] + c01);
             C[p] << t[0], c01, 0, c03, c01, t[1], 0, c13, 0, 0, t[2], 0, c03, c13, 0, 0;
-            detail::LawTangent<M, Kernel>::fields(f[p], t, t[strain::e33] + nu * (c03 + c13 + l0 + l1), Kernel::geometric(rest.law, f[p], iterated.value[p]),
-                                                  iterated.value[p], rest.point[p].weight, D[p]);
+            detail::LawTangent<M, Kernel>::fields(f[p], t, t[strain::e33] + nu * (c03 + c13 + l0 + l1),
+                                                  Kernel::geometric(rest.law, f[p], iterated.value[p]), iterated.value[p],
+                                                  rest.point[p].weight, D[p]);
         }
         double* out = tangent.data();
         for (std::size_t J = 0; J < Nodes; ++J)
@@ -243,7 +255,9 @@ private:
         }
         for (int I = 0; I < Nodes; ++I) {
             const auto& s = stress[core::at(I)];
-            const auto add = [&](int a, int b, double value) { tangent.template block<3, 3>(9 * I + a, 9 * I + b).diagonal().array() += value; };
+            const auto add = [&](int a, int b, double value) {
+                tangent.template block<3, 3>(9 * I + a, 9 * I + b).diagonal().array() += value;
+            };
             add(3, 3, s[0]), add(6, 6, s[1]), add(3, 6, s[2]), add(6, 3, s[2]);
         }
     }

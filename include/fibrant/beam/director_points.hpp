@@ -113,8 +113,7 @@ struct NodalSection {
         for (int I = 0; I < Nodes; ++I) {
             const Vec3 G1 = Base::template director<1>(rest, I), G2 = Base::template director<2>(rest, I);
             const Vec3 d1 = Base::template director<1>(u, I), d2 = Base::template director<2>(u, I);
-            section[core::at(I)] = {half_square_change(G1, d1), half_square_change(G2, d2),
-                                    product_change(G1, d1, G2, d2)};
+            section[core::at(I)] = {half_square_change(G1, d1), half_square_change(G2, d2), product_change(G1, d1, G2, d2)};
         }
         return section;
     }
@@ -166,8 +165,8 @@ struct NodalSection {
         Three stress;  ///< gathered
 
         template <class Law>
-        Tangent(const Law& law, const typename Base::Points& point, const typename Base::Fields& y,
-                const ElementVector& current_, const Three& stress_) noexcept
+        Tangent(const Law& law, const typename Base::Points& point, const typename Base::Fields& y, const ElementVector& current_,
+                const Three& stress_) noexcept
             : current{current_.data()}, stress{stress_} {
             const double normal = law.diagonal(strain::e11), lateral = law.coupling();
             const double shear = law.diagonal(strain::e12);

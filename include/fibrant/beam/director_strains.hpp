@@ -17,20 +17,29 @@ namespace detail {
 /// Calls body(integral constant k) for k in [First, Last), unrolled.
 template <int First, int Last, class Body>
 constexpr void unrolled(const Body& body) {
-    [&]<int... k>(std::integer_sequence<int, k...>) {
-        (body(std::integral_constant<int, First + k>{}), ...);
-    }(std::make_integer_sequence<int, Last - First>{});
+    [&]<int... k>(std::integer_sequence<int, k...>) { (body(std::integral_constant<int, First + k>{}), ...); }
+    (std::make_integer_sequence<int, Last - First>{});
 }
 
 /// Which two fields a strain multiplies, first <= second; a field by itself counts half.
 struct FieldPair {
     int first, second;
 };
-inline constexpr std::array<FieldPair, 15> strain_fields{{{1, 1}, {2, 2}, {1, 2},          // e11 e22 e12
-                                                          {0, 0}, {0, 1}, {0, 2},          // e33 e13 e23
-                                                          {0, 3}, {0, 4},                  // b1 b2
-                                                          {1, 3}, {1, 4}, {2, 3}, {2, 4},  // c11 c12 c21 c22
-                                                          {3, 3}, {3, 4}, {4, 4}}};        // q11 q12 q22
+inline constexpr std::array<FieldPair, 15> strain_fields{{{1, 1},
+                                                          {2, 2},
+                                                          {1, 2},  // e11 e22 e12
+                                                          {0, 0},
+                                                          {0, 1},
+                                                          {0, 2},  // e33 e13 e23
+                                                          {0, 3},
+                                                          {0, 4},  // b1 b2
+                                                          {1, 3},
+                                                          {1, 4},
+                                                          {2, 3},
+                                                          {2, 4},  // c11 c12 c21 c22
+                                                          {3, 3},
+                                                          {3, 4},
+                                                          {4, 4}}};  // q11 q12 q22
 
 /// p.q - P.Q = P.dq + dp.Q + dp.dq for p = P + dp, which keeps the digits that p.q - P.Q loses.
 inline double product_change(const Vec3& P, const Vec3& dp, const Vec3& Q, const Vec3& dq) noexcept {
@@ -107,8 +116,7 @@ struct DirectorStrains {
 
     /// Writes the strains from `first` on.
     static void change(const Elastic& law, const DirectorFields& rest, const DirectorFields& change, Strains& e) {
-        detail::unrolled<first, Elastic::strains>(
-            [&](auto c) { e[c()] = detail::strain_change<c()>(rest, change); });
+        detail::unrolled<first, Elastic::strains>([&](auto c) { e[c()] = detail::strain_change<c()>(rest, change); });
         if constexpr (mean) {
             e[strain::e33] += law.mean_1() * detail::half_square_change(rest.col(3), change.col(3)) +
                               law.mean_2() * detail::half_square_change(rest.col(4), change.col(4));
@@ -118,12 +126,10 @@ struct DirectorStrains {
     /// Adds the derivatives in the direction `step` to the strains from `first` on.
     static void add_rate(const Elastic& law, const DirectorFields& current, const DirectorFields& step, Strains& e) {
         const double before = 0.5 * (e[strain::c21] - e[strain::c12]);
-        detail::unrolled<first, Elastic::strains>(
-            [&](auto c) { e[c()] += detail::strain_rate<c()>(current, step); });
+        detail::unrolled<first, Elastic::strains>([&](auto c) { e[c()] += detail::strain_rate<c()>(current, step); });
         if constexpr (turn) take_twist(e, before + detail::TurnStrain(current).rate(current, step));
         if constexpr (mean) {
-            e[strain::e33] += law.mean_1() * current.col(3).dot(step.col(3)) +
-                              law.mean_2() * current.col(4).dot(step.col(4));
+            e[strain::e33] += law.mean_1() * current.col(3).dot(step.col(3)) + law.mean_2() * current.col(4).dot(step.col(4));
         }
     }
     /// sum_c s_c H_c: the force on the fields is `current * geometric(...)`.
@@ -148,8 +154,8 @@ struct DirectorStrains {
     }
     /// weight (B^T C B + G (x) I_3); with nodal section strains, without their coupling to E_33.
     /// @param s  that G is made of
-    static void tangent(const Elastic& law, const DirectorFields& y, const FieldMatrix& G, [[maybe_unused]] const Strains& s, double weight,
-                        FieldTangent& D) {
+    static void tangent(const Elastic& law, const DirectorFields& y, const FieldMatrix& G, [[maybe_unused]] const Strains& s,
+                        double weight, FieldTangent& D) {
         D.setZero();
         const auto add = [&](auto row, auto column, double factor, const Vec3& u, const Vec3& v) {
             static_assert(row() <= column());
@@ -183,8 +189,8 @@ struct DirectorStrains {
             by_s << 0.5 * h2, 0.5 * h1, 0.5 * g2, 0.5 * g1;
             by_m.col(0) = 2.0 * g1, by_m.col(1) = 2.0 * g2;
             const Eigen::Matrix<double, 3, 4> force_s = weight * (law.even() * by_s + law.odd() * by_t);
-            const Eigen::Matrix<double, 3, 4> force_t = weight * (law.odd() * by_s + law.twist() * by_t -
-                                                                 (s[strain::c21] - s[strain::c12]) / twist.m * by_m);
+            const Eigen::Matrix<double, 3, 4> force_t =
+                weight * (law.odd() * by_s + law.twist() * by_t - (s[strain::c21] - s[strain::c12]) / twist.m * by_m);
             const Eigen::Matrix<double, 3, 4> force_m = -weight * (s[strain::c21] - s[strain::c12]) / twist.m * by_t;
             detail::unrolled<1, 5>([&](auto q) {
                 detail::unrolled<1, q() + 1>([&](auto p) {

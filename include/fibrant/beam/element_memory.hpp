@@ -18,8 +18,8 @@ struct LawFigures {
     double driven = 0.0;                    ///< work since the accepted state of what drives the law
 };
 
-/// The law of an element and what its points remember of the last accepted state. An iteration reads this and writes nothing: a law is
-/// a function of it and of the strains, so that what is not accepted needs no undoing, and there is one copy.
+/// The law of an element and what its points remember of the last accepted state. An iteration reads this and writes nothing: a
+/// law is a function of it and of the strains, so that what is not accepted needs no undoing, and there is one copy.
 template <SectionMaterial M, int Points>
 struct ElementMemory {
     typename M::Section section{};
@@ -30,7 +30,8 @@ struct ElementMemory {
 
 /// A beam whose elements remember.
 template <class B>
-concept Remembering = BeamElement<B> && requires(const B beam, typename B::Rest& rest, const ElementVector<B>& y, const Drive& drive) {
+concept Remembering = BeamElement<B> &&
+    requires(const B beam, typename B::Rest& rest, const ElementVector<B>& y, const Drive& drive) {
     B::drive(rest, drive);
     beam.accept(rest, y);
     { beam.figures(rest, y) } -> std::same_as<LawFigures>;
@@ -48,22 +49,25 @@ struct LawParameters : B::Parameters {
     }
 };
 
-/// What all beams with laws have in common. `Self` gives `answers(rest, y)`, one answer a point, and `weight(rest, p)`, the rest arc
-/// length that a point stands for [length].
+/// What all beams with laws have in common. `Self` gives `answers(rest, y)`, one answer a point, and `weight(rest, p)`, the rest
+/// arc length that a point stands for [length].
 template <class Self, SectionMaterial M>
 class Lawful {
 public:
     using Material = M;
 
     template <class Rest>
-    static void drive(Rest& rest, const Drive& drive) noexcept { rest.memory.drive = drive; }
+    static void drive(Rest& rest, const Drive& drive) noexcept {
+        rest.memory.drive = drive;
+    }
     /// Fresh memory of the points of an element, by who they are.
     template <class Rest>
     void place(Rest& rest, std::int64_t fibre, std::int64_t element) const {
         auto& memory = rest.memory;
         const std::int64_t points = static_cast<std::int64_t>(memory.accepted.size());
         for (std::size_t p = 0; p < memory.accepted.size(); ++p)
-            memory.accepted[p] = of(rest).fresh(memory.section, {fibre, element * points + static_cast<std::int64_t>(p), Self::weight(rest, p)});
+            memory.accepted[p] =
+                of(rest).fresh(memory.section, {fibre, element * points + static_cast<std::int64_t>(p), Self::weight(rest, p)});
     }
     /// The state becomes what the next increment starts from.
     template <class Rest, class Y>
@@ -90,7 +94,8 @@ public:
     /// Memory of an element that is part of another one: what lies between the points of that, and never beyond them.
     /// @param xi  of each point of `part` in `whole`, in [-1, 1]
     template <class Rest, std::size_t Points>
-    static void take_part(Rest& part, const Rest& whole, const std::array<double, Points>& xi, const std::array<double, Points>& points) {
+    static void take_part(Rest& part, const Rest& whole, const std::array<double, Points>& xi,
+                          const std::array<double, Points>& points) {
         if constexpr (!std::is_empty_v<typename M::History>)
             for (std::size_t p = 0; p < Points; ++p) {
                 std::size_t k = 0;
@@ -112,7 +117,9 @@ public:
         return most;
     }
     template <class Rest>
-    void break_point(Rest& rest, std::size_t p) const requires Breakable<M> { of(rest).break_now(rest.memory.accepted[p]); }
+    void break_point(Rest& rest, std::size_t p) const requires Breakable<M> {
+        of(rest).break_now(rest.memory.accepted[p]);
+    }
 
 protected:
     Lawful() = default;
@@ -129,13 +136,16 @@ protected:
     template <class Rest>
     void begin(Rest& rest, const SectionConstants& shape, const scene::ElasticMaterial& material, double shear_factor) const {
         if (material.law >= core::count(laws_))
-            core::refuse("ElasticMaterial.law", std::to_string(material.law), "less than the number of beam.laws, " + std::to_string(laws_.size()));
+            core::refuse("ElasticMaterial.law", std::to_string(material.law),
+                         "less than the number of beam.laws, " + std::to_string(laws_.size()));
         rest.memory.law = material.law;
         rest.memory.section = of(rest).section(shape, material, shear_factor);
         place(rest, 0, 0);
     }
     template <class Rest>
-    const M& of(const Rest& rest) const noexcept { return laws_[core::at(rest.memory.law)]; }
+    const M& of(const Rest& rest) const noexcept {
+        return laws_[core::at(rest.memory.law)];
+    }
     template <class Rest>
     auto answer(const Rest& rest, std::size_t p, const SectionStrains& e) const {
         return of(rest).response(rest.memory.section, e, rest.memory.accepted[p], rest.memory.drive);
@@ -150,7 +160,8 @@ private:
 template <SectionMaterial M>
 Eigen::Matrix<double, 12, 12> full_tangent(const std::array<double, M::entries.size()>& numbers) {
     Eigen::Matrix<double, 12, 12> C = Eigen::Matrix<double, 12, 12>::Zero();
-    for (std::size_t k = 0; k < numbers.size(); ++k) C(M::entries[k].row, M::entries[k].column) = C(M::entries[k].column, M::entries[k].row) = numbers[k];
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+        C(M::entries[k].row, M::entries[k].column) = C(M::entries[k].column, M::entries[k].row) = numbers[k];
     return C;
 }
 

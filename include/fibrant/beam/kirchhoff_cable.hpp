@@ -47,8 +47,8 @@ constexpr std::array<HermitePoint, 3> hermite_points() noexcept {
 class KirchhoffCable {
 public:
     static constexpr int nodes = 2, vectors_per_node = 2, dofs_per_node = 6, reach = 1;
-    static constexpr int points = 3;          ///< of Gauss, for bending
-    static constexpr int axial_points = 3;    ///< the ends and the middle
+    static constexpr int points = 3;        ///< of Gauss, for bending
+    static constexpr int axial_points = 3;  ///< the ends and the middle
     static constexpr bool centreline_particles = true;
     static constexpr std::array<scene::VectorKind, 2> kinds{scene::VectorKind::position, scene::VectorKind::direction};
     using ElementVector = Eigen::Matrix<double, 12, 1>;
@@ -58,8 +58,8 @@ public:
 
     struct Rest {
         ElementVector configuration;
-        double length;           ///< of the element [length]
-        double axial, bending;   ///< E A [force], E I [force * length^2]
+        double length;          ///< of the element [length]
+        double axial, bending;  ///< E A [force], E I [force * length^2]
     };
     /// Conjugates of the axial strains at the ends and the middle [force * length] and of the curvatures at the points
     /// [force * length], a unit of rest length.
@@ -189,7 +189,7 @@ public:
         if (tangent.dot(condition.directions * tangent) < 0.5) return false;
         condition.axes = scene::Axes::section;
         condition.directions = condition.vector == scene::NodeVector::director_1 ? Mat3(Vec3(1, 0, 0).asDiagonal())
-                                                                                : Mat3(Vec3(0, 1, 0).asDiagonal());
+                                                                                 : Mat3(Vec3(0, 1, 0).asDiagonal());
         condition.vector = static_cast<scene::NodeVector>(1);
         condition.displacement = Vec3::Zero();
         condition.path = {};
@@ -200,7 +200,8 @@ public:
 
 private:
     static constexpr std::array<detail::HermitePoint, points> gauss = detail::hermite_points();
-    static constexpr std::array<ElementWeights, axial_points> axial_weights{{{0, 1, 0, 0}, {-1.5, -0.25, 1.5, -0.25}, {0, 0, 0, 1}}};
+    static constexpr std::array<ElementWeights, axial_points> axial_weights{
+        {{0, 1, 0, 0}, {-1.5, -0.25, 1.5, -0.25}, {0, 0, 0, 1}}};
     /// Integrals of products of the parabolas through the ends and the middle, over the length.
     static constexpr std::array<std::array<double, 3>, 3> mass{
         {{4.0 / 30.0, 2.0 / 30.0, -1.0 / 30.0}, {2.0 / 30.0, 16.0 / 30.0, 2.0 / 30.0}, {-1.0 / 30.0, 2.0 / 30.0, 4.0 / 30.0}}};
@@ -232,7 +233,8 @@ private:
         at.curvature = at.a.cross(at.b) / (rest.length * at.square);
         return at;
     }
-    static Stresses stresses_of(const Rest& rest, const std::array<double, axial_points>& e, const std::array<Vec3, points>& k) noexcept {
+    static Stresses stresses_of(const Rest& rest, const std::array<double, axial_points>& e,
+                                const std::array<Vec3, points>& k) noexcept {
         Stresses s;
         for (std::size_t a = 0; a < e.size(); ++a)
             for (std::size_t b = 0; b < e.size(); ++b) s.axial[a] += rest.axial * mass[a][b] * e[b];
@@ -252,7 +254,8 @@ private:
     }
 
     template <bool WithTangent>
-    static void evaluate(const Rest& rest, const ElementVector& y, const Stresses* geometric, ElementVector& force, ElementMatrix* tangent) {
+    static void evaluate(const Rest& rest, const ElementVector& y, const Stresses* geometric, ElementVector& force,
+                         ElementMatrix* tangent) {
         const ElementVector u = y - rest.configuration;
         const double h = rest.length;
         force.setZero();
@@ -266,28 +269,34 @@ private:
             for (std::size_t i = 0; i < 4; ++i) force.segment<3>(3 * static_cast<Index>(i)) += axial_weights[a][i] * pull;
             if constexpr (WithTangent) {
                 for (std::size_t b = 0; b < e.size(); ++b)
-                    add(axial_weights[a], axial_weights[b], Mat3(rest.axial / h * mass[a][b] * e[a].direction * e[b].direction.transpose()), *tangent);
+                    add(axial_weights[a], axial_weights[b],
+                        Mat3(rest.axial / h * mass[a][b] * e[a].direction * e[b].direction.transpose()), *tangent);
                 add(axial_weights[a], axial_weights[a],
-                    Mat3(geometric->axial[a] / e[a].speed * (Mat3::Identity() - e[a].direction * e[a].direction.transpose())), *tangent);
+                    Mat3(geometric->axial[a] / e[a].speed * (Mat3::Identity() - e[a].direction * e[a].direction.transpose())),
+                    *tangent);
             }
         }
         for (std::size_t p = 0; p < gauss.size(); ++p) {
             const Bending at = bending(rest, u, p);
             const double n = at.square, w = gauss[p].weight;
             const Vec3 moment = rest.bending * at.curvature;
-            const Vec3 of_a = w / n * (at.b.cross(moment) - 2.0 * h * moment.dot(at.curvature) * at.a), of_b = w / n * moment.cross(at.a);
+            const Vec3 of_a = w / n * (at.b.cross(moment) - 2.0 * h * moment.dot(at.curvature) * at.a),
+                       of_b = w / n * moment.cross(at.a);
             for (std::size_t i = 0; i < 4; ++i)
                 force.segment<3>(3 * static_cast<Index>(i)) += gauss[p].slope[i] * of_a + gauss[p].bend[i] * of_b;
             if constexpr (WithTangent) {
                 // d k = (-[b] - 2 h k a^T) da / (h n) + [a] db / (h n), and the second derivative of M . k
-                const Mat3 k_a = (-cross_matrix(at.b) - 2.0 * h * at.curvature * at.a.transpose()) / (h * n), k_b = cross_matrix(at.a) / (h * n);
+                const Mat3 k_a = (-cross_matrix(at.b) - 2.0 * h * at.curvature * at.a.transpose()) / (h * n),
+                           k_b = cross_matrix(at.a) / (h * n);
                 const Vec3& m = geometric->moment[p];
                 const Vec3 q_a = at.b.cross(m), q_b = m.cross(at.a);
                 const double g = at.a.dot(q_a);
-                Mat3 aa = -2.0 / (n * n) * (q_a * at.a.transpose() + at.a * q_a.transpose()) + 8.0 * g / (n * n * n) * at.a * at.a.transpose();
+                Mat3 aa = -2.0 / (n * n) * (q_a * at.a.transpose() + at.a * q_a.transpose()) +
+                          8.0 * g / (n * n * n) * at.a * at.a.transpose();
                 aa.diagonal().array() -= 2.0 * g / (n * n);
                 const Mat3 ab = -cross_matrix(m) / n - 2.0 / (n * n) * at.a * q_b.transpose();
-                const Mat3 all_aa = w * (h * rest.bending * k_a.transpose() * k_a + aa), all_ab = w * (h * rest.bending * k_a.transpose() * k_b + ab);
+                const Mat3 all_aa = w * (h * rest.bending * k_a.transpose() * k_a + aa),
+                           all_ab = w * (h * rest.bending * k_a.transpose() * k_b + ab);
                 const Mat3 all_bb = w * h * rest.bending * k_b.transpose() * k_b, all_ba = all_ab.transpose();
                 for (std::size_t i = 0; i < 4; ++i)
                     for (std::size_t j = 0; j < 4; ++j) {

@@ -56,12 +56,14 @@ void spread(const std::array<double, Vectors>& weights, const Vec3& value, Index
 }
 template <int Nodes, int Vectors>
 void spread(const CentreWeights<Nodes, Vectors>& centre, const Vec3& value, Index first_unknown, Vector& forces) noexcept {
-    for (std::size_t node = 0; node < centre.size(); ++node) forces.segment<3>(first_unknown + 3 * Vectors * static_cast<Index>(node)) += centre[node] * value;
+    for (std::size_t node = 0; node < centre.size(); ++node)
+        forces.segment<3>(first_unknown + 3 * Vectors * static_cast<Index>(node)) += centre[node] * value;
 }
 template <class Turning>
     requires requires(const Turning& particle) { particle.slope(Index{}); }
 void spread(const Turning& particle, const Vec3& value, Index first_unknown, Vector& forces) noexcept {
-    for (Index a = 0; a < Turning::vectors; ++a) forces.segment<3>(first_unknown + 3 * a) += particle.slope(a).transpose() * value;
+    for (Index a = 0; a < Turning::vectors; ++a)
+        forces.segment<3>(first_unknown + 3 * a) += particle.slope(a).transpose() * value;
 }
 
 /// Weights of director g_1 (which = 1) or g_2 (which = 2) at xi in [-1, 1].
@@ -74,8 +76,8 @@ constexpr ElementWeights<B> director_weights(double xi, int which) noexcept {
 }
 
 namespace detail {
-/// The only vector of each node that has a weight among those that Weights{}(xi) gives, so that sums may leave the others out: a third of the
-/// time where nodes have three. -1 where several have, or the compiler cannot tell.
+/// The only vector of each node that has a weight among those that Weights{}(xi) gives, so that sums may leave the others out: a
+/// third of the time where nodes have three. -1 where several have, or the compiler cannot tell.
 template <class B, class Weights>
 constexpr int only_vector(Weights) noexcept {
     if constexpr (requires { typename std::bool_constant<(static_cast<void>(Weights{}(0.3)), true)>; }) {
@@ -103,8 +105,8 @@ struct MeshFibre {
     scene::CrossSection section;
     scene::ElasticMaterial material;
     Index group;
-    bool closed = false;    ///< its last node is the image of its first one, and abscissae count modulo `elements`
-    std::string name{};  ///< what messages call it beside its number; may be empty
+    bool closed = false;  ///< its last node is the image of its first one, and abscissae count modulo `elements`
+    std::string name{};   ///< what messages call it beside its number; may be empty
 
     double length() const noexcept { return element_length * static_cast<double>(elements); }
 };
@@ -127,10 +129,11 @@ public:
             core::with_place([&] { return label; }, [&] { cut_fibre<B>(fibre, nodes, starts, frames); });
             double length = 0.0;
             for (std::size_t k = 1; k < frames.size(); ++k) length += (frames[k].position - frames[k - 1].position).norm();
-            fibres_.push_back({first, fibre.elements, length / static_cast<double>(fibre.elements), fibre.section,
-                               fibre.material, fibre.group, fibre.closed, fibre.name});
+            fibres_.push_back({first, fibre.elements, length / static_cast<double>(fibre.elements), fibre.section, fibre.material,
+                               fibre.group, fibre.closed, fibre.name});
             layout_.chains.push_back({first, nodes, B::vectors_per_node, B::reach, fibre.group, fibre.closed});
-            for (Index v = 0; fibre.closed && v < B::vectors_per_node; ++v) layout_.images.push_back({first + (nodes - 1) * B::vectors_per_node + v, first + v});
+            for (Index v = 0; fibre.closed && v < B::vectors_per_node; ++v)
+                layout_.images.push_back({first + (nodes - 1) * B::vectors_per_node + v, first + v});
             frames_.insert(frames_.end(), starts.begin(), starts.end());
             for (const scene::NodeFrame& frame : starts)
                 for (const Vec3& vector : nodal_vectors<B>(frame, fibres_.back().element_length)) start.push_back(vector);
@@ -139,7 +142,8 @@ public:
                     nodal_vectors<B>(frame, fibres_.back().element_length);
                 for (std::size_t v = 0; v < vectors.size(); ++v) {
                     layout_.kind.push_back(B::kinds[v]);
-                    layout_.length.push_back(vector_length<B>(static_cast<int>(v), fibre.section.radius(), fibres_.back().element_length));
+                    layout_.length.push_back(
+                        vector_length<B>(static_cast<int>(v), fibre.section.radius(), fibres_.back().element_length));
                     layout_.value.push_back(vectors[v]);
                 }
             }
@@ -147,7 +151,8 @@ public:
         }
         // Contact elements keep the number of an unknown in 32 bits.
         if (3 * first > std::numeric_limits<std::int32_t>::max())
-            core::refuse("assembly.fibres", std::to_string(3 * first) + " unknowns", "<= " + std::to_string(std::numeric_limits<std::int32_t>::max()));
+            core::refuse("assembly.fibres", std::to_string(3 * first) + " unknowns",
+                         "<= " + std::to_string(std::numeric_limits<std::int32_t>::max()));
         find_units();
         rest_state_.resize(3 * first);
         for (Index v = 0; v < first; ++v) rest_state_.segment<3>(3 * v) = layout_.value[core::at(v)];
@@ -157,14 +162,18 @@ public:
         first_element_.assign(1, 0);
         for (const MeshFibre& fibre : fibres_) first_element_.push_back(first_element_.back() + fibre.elements);
         rest_.resize(core::at(first_element_.back()));
-        core::parallel_for(fibre_count(), [&](Index f) {
-            const MeshFibre& fibre = fibres_[core::at(f)];
-            for (Index e = 0; e < fibre.elements; ++e)
-                core::with_place([&] { return element_label(f, e); }, [&] {
-                    rest_[core::at(first_element_[core::at(f)] + e)] =
-                        beam.rest(fibre.section, fibre.material, element(rest_state_, f, e));
-                });
-        }, grain());
+        core::parallel_for(
+            fibre_count(),
+            [&](Index f) {
+                const MeshFibre& fibre = fibres_[core::at(f)];
+                for (Index e = 0; e < fibre.elements; ++e)
+                    core::with_place([&] { return element_label(f, e); },
+                                     [&] {
+                                         rest_[core::at(first_element_[core::at(f)] + e)] =
+                                             beam.rest(fibre.section, fibre.material, element(rest_state_, f, e));
+                                     });
+            },
+            grain());
     }
     /// What messages call a fibre, an element with the places of its ends at rest, and a node with its place where a run begins.
     std::string label(Index f) const { return scene::label("fibre", f, fibre(f).name); }
@@ -191,9 +200,7 @@ public:
     const MeshFibre& fibre(Index f) const noexcept { return fibres_[core::at(f)]; }
     const scene::DofLayout& layout() const noexcept { return layout_; }
     const Vector& rest_state() const noexcept { return rest_state_; }
-    const typename B::Rest& rest(Index f, Index e) const noexcept {
-        return rest_[core::at(first_element_[core::at(f)] + e)];
-    }
+    const typename B::Rest& rest(Index f, Index e) const noexcept { return rest_[core::at(first_element_[core::at(f)] + e)]; }
     std::vector<typename B::Rest>& rests() noexcept { return rest_; }
     const std::vector<typename B::Rest>& rests() const noexcept { return rest_; }
     /// Number of element e of fibre f in the whole mesh.
@@ -213,9 +220,7 @@ public:
         return frames_[core::at(fibre(f).first_vector / B::vectors_per_node + node)];
     }
     /// First unknown of an element; its unknowns follow in one piece.
-    Index first_unknown(Index f, Index e) const noexcept {
-        return 3 * (fibre(f).first_vector + e * vectors_per_element_step);
-    }
+    Index first_unknown(Index f, Index e) const noexcept { return 3 * (fibre(f).first_vector + e * vectors_per_element_step); }
     /// Takes rotation vectors to the shortest ones of their rotations, and forces on them with them. To be called between
     /// increments; nothing for beams without rotations.
     void rewind([[maybe_unused]] Vector& state, [[maybe_unused]] std::initializer_list<Vector*> forces) const {
@@ -237,12 +242,14 @@ public:
     /// Least and greatest abscissa of a fibre: none of a closed one, around which they go on.
     std::pair<double, double> bounds(Index f) const noexcept {
         constexpr double none = std::numeric_limits<double>::infinity();
-        return fibre(f).closed ? std::pair<double, double>{-none, none} : std::pair<double, double>{0.0, static_cast<double>(fibre(f).elements)};
+        return fibre(f).closed ? std::pair<double, double>{-none, none}
+                               : std::pair<double, double>{0.0, static_cast<double>(fibre(f).elements)};
     }
     /// Abscissae around each fibre, 0 of open ones; empty if all are open.
     std::vector<double> periods() const {
         std::vector<double> all;
-        for (Index f = 0; f < fibre_count() && !layout_.images.empty(); ++f) all.push_back(fibre(f).closed ? static_cast<double>(fibre(f).elements) : 0.0);
+        for (Index f = 0; f < fibre_count() && !layout_.images.empty(); ++f)
+            all.push_back(fibre(f).closed ? static_cast<double>(fibre(f).elements) : 0.0);
         return all;
     }
     /// Way along a fibre between two of its particles, of a closed one the shorter [elements].
@@ -283,22 +290,24 @@ public:
         return point_of<only>(state, first_unknown, weights);
     }
     /// Place of a particle of the centreline.
-    static Vec3 point(const Vector& state, Index first_unknown, const CentreWeights<B::nodes, B::vectors_per_node>& centre) noexcept {
+    static Vec3 point(const Vector& state, Index first_unknown,
+                      const CentreWeights<B::nodes, B::vectors_per_node>& centre) noexcept {
         Vec3 sum = Vec3::Zero();
-        for (std::size_t node = 0; node < centre.size(); ++node) sum += centre[node] * state.segment<3>(first_unknown + 3 * B::vectors_per_node * static_cast<Index>(node));
+        for (std::size_t node = 0; node < centre.size(); ++node)
+            sum += centre[node] * state.segment<3>(first_unknown + 3 * B::vectors_per_node * static_cast<Index>(node));
         return sum;
     }
     /// Place of a particle whose section turns.
-    static Vec3 point(const Vector& state, Index first_unknown, const Particle<B>& particle) noexcept
-        requires TurningSections<B>
-    {
+    static Vec3 point(const Vector& state, Index first_unknown,
+                      const Particle<B>& particle) noexcept requires TurningSections<B> {
         return particle.place(state.segment<element_unknowns>(first_unknown));
     }
     /// What a small step does to a particle's place [length].
     static Vec3 motion(const Vector& step, Index first_unknown, const Particle<B>& particle) noexcept {
         if constexpr (TurningSections<B>) {
             Vec3 sum = Vec3::Zero();
-            for (Index a = 0; a < B::nodes * B::vectors_per_node; ++a) sum += particle.slope(a) * step.segment<3>(first_unknown + 3 * a);
+            for (Index a = 0; a < B::nodes * B::vectors_per_node; ++a)
+                sum += particle.slope(a) * step.segment<3>(first_unknown + 3 * a);
             return sum;
         } else {
             return point(step, first_unknown, particle);
@@ -322,7 +331,8 @@ public:
     /// The same in the element with this first unknown.
     static std::pair<Vec3, Vec3> element_directors(const Vector& state, Index first, double xi) noexcept {
         if constexpr (CentrelineOnly<B>) {
-            const Vec3 tangent = centre(state, first, B::centreline_derivative_weights(xi)).normalized(), across = tangent.unitOrthogonal();
+            const Vec3 tangent = centre(state, first, B::centreline_derivative_weights(xi)).normalized(),
+                       across = tangent.unitOrthogonal();
             return {across, tangent.cross(across)};
         } else if constexpr (TurningSections<B>) {
             const Mat3 turn = B::particle_weights(xi, 0.0, 0.0).turn(state.segment<element_unknowns>(first));
@@ -347,7 +357,8 @@ public:
         if constexpr (B::nodes > 2 || requires { B::centreline_bend_weights(0.0); }) {
             return second_derivative(state, f, u);
         } else {
-            const double last = static_cast<double>(node_count(f) - 1), middle = fibre(f).closed ? u : std::clamp(u, 0.5, std::max(0.5, last - 0.5));
+            const double last = static_cast<double>(node_count(f) - 1),
+                         middle = fibre(f).closed ? u : std::clamp(u, 0.5, std::max(0.5, last - 0.5));
             if (fibre(f).closed) return derivative(state, f, middle + 0.5) - derivative(state, f, middle - 0.5);
             return derivative(state, f, std::min(last, middle + 0.5)) - derivative(state, f, middle - 0.5);
         }
@@ -356,7 +367,8 @@ public:
     double greatest_bend(const Vector& state, Index f, Index e) const noexcept {
         if constexpr (requires { B::centreline_bend_weights(0.0); }) {
             const Index first = first_unknown(f, e);  // linear between the ends, so greatest at one of them
-            return std::max(point(state, first, B::centreline_bend_weights(-1.0)).norm(), point(state, first, B::centreline_bend_weights(1.0)).norm());
+            return std::max(point(state, first, B::centreline_bend_weights(-1.0)).norm(),
+                            point(state, first, B::centreline_bend_weights(1.0)).norm());
         } else {
             return second_derivative(state, f, static_cast<double>(e) + 0.5).norm();
         }
@@ -380,20 +392,24 @@ private:
             return point(state, first_unknown, weights);
         } else {
             Vec3 sum = Vec3::Zero();
-            for (int a = Of; a < B::nodes * B::vectors_per_node; a += B::vectors_per_node) sum += weights[core::at(a)] * state.segment<3>(first_unknown + 3 * a);
+            for (int a = Of; a < B::nodes * B::vectors_per_node; a += B::vectors_per_node)
+                sum += weights[core::at(a)] * state.segment<3>(first_unknown + 3 * a);
             return sum;
         }
     }
     /// Starts where an earlier run ended.
     void begin_at(const Vector& state) {
         if (state.size() != start_state_.size())
-            core::refuse("Assembly.start", std::to_string(state.size()) + " numbers", std::to_string(start_state_.size()) + ", as the fibres' nodes have");
+            core::refuse("Assembly.start", std::to_string(state.size()) + " numbers",
+                         std::to_string(start_state_.size()) + ", as the fibres' nodes have");
         for (Index v = 0; v < layout_.vectors(); ++v)
             if (const Vec3 value = state.segment<3>(3 * v); !value.allFinite())
-                core::with_place([&] { return vector_label(v); }, [&] { core::refuse("Assembly.start", scene::text(value), "finite"); });
+                core::with_place([&] { return vector_label(v); },
+                                 [&] { core::refuse("Assembly.start", scene::text(value), "finite"); });
         start_state_ = state;
         for (const scene::ImageVector& one : layout_.images)
-            core::require(state.segment<3>(3 * one.image) == state.segment<3>(3 * one.source), "Assembly.start: last node of a closed fibre",
+            core::require(state.segment<3>(3 * one.image) == state.segment<3>(3 * one.source),
+                          "Assembly.start: last node of a closed fibre",
                           (state.segment<3>(3 * one.image) - state.segment<3>(3 * one.source)).norm(), "the first one");
         for (Index f = 0; f < fibre_count(); ++f)
             for (Index a = 0; a < node_count(f); ++a) {

@@ -14,10 +14,12 @@ enum class FrictionLever {
 
 /// Friction has to be left out of contact on this beam's centreline.
 template <class B>
-concept LeverNeeded = TouchedOnCentreline<B> && requires { requires B::friction_lever == FrictionLever::needed; };
+concept LeverNeeded = TouchedOnCentreline<B> && requires {
+    requires B::friction_lever == FrictionLever::needed;
+};
 
-/// A beam whose contact elements are pairs of particles of the centreline, a rest radius away from the surface. Sections neither flatten
-/// nor roll under contact, contact elements and point terms are half as large, and fewer unknowns are coupled: for stages
+/// A beam whose contact elements are pairs of particles of the centreline, a rest radius away from the surface. Sections neither
+/// flatten nor roll under contact, contact elements and point terms are half as large, and fewer unknowns are coupled: for stages
 /// without friction, before the same fibres go on with sections that feel it (`Simulator::go_on_from`).
 /// @tparam Base  a beam with a position a node and other vectors beside it, whose sections do not turn by rotations
 template <BeamElement Base, FrictionLever Lever = FrictionLever::needed>
@@ -30,7 +32,8 @@ public:
     static constexpr FrictionLever friction_lever = Lever;
 
     /// Throws std::invalid_argument for a section that is not round beside what the beam itself refuses.
-    Rest rest(const scene::CrossSection& section, const scene::ElasticMaterial& material, const ElementVector<Base>& configuration) const {
+    Rest rest(const scene::CrossSection& section, const scene::ElasticMaterial& material,
+              const ElementVector<Base>& configuration) const {
         core::require(section.semi_axis_2 == section.semi_axis_1, "OnCentreline.rest: semi_axis_2", section.semi_axis_2,
                       "semi_axis_1: a distance of centrelines knows round sections only");
         return Base::rest(section, material, configuration);
@@ -39,7 +42,8 @@ public:
     static constexpr CentreWeights centre_weights(double xi) noexcept {
         CentreWeights centre;
         const ElementWeights<Base> all = Base::centreline_weights(xi);
-        for (std::size_t node = 0; node < centre.size(); ++node) centre.weight[node] = all[node * static_cast<std::size_t>(CentreWeights::stride)];
+        for (std::size_t node = 0; node < centre.size(); ++node)
+            centre.weight[node] = all[node * static_cast<std::size_t>(CentreWeights::stride)];
         return centre;
     }
 };

@@ -37,8 +37,8 @@ public:
     };
     struct Rest {
         ElementVector configuration;
-        double length;                                ///< of the element [length]
-        Strains strains, stiffness;                   ///< at rest; of the section
+        double length;               ///< of the element [length]
+        Strains strains, stiffness;  ///< at rest; of the section
     };
     /// Forces and moments on the mean section, and the tension of a string that stands for them where only what is positive
     /// counts: that of a rod, whose sections turn too, is not.
@@ -60,7 +60,8 @@ public:
         material.validate();
         material.require_isotropic("RigidSectionRod");
         Rest rest{y, (y.segment<3>(6) - y.head<3>()).norm(), Strains::Zero(), Strains::Zero()};
-        core::require(std::isfinite(rest.length) && rest.length > 0.0, "RigidSectionRod.rest: length", rest.length, "finite and > 0");
+        core::require(std::isfinite(rest.length) && rest.length > 0.0, "RigidSectionRod.rest: length", rest.length,
+                      "finite and > 0");
         const double shear = material.shear_modulus(), young = material.young_modulus;
         const double across = parameters_.shear_factor * shear * section.area;
         rest.stiffness << across, across, young * section.area, young * section.second_moment_2, young * section.second_moment_1,
@@ -159,7 +160,8 @@ public:
     static bool hold(scene::Hold& condition, const Mat3& basis) {
         if (condition.vector == scene::NodeVector::position) return true;
         const bool first = condition.vector == scene::NodeVector::director_1;
-        const Mat3 held = condition.axes == scene::Axes::section ? condition.directions : Mat3(basis.transpose() * condition.directions * basis);
+        const Mat3 held = condition.axes == scene::Axes::section ? condition.directions
+                                                                 : Mat3(basis.transpose() * condition.directions * basis);
         const double about_normal = held(first ? 1 : 0, first ? 1 : 0) > 0.5 ? 1.0 : 0.0, leaning = held(2, 2) > 0.5 ? 1.0 : 0.0;
         condition.axes = scene::Axes::section;
         condition.directions = Vec3(first ? 0.0 : leaning, first ? leaning : 0.0, about_normal).asDiagonal();
@@ -182,13 +184,15 @@ protected:
         double square, cosine, length;
         std::array<double, 3> F;
 
-        Turned(const Rest& rest, const ElementVector& y) noexcept : q_1(y.segment<3>(3)), q_2(y.segment<3>(9)), length{rest.length} {
+        Turned(const Rest& rest, const ElementVector& y) noexcept
+            : q_1(y.segment<3>(3)), q_2(y.segment<3>(9)), length{rest.length} {
             if (q_1.value.dot(q_2.value) < 0.0) q_2.flip();
             mean = q_1.value + q_2.value;
             square = mean.squaredNorm();
             // made of the displacement, which keeps more digits than positions far from the origin
             const Vec3 before = rest.configuration.segment<3>(6) - rest.configuration.head<3>();
-            chord = before + ((y.segment<3>(6) - rest.configuration.segment<3>(6)) - (y.head<3>() - rest.configuration.head<3>()));
+            chord =
+                before + ((y.segment<3>(6) - rest.configuration.segment<3>(6)) - (y.head<3>() - rest.configuration.head<3>()));
             cosine = q_1.value.dot(q_2.value);
             F = detail::logarithm(cosine);
             const Vec3 v_1 = q_1.value.tail<3>(), v_2 = q_2.value.tail<3>();
@@ -209,7 +213,8 @@ protected:
         Slope B = Slope::Zero();
         const Vec4 &q_1 = t.q_1.value, &q_2 = t.q_2.value;
         Mat3 back;  // R_m^T / h
-        for (int k = 0; k < 3; ++k) back.row(k) = detail::turned_forwards(t.mean, Vec3::Unit(k)).transpose() / (t.square * t.length);
+        for (int k = 0; k < 3; ++k)
+            back.row(k) = detail::turned_forwards(t.mean, Vec3::Unit(k)).transpose() / (t.square * t.length);
         B.block<3, 3>(0, 0) = -back;
         B.block<3, 3>(0, 6) = back;
         const detail::Mat34 of_mean = detail::turned_back_slope(t.mean, t.chord) / (t.square * t.length) -
@@ -247,9 +252,11 @@ protected:
         const Mat4 N = detail::turned_form(t.chord, n);
         const double rho = t.mean.dot(N * t.mean) / t.square;
         const Vec4 of_mean = 2.0 / t.square * (N * t.mean - rho * t.mean);
-        const Mat4 mean_mean = 2.0 / t.square * (N - rho * Mat4::Identity() - of_mean * t.mean.transpose() - t.mean * of_mean.transpose());
+        const Mat4 mean_mean =
+            2.0 / t.square * (N - rho * Mat4::Identity() - of_mean * t.mean.transpose() - t.mean * of_mean.transpose());
         const detail::Mat34 chord_mean = (detail::turned_forwards_slope(t.mean, n) -
-                                          2.0 / t.square * detail::turned_forwards(t.mean, n) * t.mean.transpose()) / t.square;
+                                          2.0 / t.square * detail::turned_forwards(t.mean, n) * t.mean.transpose()) /
+                                         t.square;
         // m . rotation vector = F(q_1 . q_2) q_1^T V q_2
         const Mat4 V = detail::relative_form(m);
         const Vec4 right = V * q_2, left = V.transpose() * q_1;
@@ -257,7 +264,8 @@ protected:
         const Vec4 of_1 = t.F[1] * beta * q_2 + t.F[0] * right, of_2 = t.F[1] * beta * q_1 + t.F[0] * left;
         const Mat4 both_1 = t.F[2] * beta * q_2 * q_2.transpose() + t.F[1] * (q_2 * right.transpose() + right * q_2.transpose());
         const Mat4 both_2 = t.F[2] * beta * q_1 * q_1.transpose() + t.F[1] * (q_1 * left.transpose() + left * q_1.transpose());
-        Mat4 cross = t.F[2] * beta * q_2 * q_1.transpose() + t.F[1] * (q_2 * left.transpose() + right * q_1.transpose()) + t.F[0] * V;
+        Mat4 cross =
+            t.F[2] * beta * q_2 * q_1.transpose() + t.F[1] * (q_2 * left.transpose() + right * q_1.transpose()) + t.F[0] * V;
         cross.diagonal().array() += t.F[1] * beta;
 
         const detail::Mat43 &G_1 = t.q_1.slope, &G_2 = t.q_2.slope;

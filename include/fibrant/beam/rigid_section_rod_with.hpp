@@ -41,14 +41,18 @@ public:
         return rest;
     }
     double energy(const Rest& rest, const ElementVector& y) const { return rest.length * answers(rest, y)[0].stored; }
-    ElementVector internal_force(const Rest& rest, const ElementVector& y) const { return internal_force(rest, y, stresses(rest, y)); }
+    ElementVector internal_force(const Rest& rest, const ElementVector& y) const {
+        return internal_force(rest, y, stresses(rest, y));
+    }
     /// S(e*) + C(e*) (e - e*) for the strains e* of the iteration.
     ElementVector internal_force(const Rest& rest, const ElementVector& y, const Stresses& iterated) const {
         const typename Base::Turned turned(rest, y);
         const Strains s = iterated.value + iterated.tangent * (Base::strains(turned) - rest.strains - iterated.strain);
         return rest.length * Base::slope(turned).transpose() * s;
     }
-    ElementMatrix tangent_stiffness(const Rest& rest, const ElementVector& y) const { return tangent_stiffness(rest, y, stresses(rest, y)); }
+    ElementMatrix tangent_stiffness(const Rest& rest, const ElementVector& y) const {
+        return tangent_stiffness(rest, y, stresses(rest, y));
+    }
     /// With the stresses and the tangent of an iteration.
     ElementMatrix tangent_stiffness(const Rest& rest, const ElementVector& y, const Stresses& iterated) const {
         const typename Base::Turned turned(rest, y);
@@ -76,7 +80,9 @@ public:
         return tension;
     }
     static double weight(const Rest& rest, std::size_t) noexcept { return rest.length; }
-    std::array<Answer, 1> answers(const Rest& rest, const ElementVector& y) const { return {Laws::answer(rest, 0, law_strains(rest, y)[0])}; }
+    std::array<Answer, 1> answers(const Rest& rest, const ElementVector& y) const {
+        return {Laws::answer(rest, 0, law_strains(rest, y)[0])};
+    }
     std::array<SectionStrains, 1> law_strains(const Rest& rest, const ElementVector& y) const {
         return {to_law(Base::strains(typename Base::Turned(rest, y)) - rest.strains)};
     }
@@ -109,7 +115,8 @@ private:
             Strains unit = Strains::Zero();
             unit[k] = 1.0;
             const SectionStrains e = to_law(unit);
-            Eigen::Map<Eigen::Matrix<double, 12, 1>>(column.data()) = C * Eigen::Map<const Eigen::Matrix<double, 12, 1>>(e.data());
+            Eigen::Map<Eigen::Matrix<double, 12, 1>>(column.data()) =
+                C * Eigen::Map<const Eigen::Matrix<double, 12, 1>>(e.data());
             K.col(k) = of_law(column);
         }
         return K;

@@ -31,20 +31,19 @@ enum class QuadraticStrain {
 
 /// What the torsion of a section is measured by, t = (c21 - c12)/2 or less of it.
 enum class TwistStrain {
-    metric,  ///< Green's: a section that narrows by d is twisted by d^2 less, so it narrows, and M is (r t)^2 (1 - nu)/(1 + nu) short of G J t
+    metric,  ///< Green's: a section that narrows by d is twisted by d^2 less, so it narrows, and M is (r t)^2 (1 - nu)/(1 + nu)
+             ///< short of G J t
     turn,    ///< over the mean square of the directors: what the section turns by along the fibre, however wide it is; M = G J t
 };
 
 /// Generalised strains: coefficients of the Green-Lagrange strain as a polynomial in (xi_1, xi_2), less those at rest.
 namespace strain {
-inline constexpr int e11 = 0, e22 = 1, e12 = 2;                   ///< E_11, E_22, 2 E_12 of the section [1]
-inline constexpr int e33 = 3, e13 = 4, e23 = 5;                   ///< E_33, 2 E_13, 2 E_23: stretch and shear [1]
-inline constexpr int b1 = 6, b2 = 7;                              ///< a . g_a': bending [1 / length]
-inline constexpr int c11 = 8, c12 = 9, c21 = 10, c22 = 11;        ///< g_a . g_b': torsion and gradients [1 / length]
-inline constexpr int q11 = 12, q12 = 13, q22 = 14;                ///< g_a' . g_b' (halved if a = b) [1 / length^2]
-inline constexpr int count(QuadraticStrain quadratic) noexcept {
-    return quadratic == QuadraticStrain::complete ? 15 : 12;
-}
+inline constexpr int e11 = 0, e22 = 1, e12 = 2;             ///< E_11, E_22, 2 E_12 of the section [1]
+inline constexpr int e33 = 3, e13 = 4, e23 = 5;             ///< E_33, 2 E_13, 2 E_23: stretch and shear [1]
+inline constexpr int b1 = 6, b2 = 7;                        ///< a . g_a': bending [1 / length]
+inline constexpr int c11 = 8, c12 = 9, c21 = 10, c22 = 11;  ///< g_a . g_b': torsion and gradients [1 / length]
+inline constexpr int q11 = 12, q12 = 13, q22 = 14;          ///< g_a' . g_b' (halved if a = b) [1 / length^2]
+inline constexpr int count(QuadraticStrain quadratic) noexcept { return quadratic == QuadraticStrain::complete ? 15 : 12; }
 }  // namespace strain
 
 /// Integrals over a section. Any shape with axes of symmetry along g_1 and g_2; the fourth moments are an ellipse's.

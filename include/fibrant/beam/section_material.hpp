@@ -13,9 +13,9 @@
 
 namespace fibrant::beam {
 
-/// Strains at a point of a fibre as a law sees them, by the indices of `strain`: those of the section are what is left of it once it has
-/// contracted as nu says, X_11 = E_11 + nu E_33, X_22 = E_22 + nu E_33, 2 E_12. A section that is free has none of them, and a beam whose
-/// sections keep their shape says so by 0.
+/// Strains at a point of a fibre as a law sees them, by the indices of `strain`: those of the section are what is left of it once
+/// it has contracted as nu says, X_11 = E_11 + nu E_33, X_22 = E_22 + nu E_33, 2 E_12. A section that is free has none of them,
+/// and a beam whose sections keep their shape says so by 0.
 using SectionStrains = std::array<double, 12>;
 
 /// What an increment gives a law.
@@ -32,7 +32,7 @@ struct PointPlace {
 
 /// What one increment leaves to the next. Empty: nothing is stored, written or copied.
 template <class H>
-concept Memory = std::default_initializable<H> && std::copyable<H> && (std::is_empty_v<H> || requires(H& h, const H& c) {
+concept Memory = std::default_initializable<H> && std::copyable<H> &&(std::is_empty_v<H> || requires(H & h, const H& c) {
     H::visit(h, [](double&) {});                   // numbers in a fixed order: files, checkpoints
     { H::between(c, c, 0.5) } -> std::same_as<H>;  // at a place between two, 0 to 1: finer meshes
 });
@@ -64,33 +64,34 @@ inline constexpr auto elastic_entries =
     with_diagonal(std::array<Entry, 2>{{{strain::e11, strain::e22}, {strain::c12, strain::c21}}});
 }  // namespace detail
 
-/// Beyond a bound by less than this part of it a point has not begun to flow: what was accepted at its bound starts the next increment
-/// there, with the tangent that unloading has. A rounding error, and far below what a strain is known to.
+/// Beyond a bound by less than this part of it a point has not begun to flow: what was accepted at its bound starts the next
+/// increment there, with the tangent that unloading has. A rounding error, and far below what a strain is known to.
 inline constexpr double at_bound = 1e-9;
 
 /// What a law answers at a point, a unit of rest length.
 template <class H, std::size_t Entries>
 struct SectionAnswer {
-    SectionStrains stress{};                 ///< conjugates of the strains
-    std::array<double, Entries> tangent{};   ///< d stress / d strain, by the law's entries; the rest is 0
-    [[no_unique_address]] H history{};       ///< to be kept when the increment is accepted
-    double stored = 0.0;                     ///< [force]
-    double dissipated = 0.0;                 ///< since the accepted state, >= 0 [force]
-    double driven = 0.0;                     ///< work done since the accepted state by what drives the law [force]
+    SectionStrains stress{};                ///< conjugates of the strains
+    std::array<double, Entries> tangent{};  ///< d stress / d strain, by the law's entries; the rest is 0
+    [[no_unique_address]] H history{};      ///< to be kept when the increment is accepted
+    double stored = 0.0;                    ///< [force]
+    double dissipated = 0.0;                ///< since the accepted state, >= 0 [force]
+    double driven = 0.0;                    ///< work done since the accepted state by what drives the law [force]
 };
 
 /// A law of a section as a policy: elastic, plastic, viscous, broken.
 ///
-/// Owed beyond the syntax, and checked by tests/material/section_material_contract.hpp: `tangent` is the derivative of `stress` and
-/// symmetric; without a rate stored + dissipated is a potential of the stress; nothing negative is dissipated; fresh memory at rest is
-/// free of stress. `Section` holds the constants of a fibre, made once, and in `contraction` the nu that makes X_11 of E_11. The first
-/// twelve `entries` are the diagonal.
+/// Owed beyond the syntax, and checked by tests/material/section_material_contract.hpp: `tangent` is the derivative of `stress`
+/// and symmetric; without a rate stored + dissipated is a potential of the stress; nothing negative is dissipated; fresh memory
+/// at rest is free of stress. `Section` holds the constants of a fibre, made once, and in `contraction` the nu that makes X_11 of
+/// E_11. The first twelve `entries` are the diagonal.
 template <class M>
 concept SectionMaterial = core::Policy<M> && core::Active<M> && Memory<typename M::History> && requires {
     typename M::Section;
     requires M::entries[11].row == 11 && M::entries[11].column == 11;
     { M::has_rate } -> std::convertible_to<bool>;  // needs increments that have a duration
-} && requires(const M material, const SectionConstants& shape, const scene::ElasticMaterial& elastic, const typename M::Section& section) {
+} && requires(const M material, const SectionConstants& shape, const scene::ElasticMaterial& elastic,
+              const typename M::Section& section) {
     { material.section(shape, elastic, 1.0) } -> std::same_as<typename M::Section>;  // and the shear factor
     { section.contraction } -> std::convertible_to<double>;
 } && requires(typename M::Section& section) {
@@ -98,13 +99,16 @@ concept SectionMaterial = core::Policy<M> && core::Active<M> && Memory<typename 
 } && requires(const M material, const PointPlace& place, const typename M::Section& section, const SectionStrains& strain,
               const typename M::History& accepted, const Drive& drive) {
     { material.fresh(section, place) } -> std::same_as<typename M::History>;
-    { material.response(section, strain, accepted, drive) } -> std::same_as<SectionAnswer<typename M::History, M::entries.size()>>;
+    {
+        material.response(section, strain, accepted, drive)
+        } -> std::same_as<SectionAnswer<typename M::History, M::entries.size()>>;
 };
 
 /// A law whose points break when the strength that they have drawn is reached: at the end of an increment, one after the other.
 template <class M>
-concept Breakable = SectionMaterial<M> && requires(const M material, const typename M::Section& section, const SectionStrains& strain,
-                                                   const typename M::History& accepted, typename M::History& history) {
+concept Breakable = SectionMaterial<M> &&
+    requires(const M material, const typename M::Section& section, const SectionStrains& strain,
+             const typename M::History& accepted, typename M::History& history) {
     { material.utilisation(section, strain, accepted) } -> std::same_as<double>;  // breaks at 1; 0 once broken
     material.break_now(history);
 };

@@ -21,11 +21,11 @@ inline std::string text(const InsideOut& found) {
            ": its sections are flat or inside out, with " + core::text(found.ratio) + " of their volume at rest";
 }
 
-/// Least det(g_1, g_2, x_0') of an element over that at rest: at its integration points, where the beam says so of itself, else, with
-/// directors of unit length, at its ends and its middle [1]. Beams that have no sections: 1.
+/// Least det(g_1, g_2, x_0') of an element over that at rest: at its integration points, where the beam says so of itself, else,
+/// with directors of unit length, at its ends and its middle [1]. Beams that have no sections: 1.
 template <BeamElement B>
-double least_volume_ratio([[maybe_unused]] const Mesh<B>& mesh, [[maybe_unused]] const B& beam, [[maybe_unused]] const Vector& state,
-                          [[maybe_unused]] Index fibre, [[maybe_unused]] Index element) {
+double least_volume_ratio([[maybe_unused]] const Mesh<B>& mesh, [[maybe_unused]] const B& beam,
+                          [[maybe_unused]] const Vector& state, [[maybe_unused]] Index fibre, [[maybe_unused]] Index element) {
     if constexpr (requires { beam.least_volume_ratio(mesh.rest(fibre, element), mesh.element(state, fibre, element)); }) {
         return beam.least_volume_ratio(mesh.rest(fibre, element), mesh.element(state, fibre, element));
     } else if constexpr (!CentrelineOnly<B> && B::vectors_per_node > 1) {
@@ -49,13 +49,16 @@ inline constexpr double least_volume = 0.01;
 template <BeamElement B>
 std::optional<InsideOut> first_inside_out(const Mesh<B>& mesh, const B& beam, const Vector& state) {
     std::vector<InsideOut> worst(core::at(mesh.fibre_count()));
-    core::parallel_for(mesh.fibre_count(), [&](Index f) {
-        worst[core::at(f)].ratio = 1.0;
-        for (Index e = 0; e < mesh.fibre(f).elements; ++e) {
-            const double ratio = least_volume_ratio(mesh, beam, state, f, e);
-            if (!(ratio >= worst[core::at(f)].ratio)) worst[core::at(f)] = {f, e, ratio};
-        }
-    }, mesh.grain());
+    core::parallel_for(
+        mesh.fibre_count(),
+        [&](Index f) {
+            worst[core::at(f)].ratio = 1.0;
+            for (Index e = 0; e < mesh.fibre(f).elements; ++e) {
+                const double ratio = least_volume_ratio(mesh, beam, state, f, e);
+                if (!(ratio >= worst[core::at(f)].ratio)) worst[core::at(f)] = {f, e, ratio};
+            }
+        },
+        mesh.grain());
     for (const InsideOut& one : worst)
         if (!(one.ratio > least_volume)) return one;
     return {};

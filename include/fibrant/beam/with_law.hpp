@@ -24,7 +24,8 @@ struct WithLaw<RigidSectionRod, M> {
 };
 }  // namespace detail
 
-/// `With<DirectorBeam<3>, material::Wire>`: the beam B whose section obeys the law M. With `Isotropic` it is B itself, to the bit and the byte.
+/// `With<DirectorBeam<3>, material::Wire>`: the beam B whose section obeys the law M. With `Isotropic` it is B itself, to the bit
+/// and the byte.
 template <class B, class M>
 using With = typename detail::WithLaw<B, M>::Type;
 

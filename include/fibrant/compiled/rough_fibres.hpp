@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file The usual model, compiled once: a program that has it compiles in a fourth of the time, and links the target fibrant::compiled.
+/// @file The usual model, compiled once: a program that has it compiles in a fourth of the time, and links the target
+/// fibrant::compiled.
 ///
-/// The same is open to a model of one's own: `extern template class simulation::Simulator<Mine>;` where it is used, and `template class
-/// simulation::Simulator<Mine>;` in one source file.
+/// The same is open to a model of one's own: `extern template class simulation::Simulator<Mine>;` where it is used, and `template
+/// class simulation::Simulator<Mine>;` in one source file.
 
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>

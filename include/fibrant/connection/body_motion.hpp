@@ -54,9 +54,12 @@ public:
         poses_ = accepted_poses_, gradients_ = accepted_gradients_;
         for (const Driven& driven : held_) {
             const double value = amplitude(driven, amplitudes);
-            if (driven.of.of_cell) gradients_[core::at(driven.of.owner)](driven.of.component % 3, driven.of.component / 3) = value;
-            else if (driven.of.component < 3) poses_[core::at(driven.of.owner)].moved[driven.of.component] = value;
-            else poses_[core::at(driven.of.owner)].held_turn[driven.of.component - 3] = value;
+            if (driven.of.of_cell)
+                gradients_[core::at(driven.of.owner)](driven.of.component % 3, driven.of.component / 3) = value;
+            else if (driven.of.component < 3)
+                poses_[core::at(driven.of.owner)].moved[driven.of.component] = value;
+            else
+                poses_[core::at(driven.of.owner)].held_turn[driven.of.component - 3] = value;
         }
         for (std::size_t k = 0; k < free_.size(); ++k) free_[k].of.force = amplitude(free_[k], amplitudes);
         follow();
@@ -89,7 +92,8 @@ public:
     /// Greatest entry of frame^T frame - 1 over all bodies [1].
     double orthonormality_error() const {
         double most = 0.0;
-        for (const Pose& pose : poses_) most = std::max(most, (pose.frame.transpose() * pose.frame - Mat3::Identity()).cwiseAbs().maxCoeff());
+        for (const Pose& pose : poses_)
+            most = std::max(most, (pose.frame.transpose() * pose.frame - Mat3::Identity()).cwiseAbs().maxCoeff());
         return most;
     }
 
@@ -126,13 +130,17 @@ public:
         std::vector<Vec3> turn(poses_.size(), Vec3::Zero());
         for (Index k = 0; k < free_coordinates(); ++k) {
             const FreeCoordinate& coordinate = free(k);
-            if (coordinate.of_cell) gradients_[core::at(coordinate.owner)](coordinate.component % 3, coordinate.component / 3) += change[k];
-            else if (coordinate.component < 3) poses_[core::at(coordinate.owner)].moved[coordinate.component] += change[k];
-            else turn[core::at(coordinate.owner)][coordinate.component - 3] += change[k];
+            if (coordinate.of_cell)
+                gradients_[core::at(coordinate.owner)](coordinate.component % 3, coordinate.component / 3) += change[k];
+            else if (coordinate.component < 3)
+                poses_[core::at(coordinate.owner)].moved[coordinate.component] += change[k];
+            else
+                turn[core::at(coordinate.owner)][coordinate.component - 3] += change[k];
         }
         for (std::size_t b = 0; b < poses_.size(); ++b)
             if (!turn[b].isZero(0.0))
-                poses_[b].free_turn = Eigen::Quaterniond(Mat3(core::rotation(turn[b]) * poses_[b].free_turn)).normalized().toRotationMatrix();
+                poses_[b].free_turn =
+                    Eigen::Quaterniond(Mat3(core::rotation(turn[b]) * poses_[b].free_turn)).normalized().toRotationMatrix();
         follow();
     }
 
@@ -165,7 +173,8 @@ private:
         double value;
     };
     void add(const scene::Coordinate& coordinate, const FreeCoordinate& of, const Channels& channels) {
-        (coordinate.free ? free_ : held_).push_back({of, coordinate.value != 0.0 ? channels.find(coordinate.channel) : -1, coordinate.value});
+        (coordinate.free ? free_ : held_)
+            .push_back({of, coordinate.value != 0.0 ? channels.find(coordinate.channel) : -1, coordinate.value});
     }
     static double amplitude(const Driven& driven, std::span<const double> amplitudes) noexcept {
         return driven.channel < 0 ? 0.0 : amplitudes[core::at(driven.channel)] * driven.value;

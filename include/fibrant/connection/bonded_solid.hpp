@@ -53,7 +53,8 @@ public:
         first_node_.push_back(core::count(start_));
         for (const scene::SolidHold& hold : assembly.solid_holds()) {
             holds_.push_back({hold, channels.find(hold.channel)});
-            for (const Index node : hold.nodes) held_.push_back({first_node_[core::at(hold.solid)] + node, core::count(holds_) - 1});
+            for (const Index node : hold.nodes)
+                held_.push_back({first_node_[core::at(hold.solid)] + node, core::count(holds_) - 1});
         }
         std::stable_sort(held_.begin(), held_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
         std::vector<bool> used(start_.size(), false);
@@ -137,7 +138,8 @@ public:
             force_[core::at(c)] = element_.force(cell.rest, cell.material, places(state, c));
         });
         for (Index c = 0; c < cells(); ++c)
-            for (int k = 0; k < 8; ++k) at(forces, cells_[core::at(c)].nodes[core::at(k)]) += force_[core::at(c)].template segment<3>(3 * k);
+            for (int k = 0; k < 8; ++k)
+                at(forces, cells_[core::at(c)].nodes[core::at(k)]) += force_[core::at(c)].template segment<3>(3 * k);
         for (std::size_t b = 0; b < bonds_.size(); ++b) {
             if (!holds(b)) continue;
             const Vec3 force = bond_force(state, b);
@@ -177,7 +179,8 @@ public:
         for (Index c = 0; c < cells(); ++c)
             for (int a = 0; a < 8; ++a)
                 for (int b = 0; b < 8; ++b)
-                    block_[core::at(cells_[core::at(c)].entry[core::at(8 * a + b)])] += tangent_[core::at(c)].template block<3, 3>(3 * a, 3 * b);
+                    block_[core::at(cells_[core::at(c)].entry[core::at(8 * a + b)])] +=
+                        tangent_[core::at(c)].template block<3, 3>(3 * a, 3 * b);
         if (shift > 0.0)
             for (Index n = 0; n < nodes(); ++n) block_[core::at(diagonal_[core::at(n)])].diagonal().array() += shift;
     }
@@ -190,16 +193,20 @@ public:
     /// y = the solids' rows of K x, and y += what bonds add to those of the fibres beyond their diagonal.
     void apply(const Vector& x, Vector& y) const {
         const Index size = 3 * first_vector_;
-        core::parallel_for(nodes(), [&](Index n) {
-            Vec3 sum = Vec3::Zero();
-            for (Index k = start_of_[core::at(n)]; k < start_of_[core::at(n + 1)]; ++k)
-                sum.noalias() += block_[core::at(k)] * x.segment<3>(size + 3 * neighbour_[core::at(k)]);
-            for (Index k = bonds_start_[core::at(n)]; k < bonds_start_[core::at(n + 1)]; ++k) {
-                const auto& [b, weight] = bonds_of_[core::at(k)];
-                if (holds(core::at(b))) sum -= weight * bonds_[core::at(b)].stiffness * x.segment<3>(3 * bonds_[core::at(b)].vector);
-            }
-            y.segment<3>(size + 3 * n) = sum;
-        }, nodes() < 2000 ? nodes() : 1);
+        core::parallel_for(
+            nodes(),
+            [&](Index n) {
+                Vec3 sum = Vec3::Zero();
+                for (Index k = start_of_[core::at(n)]; k < start_of_[core::at(n + 1)]; ++k)
+                    sum.noalias() += block_[core::at(k)] * x.segment<3>(size + 3 * neighbour_[core::at(k)]);
+                for (Index k = bonds_start_[core::at(n)]; k < bonds_start_[core::at(n + 1)]; ++k) {
+                    const auto& [b, weight] = bonds_of_[core::at(k)];
+                    if (holds(core::at(b)))
+                        sum -= weight * bonds_[core::at(b)].stiffness * x.segment<3>(3 * bonds_[core::at(b)].vector);
+                }
+                y.segment<3>(size + 3 * n) = sum;
+            },
+            nodes() < 2000 ? nodes() : 1);
         for (std::size_t b = 0; b < bonds_.size(); ++b) {
             if (!holds(b)) continue;
             const Bond& bond = bonds_[b];
@@ -222,7 +229,8 @@ public:
         Index count = 0;
         if constexpr (core::Active<Debonding>) {
             for (std::size_t b = 0; b < bonds_.size(); ++b)
-                if (bonds_[b].section ? !broken_[b] && broken_[b - 1] : !broken_[b] && debonding_.breaks(bonds_[b], bond_force(state, b).norm()))
+                if (bonds_[b].section ? !broken_[b] && broken_[b - 1]
+                                      : !broken_[b] && debonding_.breaks(bonds_[b], bond_force(state, b).norm()))
                     broken_[b] = true, ++count;  // with the bond of the centre go those of the section, which follow it
             if (count > 0) set_constant();
         }
@@ -238,7 +246,8 @@ public:
         typename Element::State mean{Mat3::Zero(), Mat3::Zero()};
         const double whole = cell.rest.size();
         for (std::size_t p = 0; p < 8; ++p)
-            mean.strain += cell.rest.volume[p] / whole * points[p].strain, mean.stress += cell.rest.volume[p] / whole * points[p].stress;
+            mean.strain += cell.rest.volume[p] / whole * points[p].strain,
+                mean.stress += cell.rest.volume[p] / whole * points[p].stress;
         return mean;
     }
 
@@ -252,13 +261,15 @@ private:
     auto at(Vector& forces, Index node) const { return forces.segment<3>(3 * (first_vector_ + node)); }
     solid::CellNodes places(const Vector& state, Index c) const {
         solid::CellNodes nodes;
-        for (int k = 0; k < 8; ++k) nodes.row(k) = state.segment<3>(3 * (first_vector_ + cells_[core::at(c)].nodes[core::at(k)])).transpose();
+        for (int k = 0; k < 8; ++k)
+            nodes.row(k) = state.segment<3>(3 * (first_vector_ + cells_[core::at(c)].nodes[core::at(k)])).transpose();
         return nodes;
     }
     void find_pattern() {
         std::vector<std::vector<Index>> rows(start_.size());
         for (const Cell& cell : cells_)
-            for (const Index a : cell.nodes) rows[core::at(a)].insert(rows[core::at(a)].end(), cell.nodes.begin(), cell.nodes.end());
+            for (const Index a : cell.nodes)
+                rows[core::at(a)].insert(rows[core::at(a)].end(), cell.nodes.begin(), cell.nodes.end());
         start_of_.assign(1, 0);
         for (std::vector<Index>& row : rows) {
             std::sort(row.begin(), row.end());
@@ -278,7 +289,8 @@ private:
         std::vector<Index> next(bonds_start_.begin(), bonds_start_.end() - 1);
         for (Index b = 0; b < core::count(bonds_); ++b)
             for (int k = 0; k < 8; ++k)
-                bonds_of_[core::at(next[core::at(bonds_[core::at(b)].nodes[core::at(k)])]++)] = {b, bonds_[core::at(b)].weights[k]};
+                bonds_of_[core::at(next[core::at(bonds_[core::at(b)].nodes[core::at(k)])]++)] = {b,
+                                                                                                 bonds_[core::at(b)].weights[k]};
         set_constant();
         block_ = constant_;
     }
@@ -296,7 +308,8 @@ private:
     }
     Index first_cell(Index s) const noexcept {
         Index first = 0;  // cells are in the order of solids, as their nodes
-        const auto it = std::partition_point(cells_.begin(), cells_.end(), [&](const Cell& cell) { return cell.nodes[0] < first_node_[core::at(s)]; });
+        const auto it = std::partition_point(cells_.begin(), cells_.end(),
+                                             [&](const Cell& cell) { return cell.nodes[0] < first_node_[core::at(s)]; });
         first = it - cells_.begin();
         return first;
     }

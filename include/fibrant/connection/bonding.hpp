@@ -21,22 +21,22 @@ namespace fibrant::connection {
 /// F G is a sum of the cell's nodes too, with weights w_J = grad N_J . G that sum to nothing. R is then a force on the director
 /// [force * length].
 struct Bond {
-    Index vector = -1;                 ///< nodal vector of the fibre that it holds, among all
-    bool section = false;              ///< holds a director; follows the bond of the same node's position
+    Index vector = -1;     ///< nodal vector of the fibre that it holds, among all
+    bool section = false;  ///< holds a director; follows the bond of the same node's position
     Index solid = -1, cell = -1;
-    std::array<Index, 8> nodes{};      ///< of the cell, numbered through all solids
+    std::array<Index, 8> nodes{};  ///< of the cell, numbered through all solids
     solid::CellWeights weights = solid::CellWeights::Zero();
-    double stiffness = 0.0;            ///< k_b [force / length]
-    double surface = 0.0;              ///< of the fibre that the node stands for [length^2]
-    double fibre_volume = 0.0;         ///< that the node stands for [length^3]
-    Vec3 point = Vec3::Zero();         ///< natural coordinates in the cell
+    double stiffness = 0.0;     ///< k_b [force / length]
+    double surface = 0.0;       ///< of the fibre that the node stands for [length^2]
+    double fibre_volume = 0.0;  ///< that the node stands for [length^3]
+    Vec3 point = Vec3::Zero();  ///< natural coordinates in the cell
 };
 
 /// k_b = factor l_f 2 pi G_m / ln(h_m / (2 r)), the logarithm at least ln 2.
 ///
 /// The shear lag of a rigid fibre in a cylinder of the radius h_m / 2 that holds still, on the length l_f. Per length
-/// of fibre it does not depend on the fibre's mesh; it grows as cells shrink, and no further once they are of the size 4 r: a mesh
-/// finer than that resolves the fibre's surroundings itself, and indents at the nodes.
+/// of fibre it does not depend on the fibre's mesh; it grows as cells shrink, and no further once they are of the size 4 r: a
+/// mesh finer than that resolves the fibre's surroundings itself, and indents at the nodes.
 /// @param cell_size  h_m, cube root of the cell's volume [length]
 inline double bonding_stiffness(double factor, double shear_modulus, double length, double radius, double cell_size) noexcept {
     const double log = std::max(std::log(cell_size / (2.0 * radius)), std::numbers::ln2);
@@ -46,11 +46,12 @@ inline double bonding_stiffness(double factor, double shear_modulus, double leng
 /// k_s = factor l_f A 2 G_m c / (1 - V), c = 16 (1 - nu) / (9 - 12 nu): of each director, for the volume l_f A of fibre.
 ///
 /// A stiff cylinder in a matrix that is strained by e far away holds its place against e, and that costs A 2 G_m c e:e a length
-/// (Eshelby): c = 4 (1 - nu) / (3 - 4 nu) for shear across it, 1 for shear along it and for its turning, (1 - nu) / (1 - 2 nu) times
-/// 2 for a change of its area. A section on springs of that stiffness between it and the mean strain around gives the stiffness of a
-/// dilute suspension, and divided by 1 - V, V the fibres' part of the cell, the lower bound of Hashin and Shtrikman. One c stands
-/// for all, as a constant matrix that a rotation leaves alone has to: 4/3 of that of shear, so that Young's modulus across
-/// the fibres reaches the lower bound too, up to V = 0.65 and nu = 0.4; shear then lies above it by up to a fifth.
+/// (Eshelby): c = 4 (1 - nu) / (3 - 4 nu) for shear across it, 1 for shear along it and for its turning, (1 - nu) / (1 - 2 nu)
+/// times 2 for a change of its area. A section on springs of that stiffness between it and the mean strain around gives the
+/// stiffness of a dilute suspension, and divided by 1 - V, V the fibres' part of the cell, the lower bound of Hashin and
+/// Shtrikman. One c stands for all, as a constant matrix that a rotation leaves alone has to: 4/3 of that of shear, so that
+/// Young's modulus across the fibres reaches the lower bound too, up to V = 0.65 and nu = 0.4; shear then lies above it by up to
+/// a fifth.
 /// @param volume    l_f A [length^3]
 /// @param fraction  V [1], counted as at most that of touching round fibres in a square array
 inline double section_stiffness(double factor, const scene::ElasticMaterial& material, double volume, double fraction) noexcept {
@@ -101,7 +102,8 @@ inline double cell_volume(const scene::Solid& solid, Index cell) {
 
 /// After each bond of a position those of the section's two directors.
 template <beam::BeamElement B>
-std::vector<Bond> with_sections(const std::vector<Bond>& bonds, const std::vector<scene::Solid>& solids, const Vector& state, double factor) {
+std::vector<Bond> with_sections(const std::vector<Bond>& bonds, const std::vector<scene::Solid>& solids, const Vector& state,
+                                double factor) {
     std::vector<std::vector<double>> filled;  // volume of fibres in each cell
     for (const scene::Solid& solid : solids) filled.emplace_back(solid.cells.size(), 0.0);
     for (const Bond& bond : bonds) filled[core::at(bond.solid)][core::at(bond.cell)] += bond.fibre_volume;
@@ -126,9 +128,10 @@ std::vector<Bond> with_sections(const std::vector<Bond>& bonds, const std::vecto
 /// @param factor          on the stiffness [1], > 0
 /// @param section_factor  on that of the bonds of sections [1], >= 0; 0: there are none
 template <beam::BeamElement B>
-std::vector<Bond> find_bonds(const beam::Mesh<B>& mesh, const std::vector<scene::Solid>& solids, const Vector& state, double factor,
-                             double section_factor = 0.0) {
-    if (beam::TurningSections<B> && section_factor > 0.0) core::refuse("BondedSolid.section_factor", core::text(section_factor), "0 for a beam whose sections turn");
+std::vector<Bond> find_bonds(const beam::Mesh<B>& mesh, const std::vector<scene::Solid>& solids, const Vector& state,
+                             double factor, double section_factor = 0.0) {
+    if (beam::TurningSections<B> && section_factor > 0.0)
+        core::refuse("BondedSolid.section_factor", core::text(section_factor), "0 for a beam whose sections turn");
     std::vector<solid::CellSearch> searches;
     std::vector<Index> first{0};
     for (const scene::Solid& solid : solids) {

@@ -36,7 +36,8 @@ public:
         for (std::size_t b = 1; b < start_.size(); ++b) start_[b] += start_[b - 1];
         list_.resize(points_.size());
         std::vector<Index> next(start_.begin(), start_.end() - 1);
-        for (Index k = 0; k < core::count(points_); ++k) list_[core::at(next[core::at(bucket(cell(points_[core::at(k)])))]++)] = k;
+        for (Index k = 0; k < core::count(points_); ++k)
+            list_[core::at(next[core::at(bucket(cell(points_[core::at(k)])))]++)] = k;
     }
     /// -1 if there are none.
     Index find(const Vec3& x) const {
@@ -69,7 +70,8 @@ private:
     std::array<Index, 3> cell(const Vec3& x) const noexcept {
         std::array<Index, 3> at{};
         for (int axis = 0; axis < 3; ++axis)
-            at[core::at(axis)] = std::clamp<Index>(static_cast<Index>(std::floor((x[axis] - low_[axis]) / size_)), 0, count_[core::at(axis)] - 1);
+            at[core::at(axis)] =
+                std::clamp<Index>(static_cast<Index>(std::floor((x[axis] - low_[axis]) / size_)), 0, count_[core::at(axis)] - 1);
         return at;
     }
     Index bucket(const std::array<Index, 3>& at) const noexcept { return (at[2] * count_[1] + at[1]) * count_[0] + at[0]; }
@@ -87,8 +89,8 @@ private:
 /// it (itself, if it is bonded), as the gradient of the cell's displacement says for its distance; directions turn and
 /// stretch with that gradient. A uniform displacement gradient of the solids is so met by all fibres exactly.
 template <beam::BeamElement B>
-std::vector<Carrier> find_carriers(const beam::Mesh<B>& mesh, const std::vector<scene::Solid>& solids, const std::vector<Bond>& bonds,
-                                   const Vector& state) {
+std::vector<Carrier> find_carriers(const beam::Mesh<B>& mesh, const std::vector<scene::Solid>& solids,
+                                   const std::vector<Bond>& bonds, const Vector& state) {
     std::vector<Index> first{0};
     for (const scene::Solid& solid : solids) first.push_back(first.back() + core::count(solid.cells));
     std::vector<Vec3> places;
@@ -109,15 +111,18 @@ std::vector<Carrier> find_carriers(const beam::Mesh<B>& mesh, const std::vector<
             if (b < 0) continue;
             const Bond& bond = *of_place[core::at(b)];
             const solid::CellNodes nodes = solid::cell_nodes(solids[core::at(bond.solid)], bond.cell);
-            const solid::ShapeGradient gradient = solid::shape_derivatives(bond.point) * solid::jacobian(nodes, bond.point).inverse();
+            const solid::ShapeGradient gradient =
+                solid::shape_derivatives(bond.point) * solid::jacobian(nodes, bond.point).inverse();
             for (Index v = 0; v < B::vectors_per_node; ++v) {
                 const Index vector = position + v;
                 const scene::VectorKind kind = mesh.layout().kind[core::at(vector)];
                 if (kind == scene::VectorKind::rotation) continue;
                 Carrier& carrier = carriers[core::at(vector)];
                 carrier.cell = first[core::at(bond.solid)] + bond.cell;
-                if (kind == scene::VectorKind::position) carrier.weights = bond.weights + gradient * (place - places[core::at(b)]);
-                else carrier.weights = gradient * state.segment<3>(3 * vector);
+                if (kind == scene::VectorKind::position)
+                    carrier.weights = bond.weights + gradient * (place - places[core::at(b)]);
+                else
+                    carrier.weights = gradient * state.segment<3>(3 * vector);
             }
         }
     });

@@ -21,8 +21,8 @@ namespace fibrant::connection {
 /// - hold_forces(layout, internal) and stiffen(layout, whole): what ties carry, and the stiffness that turning bodies make of it.
 /// - accept(): coordinates as they stand.
 template <class C, class B>
-concept Connection = requires(C connection, const C& constant, std::span<const double> amplitudes, const Vector& state, Vector& forces,
-                              scene::DofLayout& layout, std::vector<Vec3>& targets) {
+concept Connection = requires(C connection, const C& constant, std::span<const double> amplitudes, const Vector& state,
+                              Vector& forces, scene::DofLayout& layout, std::vector<Vec3>& targets) {
     connection.begin(amplitudes);
     constant.hold(layout.held, targets);
     connection.place(state, layout);

@@ -28,7 +28,7 @@ class FibreBonds : public term::NoDrive,
 public:
     static constexpr auto role = term::Role::interaction;
     struct Bond {
-        scene::Station i{}, j{};  ///< places of the two fibres
+        scene::Station i{}, j{};                                           ///< places of the two fibres
         double stiffness = core::unset;                                    ///< of each spring [force / length], > 0
         double span = 0.0;                                                 ///< along either fibre at rest [length], >= 0
         double strength = std::numeric_limits<double>::infinity();         ///< [force], > 0

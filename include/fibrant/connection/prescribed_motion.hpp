@@ -7,7 +7,6 @@
 #include <fibrant/core/rotation.hpp>
 #include <fibrant/core/symmetric_eigen.hpp>
 
-
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -33,9 +32,11 @@ public:
             if constexpr (requires { B::hold(hold, Mat3()); })
                 if (!B::hold(hold, mesh.frame(hold.at.fibre, node).basis())) continue;
             if (static_cast<Index>(hold.vector) >= B::vectors_per_node)
-                core::with_place([&] { return mesh.node_label(hold.at.fibre, node); }, [&] {
-                    core::refuse("Hold.vector", std::to_string(static_cast<int>(hold.vector)), "a vector of the beam's nodes");
-                });
+                core::with_place([&] { return mesh.node_label(hold.at.fibre, node); },
+                                 [&] {
+                                     core::refuse("Hold.vector", std::to_string(static_cast<int>(hold.vector)),
+                                                  "a vector of the beam's nodes");
+                                 });
             Item item{mesh.node_vector(hold.at.fibre, node, static_cast<Index>(hold.vector)), channels.find(hold.channel),
                       mesh.frame(hold.at.fibre, node).basis(), Vec3::Zero(), hold};
             item.rest = mesh.start_state().template segment<3>(3 * item.vector);
@@ -49,7 +50,8 @@ public:
                     if (other.vector == item.vector) held = held.cwiseMax(other.hold.directions);
                 item.whole = held.trace() > 2.5;
                 if (!item.whole && item.hold.rotation)
-                    core::refuse("Hold.rotation", "of " + std::to_string(std::lround(held.trace())) + " axes", "of all three: rotations do not add up");
+                    core::refuse("Hold.rotation", "of " + std::to_string(std::lround(held.trace())) + " axes",
+                                 "of all three: rotations do not add up");
             }
         std::stable_sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) { return a.vector < b.vector; });
     }
@@ -104,13 +106,15 @@ public:
     }
 
     /// Greatest turn of a held section on the way between amplitudes, which may be several times around, and the vector that is
-    /// turned [radian]. Rotations and paths are looked at in between, so that up to half as many turns are told as there are looks.
+    /// turned [radian]. Rotations and paths are looked at in between, so that up to half as many turns are told as there are
+    /// looks.
     std::pair<double, Index> greatest_turn(std::span<const double> from, std::span<const double> to) const {
         constexpr int looks = 64;
         std::pair<double, Index> most{0.0, -1};
         for (const Item& item : items_) {
             const double a = from[core::at(item.channel)], b = to[core::at(item.channel)];
-            const bool position = item.hold.vector == scene::NodeVector::position, led = item.hold.path || !item.hold.displacement.isZero(0.0);
+            const bool position = item.hold.vector == scene::NodeVector::position,
+                       led = item.hold.path || !item.hold.displacement.isZero(0.0);
             if (a == b || position || (!item.hold.rotation && !(led && !turning))) continue;
             double sum = 0.0;
             Mat3 turn_before;
@@ -122,7 +126,8 @@ public:
                 vector += shift_of(item, amplitude);
                 if (k > 0) {
                     const double by_turn = core::rotation_vector(Mat3(turn_before.transpose() * turn)).norm();
-                    const double by_vector = turning ? 0.0 : std::atan2(vector_before.cross(vector).norm(), vector_before.dot(vector));
+                    const double by_vector =
+                        turning ? 0.0 : std::atan2(vector_before.cross(vector).norm(), vector_before.dot(vector));
                     sum += std::max(by_turn, by_vector);
                 }
                 turn_before = turn, vector_before = vector;
@@ -132,13 +137,14 @@ public:
         return most;
     }
 
-    /// Throws std::invalid_argument where holds of one vector ask for different places in a direction that both hold, and, if `finite`,
-    /// where one asks for no place at all.
+    /// Throws std::invalid_argument where holds of one vector ask for different places in a direction that both hold, and, if
+    /// `finite`, where one asks for no place at all.
     void check(std::span<const double> amplitudes, const beam::Mesh<B>& mesh, bool finite) const {
         for (std::size_t first = 0, last = 0; first < items_.size(); first = last) {
             while (last < items_.size() && items_[last].vector == items_[first].vector) ++last;
-            core::with_place([&] { return mesh.vector_label(items_[first].vector); },
-                             [&] { check_vector(std::span<const Item>(items_).subspan(first, last - first), amplitudes, finite); });
+            core::with_place(
+                [&] { return mesh.vector_label(items_[first].vector); },
+                [&] { check_vector(std::span<const Item>(items_).subspan(first, last - first), amplitudes, finite); });
         }
     }
 
@@ -193,15 +199,18 @@ private:
         const bool collapsed = !turning && items[0].hold.vector != scene::NodeVector::position &&
                                solver.values()[0] > agreement && best.norm() < 0.5 * items[0].rest.norm();
         for (std::size_t k = asked.size(); k-- > 0;) {
-            const Vec3 missed = collapsed ? Vec3(asked[k].second - asked[0].second) : Vec3(asked[k].first * (asked[k].second - best));
+            const Vec3 missed =
+                collapsed ? Vec3(asked[k].second - asked[0].second) : Vec3(asked[k].first * (asked[k].second - best));
             if (missed.norm() <= agreement * size) continue;
-            core::refuse("Hold: what holds of " + kind(items[k]) + " ask for differs by", scene::text(collapsed ? missed : Vec3(2.0 * missed)),
-                         "0: holds agree in the directions that they share, at channel '" + items[k].hold.channel + "' = " +
-                         core::text(amplitudes[core::at(items[k].channel)]));
+            core::refuse("Hold: what holds of " + kind(items[k]) + " ask for differs by",
+                         scene::text(collapsed ? missed : Vec3(2.0 * missed)),
+                         "0: holds agree in the directions that they share, at channel '" + items[k].hold.channel +
+                             "' = " + core::text(amplitudes[core::at(items[k].channel)]));
         }
     }
     static std::string kind(const Item& item) {
-        return item.hold.vector == scene::NodeVector::position ? "a position" : "director " + std::to_string(static_cast<int>(item.hold.vector));
+        return item.hold.vector == scene::NodeVector::position ? "a position"
+                                                               : "director " + std::to_string(static_cast<int>(item.hold.vector));
     }
 
     std::vector<Item> items_;

@@ -25,15 +25,16 @@ struct Wrench {
 
 /// The average connections and periodic pairs of a scene.
 ///
-/// A condition is d.(c - sqrt(n) x_M) = d.offset sqrt(n) in each tied direction d of its body, c = sum x_k / sqrt(n): linear in the
-/// tied vectors, so a body whose coordinates are prescribed is reached in one step. Free coordinates q are those that the tied
-/// vectors fit best; with D their derivative and U an orthonormal basis of its columns, a step of the vectors is free in
-/// U and blocked across it, and a force on q is U Sigma^-1 V^T of it on them. Neither the averages nor the bodies are unknowns
-/// of the system. A single vector that is tied to what is prescribed altogether is held: no solver has to know of a tie there.
+/// A condition is d.(c - sqrt(n) x_M) = d.offset sqrt(n) in each tied direction d of its body, c = sum x_k / sqrt(n): linear in
+/// the tied vectors, so a body whose coordinates are prescribed is reached in one step. Free coordinates q are those that the
+/// tied vectors fit best; with D their derivative and U an orthonormal basis of its columns, a step of the vectors is free in U
+/// and blocked across it, and a force on q is U Sigma^-1 V^T of it on them. Neither the averages nor the bodies are unknowns of
+/// the system. A single vector that is tied to what is prescribed altogether is held: no solver has to know of a tie there.
 template <beam::BeamElement B>
 class BodyTies {
 public:
-    BodyTies(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const Channels& channels) : mesh_{&mesh}, motion_{assembly, channels} {
+    BodyTies(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const Channels& channels)
+        : mesh_{&mesh}, motion_{assembly, channels} {
         const SolidPlaces solids(assembly, mesh.start_state());
         std::vector<char> taken(core::at(solids.state.size() / 3), 0);
         for (const scene::Hold& hold : assembly.holds())
@@ -42,9 +43,12 @@ public:
             for (const Index node : hold.nodes) taken[core::at(solids.vector({hold.solid, node}))] = 1;
         const auto take = [&](Index vector) {
             if (taken[core::at(vector)] != 0)
-                core::with_place([&] { return vector < mesh.layout().vectors() ? mesh.vector_label(vector) : "a node of a solid"; }, [&] {
-                    core::refuse("connection", "vector " + std::to_string(vector), "of a nodal vector that is neither held nor tied twice");
-                });
+                core::with_place(
+                    [&] { return vector < mesh.layout().vectors() ? mesh.vector_label(vector) : "a node of a solid"; },
+                    [&] {
+                        core::refuse("connection", "vector " + std::to_string(vector),
+                                     "of a nodal vector that is neither held nor tied twice");
+                    });
             taken[core::at(vector)] = 1;
         };
         const auto finish = [&](scene::Tie& tie, const Condition& condition, double support) {
@@ -58,7 +62,8 @@ public:
         for (const scene::AverageConnection& average : assembly.averages()) {
             if (beam::TurningSections<B> && average.vector != scene::NodeVector::position)
                 core::refuse("AverageConnection.vector", "a director", "the position, for a beam whose sections turn");
-            if (static_cast<Index>(average.vector) >= B::vectors_per_node) core::refuse("AverageConnection.vector", "a director", "a vector of the beam's nodes");
+            if (static_cast<Index>(average.vector) >= B::vectors_per_node)
+                core::refuse("AverageConnection.vector", "a director", "a vector of the beam's nodes");
             scene::Tie tie;
             Condition condition;
             condition.owner = average.body, condition.director = average.vector != scene::NodeVector::position;
@@ -70,11 +75,14 @@ public:
                 condition.displacement[tie.count++] = average.displacement[k];
             }
             if (!average.displacement.isZero(0.0)) condition.channel = channels.find(average.channel);
-            for (const scene::Station& at : average.ends) tie.vectors.push_back(mesh.node_vector(at.fibre, station_node(mesh, at), static_cast<Index>(average.vector)));
+            for (const scene::Station& at : average.ends)
+                tie.vectors.push_back(mesh.node_vector(at.fibre, station_node(mesh, at), static_cast<Index>(average.vector)));
             for (const scene::SolidNode& at : average.nodes) tie.vectors.push_back(solids.vector(at));
             tie.weights.assign(tie.vectors.size(), 1.0 / condition.root);
             for (const Index vector : tie.vectors) take(vector);
-            finish(tie, condition, average.ends.empty() ? solids.support(assembly, average.nodes.front()) : fibre_support(average.ends.front().fibre));
+            finish(tie, condition,
+                   average.ends.empty() ? solids.support(assembly, average.nodes.front())
+                                        : fibre_support(average.ends.front().fibre));
         }
         for (const scene::PeriodicPair& pair : assembly.pairs())
             for (Index v = 0; v < B::vectors_per_node; ++v) {
@@ -82,7 +90,8 @@ public:
                 Condition condition;
                 condition.periodic = true, condition.owner = pair.cell, condition.director = v > 0;
                 condition.root = std::sqrt(2.0), condition.period = pair.period;
-                tie.vectors = {mesh.node_vector(pair.first.fibre, station_node(mesh, pair.first), v), mesh.node_vector(pair.last.fibre, station_node(mesh, pair.last), v)};
+                tie.vectors = {mesh.node_vector(pair.first.fibre, station_node(mesh, pair.first), v),
+                               mesh.node_vector(pair.last.fibre, station_node(mesh, pair.last), v)};
                 tie.weights = {-1.0 / condition.root, 1.0 / condition.root};
                 for (const Index vector : tie.vectors) take(vector);
                 finish(tie, condition, fibre_support(pair.first.fibre));
@@ -98,14 +107,18 @@ public:
         for (std::size_t k = 0; k < conditions_.size(); ++k) {
             Condition& condition = conditions_[k];
             const Vec3 sum = combination(ties_[k], state);
-            if (condition.periodic) condition.offset = sum;
-            else condition.offset = motion_.frame(condition.owner).transpose() * (condition.director ? sum : Vec3(sum - condition.root * motion_.position(condition.owner)));
+            if (condition.periodic)
+                condition.offset = sum;
+            else
+                condition.offset = motion_.frame(condition.owner).transpose() *
+                                   (condition.director ? sum : Vec3(sum - condition.root * motion_.position(condition.owner)));
         }
     }
 
     void begin(std::span<const double> amplitudes) {
         motion_.begin(amplitudes);
-        for (Condition& condition : conditions_) condition.amplitude = condition.channel < 0 ? 0.0 : amplitudes[core::at(condition.channel)];
+        for (Condition& condition : conditions_)
+            condition.amplitude = condition.channel < 0 ? 0.0 : amplitudes[core::at(condition.channel)];
     }
 
     /// Adds the vectors that are held to those of other holds, whose order by vector is kept. @param targets  held parts
@@ -165,7 +178,8 @@ public:
     double misfit() const {
         double most = 0.0;
         for (std::size_t k = 0; k < conditions_.size(); ++k)
-            for (Index a = 0; a < ties_[k].count; ++a) most = std::max(most, std::abs(gap_[ties_[k].first + a]) / conditions_[k].root);
+            for (Index a = 0; a < ties_[k].count; ++a)
+                most = std::max(most, std::abs(gap_[ties_[k].first + a]) / conditions_[k].root);
         return most;
     }
 
@@ -206,14 +220,18 @@ public:
             for (const Index c : group.conditions) {
                 const Condition& condition = conditions_[core::at(c)];
                 if (condition.periodic) continue;
-                const Vec3 force = condition.director ? force_of(c) : Vec3(condition.root * force_of(c)), &sum = sums_[core::at(c)];
+                const Vec3 force = condition.director ? force_of(c) : Vec3(condition.root * force_of(c)),
+                           &sum = sums_[core::at(c)];
                 for (Index i = 0; i < n; ++i)
                     for (Index j = 0; j < n; ++j) {
                         const Index upper = group.coordinates[core::at(i)], lower = group.coordinates[core::at(j)];
-                        if (!motion_.moves(upper, condition.owner) || !motion_.moves(lower, condition.owner) || !motion_.above(upper, lower)) continue;
+                        if (!motion_.moves(upper, condition.owner) || !motion_.moves(lower, condition.owner) ||
+                            !motion_.above(upper, lower))
+                            continue;
                         const bool same = motion_.above(lower, upper);
                         if (motion_.free(upper).component < 3 || (same && motion_.free(lower).component < 3)) continue;
-                        const Vec3 moved = condition.director ? motion_.spin(lower, sum) : motion_.velocity(lower, Vec3(sum / condition.root));
+                        const Vec3 moved =
+                            condition.director ? motion_.spin(lower, sum) : motion_.velocity(lower, Vec3(sum / condition.root));
                         const double value = force.dot(motion_.spin(upper, moved));
                         of_coordinates(i, j) += same ? 0.5 * value : value;
                         of_coordinates(j, i) += same ? 0.5 * value : value;
@@ -260,9 +278,9 @@ private:
     struct Condition {
         Index owner = -1, channel = -1;
         bool periodic = false, director = false;
-        double root = 1.0, amplitude = 0.0;                   // 1 / weight
-        Mat3 axes = Mat3::Identity();                         // in the body's frame
-        Vec3 offset = Vec3::Zero();                           // in the body's frame, times the root
+        double root = 1.0, amplitude = 0.0;  // 1 / weight
+        Mat3 axes = Mat3::Identity();        // in the body's frame
+        Vec3 offset = Vec3::Zero();          // in the body's frame, times the root
         Vec3 displacement = Vec3::Zero(), period = Vec3::Zero();
     };
     /// Free coordinates that share conditions, and these.
@@ -282,7 +300,8 @@ private:
     double gap(std::size_t k, Index a) const noexcept {
         const Condition& condition = conditions_[k];
         if (condition.periodic) {
-            const double moved = condition.director ? 0.0 : motion_.gradient(condition.owner).row(a).dot(condition.period) / condition.root;
+            const double moved =
+                condition.director ? 0.0 : motion_.gradient(condition.owner).row(a).dot(condition.period) / condition.root;
             return sums_[k][a] - condition.offset[a] - moved;
         }
         const Vec3 from = condition.director ? sums_[k] : Vec3(sums_[k] - condition.root * motion_.position(condition.owner));
@@ -313,7 +332,8 @@ private:
     /// What a gap of a condition is measured by: the extent of the scene, or a director.
     double unit_of(const Condition& condition) const noexcept { return condition.director ? 1.0 : extent_; }
 
-    /// Change of a group's coordinates that brings the tied vectors and them together as far as it can; what scalars change by, over their units.
+    /// Change of a group's coordinates that brings the tied vectors and them together as far as it can; what scalars change by,
+    /// over their units.
     double fit(Group& group, Vector& change) {
         const Index rows = core::count(group.scalars), columns = core::count(group.coordinates);
         Matrix slope = Matrix::Zero(rows, columns);
@@ -331,7 +351,9 @@ private:
                         const int component = motion_.free(k).component;
                         if (component % 3 == a) slope(row, j) = condition.period[component / 3] / condition.root;
                     } else {
-                        const Vec3 moved = condition.director ? motion_.spin(k, sum) : Vec3(condition.root * motion_.velocity(k, Vec3(sum / condition.root)));
+                        const Vec3 moved = condition.director
+                                               ? motion_.spin(k, sum)
+                                               : Vec3(condition.root * motion_.velocity(k, Vec3(sum / condition.root)));
                         slope(row, j) = direction(condition, a).dot(moved);
                     }
                 }
@@ -344,15 +366,18 @@ private:
             for (Index i = 0; i < rows; ++i)
                 if (std::abs(slope(i, j)) <= 1e-14 * (moves ? 1.0 : unit[i])) slope(i, j) = 0.0;
             const double norm = slope.col(j).norm();
-            if ((moves ? norm : slope.col(j).cwiseQuotient(unit).norm()) > 1e-7) size[j] = 1.0 / norm;
-            else if (!moves) size[j] = 1.0 / extent_;
+            if ((moves ? norm : slope.col(j).cwiseQuotient(unit).norm()) > 1e-7)
+                size[j] = 1.0 / norm;
+            else if (!moves)
+                size[j] = 1.0 / extent_;
             slope.col(j) *= size[j];
         }
         const Eigen::JacobiSVD<Matrix> svd(slope, Eigen::ComputeThinU | Eigen::ComputeThinV);
         Index rank = 0;
         while (rank < svd.singularValues().size() && svd.singularValues()[rank] > 1e-8) ++rank;
         group.modes = svd.matrixU().leftCols(rank);
-        group.pull = size.asDiagonal() * (svd.matrixV().leftCols(rank) * svd.singularValues().head(rank).cwiseInverse().asDiagonal());
+        group.pull =
+            size.asDiagonal() * (svd.matrixV().leftCols(rank) * svd.singularValues().head(rank).cwiseInverse().asDiagonal());
         const Vector along = group.modes.transpose() * gaps;
         const Vector own = group.pull * along;
         for (Index j = 0; j < columns; ++j) change[group.coordinates[core::at(j)]] = own[j];
@@ -369,7 +394,8 @@ private:
         };
         std::vector<std::size_t> order(ties_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        tied_ = static_cast<std::size_t>(std::stable_partition(order.begin(), order.end(), [&](std::size_t k) { return !held(k); }) - order.begin());
+        tied_ = static_cast<std::size_t>(
+            std::stable_partition(order.begin(), order.end(), [&](std::size_t k) { return !held(k); }) - order.begin());
         std::vector<scene::Tie> ties;
         std::vector<Condition> conditions;
         for (const std::size_t k : order) {
@@ -390,8 +416,10 @@ private:
             Index first = -1;
             for (Index k = 0; k < motion_.free_coordinates(); ++k) {
                 if (!depends(condition, k)) continue;
-                if (first < 0) first = find(k);
-                else root[core::at(std::max(first, find(k)))] = std::min(first, find(k)), first = std::min(first, find(k));
+                if (first < 0)
+                    first = find(k);
+                else
+                    root[core::at(std::max(first, find(k)))] = std::min(first, find(k)), first = std::min(first, find(k));
             }
             return first;
         };

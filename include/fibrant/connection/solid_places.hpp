@@ -13,11 +13,13 @@ namespace fibrant::connection {
 struct SolidPlaces {
     SolidPlaces(const scene::Assembly& assembly, const Vector& fibres) {
         Index nodes = 0;
-        for (const scene::Solid& solid : assembly.solids()) first.push_back(fibres.size() / 3 + nodes), nodes += core::count(solid.nodes);
+        for (const scene::Solid& solid : assembly.solids())
+            first.push_back(fibres.size() / 3 + nodes), nodes += core::count(solid.nodes);
         state.resize(fibres.size() + 3 * nodes);
         state.head(fibres.size()) = fibres;
         for (std::size_t s = 0; s < first.size(); ++s)
-            for (Index n = 0; n < core::count(assembly.solids()[s].nodes); ++n) state.segment<3>(3 * (first[s] + n)) = assembly.solids()[s].nodes[core::at(n)];
+            for (Index n = 0; n < core::count(assembly.solids()[s].nodes); ++n)
+                state.segment<3>(3 * (first[s] + n)) = assembly.solids()[s].nodes[core::at(n)];
     }
     Index vector(const scene::SolidNode& at) const noexcept { return first[core::at(at.solid)] + at.node; }
     /// E times the size of a cell next to the node: what a cell gives it [force / length].

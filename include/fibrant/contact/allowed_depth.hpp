@@ -18,7 +18,8 @@ double depth_of(const Contacts& contacts, const Zone& zone) {
     double depth = 0.0;
     for (Index k = zone.first; k < zone.last; ++k) {
         const auto& element = contacts.elements()[core::at(k)];
-        if (!(element.shift.value() > 0.0)) depth = std::max(depth, adapting_penetration(element, contacts.responses()[core::at(k)]));
+        if (!(element.shift.value() > 0.0))
+            depth = std::max(depth, adapting_penetration(element, contacts.responses()[core::at(k)]));
     }
     return depth;
 }
@@ -26,8 +27,8 @@ double depth_of(const Contacts& contacts, const Zone& zone) {
 
 /// What is deepest over what it is allowed.
 struct DepthOverAllowed {
-    double value = 0.0;                     ///< [1]
-    Index fibre = -1, other = -1;           ///< fibres, or a fibre and a tool; -1 where laws have multipliers
+    double value = 0.0;            ///< [1]
+    Index fibre = -1, other = -1;  ///< fibres, or a fibre and a tool; -1 where laws have multipliers
     bool tool = false;
 };
 
@@ -36,7 +37,9 @@ inline std::string text(const DepthOverAllowed& depth) {
     std::string what = "contact";
     if (depth.fibre >= 0) {
         what += " of fibre " + std::to_string(depth.fibre) + " with ";
-        what += depth.tool ? "tool " + std::to_string(depth.other) : depth.fibre == depth.other ? "itself" : "fibre " + std::to_string(depth.other);
+        what += depth.tool                   ? "tool " + std::to_string(depth.other)
+                : depth.fibre == depth.other ? "itself"
+                                             : "fibre " + std::to_string(depth.other);
     }
     return what + " is " + core::text(depth.value) + " times as deep as allowed, as stiff as it may be";
 }
@@ -72,7 +75,8 @@ bool stiffen_deep_zones(Contacts& contacts, const StiffnessAdaptation& adaptatio
             const double depth = zone.forced ? 0.0 : detail::depth_of(contacts, zone);
             if (!(depth > adaptation.allowed_penetration * zone.penetration_factor)) continue;
             const double before = zone.stiffness;
-            zone.stiffness = strictly_adapted_stiffness(adaptation, contacts.normal_law(), before, zone.reference, depth, zone.penetration_factor);
+            zone.stiffness = strictly_adapted_stiffness(adaptation, contacts.normal_law(), before, zone.reference, depth,
+                                                        zone.penetration_factor);
             any = any || zone.stiffness > before;
         }
         if constexpr (requires { contacts.tools(); }) any = contacts.tools().stiffen(contacts.normal_law(), adaptation) || any;

@@ -20,14 +20,17 @@ inline constexpr double furthest_crossing = 1.5;
 
 /// Of two pairs of places, at rest: the greater of both ways [length].
 template <class B>
-double arc_apart(const beam::Mesh<B>& mesh, const proximity::ProximityZone& span, const Eigen::Vector2d& a, const Eigen::Vector2d& b) noexcept {
+double arc_apart(const beam::Mesh<B>& mesh, const proximity::ProximityZone& span, const Eigen::Vector2d& a,
+                 const Eigen::Vector2d& b) noexcept {
     const Index i = span.fibre_i, j = span.fibre_j;
-    return std::max(mesh.apart(i, a[0], b[0]) * mesh.fibre(i).element_length, mesh.apart(j, a[1], b[1]) * mesh.fibre(j).element_length);
+    return std::max(mesh.apart(i, a[0], b[0]) * mesh.fibre(i).element_length,
+                    mesh.apart(j, a[1], b[1]) * mesh.fibre(j).element_length);
 }
-/// Places of a zone where its two fibres are closer than beside, as its centrelines stand, the known one first: what a walk along the zone finds, a station's
-/// spacing at a time.
+/// Places of a zone where its two fibres are closer than beside, as its centrelines stand, the known one first: what a walk along
+/// the zone finds, a station's spacing at a time.
 template <class B>
-std::vector<Eigen::Vector2d> closest_places(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& span, const Eigen::Vector2d& known) {
+std::vector<Eigen::Vector2d> closest_places(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& span,
+                                            const Eigen::Vector2d& known) {
     const Index i = span.fibre_i, j = span.fibre_j;
     const double touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
     const double h_i = mesh.fibre(i).element_length, h_j = mesh.fibre(j).element_length;
@@ -41,16 +44,21 @@ std::vector<Eigen::Vector2d> closest_places(const beam::Mesh<B>& mesh, const Vec
     bool falling = false;
     for (Index k = 0; k <= steps; ++k) {
         const double share = static_cast<double>(k) / static_cast<double>(steps);
-        Eigen::Vector2d here(mesh.wrapped(i, span.a_i + share * (span.b_i - span.a_i)), mesh.wrapped(j, span.a_j + share * (span.b_j - span.a_j)));
+        Eigen::Vector2d here(mesh.wrapped(i, span.a_i + share * (span.b_i - span.a_i)),
+                             mesh.wrapped(j, span.a_j + share * (span.b_j - span.a_j)));
         follow_along(mesh, state, i, j, Slide{Slide::along, {0.0, 1.0}}, here[0], here[1]);
         const double now = distance(here[0], here[1]);
         if (k > 0 && falling && now > last && places.size() < Zone::most_crossings) {
             Eigen::Vector2d place = before;
             follow_closest(mesh, state, i, j, place[0], place[1]);
             const bool self = i == j && mesh.apart(i, place[0], place[1]) * h_i < self_contact_arc(0.5 * touching, h_i);
-            const bool met = std::any_of(places.begin(), places.end(), [&](const Eigen::Vector2d& one) { return arc_apart(mesh, span, one, place) < touching; });
+            const bool met = std::any_of(places.begin(), places.end(), [&](const Eigen::Vector2d& one) {
+                return arc_apart(mesh, span, one, place) < touching;
+            });
             // Where the walk saw it: a search that ran off has found another one, or none.
-            if (!self && !met && arc_apart(mesh, span, place, before) < touching && distance(place[0], place[1]) < furthest_crossing * touching) places.push_back(place);
+            if (!self && !met && arc_apart(mesh, span, place, before) < touching &&
+                distance(place[0], place[1]) < furthest_crossing * touching)
+                places.push_back(place);
         }
         falling = k > 0 && now < last;
         last = now, before = here;
@@ -58,19 +66,26 @@ std::vector<Eigen::Vector2d> closest_places(const beam::Mesh<B>& mesh, const Vec
     return places;
 }
 
-/// Whether two fibres clasp each other in a zone, as legs and heads of a knit do: they cross twice, and come back to the side that they came from, so that normals
-/// are opposite. Of straight crossings, and of fibres along each other, the first lines say that they do not.
+/// Whether two fibres clasp each other in a zone, as legs and heads of a knit do: they cross twice, and come back to the side
+/// that they came from, so that normals are opposite. Of straight crossings, and of fibres along each other, the first lines say
+/// that they do not.
 template <class B>
 bool clasped(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& span) {
     const Index i = span.fibre_i, j = span.fibre_j;
-    const auto centres = [&](double u_i, double u_j) { return Vec3(mesh.position(state, j, mesh.wrapped(j, u_j)) - mesh.position(state, i, mesh.wrapped(i, u_i))); };
+    const auto centres = [&](double u_i, double u_j) {
+        return Vec3(mesh.position(state, j, mesh.wrapped(j, u_j)) - mesh.position(state, i, mesh.wrapped(i, u_i)));
+    };
     if (centres(span.a_i, span.a_j).dot(centres(span.b_i, span.b_j)) <= 0.0) return false;
-    const auto sine = [&](double u_i, double u_j) { return sine_between(mesh.derivative(state, i, u_i).normalized(), mesh.derivative(state, j, u_j).normalized()); };
+    const auto sine = [&](double u_i, double u_j) {
+        return sine_between(mesh.derivative(state, i, u_i).normalized(), mesh.derivative(state, j, u_j).normalized());
+    };
     const double least = 0.5;  // of 30 degrees, above which crossings are one contact
     if (sine(span.closest_i, span.closest_j) < least) return false;
     const std::vector<Eigen::Vector2d> places = closest_places(mesh, state, span, {span.closest_i, span.closest_j});
     const Vec3 first = centres(places[0][0], places[0][1]);
-    return std::any_of(places.begin() + 1, places.end(), [&](const Eigen::Vector2d& place) { return centres(place[0], place[1]).dot(first) < 0.0 && sine(place[0], place[1]) > least; });
+    return std::any_of(places.begin() + 1, places.end(), [&](const Eigen::Vector2d& place) {
+        return centres(place[0], place[1]).dot(first) < 0.0 && sine(place[0], place[1]) > least;
+    });
 }
 
 }  // namespace fibrant::contact

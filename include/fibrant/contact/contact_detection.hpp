@@ -17,11 +17,11 @@ namespace fibrant::contact {
 
 /// How centrelines are cut into segments for the search, and which fibres may meet themselves.
 struct Detection {
-    double chord_bound = 0.02;    ///< deviation of a curve from its segments, over the radius [1], > 0
-    Index finest_cut = 8;         ///< segments an element, at most; what they miss is added to the reach
-    bool self_contact = false;    ///< search each fibre against itself, beyond an arc of max(pi r, 2 elements)
-    /// Reach that the motion of an increment asks for, which the loops set [length]. The smallest radius bounds the reach of a search; that of
-    /// a thicker fibre is bounded by its own, and a pair reaches as far as the mean of its two.
+    double chord_bound = 0.02;  ///< deviation of a curve from its segments, over the radius [1], > 0
+    Index finest_cut = 8;       ///< segments an element, at most; what they miss is added to the reach
+    bool self_contact = false;  ///< search each fibre against itself, beyond an arc of max(pi r, 2 elements)
+    /// Reach that the motion of an increment asks for, which the loops set [length]. The smallest radius bounds the reach of a
+    /// search; that of a thicker fibre is bounded by its own, and a pair reaches as far as the mean of its two.
     double wanted = 0.0;
     void validate() const {
         core::require_positive("Detection.chord_bound", chord_bound);
@@ -95,8 +95,8 @@ private:
     Index group_count_ = 0;
 };
 
-/// Radius that a fibre's sections reach in a state: at rest, or as they are pressed flat; what they widen by less than a part of it is
-/// left to the reach of a search, and zones end where they do without [length].
+/// Radius that a fibre's sections reach in a state: at rest, or as they are pressed flat; what they widen by less than a part of
+/// it is left to the reach of a search, and zones end where they do without [length].
 template <class B>
 double widest_extent(const beam::Mesh<B>& mesh, const Vector& state, Index fibre) noexcept {
     const scene::CrossSection& section = mesh.fibre(fibre).section;
@@ -117,40 +117,47 @@ struct SampledCentrelines {
     std::vector<Vec3> points;
     std::vector<double> inflation;
     std::vector<proximity::Centreline> centrelines;
-    std::vector<Index> fibre;      ///< of each centreline
-    std::vector<double> cut;       ///< segments an element of each centreline
+    std::vector<Index> fibre;  ///< of each centreline
+    std::vector<double> cut;   ///< segments an element of each centreline
 
     /// @param wanted  called with a fibre: is it searched?
     /// @param flat    projector on the space that is searched: identity, or across an axis
     template <class Wanted>
     SampledCentrelines(const beam::Mesh<B>& mesh, const Vector& state, const Detection& detection, const Mat3& flat,
                        const Wanted& wanted) {
-        struct Piece { Index fibre, cut, first_point, first_segment; double bend; };
+        struct Piece {
+            Index fibre, cut, first_point, first_segment;
+            double bend;
+        };
         std::vector<Piece> pieces;
         Index points_total = 0, segments_total = 0;
         for (Index f = 0; f < mesh.fibre_count(); ++f) {
             if (!wanted(f)) continue;
             double bend = 0.0;  // greatest |x0 - 2 x1 + x2| of the fibre
-            for (Index e = 0; e < mesh.fibre(f).elements; ++e)
-                bend = std::max(bend, 0.25 * mesh.greatest_bend(state, f, e));
+            for (Index e = 0; e < mesh.fibre(f).elements; ++e) bend = std::max(bend, 0.25 * mesh.greatest_bend(state, f, e));
             const double bound = detection.chord_bound * mesh.fibre(f).section.radius();
-            const Index parts = std::clamp<Index>(static_cast<Index>(std::ceil(std::sqrt(0.5 * bend / bound))), 1, detection.finest_cut);
+            const Index parts =
+                std::clamp<Index>(static_cast<Index>(std::ceil(std::sqrt(0.5 * bend / bound))), 1, detection.finest_cut);
             pieces.push_back({f, parts, points_total, segments_total, bend});
             points_total += mesh.fibre(f).elements * parts + 1;
             segments_total += mesh.fibre(f).elements * parts;
         }
         points.resize(core::at(points_total));
         inflation.resize(core::at(segments_total));
-        core::parallel_for(core::count(pieces), [&](Index p) {
-            const Piece& piece = pieces[core::at(p)];
-            const Index count = mesh.fibre(piece.fibre).elements * piece.cut;
-            const double n = static_cast<double>(piece.cut);
-            for (Index k = 0; k <= count; ++k)
-                points[core::at(piece.first_point + k)] = flat * mesh.position(state, piece.fibre, static_cast<double>(k) / n);
-            for (Index k = 0; k < count; ++k)  // an element's chords deviate by |x''| / (2 n^2)
-                inflation[core::at(piece.first_segment + k)] =
-                    0.125 * mesh.greatest_bend(state, piece.fibre, k / piece.cut) / (n * n);
-        }, mesh.grain());
+        core::parallel_for(
+            core::count(pieces),
+            [&](Index p) {
+                const Piece& piece = pieces[core::at(p)];
+                const Index count = mesh.fibre(piece.fibre).elements * piece.cut;
+                const double n = static_cast<double>(piece.cut);
+                for (Index k = 0; k <= count; ++k)
+                    points[core::at(piece.first_point + k)] =
+                        flat * mesh.position(state, piece.fibre, static_cast<double>(k) / n);
+                for (Index k = 0; k < count; ++k)  // an element's chords deviate by |x''| / (2 n^2)
+                    inflation[core::at(piece.first_segment + k)] =
+                        0.125 * mesh.greatest_bend(state, piece.fibre, k / piece.cut) / (n * n);
+            },
+            mesh.grain());
         for (const Piece& piece : pieces) {
             const beam::MeshFibre& fibre_data = mesh.fibre(piece.fibre);
             const Index count = fibre_data.elements * piece.cut;
@@ -229,8 +236,8 @@ std::vector<Zone> find_zones(const beam::Mesh<B>& mesh, const Vector& state, Sea
     }
     for (Zone& zone : zones) {
         const beam::MeshFibre &i = mesh.fibre(zone.span.fibre_i), &j = mesh.fibre(zone.span.fibre_j);
-        zone.reference = 0.5 * (section_stiffness(i.material, 0.5 * i.element_length) +
-                                section_stiffness(j.material, 0.5 * j.element_length));
+        zone.reference =
+            0.5 * (section_stiffness(i.material, 0.5 * i.element_length) + section_stiffness(j.material, 0.5 * j.element_length));
     }
     return zones;
 }

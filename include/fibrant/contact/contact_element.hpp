@@ -50,9 +50,9 @@ template <beam::BeamElement B, law::FrictionLaw Friction>
 struct FrictionState<B, Friction> {
     static_assert(law::HistoryIsKept<Friction>, "contacts keep `reversible` and `numbers` of a law's history, and nothing else");
     static_assert(!beam::LeverNeeded<B>, "friction on centrelines has no lever: FrictionLever::dropped says that this is meant");
-    typename Friction::History history;        ///< of the last accepted state, turned with the fibres
+    typename Friction::History history;          ///< of the last accepted state, turned with the fibres
     beam::Particle<B> weights_i{}, weights_j{};  ///< of the pair of particles whose slip is counted
-    double bound = -1.0;                       ///< R_N that bounds friction until normals are renewed; < 0: the present one [force]
+    double bound = -1.0;  ///< R_N that bounds friction until normals are renewed; < 0: the present one [force]
     [[no_unique_address]] SeenPlace<Friction> seen;
     Vec3 accepted_offset = Vec3::Zero();  ///< particle j - particle i in the last accepted state, turned since with the pair
 };
@@ -65,21 +65,22 @@ struct MeetingPoint {
 };
 template <beam::BeamElement B>
     requires beam::CentreTouched<B>
-struct MeetingPoint<B> {};
+struct MeetingPoint<B> {
+};
 
 /// Two particles that are predicted to touch (Durville, eq. 8). Fibre i <= fibre j, the normal points from i to j.
 template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
 struct ContactElement {
-    double u_i = 0.0, u_j = 0.0;           ///< abscissae, in elements
+    double u_i = 0.0, u_j = 0.0;                 ///< abscissae, in elements
     beam::Particle<B> weights_i{}, weights_j{};  ///< of the nodal vectors of each side's element, at the meeting point
     Vec3 normal = Vec3::Zero();
-    double cap = 0.0;                      ///< radii of fibre ends in contact and depth of the meeting point, taken off the gap [length]
+    double cap = 0.0;  ///< radii of fibre ends in contact and depth of the meeting point, taken off the gap [length]
     std::int32_t fibre_i = -1, fibre_j = -1;
     std::int32_t first_i = 0, first_j = 0;  ///< first unknown of each side's element
     std::int32_t zone = -1;
-    std::int32_t place = -1;               ///< of a crossing that is followed, or -1
+    std::int32_t place = -1;  ///< of a crossing that is followed, or -1
     bool crossing = false, end_i = false, end_j = false;
-    std::int8_t slide = 0;                 ///< of a crossing that is followed: how its place slides (FollowedPlaces)
+    std::int8_t slide = 0;  ///< of a crossing that is followed: how its place slides (FollowedPlaces)
     [[no_unique_address]] GapShift<Normal> shift;
     [[no_unique_address]] MeetingPoint<B> meeting;
     [[no_unique_address]] FrictionState<B, Friction> friction;
@@ -89,10 +90,9 @@ struct ContactElement {
         return beam::Mesh<B>::point(state, first_j, weights_j) - beam::Mesh<B>::point(state, first_i, weights_i);
     }
     /// The same of the pair whose slip is counted, which the last normal pass chose [length].
-    Vec3 friction_offset(const Vector& state) const noexcept
-        requires core::Active<Friction>
-    {
-        return beam::Mesh<B>::point(state, first_j, friction.weights_j) - beam::Mesh<B>::point(state, first_i, friction.weights_i);
+    Vec3 friction_offset(const Vector& state) const noexcept requires core::Active<Friction> {
+        return beam::Mesh<B>::point(state, first_j, friction.weights_j) -
+               beam::Mesh<B>::point(state, first_i, friction.weights_i);
     }
     /// What a small step changes of the offset [length].
     Vec3 motion(const Vector& step) const noexcept {

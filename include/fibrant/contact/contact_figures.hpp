@@ -27,7 +27,8 @@ ContactFigures figures(const Contacts& contacts, const beam::Mesh<B>& mesh, cons
             sum.work += normal_energy(contacts.normal_law(), mesh, element, response.gap, contacts.stiffness(element));
             sum.reaction_sum += response.reaction;
             if constexpr (requires { element.friction.bound; })
-                sum.work += contacts.frictions()[core::at(k)].stored, sum.dissipated += contacts.frictions()[core::at(k)].dissipated;
+                sum.work += contacts.frictions()[core::at(k)].stored,
+                    sum.dissipated += contacts.frictions()[core::at(k)].dissipated;
         }
         return sum;
     });

@@ -15,8 +15,8 @@
 
 namespace fibrant::contact {
 
-/// Reversible displacement by components along a direction between the tangents of the fibres and across it, so that it turns by the
-/// mean of both turns, whichever of them comes first.
+/// Reversible displacement by components along a direction between the tangents of the fibres and across it, so that it turns by
+/// the mean of both turns, whichever of them comes first.
 template <law::FrictionLaw Friction>
 struct RecordedFriction {};
 /// Numbers of a law's history, for laws that have some; nothing otherwise.
@@ -52,7 +52,8 @@ struct RecordedFriction<Friction> {
     /// Of a history. @param plane  that `along` and `across` are of
     template <class Plane>
     static RecordedFriction of(const typename Friction::History& history, const Plane& plane, double sign = 1.0) noexcept {
-        return {history.reversible.dot(plane.along), history.reversible.dot(plane.across), sign, RecordedNumbers<typename Friction::History>::of(history)};
+        return {history.reversible.dot(plane.along), history.reversible.dot(plane.across), sign,
+                RecordedNumbers<typename Friction::History>::of(history)};
     }
     template <class Plane>
     void give(const Plane& plane, typename Friction::History& history) const noexcept {
@@ -128,7 +129,9 @@ public:
 
     ContactMemory() = default;
     /// @param periods  of closed fibres, around which contacts may slip: as beam::Mesh::periods; empty if there are none
-    explicit ContactMemory(std::vector<double> periods, std::vector<Record> records = {}) : periods_{std::move(periods)} { assign(std::move(records)); }
+    explicit ContactMemory(std::vector<double> periods, std::vector<Record> records = {}) : periods_{std::move(periods)} {
+        assign(std::move(records));
+    }
 
     const std::vector<Record>& records() const noexcept { return records_; }
     const std::vector<double>& periods() const noexcept { return periods_; }
@@ -152,9 +155,8 @@ public:
     /// Friction interpolated on the abscissae between the nearest record on either side; a single neighbour within
     /// `range` [elements] gives its own value, and none gives zero. The abscissa is the mean of both fibres', so the
     /// result does not depend on which fibre comes first.
-    RecordedFriction<Friction> friction(Index i, Index j, double u_i, double u_j, double range) const noexcept
-        requires core::Active<Friction>
-    {
+    RecordedFriction<Friction> friction(Index i, Index j, double u_i, double u_j,
+                                        double range) const noexcept requires core::Active<Friction> {
         const Record *before = nullptr, *after = nullptr;
         double left = range, right = range;
         visit(i, j, u_i, u_j, 2.0 * range, [&](const Record& record, double d_i, double d_j) {
@@ -179,9 +181,7 @@ public:
 
     /// The same of a contact element. A station of a valley is one that was there, or new.
     template <class Element>
-    RecordedFriction<Friction> friction(const Element& element, double range) const noexcept
-        requires core::Active<Friction>
-    {
+    RecordedFriction<Friction> friction(const Element& element, double range) const noexcept requires core::Active<Friction> {
         const double same = 0.25;  // elements
         if (element.place >= 0) {
             const Record* here = nearest(element.fibre_i, element.fibre_j, element.u_i, element.u_j, same);
@@ -201,19 +201,23 @@ public:
     void visit_places(const proximity::ProximityZone& zone, const See& see) const noexcept {
         if (periods_.empty()) return visit(zone, [&](const Record& record) { see(record.u_i, record.u_j); });
         const double middle = 0.5 * (zone.a_i + zone.b_i), period = periods_[core::at(zone.fibre_j)];
-        visit(zone.fibre_i, zone.fibre_j, middle, 0.0, 0.5 * (zone.b_i - zone.a_i), [&](const Record& record, double d_i, double) {
-            const double u_i = middle + d_i, share = zone.b_i > zone.a_i ? (u_i - zone.a_i) / (zone.b_i - zone.a_i) : 0.5;
-            const double beside = zone.a_j + share * (zone.b_j - zone.a_j);
-            see(u_i, period > 0.0 ? beside + std::remainder(record.u_j - beside, period) : record.u_j);
-        });
+        visit(zone.fibre_i, zone.fibre_j, middle, 0.0, 0.5 * (zone.b_i - zone.a_i),
+              [&](const Record& record, double d_i, double) {
+                  const double u_i = middle + d_i, share = zone.b_i > zone.a_i ? (u_i - zone.a_i) / (zone.b_i - zone.a_i) : 0.5;
+                  const double beside = zone.a_j + share * (zone.b_j - zone.a_j);
+                  see(u_i, period > 0.0 ? beside + std::remainder(record.u_j - beside, period) : record.u_j);
+              });
     }
-    /// Calls see(record, d_i, d_j) with the records of two fibres within `range` on the first, in order, and how far they lie from a pair of abscissae. On one
-    /// closed fibre a record is also seen with its two particles the other way around, if that is where it lies near.
+    /// Calls see(record, d_i, d_j) with the records of two fibres within `range` on the first, in order, and how far they lie
+    /// from a pair of abscissae. On one closed fibre a record is also seen with its two particles the other way around, if that
+    /// is where it lies near.
     template <class Visit>
     void visit(Index i, Index j, double u_i, double u_j, double range, const Visit& see) const noexcept {
-        const double period_i = periods_.empty() ? 0.0 : periods_[core::at(i)], period_j = periods_.empty() ? 0.0 : periods_[core::at(j)];
+        const double period_i = periods_.empty() ? 0.0 : periods_[core::at(i)],
+                     period_j = periods_.empty() ? 0.0 : periods_[core::at(j)];
         if (period_i == 0.0 && period_j == 0.0)
-            return visit(records_, i, j, u_i, range, [&](const Record& record) { see(record, record.u_i - u_i, record.u_j - u_j); });
+            return visit(records_, i, j, u_i, range,
+                         [&](const Record& record) { see(record, record.u_i - u_i, record.u_j - u_j); });
         const double within = period_i > 0.0 ? std::min(range, 0.5 * period_i) : range;
         for (const std::vector<Record>* records : {&records_, &mirrored_}) {
             const auto take = [&](double by) {
@@ -227,7 +231,8 @@ public:
                 continue;
             }
             // Turns that bring [0, period) within reach; no record twice, but half-way around.
-            for (double turn = std::floor((u_i - within) / period_i); turn * period_i <= u_i + within; turn += 1.0) take(turn * period_i);
+            for (double turn = std::floor((u_i - within) / period_i); turn * period_i <= u_i + within; turn += 1.0)
+                take(turn * period_i);
         }
     }
 
@@ -263,21 +268,28 @@ private:
 
 /// The same where fibres are closed: of each element the records near it, and of each record the nearest of these elements.
 template <class Memory, class Element>
-void hand_multipliers_around(const Memory& memory, const proximity::ProximityZone& zone, std::span<Element> elements, double range) {
+void hand_multipliers_around(const Memory& memory, const proximity::ProximityZone& zone, std::span<Element> elements,
+                             double range) {
     struct Near {
         double u_i, u_j, distance, force;  // of the record, as it is kept
         std::size_t element;
     };
     std::vector<Near> all;
     for (std::size_t k = 0; k < elements.size(); ++k)
-        memory.visit(zone.fibre_i, zone.fibre_j, elements[k].u_i, elements[k].u_j, range, [&](const auto& record, double d_i, double d_j) {
-            const double distance = std::max(std::abs(d_i), std::abs(d_j));
-            const bool turned = zone.fibre_i == zone.fibre_j && record.u_i > record.u_j;
-            if (distance <= range) all.push_back({turned ? record.u_j : record.u_i, turned ? record.u_i : record.u_j, distance, record.multiplier.force, k});
-        });
-    std::sort(all.begin(), all.end(), [](const Near& a, const Near& b) { return std::tie(a.u_i, a.u_j, a.distance, a.element) < std::tie(b.u_i, b.u_j, b.distance, b.element); });
+        memory.visit(zone.fibre_i, zone.fibre_j, elements[k].u_i, elements[k].u_j, range,
+                     [&](const auto& record, double d_i, double d_j) {
+                         const double distance = std::max(std::abs(d_i), std::abs(d_j));
+                         const bool turned = zone.fibre_i == zone.fibre_j && record.u_i > record.u_j;
+                         if (distance <= range)
+                             all.push_back({turned ? record.u_j : record.u_i, turned ? record.u_i : record.u_j, distance,
+                                            record.multiplier.force, k});
+                     });
+    std::sort(all.begin(), all.end(), [](const Near& a, const Near& b) {
+        return std::tie(a.u_i, a.u_j, a.distance, a.element) < std::tie(b.u_i, b.u_j, b.distance, b.element);
+    });
     for (std::size_t k = 0; k < all.size(); ++k)
-        if (k == 0 || all[k].u_i != all[k - 1].u_i || all[k].u_j != all[k - 1].u_j) elements[all[k].element].shift.multiplier += all[k].force;
+        if (k == 0 || all[k].u_i != all[k - 1].u_i || all[k].u_j != all[k - 1].u_j)
+            elements[all[k].element].shift.multiplier += all[k].force;
 }
 
 /// Hands each record's multiplier to the nearest of the new elements of its zone: their sum is kept, whatever their spacing.
@@ -287,7 +299,9 @@ void hand_multipliers(const Memory& memory, const proximity::ProximityZone& zone
     const double range = 1.5;  // elements of the mesh
     if (!memory.periods().empty()) return hand_multipliers_around(memory, zone, elements, range);
     memory.visit(zone, [&](const auto& record) {
-        const auto distance = [&](const Element& e) { return std::max(std::abs(e.u_i - record.u_i), std::abs(e.u_j - record.u_j)); };
+        const auto distance = [&](const Element& e) {
+            return std::max(std::abs(e.u_i - record.u_i), std::abs(e.u_j - record.u_j));
+        };
         auto element = std::lower_bound(elements.begin(), elements.end(), record.u_i - range,
                                         [](const Element& e, double u) { return e.u_i < u; });
         auto nearest = element;

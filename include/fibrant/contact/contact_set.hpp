@@ -33,10 +33,17 @@ public:
     using Element = ContactElement<B, Normal, Friction>;
     using Memory = ContactMemory<Normal, Friction>;
 
-    ContactSet(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const ContactParameters& parameters,
-               Search search, Normal normal, Friction friction)
-        : mesh_{&mesh}, parameters_{core::validated(parameters)}, orders_{assembly, mesh}, rules_{assembly}, search_{std::move(search)},
-          normal_{normal}, friction_{friction}, accepted_{mesh.periods()}, places_{parameters.places} {}
+    ContactSet(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const ContactParameters& parameters, Search search,
+               Normal normal, Friction friction)
+        : mesh_{&mesh},
+          parameters_{core::validated(parameters)},
+          orders_{assembly, mesh},
+          rules_{assembly},
+          search_{std::move(search)},
+          normal_{normal},
+          friction_{friction},
+          accepted_{mesh.periods()},
+          places_{parameters.places} {}
 
     Normal& normal_law() noexcept { return normal_; }
     const Normal& normal_law() const noexcept { return normal_; }
@@ -60,7 +67,8 @@ public:
     /// @param forced    keep forced orders
     void detect(const Vector& state, const Vector& accepted, double reach, bool forced) {
         std::vector<Zone> found = find_zones(*mesh_, state, search_, parameters_.detection, orders_, reach, forced);
-        core::parallel_for(core::count(found), [&](Index z) { inherit(found[core::at(z)], state); }, core::light_items);
+        core::parallel_for(
+            core::count(found), [&](Index z) { inherit(found[core::at(z)], state); }, core::light_items);
         zones_.swap(found);
         regenerate(state, accepted);
     }
@@ -71,7 +79,9 @@ public:
         const Memory& memory = last.records().empty() ? accepted_ : last;
         generate(state, accepted, memory);
         places_.number(elements_, zones_, accepted);
-        for_elements([&](Index k) { if (slides(k)) follow(k, state); });
+        for_elements([&](Index k) {
+            if (slides(k)) follow(k, state);
+        });
         sides_.build(mesh_->fibre_count(), elements_);
     }
 
@@ -94,12 +104,14 @@ public:
     /// friction has a convex potential and Newton does not cycle between stick and slip.
     void hold_reactions() {
         if constexpr (core::Active<Friction>)
-            if (!follows()) for (std::size_t k = 0; k < std::min(elements_.size(), responses_.size()); ++k)
-                elements_[k].friction.bound = responses_[k].reaction;
+            if (!follows())
+                for (std::size_t k = 0; k < std::min(elements_.size(), responses_.size()); ++k)
+                    elements_[k].friction.bound = responses_[k].reaction;
     }
 
     /// Inner loop: gaps, reactions and friction of a state.
-    /// @param start  the last accepted one: nothing has slipped, however pairs have turned; twice as deep as its zone was, none touched
+    /// @param start  the last accepted one: nothing has slipped, however pairs have turned; twice as deep as its zone was, none
+    /// touched
     void evaluate(const Vector& state, bool start = false) {
         responses_.resize(elements_.size());
         if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
@@ -109,8 +121,10 @@ public:
             Vec3 slip = Vec3::Zero();
             if constexpr (core::Active<Friction>)
                 if (!start) slip = element.friction_offset(state) - element.friction.accepted_offset;
-            if (slides(k)) places_.take(*mesh_, state, zones_[core::at(element.zone)], element);
-            else follow_particles(*mesh_, state, element);
+            if (slides(k))
+                places_.take(*mesh_, state, zones_[core::at(element.zone)], element);
+            else
+                follow_particles(*mesh_, state, element);
             const Zone& zone = zones_[core::at(element.zone)];
             const double apart = element.gap(state) - zone.unseen;
             const bool none = start && apart < -2.0 * zone.deepest;
@@ -153,7 +167,8 @@ public:
         if constexpr (core::Active<Friction>) return elements_[core::at(k)].friction.bound > 0.0;
         return false;
     }
-    /// Stiffness of element k between particles, symmetric and positive semidefinite, as its friction bound stands [force / length].
+    /// Stiffness of element k between particles, symmetric and positive semidefinite, as its friction bound stands [force /
+    /// length].
     Mat3 tangent(Index k) const noexcept {
         const Vec3& normal = elements_[core::at(k)].normal;
         return friction_tangent(k) - responses_[core::at(k)].slope * normal * normal.transpose();
@@ -193,25 +208,33 @@ public:
             if (slides(k)) continue;
             const double reaction = responses_[core::at(k)].reaction;
             if (side % 2 == 1)
-                section_stiffness_term(*mesh_, state, fibre, element.u_j, element.first_j, element.normal, reaction, element.end_j, add);
+                section_stiffness_term(*mesh_, state, fibre, element.u_j, element.first_j, element.normal, reaction,
+                                       element.end_j, add);
             else
-                section_stiffness_term(*mesh_, state, fibre, element.u_i, element.first_i, element.normal, reaction, element.end_i, add);
+                section_stiffness_term(*mesh_, state, fibre, element.u_i, element.first_i, element.normal, reaction,
+                                       element.end_i, add);
         }
     }
 
     /// Adds contact forces to a residual (internal minus external forces).
     void add_forces(Vector& residual) const {
-        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
-            for (const std::int32_t side : sides(f)) {
-                const Index k = side / 2;
-                if (!carries(k)) continue;
-                const Element& element = elements_[core::at(k)];
-                const bool of_j = side % 2 == 1;
-                const Vec3 value = of_j ? point_force(k) : Vec3(-point_force(k));
-                if (slides(k)) spread(places_.of(element), element.normal, of_j ? 1.0 : -1.0, responses_[core::at(k)].reaction, residual);
-                beam::spread(of_j ? element.weights_j : element.weights_i, value, of_j ? element.first_j : element.first_i, residual);
-            }
-        }, mesh_->grain());
+        core::parallel_for(
+            mesh_->fibre_count(),
+            [&](Index f) {
+                for (const std::int32_t side : sides(f)) {
+                    const Index k = side / 2;
+                    if (!carries(k)) continue;
+                    const Element& element = elements_[core::at(k)];
+                    const bool of_j = side % 2 == 1;
+                    const Vec3 value = of_j ? point_force(k) : Vec3(-point_force(k));
+                    if (slides(k))
+                        spread(places_.of(element), element.normal, of_j ? 1.0 : -1.0, responses_[core::at(k)].reaction,
+                               residual);
+                    beam::spread(of_j ? element.weights_j : element.weights_i, value, of_j ? element.first_j : element.first_i,
+                                 residual);
+                }
+            },
+            mesh_->grain());
     }
 
     /// Of elements, in order.
@@ -242,7 +265,8 @@ public:
                 penetration = std::max(penetration, adapting_penetration(element, responses_[core::at(k)]));
                 zone.deepest = std::max(zone.deepest, element.shift.value() - responses_[core::at(k)].gap);
             }
-            zone.stiffness = adapted_stiffness(parameters_.stiffness, normal_, zone.stiffness, zone.reference, penetration, zone.penetration_factor);
+            zone.stiffness = adapted_stiffness(parameters_.stiffness, normal_, zone.stiffness, zone.reference, penetration,
+                                               zone.penetration_factor);
         }
         accepted_zones_ = zones_;
     }
@@ -283,39 +307,41 @@ private:
         const Index blocks = (core::count(zones_) + block - 1) / block;
         std::vector<std::vector<Element>> made(core::at(blocks));
         const double forced_keep = 0.5;  // radii of clearance beyond which a forced pair needs no element
-        core::parallel_for<core::Share::turns>(blocks, [&](Index b) {
-            std::vector<StationPair> pairs;
-            for (Index z = b * block; z < std::min(core::count(zones_), (b + 1) * block); ++z) {
-                Zone& zone = zones_[core::at(z)];
-                pairs.clear();
-                station_pairs(*mesh_, state, zone.span, zone.crossing, parameters_.spacing, pairs,
-                              [&](const auto& see) { memory.visit_places(zone.span, see); });
-                zone.first = core::count(made[core::at(b)]);
-                if (!pairs.empty() && places_.follows(pairs.back(), zone)) places_.settle(*mesh_, state, zone, memory, pairs);
-                add_watched(zone, pairs);
-                for (const StationPair& pair : pairs) {
-                    Element element = make(zone, z, pair);
-                    const auto* record = memory.nearest(zone.span.fibre_i, zone.span.fibre_j, pair.u_i, pair.u_j, 1.5);
-                    Vec3 remembered = record ? record->normal : Vec3(Vec3::Zero());
-                    if (zone.order >= 0 && (zone.forced || !record))
-                        remembered = orders_.direction(zone.order, zone.span.fibre_i);
-                    place_particles(element, state, accepted, remembered);
-                    if (zone.forced && element.gap(state) >
-                                           forced_keep * mesh_->fibre(zone.span.fibre_i).section.radius())
-                        continue;
-                    if constexpr (core::Active<Friction>) recall_friction(element, state);
-                    made[core::at(b)].push_back(element);
+        core::parallel_for<core::Share::turns>(
+            blocks,
+            [&](Index b) {
+                std::vector<StationPair> pairs;
+                for (Index z = b * block; z < std::min(core::count(zones_), (b + 1) * block); ++z) {
+                    Zone& zone = zones_[core::at(z)];
+                    pairs.clear();
+                    station_pairs(*mesh_, state, zone.span, zone.crossing, parameters_.spacing, pairs,
+                                  [&](const auto& see) { memory.visit_places(zone.span, see); });
+                    zone.first = core::count(made[core::at(b)]);
+                    if (!pairs.empty() && places_.follows(pairs.back(), zone)) places_.settle(*mesh_, state, zone, memory, pairs);
+                    add_watched(zone, pairs);
+                    for (const StationPair& pair : pairs) {
+                        Element element = make(zone, z, pair);
+                        const auto* record = memory.nearest(zone.span.fibre_i, zone.span.fibre_j, pair.u_i, pair.u_j, 1.5);
+                        Vec3 remembered = record ? record->normal : Vec3(Vec3::Zero());
+                        if (zone.order >= 0 && (zone.forced || !record))
+                            remembered = orders_.direction(zone.order, zone.span.fibre_i);
+                        place_particles(element, state, accepted, remembered);
+                        if (zone.forced && element.gap(state) > forced_keep * mesh_->fibre(zone.span.fibre_i).section.radius())
+                            continue;
+                        if constexpr (core::Active<Friction>) recall_friction(element, state);
+                        made[core::at(b)].push_back(element);
+                    }
+                    zone.last = core::count(made[core::at(b)]);
+                    see_lengths(*mesh_, std::span<Element>(made[core::at(b)]).subspan(core::at(zone.first)));
+                    if constexpr (law::Augmenting<Normal>) {
+                        const auto first = made[core::at(b)].begin() + zone.first;
+                        hand_multipliers(memory, zone.span, std::span<Element>(first, made[core::at(b)].end()));
+                        for (auto element = first; element != made[core::at(b)].end(); ++element)
+                            element->shift.shift = -normal_.penetration(element->shift.multiplier, zone.stiffness);
+                    }
                 }
-                zone.last = core::count(made[core::at(b)]);
-                see_lengths(*mesh_, std::span<Element>(made[core::at(b)]).subspan(core::at(zone.first)));
-                if constexpr (law::Augmenting<Normal>) {
-                    const auto first = made[core::at(b)].begin() + zone.first;
-                    hand_multipliers(memory, zone.span, std::span<Element>(first, made[core::at(b)].end()));
-                    for (auto element = first; element != made[core::at(b)].end(); ++element)
-                        element->shift.shift = -normal_.penetration(element->shift.multiplier, zone.stiffness);
-                }
-            }
-        }, core::light_items / block);
+            },
+            core::light_items / block);
         for (Index b = 0, offset = 0; b < blocks; offset += core::count(made[core::at(b++)])) {
             for (Index z = b * block; z < std::min(core::count(zones_), (b + 1) * block); ++z)
                 zones_[core::at(z)].first += offset, zones_[core::at(z)].last += offset;
@@ -323,7 +349,8 @@ private:
         core::join(made, elements_);
     }
 
-    /// The closest patches, and what stands until normals are renewed: where friction acts, so that it has a potential. @returns its turn [radian]
+    /// The closest patches, and what stands until normals are renewed: where friction acts, so that it has a potential. @returns
+    /// its turn [radian]
     double follow(Index k, const Vector& state) {
         Element& element = elements_[core::at(k)];
         places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
@@ -333,12 +360,15 @@ private:
         return places_.renew(*mesh_, state, element, core::Active<Friction>);
     }
     /// Normal to an element's friction, and its stiffness.
-    const Vec3& plane(Index k) const noexcept { return slides(k) ? places_.plane(elements_[core::at(k)]) : elements_[core::at(k)].normal; }
+    const Vec3& plane(Index k) const noexcept {
+        return slides(k) ? places_.plane(elements_[core::at(k)]) : elements_[core::at(k)].normal;
+    }
     Mat3 friction_tangent([[maybe_unused]] Index k) const noexcept {
         if constexpr (core::Active<Friction>) {
             const Mat3 flat = Mat3::Identity() - plane(k) * plane(k).transpose();
             return flat * frictions_[core::at(k)].tangent * flat;
-        } else return Mat3::Zero();
+        } else
+            return Mat3::Zero();
     }
 
     Element make(const Zone& zone, Index z, const StationPair& pair) const {
@@ -358,7 +388,8 @@ private:
         element.normal = element_normal(*mesh_, state, element, parameters_.normal, remembered);
         meet(element, state, accepted);
         if constexpr (law::GapShifting<Normal>) element.shift.shift = normal_.gap_shift(element.gap(accepted));
-        if constexpr (law::Augmenting<Normal>) element.shift.shift = -normal_.penetration(element.shift.multiplier, stiffness(element));
+        if constexpr (law::Augmenting<Normal>)
+            element.shift.shift = -normal_.penetration(element.shift.multiplier, stiffness(element));
         if constexpr (core::Active<Friction>) {
             Vec3& reversible = element.friction.history.reversible;
             if (!remembered.isZero()) reversible = turned_with_plane(reversible, remembered, element.normal);
@@ -373,10 +404,9 @@ private:
         }
     }
 
-    void recall_friction(Element& element, const Vector& state) const
-        requires core::Active<Friction>
-    {
-        give_friction<Friction>(*mesh_, element, state, accepted_.friction(element, 1.5 / parameters_.spacing.points_per_element));
+    void recall_friction(Element& element, const Vector& state) const requires core::Active<Friction> {
+        give_friction<Friction>(*mesh_, element, state,
+                                accepted_.friction(element, 1.5 / parameters_.spacing.points_per_element));
     }
 
     std::vector<typename Memory::Record> records(const Vector& state) const {

@@ -6,8 +6,8 @@
 
 namespace fibrant::contact {
 
-/// Jump of the centreline's derivative by u where element `node` begins and the one before it ends [length]; around a closed fibre `node` may be 0 and
-/// the number of elements.
+/// Jump of the centreline's derivative by u where element `node` begins and the one before it ends [length]; around a closed
+/// fibre `node` may be 0 and the number of elements.
 template <class B>
 Vec3 kink(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, Index node) noexcept {
     const auto at = [&](Index e, double end) {

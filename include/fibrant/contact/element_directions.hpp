@@ -15,13 +15,15 @@ Vec3 tangent_of_i(const beam::Mesh<B>& mesh, const Element& element, const Vecto
     return contact_tangent(mesh, state, element.fibre_i, element.u_i).normalized();
 }
 
-/// A direction half-way between the tangents of both fibres in the plane of a normal. It turns by the mean of their turns, so that slips do not depend
-/// on which fibre comes first; either sign will do as long as it is kept. One between tangents that lean out of the plane by different angles would turn
-/// to the other side with the other sign, and a scene would lose the symmetry of its mirror image.
+/// A direction half-way between the tangents of both fibres in the plane of a normal. It turns by the mean of their turns, so
+/// that slips do not depend on which fibre comes first; either sign will do as long as it is kept. One between tangents that lean
+/// out of the plane by different angles would turn to the other side with the other sign, and a scene would lose the symmetry of
+/// its mirror image.
 template <class B, class Element>
 Vec3 heading(const beam::Mesh<B>& mesh, const Element& element, const Vector& state, const Vec3& normal, double sign) {
     const auto flat = [&](const Vec3& tangent) { return unit_or(tangent - tangent.dot(normal) * normal, Vec3::Zero()); };
-    return flat(tangent_of_i(mesh, element, state)) + sign * flat(contact_tangent(mesh, state, element.fibre_j, element.u_j).normalized());
+    return flat(tangent_of_i(mesh, element, state)) +
+           sign * flat(contact_tangent(mesh, state, element.fibre_j, element.u_j).normalized());
 }
 template <class B, class Element>
 double sign_of_j(const beam::Mesh<B>& mesh, const Element& element, const Vector& state) {
@@ -32,24 +34,29 @@ double sign_of_j(const beam::Mesh<B>& mesh, const Element& element, const Vector
 /// Offset of the friction's particles in the last accepted state, turned as the normal and the tangent have
 /// since: else a rigid rotation of a pair would slide it by the gap times the angle.
 template <class B, class Element>
-Vec3 accepted_offset(const beam::Mesh<B>& mesh, const NormalRule& rule, const Element& element, const Vector& state, const Vector& accepted) {
+Vec3 accepted_offset(const beam::Mesh<B>& mesh, const NormalRule& rule, const Element& element, const Vector& state,
+                     const Vector& accepted) {
     const Vec3 offset = element.friction_offset(accepted);
     const Vec3 before = element_normal(mesh, accepted, element, rule, element.normal);
     if (element.end_i || element.end_j) return turned(offset, before, element.normal);
     const double sign = sign_of_j(mesh, element, state);
-    const TangentPlane then(heading(mesh, element, accepted, before, sign), before), now(heading(mesh, element, state, element.normal, sign), element.normal);
+    const TangentPlane then(heading(mesh, element, accepted, before, sign), before),
+        now(heading(mesh, element, state, element.normal, sign), element.normal);
     return offset.dot(then.along) * now.along + offset.dot(then.across) * now.across + offset.dot(before) * element.normal;
 }
 
 /// A history of friction by components between the tangents of its element, and back.
 template <law::FrictionLaw Friction, class B, class Element>
-RecordedFriction<Friction> recorded_friction(const beam::Mesh<B>& mesh, const Element& element, const Vector& state, const typename Friction::History& history) {
+RecordedFriction<Friction> recorded_friction(const beam::Mesh<B>& mesh, const Element& element, const Vector& state,
+                                             const typename Friction::History& history) {
     const double sign = sign_of_j(mesh, element, state);
-    return RecordedFriction<Friction>::of(history, TangentPlane(heading(mesh, element, state, element.normal, sign), element.normal), sign);
+    return RecordedFriction<Friction>::of(
+        history, TangentPlane(heading(mesh, element, state, element.normal, sign), element.normal), sign);
 }
 template <law::FrictionLaw Friction, class B, class Element>
 void give_friction(const beam::Mesh<B>& mesh, Element& element, const Vector& state, const RecordedFriction<Friction>& recorded) {
-    recorded.give(TangentPlane(heading(mesh, element, state, element.normal, recorded.sign), element.normal), element.friction.history);
+    recorded.give(TangentPlane(heading(mesh, element, state, element.normal, recorded.sign), element.normal),
+                  element.friction.history);
 }
 
 }  // namespace fibrant::contact

@@ -14,9 +14,10 @@
 
 namespace fibrant::contact {
 
-/// Two fibres touch over a patch of about a radius to either side, over which centrelines and sections are averaged. A force at a point bends and
-/// shears a centreline into a corner there, in which the closest point hops, and is worth more or less between nodes than at them; a mean over
-/// up to one element has a continuous tangent, and a force that is spread as it is averaged. Half of it [radius], and at most [element].
+/// Two fibres touch over a patch of about a radius to either side, over which centrelines and sections are averaged. A force at a
+/// point bends and shears a centreline into a corner there, in which the closest point hops, and is worth more or less between
+/// nodes than at them; a mean over up to one element has a continuous tangent, and a force that is spread as it is averaged. Half
+/// of it [radius], and at most [element].
 inline constexpr double patch_half = 1.0, most_patch_half = 0.5;
 
 /// Mean of a fibre over [u - half, u + half].
@@ -29,7 +30,8 @@ public:
     Vec3 place(Index fibre, double u, double half) const noexcept {
         Vec3 sum = Vec3::Zero();
         each_sample(fibre, u, half, [&](Index e, double xi, double weight) {
-            sum += weight * beam::Mesh<B>::centre(*state_, mesh_->first_unknown(fibre, around(fibre, e)), B::centreline_weights(xi));
+            sum +=
+                weight * beam::Mesh<B>::centre(*state_, mesh_->first_unknown(fibre, around(fibre, e)), B::centreline_weights(xi));
         });
         return sum;
     }
@@ -58,7 +60,8 @@ public:
             from = to;
         }
     }
-    /// Element that holds u, and its natural coordinate: beyond [-1, 1] beyond an end. Those of a closed fibre count on around it.
+    /// Element that holds u, and its natural coordinate: beyond [-1, 1] beyond an end. Those of a closed fibre count on around
+    /// it.
     std::pair<Index, double> located(Index fibre, double u) const noexcept {
         Index e = static_cast<Index>(std::floor(u));
         if (!mesh_->fibre(fibre).closed) e = std::clamp<Index>(e, 0, mesh_->fibre(fibre).elements - 1);
@@ -74,8 +77,10 @@ private:
     Vec3 at(Index fibre, double u) const noexcept {
         const auto [e, xi] = located(fibre, u);
         const Index first = mesh_->first_unknown(fibre, around(fibre, e));
-        if constexpr (Derivative == 0) return beam::Mesh<B>::centre(*state_, first, B::centreline_weights(xi));
-        else return 2.0 * beam::Mesh<B>::centre(*state_, first, B::centreline_derivative_weights(xi));
+        if constexpr (Derivative == 0)
+            return beam::Mesh<B>::centre(*state_, first, B::centreline_weights(xi));
+        else
+            return 2.0 * beam::Mesh<B>::centre(*state_, first, B::centreline_derivative_weights(xi));
     }
     const beam::Mesh<B>* mesh_;
     const Vector* state_;
@@ -133,7 +138,9 @@ struct Slide {
         return way * way.transpose() / std::max(way.dot(closeness * way), least);
     }
     /// The direction in arc lengths, unit.
-    Eigen::Vector2d arc(const PairGeometry& pair) const noexcept { return Eigen::Vector2d(direction[0] * pair.speed_i, direction[1] * pair.speed_j).normalized(); }
+    Eigen::Vector2d arc(const PairGeometry& pair) const noexcept {
+        return Eigen::Vector2d(direction[0] * pair.speed_i, direction[1] * pair.speed_j).normalized();
+    }
 };
 
 /// Second variation of a distance that steps to where patches are closest count with at least, over the distance [1].
@@ -142,7 +149,8 @@ inline constexpr double least_of_steps = 0.1;
 /// Moves a pair of patches step by step until it comes to rest, both inside their fibres.
 /// @param steps  called with the pair's geometry: steps of both abscissae [element]
 template <class B, class Steps>
-void follow_steps(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, double& u_i, double& u_j, const Steps& steps) noexcept {
+void follow_steps(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, double& u_i, double& u_j,
+                  const Steps& steps) noexcept {
     const auto [low_i, high_i] = mesh.bounds(i);
     const auto [low_j, high_j] = mesh.bounds(j);
     for (int iteration = 0; iteration < 30; ++iteration) {
@@ -159,7 +167,8 @@ void follow_steps(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index
 
 /// Moves a pair of patches along one direction of both abscissae to where they are closest, both inside their fibres.
 template <class B>
-void follow_along(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, const Slide& slide, double& u_i, double& u_j) noexcept {
+void follow_along(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, const Slide& slide, double& u_i,
+                  double& u_j) noexcept {
     follow_steps(mesh, state, i, j, u_i, u_j, [&](const PairGeometry& pair) {
         const Eigen::Vector2d direction = slide.arc(pair);
         const double downhill = pair.centres.dot(direction[0] * pair.t_i - direction[1] * pair.t_j);
@@ -170,8 +179,8 @@ void follow_along(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index
 
 /// Moves a pair of patches to the closest ones near it, both inside their fibres.
 ///
-/// Newton's method with the bends of both; where they are bent around each other so that none is closest nearby, or it does not come
-/// to rest, the pair stays nearby all the same.
+/// Newton's method with the bends of both; where they are bent around each other so that none is closest nearby, or it does not
+/// come to rest, the pair stays nearby all the same.
 template <class B>
 void follow_closest(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, double& u_i, double& u_j) noexcept {
     const auto bounds_i = mesh.bounds(i), bounds_j = mesh.bounds(j);

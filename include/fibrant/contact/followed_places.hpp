@@ -16,8 +16,8 @@
 
 namespace fibrant::contact {
 
-/// How far two fibres are bent around each other where a zone of theirs is closest: distance over radius of curvature, of the one that is bent more
-/// towards the other [1]. A fibre's mean over a patch has the corner that a force at a node shears it into.
+/// How far two fibres are bent around each other where a zone of theirs is closest: distance over radius of curvature, of the one
+/// that is bent more towards the other [1]. A fibre's mean over a patch has the corner that a force at a node shears it into.
 template <class B>
 double bend_around(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone) noexcept {
     const PairGeometry pair = pair_geometry(mesh, state, zone.fibre_i, zone.fibre_j, zone.closest_i, zone.closest_j);
@@ -32,14 +32,14 @@ public:
 
     /// Whether crossings are followed from the next detection on, if it is as needed.
     void follow(bool whether) noexcept { all_ = whether; }
-    /// Says whether crossings of a zone are followed. As needed they are wherever fibres are bent around each other as only loops are, or clasp each
-    /// other, whatever increments lead there.
+    /// Says whether crossings of a zone are followed. As needed they are wherever fibres are bent around each other as only loops
+    /// are, or clasp each other, whatever increments lead there.
     void mark(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Zone* before) const {
         zone.followed = wanted(mesh, state, zone, before);
         zone.settled = zone.followed && before && before->settled;
     }
-    /// Crossings that are followed go on as one contact element until bent around each other so much that the angle between them is, but for
-    /// this part of what it is elsewhere, that of fibres side by side [1].
+    /// Crossings that are followed go on as one contact element until bent around each other so much that the angle between them
+    /// is, but for this part of what it is elsewhere, that of fibres side by side [1].
     static double angle_share(const Zone& zone) noexcept { return zone.followed ? 0.2 : 1.0; }
     /// Of a contact element, or of a pair of stations.
     static bool follows(const auto& pair, const Zone& zone) noexcept {
@@ -61,11 +61,12 @@ public:
     /// What the slips of an increment count from.
     const Vector& accepted() const noexcept { return accepted_; }
 
-    /// New pairs of stations in the place of that of a crossing: at each place of the zone where its two fibres are closest, near where they were. Two yarns that clasp
-    /// each other have two such places in one zone, with normals that are opposite.
+    /// New pairs of stations in the place of that of a crossing: at each place of the zone where its two fibres are closest, near
+    /// where they were. Two yarns that clasp each other have two such places in one zone, with normals that are opposite.
     /// @param pairs  the last one is the crossing's
     template <class Memory>
-    static void settle(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Memory& memory, std::vector<StationPair>& pairs) {
+    static void settle(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Memory& memory,
+                       std::vector<StationPair>& pairs) {
         const StationPair crossing = pairs.back();
         pairs.pop_back();
         std::vector<Eigen::Vector2d> known;
@@ -74,7 +75,9 @@ public:
         const auto first = static_cast<std::ptrdiff_t>(pairs.size());
         const std::vector<Eigen::Vector2d> places = closest_places(mesh, state, zone.span, {crossing.u_i, crossing.u_j});
         const auto nearest = [&](const Eigen::Vector2d& to) {
-            const auto nearer = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return arc_apart(mesh, zone.span, a, to) < arc_apart(mesh, zone.span, b, to); };
+            const auto nearer = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+                return arc_apart(mesh, zone.span, a, to) < arc_apart(mesh, zone.span, b, to);
+            };
             return std::min_element(places.begin(), places.end(), nearer) - places.begin();
         };
         for (std::size_t place = 0; place < places.size(); ++place) {
@@ -97,13 +100,15 @@ public:
             if (oval_pair(mesh, element.fibre_i, element.fibre_j)) {
                 Held& one = held_[core::at(element.place)];
                 if (!stand(mesh, element, one)) renew(mesh, state, element);
-                follow_oval(mesh, state, element.fibre_i, element.fibre_j, one.i, one.j, slide_of(mesh, zone, element.slide), element.u_i, element.u_j, element.normal);
+                follow_oval(mesh, state, element.fibre_i, element.fibre_j, one.i, one.j, slide_of(mesh, zone, element.slide),
+                            element.u_i, element.u_j, element.normal);
                 return;
             }
         }
         const Slide slide = slide_of(mesh, zone, element.slide);
         if (slide.kind == Slide::freely) follow_closest(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
-        if (slide.kind == Slide::along) follow_along(mesh, state, element.fibre_i, element.fibre_j, slide, element.u_i, element.u_j);
+        if (slide.kind == Slide::along)
+            follow_along(mesh, state, element.fibre_i, element.fibre_j, slide, element.u_i, element.u_j);
         const PairGeometry pair = pair_geometry(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
         element.normal = unit_or(slide.kind == Slide::freely ? Vec3(pair.t_i.cross(pair.t_j)) : pair.centres, before);
         if (element.normal.dot(before) < 0.0) element.normal = -element.normal;
@@ -131,8 +136,8 @@ public:
             if (place.oval) return oval_stiffness(place, element.normal, reaction, slope, positive);
         return sliding_stiffness(place, element.normal, reaction, slope, positive);
     }
-    /// Sections anew where an element has slid to, facing each other across its normal. @returns by how much the direction across them has turned
-    /// in the section of fibre i [radian]
+    /// Sections anew where an element has slid to, facing each other across its normal. @returns by how much the direction across
+    /// them has turned in the section of fibre i [radian]
     /// @param rubs  the plane of its normal stands as well, and counts
     template <class Element>
     double renew(const beam::Mesh<B>& mesh, const Vector& state, const Element& element, bool rubs = false) noexcept {
@@ -152,10 +157,12 @@ public:
                     const auto was = mean_directors(mesh, state, f, u, around), is = mean_directors(mesh, state, f, v, around);
                     return std::max(turn_between(was[0], is[0]), turn_between(was[1], is[1]));
                 };
-                return std::max({turn, turned(i, before.u, one.i.u, half), turned(j, before_j, one.j.u, half_of_patch(mesh, i, j, j))});
+                return std::max(
+                    {turn, turned(i, before.u, one.i.u, half), turned(j, before_j, one.j.u, half_of_patch(mesh, i, j, j))});
             }
             const auto across = [&](const StandingSection& section) {
-                return FacingSection(mean_directors(mesh, state, i, section.u, half), section.facing, mesh.fibre(i).section).across;
+                return FacingSection(mean_directors(mesh, state, i, section.u, half), section.facing, mesh.fibre(i).section)
+                    .across;
             };
             turn = std::max(turn, turn_between(across(before), across(one.i)));
         }
@@ -164,8 +171,10 @@ public:
     /// Elements of the mesh that hold both places.
     template <class Element>
     static void host(const beam::Mesh<B>& mesh, Element& element) {
-        element.first_i = static_cast<std::int32_t>(mesh.first_unknown(element.fibre_i, mesh.locate(element.fibre_i, element.u_i).first));
-        element.first_j = static_cast<std::int32_t>(mesh.first_unknown(element.fibre_j, mesh.locate(element.fibre_j, element.u_j).first));
+        element.first_i =
+            static_cast<std::int32_t>(mesh.first_unknown(element.fibre_i, mesh.locate(element.fibre_i, element.u_i).first));
+        element.first_j =
+            static_cast<std::int32_t>(mesh.first_unknown(element.fibre_j, mesh.locate(element.fibre_j, element.u_j).first));
     }
     /// The patches of some place have come to other elements since this was asked last: its tangent couples other unknowns.
     bool rehosted() noexcept {
@@ -175,33 +184,46 @@ public:
     }
 
     template <class Element>
-    const SlidingPlace<B>& of(const Element& element) const noexcept { return held_[core::at(element.place)].place; }
+    const SlidingPlace<B>& of(const Element& element) const noexcept {
+        return held_[core::at(element.place)].place;
+    }
     /// Normal that its element had when sections were renewed.
     template <class Element>
-    const Vec3& plane(const Element& element) const noexcept { return held_[core::at(element.place)].plane; }
+    const Vec3& plane(const Element& element) const noexcept {
+        return held_[core::at(element.place)].plane;
+    }
 
 private:
     /// How a place slides: freely, on one fibre alone, not at all, or across one of its zone's valleys, from this number on.
     enum : std::int8_t { free, on_i, on_j, fixed, across_valley };
     static Slide slide_of(const beam::Mesh<B>& mesh, const Zone& zone, std::int8_t slide) noexcept {
         switch (slide) {
-            case free: return {};
-            case on_i: return {Slide::along, {1.0, 0.0}};
-            case on_j: return {Slide::along, {0.0, 1.0}};
-            case fixed: return {Slide::nowhere, {}};
-            default: break;
+            case free:
+                return {};
+            case on_i:
+                return {Slide::along, {1.0, 0.0}};
+            case on_j:
+                return {Slide::along, {0.0, 1.0}};
+            case fixed:
+                return {Slide::nowhere, {}};
+            default:
+                break;
         }
         const double valley = zone.valleys[core::at(slide - across_valley)];
-        return {Slide::along, {-std::sin(valley) / mesh.fibre(zone.span.fibre_i).element_length, std::cos(valley) / mesh.fibre(zone.span.fibre_j).element_length}};
+        return {Slide::along,
+                {-std::sin(valley) / mesh.fibre(zone.span.fibre_i).element_length,
+                 std::cos(valley) / mesh.fibre(zone.span.fibre_j).element_length}};
     }
 
-    /// Stations of one closest place. Where the fibres are nearly as close beside it, as fibres are that hang in each other at a slant or are bent around each
-    /// other by a touching distance, they touch along a line: then there are stations along this valley too. These slide across it only, and stay where they are
-    /// from one detection to the next, so that no contact hops; what touches in two places after it did in one does so on stations that were there before.
+    /// Stations of one closest place. Where the fibres are nearly as close beside it, as fibres are that hang in each other at a
+    /// slant or are bent around each other by a touching distance, they touch along a line: then there are stations along this
+    /// valley too. These slide across it only, and stay where they are from one detection to the next, so that no contact hops;
+    /// what touches in two places after it did in one does so on stations that were there before.
     /// @param places  all closest places of the zone, and which of them it is: stations are of the nearest one
     /// @param known   stations that it had
-    static void settle_one(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const std::vector<Eigen::Vector2d>& places, std::size_t place,
-                           const std::vector<Eigen::Vector2d>& known, StationPair middle, std::vector<StationPair>& pairs) {
+    static void settle_one(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const std::vector<Eigen::Vector2d>& places,
+                           std::size_t place, const std::vector<Eigen::Vector2d>& known, StationPair middle,
+                           std::vector<StationPair>& pairs) {
         const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
         if (!known.empty()) middle.u_i = median(known, 0), middle.u_j = median(known, 1);
         const double touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
@@ -217,11 +239,13 @@ private:
             };
             const proximity::ProximityZone& span = zone.span;
             const double of_i = off(i, at.u_i, span.closest_i), of_j = off(j, at.u_j, span.closest_j);
-            return of_i >= span.a_i - span.closest_i && of_i <= span.b_i - span.closest_i && of_j >= std::min(span.a_j, span.b_j) - span.closest_j &&
-                   of_j <= std::max(span.a_j, span.b_j) - span.closest_j;
+            return of_i >= span.a_i - span.closest_i && of_i <= span.b_i - span.closest_i &&
+                   of_j >= std::min(span.a_j, span.b_j) - span.closest_j && of_j <= std::max(span.a_j, span.b_j) - span.closest_j;
         };
-        const double longest = std::max((zone.span.b_i - zone.span.a_i) * pair.speed_i, std::abs(zone.span.b_j - zone.span.a_j) * pair.speed_j);
-        const int most = std::max(most_beside, static_cast<int>(std::min(longest / (spacing * touching), 1e6)));  // once around closed fibres
+        const double longest =
+            std::max((zone.span.b_i - zone.span.a_i) * pair.speed_i, std::abs(zone.span.b_j - zone.span.a_j) * pair.speed_j);
+        const int most =
+            std::max(most_beside, static_cast<int>(std::min(longest / (spacing * touching), 1e6)));  // once around closed fibres
         const auto of_another = [&](const StationPair& at) {
             const Eigen::Vector2d here(at.u_i, at.u_j);
             const double own = arc_apart(mesh, zone.span, places[place], here) + 0.25 * spacing * touching;
@@ -244,8 +268,10 @@ private:
                     double nearest = 0.5 * spacing * touching;
                     Eigen::Vector2d kept(other.u_i, other.u_j);
                     for (const Eigen::Vector2d& one : known) {
-                        const double off = std::abs(way[0] * (one[0] - other.u_i) * pair.speed_i + way[1] * (one[1] - other.u_j) * pair.speed_j);
-                        const double beside = std::abs(way[1] * (one[0] - other.u_i) * pair.speed_i - way[0] * (one[1] - other.u_j) * pair.speed_j);
+                        const double off =
+                            std::abs(way[0] * (one[0] - other.u_i) * pair.speed_i + way[1] * (one[1] - other.u_j) * pair.speed_j);
+                        const double beside =
+                            std::abs(way[1] * (one[0] - other.u_i) * pair.speed_i - way[0] * (one[1] - other.u_j) * pair.speed_j);
                         if (off < nearest && beside < near_valley * touching) nearest = off, kept = one;
                     }
                     other.u_i = kept[0], other.u_j = kept[1];
@@ -286,9 +312,11 @@ private:
     }
 
     bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before) const {
-        if (!beam::DeformableSections<B> && oval_pair(mesh, zone.span.fibre_i, zone.span.fibre_j)) return false;  // centrelines say too little of where they touch
+        if (!beam::DeformableSections<B> && oval_pair(mesh, zone.span.fibre_i, zone.span.fibre_j))
+            return false;  // centrelines say too little of where they touch
         if (places_ != Places::as_needed || all_) return places_ != Places::renewed;
-        return bend_around(mesh, state, zone.span) > loop - (before && before->followed ? hysteresis : 0.0) || clasped(mesh, state, zone.span);
+        return bend_around(mesh, state, zone.span) > loop - (before && before->followed ? hysteresis : 0.0) ||
+               clasped(mesh, state, zone.span);
     }
     static double least(const Eigen::Matrix2d& closeness) noexcept {
         return 0.5 * (closeness(0, 0) + closeness(1, 1)) - std::hypot(0.5 * (closeness(0, 0) - closeness(1, 1)), closeness(0, 1));
@@ -303,16 +331,20 @@ private:
     static bool inside(const beam::Mesh<B>& mesh, Index fibre, double u) noexcept {
         return u >= mesh.bounds(fibre).first && u <= mesh.bounds(fibre).second;
     }
-    static constexpr double square = 0.1;  ///< cosine of the angle between fibres below which their valleys lie along each of them [1]
-    /// Second variation of the closest distance, over the distance, below which there are stations beside a place, and below which it does not slide
-    /// along its valley. Hooks that are pulled apart at 30 to 90 degrees hold most often with these, of 0.02 to 0.1 and spacings of 0.25 to 0.5 [1].
+    static constexpr double square =
+        0.1;  ///< cosine of the angle between fibres below which their valleys lie along each of them [1]
+    /// Second variation of the closest distance, over the distance, below which there are stations beside a place, and below
+    /// which it does not slide along its valley. Hooks that are pulled apart at 30 to 90 degrees hold most often with these, of
+    /// 0.02 to 0.1 and spacings of 0.25 to 0.5 [1].
     static constexpr double flat = 0.4, held = 0.05;
     static constexpr double flat_of_ovals = 0.1;  ///< the same of sections that are not round
-    static constexpr double spacing = valley_spacing, clear = 0.1;  ///< of stations in a valley, and gap beyond which there are none [touching distance]
-    static constexpr double near_valley = 2.0;          ///< of a station that stays, across [touching distance]
-    static constexpr int most_beside = 8;  ///< stations to each side that are placed whatever the zone; more of them as far as it goes
-    /// Distance over radius of curvature from which two fibres are a loop around each other: cloths have a tenth. Less by the second once they are
-    /// followed.
+    static constexpr double spacing = valley_spacing,
+                            clear = 0.1;  ///< of stations in a valley, and gap beyond which there are none [touching distance]
+    static constexpr double near_valley = 2.0;  ///< of a station that stays, across [touching distance]
+    static constexpr int most_beside =
+        8;  ///< stations to each side that are placed whatever the zone; more of them as far as it goes
+    /// Distance over radius of curvature from which two fibres are a loop around each other: cloths have a tenth. Less by the
+    /// second once they are followed.
     static constexpr double loop = 0.25, hysteresis = 0.05;
     /// A section is one of a place, and less than an element away from it.
     static bool stand(const beam::Mesh<B>& mesh, const auto& element, const auto& one) noexcept {
@@ -322,12 +354,14 @@ private:
         return section.stands && std::abs(u - section.u) < 0.9 && mesh.apart(fibre, u, section.u) < 0.9;
     }
     template <class Element>
-    static SlidingPlace<B> place_of(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Element& element, const auto& one) {
+    static SlidingPlace<B> place_of(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Element& element,
+                                    const auto& one) {
         const Index i = element.fibre_i, j = element.fibre_j;
         const Slide slide = slide_of(mesh, zone, element.slide);
         if constexpr (beam::DeformableSections<B>)
             if (oval_pair(mesh, i, j)) {
-                const OvalGap gap = oval_gap(mesh, pair_geometry(mesh, state, i, j, element.u_i, element.u_j), i, j, standing_directors(mesh, state, i, j, one.i, one.j), element.normal);
+                const OvalGap gap = oval_gap(mesh, pair_geometry(mesh, state, i, j, element.u_i, element.u_j), i, j,
+                                             standing_directors(mesh, state, i, j, one.i, one.j), element.normal);
                 return oval_place(mesh, state, i, j, element.u_i, element.u_j, one.i, one.j, gap, slide);
             }
         return sliding_place(mesh, state, i, j, element.u_i, element.u_j, one.i, one.j, element.normal, slide);

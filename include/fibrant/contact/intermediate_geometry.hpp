@@ -15,10 +15,10 @@ namespace fibrant::contact {
 /// A pair of stations whose sections may touch; abscissae are counted in elements.
 struct StationPair {
     double u_i = 0.0, u_j = 0.0;
-    bool crossing = false;               ///< the only pair of its zone, or one of a followed valley
-    bool end_i = false, end_j = false;   ///< the station is a fibre's end and the contact is with its cap
-    double length = 0.0;                 ///< of the zone that it stands for [length]; for a crossing the touching length, for a last section 0
-    std::int8_t slide = 0;               ///< of a followed crossing: how its place slides (FollowedPlaces)
+    bool crossing = false;              ///< the only pair of its zone, or one of a followed valley
+    bool end_i = false, end_j = false;  ///< the station is a fibre's end and the contact is with its cap
+    double length = 0.0;    ///< of the zone that it stands for [length]; for a crossing the touching length, for a last section 0
+    std::int8_t slide = 0;  ///< of a followed crossing: how its place slides (FollowedPlaces)
 };
 
 /// The pair of closest points near a start, both inside their fibres.
@@ -94,18 +94,21 @@ struct ContactSpacing {
     }
 };
 
-/// Angle between two fibres at the closest points of their zone, less what bending towards each other takes of it; at most that of two
-/// lines which part as fast as the two halves of the zone do [degree].
+/// Angle between two fibres at the closest points of their zone, less what bending towards each other takes of it; at most that
+/// of two lines which part as fast as the two halves of the zone do [degree].
 ///
 /// The distance of their centres is least there and nowhere beside if its second variation is positive: straight fibres at any
-/// angle a; bent ones, c from centre to centre and k their curvature vectors, if sin^2 a > c.(k_i - k_j) + (c.k_i)(c.k_j). That is what is
-/// taken off sin^2 a: as it goes to zero a second closest place comes up beside the first, and one contact element would hop to and fro.
-/// Fibres that run side by side and splay where they end are closest there and at an angle, yet touch all along: their zone is long, and hardly
-/// parts. Straight lines part by s sin a or more, and arcs around a line as the second variation says.
+/// angle a; bent ones, c from centre to centre and k their curvature vectors, if sin^2 a > c.(k_i - k_j) + (c.k_i)(c.k_j). That
+/// is what is taken off sin^2 a: as it goes to zero a second closest place comes up beside the first, and one contact element
+/// would hop to and fro. Fibres that run side by side and splay where they end are closest there and at an angle, yet touch all
+/// along: their zone is long, and hardly parts. Straight lines part by s sin a or more, and arcs around a line as the second
+/// variation says.
 /// @param bent  less what bending takes
 template <class B>
-double crossing_angle_deg(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone, bool bent = true) {
-    const Vec3 d_i = mesh.derivative(state, zone.fibre_i, zone.closest_i), d_j = mesh.derivative(state, zone.fibre_j, zone.closest_j);
+double crossing_angle_deg(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone,
+                          bool bent = true) {
+    const Vec3 d_i = mesh.derivative(state, zone.fibre_i, zone.closest_i),
+               d_j = mesh.derivative(state, zone.fibre_j, zone.closest_j);
     const Vec3 t_i = d_i.normalized(), t_j = d_j.normalized();
     const Vec3 x_i = mesh.position(state, zone.fibre_i, zone.closest_i), x_j = mesh.position(state, zone.fibre_j, zone.closest_j);
     const Vec3 centres = x_j - x_i;

@@ -10,9 +10,9 @@
 
 namespace fibrant::contact {
 
-/// A contact that closes, or slides back, within a step has a tangent at its start that says nothing of its end: the step goes too far
-/// there, and is cut for all. The next step takes the normal reaction of such a contact to be linear about the end of the one that was
-/// cut, as if it were closed already, and gives friction its secant in the place of its tangent.
+/// A contact that closes, or slides back, within a step has a tangent at its start that says nothing of its end: the step goes
+/// too far there, and is cut for all. The next step takes the normal reaction of such a contact to be linear about the end of the
+/// one that was cut, as if it were closed already, and gives friction its secant in the place of its tangent.
 class LearnedContacts {
 public:
     /// Part of secants that is left for the step after the next: without any, every other step goes too far again.
@@ -27,7 +27,8 @@ public:
         const Learned& one = learned_[core::at(k)];
         Mat3 sum = one.friction;
         const Vec3& normal = contacts.elements()[core::at(k)].normal;
-        if (one.closes) sum += std::max(0.0, contacts.responses()[core::at(k)].slope - one.end.slope) * normal * normal.transpose();
+        if (one.closes)
+            sum += std::max(0.0, contacts.responses()[core::at(k)].slope - one.end.slope) * normal * normal.transpose();
         return sum;
     }
     /// What comes to the force of element k [force].
@@ -36,7 +37,8 @@ public:
         const Learned& one = learned_[core::at(k)];
         if (!one.closes) return Vec3::Zero();
         const ContactResponse& now = contacts.responses()[core::at(k)];
-        return (now.reaction - one.end.reaction - one.end.slope * (now.gap - one.end.gap)) * contacts.elements()[core::at(k)].normal;
+        return (now.reaction - one.end.reaction - one.end.slope * (now.gap - one.end.gap)) *
+               contacts.elements()[core::at(k)].normal;
     }
 
     /// To be called at the start of a step, with contacts that have been evaluated there.
@@ -44,27 +46,35 @@ public:
     void begin_step(const Contacts& contacts) {
         for (Learned& one : learned_) one.friction = one.before = kept * one.friction, one.closes = false;
         start_.resize(contacts.elements().size());
-        core::parallel_for(core::count(start_), [&](Index k) { start_[core::at(k)] = {contacts.force(k), contacts.tangent(k)}; }, core::light_items);
+        core::parallel_for(
+            core::count(start_),
+            [&](Index k) {
+                start_[core::at(k)] = {contacts.force(k), contacts.tangent(k)};
+            },
+            core::light_items);
     }
 
-    /// To be called where that step, or a part of it, goes too far, with contacts that have been evaluated at its end: the shortest
-    /// part says most about where it should have ended.
+    /// To be called where that step, or a part of it, goes too far, with contacts that have been evaluated at its end: the
+    /// shortest part says most about where it should have ended.
     /// @param step  of all unknowns
     template <class Contacts>
     void learn(const Contacts& contacts, const Vector& step) {
         learned_.resize(start_.size());
-        core::parallel_for(core::count(start_), [&](Index k) {
-            const auto& element = contacts.elements()[core::at(k)];
-            const Start& start = start_[core::at(k)];
-            const Vec3 motion = element.motion(step), change = contacts.force(k) - start.force;
-            const Vec3 along = motion.dot(element.normal) * element.normal, slip = motion - along;
-            Learned& one = learned_[core::at(k)];
-            one.closes = change.dot(along) > along.dot(start.tangent * along);
-            if (one.closes) one.end = contacts.responses()[core::at(k)];
-            const double square = slip.squaredNorm(), excess = change.dot(slip) - slip.dot(start.tangent * slip);
-            one.friction = one.before;
-            if (square > 0.0 && excess > 0.0) one.friction += (excess / (square * square)) * slip * slip.transpose();
-        }, core::light_items);
+        core::parallel_for(
+            core::count(start_),
+            [&](Index k) {
+                const auto& element = contacts.elements()[core::at(k)];
+                const Start& start = start_[core::at(k)];
+                const Vec3 motion = element.motion(step), change = contacts.force(k) - start.force;
+                const Vec3 along = motion.dot(element.normal) * element.normal, slip = motion - along;
+                Learned& one = learned_[core::at(k)];
+                one.closes = change.dot(along) > along.dot(start.tangent * along);
+                if (one.closes) one.end = contacts.responses()[core::at(k)];
+                const double square = slip.squaredNorm(), excess = change.dot(slip) - slip.dot(start.tangent * slip);
+                one.friction = one.before;
+                if (square > 0.0 && excess > 0.0) one.friction += (excess / (square * square)) * slip * slip.transpose();
+            },
+            core::light_items);
     }
 
 private:

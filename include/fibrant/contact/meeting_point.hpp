@@ -16,7 +16,8 @@ namespace fibrant::contact {
 /// @param shift    in this state [length]
 template <class B>
     requires(!beam::CentreTouched<B>)
-Vec3 material_shift(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, Index first, const beam::Particle<B>& weights, const Vec3& shift) {
+Vec3 material_shift(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, Index first,
+                    const beam::Particle<B>& weights, const Vec3& shift) {
     if constexpr (beam::TurningSections<B>) {
         return weights.turn(state.segment<beam::Mesh<B>::element_unknowns>(first)).inverse() * shift;
     } else {
@@ -31,13 +32,15 @@ Vec3 material_shift(const beam::Mesh<B>& mesh, const Vector& state, Index fibre,
 /// Weights of the particle that far from one, as a section carries it along.
 template <class B>
     requires(!beam::CentreTouched<B>)
-void shift_particle(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, Index first, const Vec3& shift, beam::Particle<B>& weights) {
+void shift_particle(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, Index first, const Vec3& shift,
+                    beam::Particle<B>& weights) {
     if constexpr (beam::TurningSections<B>) {
         weights.shift(shift);
         weights.follow(state.segment<beam::Mesh<B>::element_unknowns>(first));
     } else {
         const double xi = mesh.locate(fibre, u).second;
-        const beam::ElementWeights<B> section = B::particle_weights(xi, shift[1], shift[2]), centre = B::centreline_weights(xi), along = B::centreline_derivative_weights(xi);
+        const beam::ElementWeights<B> section = B::particle_weights(xi, shift[1], shift[2]), centre = B::centreline_weights(xi),
+                                      along = B::centreline_derivative_weights(xi);
         for (std::size_t a = 0; a < weights.size(); ++a) weights[a] += shift[0] * along[a] + (section[a] - centre[a]);
     }
 }
@@ -45,8 +48,10 @@ void shift_particle(const beam::Mesh<B>& mesh, const Vector& state, Index fibre,
 /// Particles that lie furthest along the normal in this state.
 template <class B, class Element>
 void follow_support(const beam::Mesh<B>& mesh, const Vector& state, Element& element) {
-    element.cap = support_weights(mesh, state, element.fibre_i, element.u_i, element.first_i, element.normal, element.end_i, element.weights_i) +
-                  support_weights(mesh, state, element.fibre_j, element.u_j, element.first_j, Vec3(-element.normal), element.end_j, element.weights_j);
+    element.cap = support_weights(mesh, state, element.fibre_i, element.u_i, element.first_i, element.normal, element.end_i,
+                                  element.weights_i) +
+                  support_weights(mesh, state, element.fibre_j, element.u_j, element.first_j, Vec3(-element.normal),
+                                  element.end_j, element.weights_j);
 }
 
 /// From there to the meeting point.
@@ -69,7 +74,8 @@ void follow_particles(const beam::Mesh<B>& mesh, const Vector& state, Element& e
 /// @param apart  particle j - particle i, flat against the normal
 /// @returns ways from particle i and from particle j: way i - way j = apart
 template <class B, class Element>
-std::pair<Vec3, Vec3> ways_to_crossing(const beam::Mesh<B>& mesh, const Vector& state, const Element& element, const Vec3& apart) {
+std::pair<Vec3, Vec3> ways_to_crossing(const beam::Mesh<B>& mesh, const Vector& state, const Element& element,
+                                       const Vec3& apart) {
     const auto flat = [&](Index fibre, double u) {
         const Vec3 tangent = contact_tangent(mesh, state, fibre, u).normalized();
         return Vec3(tangent - tangent.dot(element.normal) * element.normal);
@@ -80,10 +86,11 @@ std::pair<Vec3, Vec3> ways_to_crossing(const beam::Mesh<B>& mesh, const Vector& 
     return {apart.cross(t_j).dot(both) / square * t_i, apart.cross(t_i).dot(both) / square * t_j};
 }
 
-/// Both forces act half-way between the particles, or where fibres cross, so that they are without a moment: sections that are strained or lean have their
-/// particles a little off the normal, and friction would turn a pair by its depth. Between fibres that do not touch a gap or a cap is left.
-/// The place moves with the sections until normals are renewed: if it followed the pair, a slip would turn both fibres. A crossing
-/// that went on along its fibres is beside neither of them: half-way, normal forces would spin both, which next to nothing holds.
+/// Both forces act half-way between the particles, or where fibres cross, so that they are without a moment: sections that are
+/// strained or lean have their particles a little off the normal, and friction would turn a pair by its depth. Between fibres
+/// that do not touch a gap or a cap is left. The place moves with the sections until normals are renewed: if it followed the
+/// pair, a slip would turn both fibres. A crossing that went on along its fibres is beside neither of them: half-way, normal
+/// forces would spin both, which next to nothing holds.
 template <class B, class Element>
 void find_meeting_point(const beam::Mesh<B>& mesh, const Vector& state, Element& element) {
     follow_support(mesh, state, element);

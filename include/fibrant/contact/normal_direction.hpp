@@ -19,8 +19,8 @@ namespace fibrant::contact {
 struct NormalRule {
     double parallel_angle_deg = 10.0;  ///< below: direction between the centres [degree]
     double crossing_angle_deg = 30.0;  ///< above: cross product of the tangents [degree]
-    /// Part of the distance at which sections touch, within which fibres side by side keep their last normal, and fade over to the
-    /// direction between the centres beyond half of it, >= 0: for fibres that start deep in each other and part by one side.
+    /// Part of the distance at which sections touch, within which fibres side by side keep their last normal, and fade over to
+    /// the direction between the centres beyond half of it, >= 0: for fibres that start deep in each other and part by one side.
     double kept_within = 0.0;
     void validate() const {
         core::require_between("NormalRule.parallel_angle_deg", parallel_angle_deg, 0.0, 90.0);
@@ -130,8 +130,9 @@ Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const Vec3& t
         weight *= 1.0 - smooth_step(4.0 * aside / sections.touching_along(aside > 0.0 ? Vec3(beside / aside) : crossing) - 1.0);
         if (weight == 1.0) return crossing;
     }
-    Vec3 parallel = across.norm() > 1e-9 * std::max(sections.size, centres.norm()) ? sections.furthest(across, tangent, side)
-                                                                  : unit_or(side - side.dot(tangent) * tangent, Vec3::Zero());
+    Vec3 parallel = across.norm() > 1e-9 * std::max(sections.size, centres.norm())
+                        ? sections.furthest(across, tangent, side)
+                        : unit_or(side - side.dot(tangent) * tangent, Vec3::Zero());
     if (parallel.isZero()) {  // coincident centrelines without a memory: any side will do, but the same one each time
         Index axis = 0;
         tangent.cwiseAbs().minCoeff(&axis);
@@ -140,7 +141,8 @@ Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const Vec3& t
     if (rule.kept_within > 0.0 && !remembered.isZero() && parallel.dot(side) > 0.0) {
         const double touching = sections.touching_along(unit_or(across, parallel));
         const double keep = 1.0 - smooth_step(2.0 * across.norm() / (rule.kept_within * touching) - 1.0);
-        if (keep > 0.0) parallel = unit_or(keep * unit_or(side - side.dot(tangent) * tangent, parallel) + (1.0 - keep) * parallel, parallel);
+        if (keep > 0.0)
+            parallel = unit_or(keep * unit_or(side - side.dot(tangent) * tangent, parallel) + (1.0 - keep) * parallel, parallel);
     }
     if (parallel.dot(side) < 0.0)  // the centres have passed each other: push them back the way they came
         parallel = unit_or(side - side.dot(tangent) * tangent, -parallel);
@@ -149,8 +151,8 @@ Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const Vec3& t
 
 /// The same of round sections.
 /// @param touching  sum of the radii [length]; infinite for the closest pair of a crossing
-inline Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const Vec3& t_i, const Vec3& t_j, const Vec3& remembered,
-                             double touching = std::numeric_limits<double>::infinity()) noexcept {
+inline Vec3 normal_direction(const NormalRule& rule, const Vec3& centres, const Vec3& t_i, const Vec3& t_j,
+                             const Vec3& remembered, double touching = std::numeric_limits<double>::infinity()) noexcept {
     return normal_direction(rule, centres, t_i, t_j, remembered, RoundSections{touching});
 }
 

@@ -16,9 +16,9 @@ namespace fibrant::contact {
 /// directors its half extent is h = |A c| / s, s the part of the normal that lies in the section: the surface of a fibre knows
 /// nothing of a normal that leans along it.
 struct SeenSection {
-    Vec3 out = Vec3::Zero();  ///< normal of the section, unit
-    Eigen::Vector2d c;         ///< normal along the directors [1]
-    Eigen::Vector2d particle;  ///< material coordinates of the particle furthest along it [length]
+    Vec3 out = Vec3::Zero();                         ///< normal of the section, unit
+    Eigen::Vector2d c;                               ///< normal along the directors [1]
+    Eigen::Vector2d particle;                        ///< material coordinates of the particle furthest along it [length]
     Eigen::Vector2d line = Eigen::Vector2d::Zero();  ///< of the part of the normal that lies in the section
     Vec3 furthest, turning;  ///< that particle from the centre [length]; how c turns in the section with the normal [1]
     std::array<Vec3, 2> reciprocal{Vec3::Zero(), Vec3::Zero()};
@@ -211,8 +211,7 @@ SlidingPlace<B> oval_place(const beam::Mesh<B>& mesh, const Vector& state, Index
 /// Its stiffness.
 /// @param positive  without the negative part of what the curvature of the gap makes of the reaction
 template <class B>
-SlidingStiffness oval_stiffness(const SlidingPlace<B>& place, const Vec3& normal, double reaction, double slope,
-                                bool positive) {
+SlidingStiffness oval_stiffness(const SlidingPlace<B>& place, const Vec3& normal, double reaction, double slope, bool positive) {
     const Vec3 e = normal.unitOrthogonal(), f = normal.cross(e);
     SlidingStiffness sum{{}, Matrix::Zero(17, 3 * static_cast<Index>(place.i.count + place.j.count)), Matrix::Zero(17, 17)};
     for (const double sign : {-1.0, 1.0}) {

@@ -32,10 +32,11 @@ std::string text(const Overlap& overlap, const beam::Mesh<B>& mesh) {
     if (overlap.fibre_i < 0) return "no two fibres touch";
     const auto element = [&](Index f, double u) { return std::to_string(mesh.locate(f, u).first); };
     const std::string deep = core::text(overlap.depth), radii = core::text(overlap.depth / overlap.radius);
-    return (overlap.fibre_i == overlap.fibre_j ? mesh.label(overlap.fibre_i) + " is " + deep + " deep in itself"
-                                               : mesh.label(overlap.fibre_i) + " and " + mesh.label(overlap.fibre_j) + " are " + deep + " deep in each other") +
-           ", " + radii + " radii of the thinner one, at " + scene::text(overlap.position) + ", in elements " + element(overlap.fibre_i, overlap.u_i) +
-           " and " + element(overlap.fibre_j, overlap.u_j);
+    return (overlap.fibre_i == overlap.fibre_j
+                ? mesh.label(overlap.fibre_i) + " is " + deep + " deep in itself"
+                : mesh.label(overlap.fibre_i) + " and " + mesh.label(overlap.fibre_j) + " are " + deep + " deep in each other") +
+           ", " + radii + " radii of the thinner one, at " + scene::text(overlap.position) + ", in elements " +
+           element(overlap.fibre_i, overlap.u_i) + " and " + element(overlap.fibre_j, overlap.u_j);
 }
 
 /// The deepest overlap as contact elements that stand see it.
@@ -49,56 +50,69 @@ Overlap deepest_overlap(const Contacts& contacts, const beam::Mesh<B>& mesh, con
     for (const auto& element : contacts.elements()) {
         const double depth = -element.gap(state);
         if (!(depth > 0.0)) continue;
-        const double radius = std::min(mesh.fibre(element.fibre_i).section.radius(), mesh.fibre(element.fibre_j).section.radius());
+        const double radius =
+            std::min(mesh.fibre(element.fibre_i).section.radius(), mesh.fibre(element.fibre_j).section.radius());
         thinnest = std::min(thinnest, radius);
         if (deep && depth > allowed) deep->push_back(element.fibre_i), deep->push_back(element.fibre_j);
         const bool deeper = relative ? depth * deepest.radius > deepest.depth * radius : depth > deepest.depth;
         if (deepest.fibre_i >= 0 && !deeper) continue;
-        deepest = {element.fibre_i, element.fibre_j, element.u_i, element.u_j, depth, radius, radius,
-                   Vec3(0.5 * (mesh.position(state, element.fibre_i, element.u_i) + mesh.position(state, element.fibre_j, element.u_j)))};
+        deepest = {element.fibre_i,
+                   element.fibre_j,
+                   element.u_i,
+                   element.u_j,
+                   depth,
+                   radius,
+                   radius,
+                   Vec3(0.5 * (mesh.position(state, element.fibre_i, element.u_i) +
+                               mesh.position(state, element.fibre_j, element.u_j)))};
     }
     if (deepest.fibre_i >= 0) deepest.thinnest = thinnest;
     return deepest;
 }
 
-/// The deepest overlap that two fibres would have if their sections were as at rest: what is held in each other may squeeze its sections
-/// flat, and has parted from nothing. Fibres that meet with an end count not.
+/// The deepest overlap that two fibres would have if their sections were as at rest: what is held in each other may squeeze its
+/// sections flat, and has parted from nothing. Fibres that meet with an end count not.
 /// @param deep  gets the fibres of which that is more than `part` of the thinner one's radius
 template <class Contacts, class B>
-Overlap deepest_squeeze(const Contacts& contacts, const beam::Mesh<B>& mesh, const Vector& state, double part, std::vector<Index>& deep) {
+Overlap deepest_squeeze(const Contacts& contacts, const beam::Mesh<B>& mesh, const Vector& state, double part,
+                        std::vector<Index>& deep) {
     Overlap deepest;
     for (const auto& element : contacts.elements()) {
         if (element.end_i || element.end_j) continue;
-        const Vec3 x_i = mesh.position(state, element.fibre_i, element.u_i), x_j = mesh.position(state, element.fibre_j, element.u_j);
+        const Vec3 x_i = mesh.position(state, element.fibre_i, element.u_i),
+                   x_j = mesh.position(state, element.fibre_j, element.u_j);
         const auto half = [&](Index f, double u) {
             const auto [g_1, g_2] = mesh.directors(state, f, u);
             return mesh.fibre(f).section.extent(g_1.normalized(), g_2.normalized(), element.normal);
         };
-        const double depth = half(element.fibre_i, element.u_i) + half(element.fibre_j, element.u_j) - (x_j - x_i).dot(element.normal);
-        const double radius = std::min(mesh.fibre(element.fibre_i).section.radius(), mesh.fibre(element.fibre_j).section.radius());
+        const double depth =
+            half(element.fibre_i, element.u_i) + half(element.fibre_j, element.u_j) - (x_j - x_i).dot(element.normal);
+        const double radius =
+            std::min(mesh.fibre(element.fibre_i).section.radius(), mesh.fibre(element.fibre_j).section.radius());
         if (!(depth > part * radius)) continue;
         deep.push_back(element.fibre_i), deep.push_back(element.fibre_j);
         if (depth > deepest.depth)
-            deepest = {element.fibre_i, element.fibre_j, element.u_i, element.u_j, depth, radius, radius, Vec3(0.5 * (x_i + x_j))};
+            deepest = {element.fibre_i, element.fibre_j, element.u_i, element.u_j,
+                       depth,           radius,          radius,      Vec3(0.5 * (x_i + x_j))};
     }
     return deepest;
 }
 
-/// Sides by which fibres that are deep in each other part, all along each place where they are, so that none leaves by one side here
-/// and by the other there, threaded through the other one.
+/// Sides by which fibres that are deep in each other part, all along each place where they are, so that none leaves by one side
+/// here and by the other there, threaded through the other one.
 ///
-/// Stations whose centres are less than `shallow` of touching apart are deep, and each run of them has one direction, carried along
-/// the fibres without twist: the sum of the offsets of their centres, by which the least motion parts them. Where the run ends in
-/// offsets to opposite sides, fibres cross at a small angle and part across both. Where offsets cancel or vanish, as for fibres on one
-/// line, nothing says where to: it is the binormal of the line, along which it keeps its length, or if it is straight the mean of
-/// both directors g_1, from the thinner, softer, shorter fibre to the other one, and between equals by their number. None of it
-/// depends on the axes of space, but a director that a scene leaves open.
+/// Stations whose centres are less than `shallow` of touching apart are deep, and each run of them has one direction, carried
+/// along the fibres without twist: the sum of the offsets of their centres, by which the least motion parts them. Where the run
+/// ends in offsets to opposite sides, fibres cross at a small angle and part across both. Where offsets cancel or vanish, as for
+/// fibres on one line, nothing says where to: it is the binormal of the line, along which it keeps its length, or if it is
+/// straight the mean of both directors g_1, from the thinner, softer, shorter fibre to the other one, and between equals by their
+/// number. None of it depends on the axes of space, but a director that a scene leaves open.
 template <class B>
 class OverlapSides {
 public:
-    static constexpr double shallow = 0.75;     ///< of the distance at which sections touch
-    static constexpr double vanishing = 1e-6;   ///< of it: offsets that are rounding
-    static constexpr double opposite = -0.3;    ///< cosine of directions that run apart
+    static constexpr double shallow = 0.75;    ///< of the distance at which sections touch
+    static constexpr double vanishing = 1e-6;  ///< of it: offsets that are rounding
+    static constexpr double opposite = -0.3;   ///< cosine of directions that run apart
 
     struct Side {
         Index fibre_i, fibre_j;
@@ -148,9 +162,11 @@ private:
     void add_station(const StationPair& pair) {
         Station station;
         station.u_i = pair.u_i, station.u_j = pair.u_j;
-        station.t_i = contact_tangent(mesh_, state_, i_, pair.u_i).normalized(), station.t_j = contact_tangent(mesh_, state_, j_, pair.u_j).normalized();
+        station.t_i = contact_tangent(mesh_, state_, i_, pair.u_i).normalized(),
+        station.t_j = contact_tangent(mesh_, state_, j_, pair.u_j).normalized();
         station.tangent = mean_tangent(station.t_i, station.t_j);
-        station.first = stations_.empty() ? Vec3(station.tangent.unitOrthogonal()) : turned(stations_.back().first, stations_.back().tangent, station.tangent);
+        station.first = stations_.empty() ? Vec3(station.tangent.unitOrthogonal())
+                                          : turned(stations_.back().first, stations_.back().tangent, station.tangent);
         station.first = (station.first - station.first.dot(station.tangent) * station.tangent).normalized();
         station.second = station.tangent.cross(station.first);
         const Vec3 centres = mesh_.position(state_, j_, pair.u_j) - mesh_.position(state_, i_, pair.u_i);
@@ -158,7 +174,9 @@ private:
         station.normal = unit_or(centres - centres.dot(station.tangent) * station.tangent, station.first);
         stations_.push_back(station);
     }
-    static Vec2 across(const Station& station, const Vec3& vector) { return {vector.dot(station.first), vector.dot(station.second)}; }
+    static Vec2 across(const Station& station, const Vec3& vector) {
+        return {vector.dot(station.first), vector.dot(station.second)};
+    }
 
     void turn_crossing() {
         Station& station = stations_.front();
@@ -191,7 +209,8 @@ private:
         }
         if (direction.norm() < vanishing * n) direction = unsaid(from, to);
         direction.normalize();
-        for (std::size_t k = from; k < to; ++k) stations_[k].normal = direction.x() * stations_[k].first + direction.y() * stations_[k].second;
+        for (std::size_t k = from; k < to; ++k)
+            stations_[k].normal = direction.x() * stations_[k].first + direction.y() * stations_[k].second;
     }
 
     /// Where offsets say nothing.

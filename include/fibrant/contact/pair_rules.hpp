@@ -23,7 +23,8 @@ public:
         }
         for (const scene::FibreSpecification& fibre : assembly.fibres()) {
             ancestors_.emplace_back();  // the innermost first
-            for (Index group = fibre.group; group >= 0; group = assembly.groups()[core::at(group)].parent) ancestors_.back().push_back(group);
+            for (Index group = fibre.group; group >= 0; group = assembly.groups()[core::at(group)].parent)
+                ancestors_.back().push_back(group);
         }
     }
 

@@ -23,8 +23,8 @@ struct Particle {
 /// @param g_1, g_2   directors at the station
 /// @param direction  unit
 /// @param at_end     the contact is with the rounded end of the fibre
-inline Particle support_particle(const scene::CrossSection& section, const Vec3& g_1, const Vec3& g_2,
-                                 const Vec3& direction, bool at_end) noexcept {
+inline Particle support_particle(const scene::CrossSection& section, const Vec3& g_1, const Vec3& g_2, const Vec3& direction,
+                                 bool at_end) noexcept {
     const double p = section.semi_axis_1 * g_1.dot(direction), q = section.semi_axis_2 * g_2.dot(direction);
     const double reach = std::sqrt(p * p + q * q);
     if (at_end || reach < 0.1 * std::min(section.semi_axis_1, section.semi_axis_2))  // seen along the fibre

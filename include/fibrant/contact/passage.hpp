@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Whether a motion takes fibres through each other, through themselves or through tools: what no contact element may have seen.
+/// @file Whether a motion takes fibres through each other, through themselves or through tools: what no contact element may have
+/// seen.
 
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/contact/contact_detection.hpp>
@@ -21,10 +22,11 @@ struct PassedPair {
     Index fibre = -1, other = -1;  ///< fibres, the same one twice, or a fibre and a tool
     bool tool = false;
     double along = 0.0, along_other = 0.0;  ///< where on the fibres, over their rest lengths, in [0, 1]; 0 for a tool
-    Vec3 place = Vec3::Zero();     ///< half way between the two when they are too close; of a tool, on the fibre as it is at the end [length]
-    double motion = 0.0;           ///< of one against the other [length]
-    double left = 0.0;             ///< distance of the two at the end over their half widths; 0 for a tool
-    double time = 0.0;             ///< when they are too close, in [0, 1]
+    Vec3 place =
+        Vec3::Zero();  ///< half way between the two when they are too close; of a tool, on the fibre as it is at the end [length]
+    double motion = 0.0;  ///< of one against the other [length]
+    double left = 0.0;    ///< distance of the two at the end over their half widths; 0 for a tool
+    double time = 0.0;    ///< when they are too close, in [0, 1]
     /// When the first of all that pass touch, in [0, 1]: up to there the motion is sound.
     double touch = 0.0;
 };
@@ -33,12 +35,14 @@ struct PassedPair {
 inline std::string text(const PassedPair& pair) {
     const auto at = [](double along) { return " at " + core::text(std::round(1e4 * along) / 1e4) + " of its length"; };
     std::string what = "fibre " + std::to_string(pair.fibre) + at(pair.along) + " changes sides with ";
-    what += pair.tool ? "tool " + std::to_string(pair.other) : pair.fibre == pair.other ? "itself" + at(pair.along_other)
-                                                              : "fibre " + std::to_string(pair.other) + at(pair.along_other);
+    what += pair.tool                  ? "tool " + std::to_string(pair.other)
+            : pair.fibre == pair.other ? "itself" + at(pair.along_other)
+                                       : "fibre " + std::to_string(pair.other) + at(pair.along_other);
     what += ", near (";
     for (int axis = 0; axis < 3; ++axis) what += (axis > 0 ? ", " : "") + core::text(pair.place[axis]);
     what += "), in a motion of " + core::text(pair.motion) + " against each other";
-    return pair.tool ? what : what + ", after which they are " + core::text(std::round(1e4 * pair.left) / 1e4) + " of touching apart";
+    return pair.tool ? what
+                     : what + ", after which they are " + core::text(std::round(1e4 * pair.left) / 1e4) + " of touching apart";
 }
 
 /// No check: for scenes in which nothing can pass through anything. A model says `using Passage = contact::NoPassage;`.
@@ -53,14 +57,15 @@ struct NoPassage : core::Inactive {
 
 /// Checks the motion between two states of all fibres, each point on a straight line, for pairs that change sides.
 ///
-/// Two that touch stay about as far apart as their surfaces say while they slide and roll on each other; what passes through comes
-/// closer on its way than it is before and after. A pair has passed if its centrelines come closer than half of the least of that:
-/// the smaller half widths of the sections at rest, and the distances of the two segments at the start and at the end. So has a pair
-/// that was apart by more than half of these widths all along, and ends nearer somewhere: no law lets fibres so deep, and what creeps
-/// through in many small motions has to come by there. Straight ways cut corners: one that goes round another one by 120 degrees at once counts as having passed, and is cut.
-/// Where a fibre ends, it may slip off: within a touching distance of its ends only centrelines that meet have passed.
-/// Pairs that a law with a limited gap parts have no side yet, and those in a forced order may go the way it forces them.
-/// Owes nothing to contact elements, and what moves together costs nothing. The number of threads changes no bit.
+/// Two that touch stay about as far apart as their surfaces say while they slide and roll on each other; what passes through
+/// comes closer on its way than it is before and after. A pair has passed if its centrelines come closer than half of the least
+/// of that: the smaller half widths of the sections at rest, and the distances of the two segments at the start and at the end.
+/// So has a pair that was apart by more than half of these widths all along, and ends nearer somewhere: no law lets fibres so
+/// deep, and what creeps through in many small motions has to come by there. Straight ways cut corners: one that goes round
+/// another one by 120 degrees at once counts as having passed, and is cut. Where a fibre ends, it may slip off: within a touching
+/// distance of its ends only centrelines that meet have passed. Pairs that a law with a limited gap parts have no side yet, and
+/// those in a forced order may go the way it forces them. Owes nothing to contact elements, and what moves together costs
+/// nothing. The number of threads changes no bit.
 struct Swept {
     using Parameters = core::NoParameters;
     explicit Swept(const Parameters& = {}) {}
@@ -74,7 +79,8 @@ struct Swept {
         /// @param forced          pairs in a forced order are pushed along its axis
         /// @param tools_moved     tools go from where they were accepted to where they are, instead of standing there
         template <class Contacts>
-        std::optional<PassedPair> first(const Vector& from, const Vector& to, const Contacts& contacts, bool forced, bool tools_moved) const {
+        std::optional<PassedPair> first(const Vector& from, const Vector& to, const Contacts& contacts, bool forced,
+                                        bool tools_moved) const {
             if (!from.allFinite() || !to.allFinite()) return {};
             const Lines lines(*mesh_, from, to);
             std::vector<PassedPair> passed = between_fibres(lines, contacts, forced);
@@ -93,7 +99,8 @@ struct Swept {
     private:
         static constexpr double share = 0.5;     // of the distance that two should keep
         static constexpr double meeting = 0.02;  // of the half widths: centrelines meet
-        static constexpr double nothing = 1e-3;  // of the half widths: closer than that at the start or the end, and there is no side
+        static constexpr double nothing =
+            1e-3;  // of the half widths: closer than that at the start or the end, and there is no side
         static constexpr double chord_bound = 0.1;  // deviation of the curve from its segments, over the smaller half width
         static constexpr Index finest_cut = 16;
 
@@ -103,7 +110,7 @@ struct Swept {
             std::vector<Index> first, cut;  // segment of each fibre, and one more; segments an element
             std::vector<std::int32_t> fibre;
             std::vector<proximity::MovingSegment> segments;
-            std::vector<double> half;       // smaller half width of each fibre
+            std::vector<double> half;  // smaller half width of each fibre
 
             Lines(const beam::Mesh<B>& of, const Vector& from, const Vector& to) : mesh{of}, first(1, 0) {
                 for (Index f = 0; f < mesh.fibre_count(); ++f) {
@@ -118,22 +125,27 @@ struct Swept {
                     fibre.insert(fibre.end(), core::at(first.back() - first[core::at(f)]), static_cast<std::int32_t>(f));
                 }
                 segments.resize(core::at(first.back()));
-                core::parallel_for(mesh.fibre_count(), [&](Index f) {
-                    Vec3 start = mesh.position(from, f, 0.0), start_motion = mesh.position(to, f, 0.0) - start;
-                    for (Index k = first[core::at(f)]; k < first[core::at(f) + 1]; ++k) {
-                        const double u = abscissa(k, 1.0);
-                        const Vec3 end = mesh.position(from, f, u), end_motion = mesh.position(to, f, u) - end;
-                        segments[core::at(k)] = {start, end, start_motion, end_motion};
-                        start = end, start_motion = end_motion;
-                    }
-                }, mesh.grain());
+                core::parallel_for(
+                    mesh.fibre_count(),
+                    [&](Index f) {
+                        Vec3 start = mesh.position(from, f, 0.0), start_motion = mesh.position(to, f, 0.0) - start;
+                        for (Index k = first[core::at(f)]; k < first[core::at(f) + 1]; ++k) {
+                            const double u = abscissa(k, 1.0);
+                            const Vec3 end = mesh.position(from, f, u), end_motion = mesh.position(to, f, u) - end;
+                            segments[core::at(k)] = {start, end, start_motion, end_motion};
+                            start = end, start_motion = end_motion;
+                        }
+                    },
+                    mesh.grain());
             }
             Index of(Index k) const noexcept { return fibre[core::at(k)]; }
             /// In elements, at a share s of segment k.
             double abscissa(Index k, double s) const noexcept {
                 return (static_cast<double>(k - first[core::at(of(k))]) + s) / static_cast<double>(cut[core::at(of(k))]);
             }
-            double along(Index k, double s) const noexcept { return abscissa(k, s) / static_cast<double>(mesh.fibre(of(k)).elements); }
+            double along(Index k, double s) const noexcept {
+                return abscissa(k, s) / static_cast<double>(mesh.fibre(of(k)).elements);
+            }
             /// Is it further than `length` from the ends of its fibre, along it at rest?
             bool inside(Index k, double s, double length) const noexcept {
                 const beam::MeshFibre& fibre_of = mesh.fibre(of(k));
@@ -144,8 +156,10 @@ struct Swept {
             /// Segments k < l of one fibre that may touch.
             bool beyond_arc(Index k, Index l) const noexcept {
                 const beam::MeshFibre& fibre_of = mesh.fibre(of(k));
-                const double least = self_contact_arc(fibre_of.section.radius(), fibre_of.element_length) / fibre_of.element_length;
-                if (fibre_of.closed && abscissa(k, 0.0) + static_cast<double>(fibre_of.elements) - abscissa(l, 1.0) <= least) return false;
+                const double least =
+                    self_contact_arc(fibre_of.section.radius(), fibre_of.element_length) / fibre_of.element_length;
+                if (fibre_of.closed && abscissa(k, 0.0) + static_cast<double>(fibre_of.elements) - abscissa(l, 1.0) <= least)
+                    return false;
                 return abscissa(l, 0.0) - abscissa(k, 1.0) > least;
             }
         };
@@ -170,23 +184,30 @@ struct Swept {
                 const Index i = lines.of(k), j = lines.of(l);
                 if (i == j && (!self_ || !lines.beyond_arc(k, l))) return;
                 const proximity::MovingSegment &a = lines.segments[core::at(k)], &b = lines.segments[core::at(l)];
-                const double widths = lines.half[core::at(i)] + lines.half[core::at(j)], motion = proximity::relative_motion(a, b);
+                const double widths = lines.half[core::at(i)] + lines.half[core::at(j)],
+                             motion = proximity::relative_motion(a, b);
                 const double before = std::sqrt(proximity::segment_distance(a, b, 0.0).squared);
                 if (before - share * widths >= motion) return;
                 const double after = std::sqrt(proximity::segment_distance(a, b, 1.0).squared);
                 const double least = std::min({widths, before, after});
-                if (before < share * widths) deep[core::at(task)].emplace_back(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+                if (before < share * widths)
+                    deep[core::at(task)].emplace_back(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
                 const bool sinks = before >= share * widths && after < share * widths;
                 if (least < nothing * widths && !sinks) return;
-                const double near = share * (sinks ? widths : least), touching = mesh_->fibre(i).section.radius() + mesh_->fibre(j).section.radius();
-                const auto at_ends = [&](double s, double t) { return !lines.inside(k, s, touching) || !lines.inside(l, t, touching); };
+                const double near = share * (sinks ? widths : least),
+                             touching = mesh_->fibre(i).section.radius() + mesh_->fibre(j).section.radius();
+                const auto at_ends = [&](double s, double t) {
+                    return !lines.inside(k, s, touching) || !lines.inside(l, t, touching);
+                };
                 const proximity::Approach at = proximity::first_approach(a, b, near, std::min(near, meeting * widths), at_ends);
                 if (!at.close) return;
-                const Vec3 motion_a = a.start_motion + at.s * (a.end_motion - a.start_motion), motion_b = b.start_motion + at.t * (b.end_motion - b.start_motion);
+                const Vec3 motion_a = a.start_motion + at.s * (a.end_motion - a.start_motion),
+                           motion_b = b.start_motion + at.t * (b.end_motion - b.start_motion);
                 if (may_pass(i, j, before, widths, Vec3(motion_b - motion_a), parting, contacts, forced)) return;
                 PassedPair pair;
                 pair.fibre = i, pair.other = j, pair.along = lines.along(k, at.s), pair.along_other = lines.along(l, at.t);
-                pair.place = 0.5 * (a.start_at(at.time) + at.s * a.chord_at(at.time) + b.start_at(at.time) + at.t * b.chord_at(at.time));
+                pair.place =
+                    0.5 * (a.start_at(at.time) + at.s * a.chord_at(at.time) + b.start_at(at.time) + at.t * b.chord_at(at.time));
                 pair.motion = (motion_b - motion_a).norm(), pair.time = at.time, pair.left = after / widths;
                 pair.touch = proximity::first_approach(a, b, touching, touching, [](double, double) { return false; }).time;
                 (sinks ? sunk : found)[core::at(task)].push_back(pair);
@@ -205,7 +226,8 @@ struct Swept {
             return pairs;
         }
         static bool has(const std::vector<Fibres>& pairs, Index i, Index j) {
-            return std::binary_search(pairs.begin(), pairs.end(), Fibres(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)));
+            return std::binary_search(pairs.begin(), pairs.end(),
+                                      Fibres(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)));
         }
 
         /// Pairs of fibres whose gap a law limits.
@@ -233,40 +255,46 @@ struct Swept {
         template <class Tools>
         std::vector<PassedPair> through_tools(const Lines& lines, const Tools& tools, bool moved) const {
             std::vector<std::vector<PassedPair>> found(core::at(mesh_->fibre_count()));
-            core::parallel_for(mesh_->fibre_count(), [&](Index f) {
-                for (Index t = 0; t < core::count(tools.tools()); ++t) {
-                    const scene::Tool& tool = tools.tools()[core::at(t)];
-                    const scene::ToolPose &now = tools.pose(t), &before = moved ? tools.accepted_pose(t) : now;
-                    for (Index k = lines.first[core::at(f)]; k < lines.first[core::at(f) + 1]; ++k) {
-                        const proximity::MovingSegment& way = lines.segments[core::at(k)];
-                        // In the tool's own axes, in which it stands still.
-                        proximity::MovingSegment seen;
-                        seen.start = before.material(way.start), seen.end = before.material(way.end);
-                        seen.start_motion = now.material(way.start + way.start_motion) - seen.start;
-                        seen.end_motion = now.material(way.end + way.end_motion) - seen.end;
-                        if (const auto at = beyond(lines, k, tool, seen)) {
-                            PassedPair pair;
-                            pair.fibre = f, pair.other = t, pair.tool = true, pair.along = lines.along(k, at->s);
-                            pair.place = now.place(seen.start_at(1.0) + at->s * seen.chord_at(1.0));
-                            pair.motion = std::max(seen.start_motion.norm(), seen.end_motion.norm()), pair.time = at->time;
-                            pair.touch = at->t;
-                            found[core::at(f)].push_back(pair);
+            core::parallel_for(
+                mesh_->fibre_count(),
+                [&](Index f) {
+                    for (Index t = 0; t < core::count(tools.tools()); ++t) {
+                        const scene::Tool& tool = tools.tools()[core::at(t)];
+                        const scene::ToolPose &now = tools.pose(t), &before = moved ? tools.accepted_pose(t) : now;
+                        for (Index k = lines.first[core::at(f)]; k < lines.first[core::at(f) + 1]; ++k) {
+                            const proximity::MovingSegment& way = lines.segments[core::at(k)];
+                            // In the tool's own axes, in which it stands still.
+                            proximity::MovingSegment seen;
+                            seen.start = before.material(way.start), seen.end = before.material(way.end);
+                            seen.start_motion = now.material(way.start + way.start_motion) - seen.start;
+                            seen.end_motion = now.material(way.end + way.end_motion) - seen.end;
+                            if (const auto at = beyond(lines, k, tool, seen)) {
+                                PassedPair pair;
+                                pair.fibre = f, pair.other = t, pair.tool = true, pair.along = lines.along(k, at->s);
+                                pair.place = now.place(seen.start_at(1.0) + at->s * seen.chord_at(1.0));
+                                pair.motion = std::max(seen.start_motion.norm(), seen.end_motion.norm()), pair.time = at->time;
+                                pair.touch = at->t;
+                                found[core::at(f)].push_back(pair);
+                            }
                         }
                     }
-                }
-            }, mesh_->grain());
+                },
+                mesh_->grain());
             return joined(found);
         }
 
-        /// Where a segment gets to the other side of a tool that stands still, if it does: through its axis or its middle, or under its surface.
+        /// Where a segment gets to the other side of a tool that stands still, if it does: through its axis or its middle, or
+        /// under its surface.
         /// @returns with the time at which they touch in the place of t
-        std::optional<proximity::Approach> beyond(const Lines& lines, Index k, const scene::Tool& tool, const proximity::MovingSegment& way) const {
+        std::optional<proximity::Approach> beyond(const Lines& lines, Index k, const scene::Tool& tool,
+                                                  const proximity::MovingSegment& way) const {
             const double half = lines.half[core::at(lines.of(k))], widths = tool.radius + half;
             for (const double s : {0.0, 1.0}) {  // a surface that curves away from fibres, or not at all, is nearest at ends
                 const Vec3 from = s == 0.0 ? way.start : way.end, to = from + (s == 0.0 ? way.start_motion : way.end_motion);
                 const double before = scene::tool_distance(tool, from).distance, after = scene::tool_distance(tool, to).distance;
                 if (before >= 0.0 && after < 0.0)
-                    return proximity::Approach{true, before / (before - after), s, std::max(0.0, (before - half) / (before - after)), 0.0};
+                    return proximity::Approach{true, before / (before - after), s,
+                                               std::max(0.0, (before - half) / (before - after)), 0.0};
             }
             if (tool.shape == scene::ToolShape::plane || tool.hollow) return {};
             proximity::MovingSegment middle{tool.origin, tool.origin, Vec3::Zero(), Vec3::Zero()};
@@ -278,15 +306,19 @@ struct Swept {
                 }
                 middle.start += low * tool.axis, middle.end += high * tool.axis;
             }
-            const auto touch = [&] { return proximity::first_approach(way, middle, widths, widths, [](double, double) { return false; }).time; };
-            const proximity::SegmentDistance start = proximity::segment_distance(way, middle, 0.0), end = proximity::segment_distance(way, middle, 1.0);
+            const auto touch = [&] {
+                return proximity::first_approach(way, middle, widths, widths, [](double, double) { return false; }).time;
+            };
+            const proximity::SegmentDistance start = proximity::segment_distance(way, middle, 0.0),
+                                             end = proximity::segment_distance(way, middle, 1.0);
             const double before = std::sqrt(start.squared), after = std::sqrt(end.squared);
             if (before >= tool.radius && after < tool.radius) return proximity::Approach{true, 1.0, end.s, touch(), after};
             const double least = std::min({widths, before, after});
             if (before - share * widths >= proximity::relative_motion(way, middle) || least < nothing * widths) return {};
             const double end_zone = half + std::min(tool.radius, 2.0 * half);
             const auto at_ends = [&](double s, double) { return !lines.inside(k, s, end_zone); };
-            proximity::Approach at = proximity::first_approach(way, middle, share * least, std::min(share * least, meeting * widths), at_ends);
+            proximity::Approach at =
+                proximity::first_approach(way, middle, share * least, std::min(share * least, meeting * widths), at_ends);
             if (!at.close) return {};
             at.t = touch();
             return at;

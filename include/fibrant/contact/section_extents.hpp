@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file How the half extent of sections along one direction changes over an element: what a contact point does not see beside it.
+/// @file How the half extent of sections along one direction changes over an element: what a contact point does not see beside
+/// it.
 
 #include <fibrant/beam/mesh.hpp>
 
@@ -14,11 +15,12 @@ struct ElementExtents {
     double second() const noexcept { return 4.0 * (first - 2.0 * middle + last); }
 };
 
-/// Half extents of the sections of an element; all the same, and 0 here, where contact takes the radius at rest or a round section
-/// keeps its shape.
+/// Half extents of the sections of an element; all the same, and 0 here, where contact takes the radius at rest or a round
+/// section keeps its shape.
 /// @param direction  unit
 template <class B>
-ElementExtents extents_along(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, Index element, const Vec3& direction) noexcept {
+ElementExtents extents_along(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, Index element,
+                             const Vec3& direction) noexcept {
     if constexpr (!beam::DeformableSections<B> && !beam::TurningSections<B>) {
         return {};
     } else {
@@ -38,8 +40,10 @@ ElementExtents extents_along(const beam::Mesh<B>& mesh, const Vector& state, Ind
 /// @param direction  unit
 template <class B>
 double extent_kink(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, Index node, const Vec3& direction) noexcept {
-    const Index elements = mesh.fibre(fibre).elements, begins = node == elements ? 0 : node, ends = node == 0 ? elements - 1 : node - 1;
-    return extents_along(mesh, state, fibre, begins, direction).slope_at_first() - extents_along(mesh, state, fibre, ends, direction).slope_at_last();
+    const Index elements = mesh.fibre(fibre).elements, begins = node == elements ? 0 : node,
+                ends = node == 0 ? elements - 1 : node - 1;
+    return extents_along(mesh, state, fibre, begins, direction).slope_at_first() -
+           extents_along(mesh, state, fibre, ends, direction).slope_at_last();
 }
 
 }  // namespace fibrant::contact

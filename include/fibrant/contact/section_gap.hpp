@@ -34,7 +34,8 @@ public:
         // of a section that is seen along its plane: else its two ends would be kinks of the support function
         const double squares = p_.squaredNorm() + q_.squaredNorm();
         least_ = 1e-6 * std::sqrt(squares) + 1e-300;
-        const double wide = 0.5 * (squares + std::sqrt(std::max(0.0, squares * squares - 4.0 * square_)));  // the larger half axis, squared
+        const double wide =
+            0.5 * (squares + std::sqrt(std::max(0.0, squares * squares - 4.0 * square_)));  // the larger half axis, squared
         sharpest_ = wide > 0.0 ? square_ / (wide * std::sqrt(wide)) : 0.0;
     }
     /// Support function by the angle of the direction, its derivative, and the radius of curvature where it touches [length].
@@ -50,7 +51,8 @@ public:
     /// Angle of the direction in which the ellipse is thinnest, and of that in which it is widest.
     double thin_angle() const noexcept { return wide_angle() + 0.5 * std::numbers::pi; }
     double wide_angle() const noexcept {
-        return 0.5 * std::atan2(2.0 * (p_[0] * p_[1] + q_[0] * q_[1]), p_[0] * p_[0] + q_[0] * q_[0] - p_[1] * p_[1] - q_[1] * q_[1]);
+        return 0.5 *
+               std::atan2(2.0 * (p_[0] * p_[1] + q_[0] * q_[1]), p_[0] * p_[0] + q_[0] * q_[0] - p_[1] * p_[1] - q_[1] * q_[1]);
     }
 
 private:
@@ -92,9 +94,9 @@ public:
     /// Greatest gap among directions less than a right angle from angle 0, the side from which contact has come; false if it only
     /// grows until there: the sections have passed each other.
     ///
-    /// Where sections are apart there is one maximum with F > 0, the truth. One that is less deep than the contours' least radii of
-    /// curvature together is the greatest: a circle of that radius rolls in the sum of both sections, and touches it there alone. Deeper
-    /// there may be several: the greatest, and of two that are the same the one that is uphill of angle 0.
+    /// Where sections are apart there is one maximum with F > 0, the truth. One that is less deep than the contours' least radii
+    /// of curvature together is the greatest: a circle of that radius rolls in the sum of both sections, and touches it there
+    /// alone. Deeper there may be several: the greatest, and of two that are the same the one that is uphill of angle 0.
     bool greatest_on_side(Greatest& best) const noexcept {
         bool found = climb(0.0, best);
         if (found && best.value.gap >= -(ellipse_[0].sharpest() + ellipse_[1].sharpest())) return true;
@@ -113,8 +115,9 @@ public:
 private:
     /// The maximum uphill of a start; false if that leads off the side.
     bool climb(double start, Greatest& top) const noexcept {
-        const double right = 0.5 * std::numbers::pi, stride = 0.1;  // narrower than the peaks of sections up to ten times as wide as thick
-        const double settled = 1e-8;                                // [radian]; what is left after such a step of Newton's method is its square
+        const double right = 0.5 * std::numbers::pi,
+                     stride = 0.1;    // narrower than the peaks of sections up to ten times as wide as thick
+        const double settled = 1e-8;  // [radian]; what is left after such a step of Newton's method is its square
         double low = start, high = start;
         Value here = at(start);
         const double up = here.slope >= 0.0 ? 1.0 : -1.0;
@@ -158,7 +161,8 @@ struct NormalTurn {
 /// @param centres  x_j - x_i [length]
 /// @param tangent  unit, across the plane in which the gap is taken
 /// @param normal   unit, in that plane
-inline NormalTurn normal_turn(const Vec3& centres, const SectionAxes& i, const SectionAxes& j, const Vec3& tangent, const Vec3& normal) noexcept {
+inline NormalTurn normal_turn(const Vec3& centres, const SectionAxes& i, const SectionAxes& j, const Vec3& tangent,
+                              const Vec3& normal) noexcept {
     const Vec3 across = tangent.cross(normal);
     const PlaneGap gap({centres.dot(normal), centres.dot(across)}, {i, normal, across}, {j, normal, across});
     return {across, -gap.at(0.0).second};
@@ -168,9 +172,11 @@ inline NormalTurn normal_turn(const Vec3& centres, const SectionAxes& i, const S
 ///
 /// @param centres  x_j - x_i [length]
 /// @param tangent  unit
-/// @param side     unit, across `tangent`: the direction stays less than a right angle from it, so that sections which have passed
+/// @param side     unit, across `tangent`: the direction stays less than a right angle from it, so that sections which have
+/// passed
 ///                 each other are pushed back the way they came
-inline Vec3 furthest_direction(const Vec3& centres, const SectionAxes& i, const SectionAxes& j, const Vec3& tangent, const Vec3& side) noexcept {
+inline Vec3 furthest_direction(const Vec3& centres, const SectionAxes& i, const SectionAxes& j, const Vec3& tangent,
+                               const Vec3& side) noexcept {
     const Vec3 across = tangent.cross(side);
     const PlaneGap gap({centres.dot(side), centres.dot(across)}, {i, side, across}, {j, side, across});
     PlaneGap::Greatest best;

@@ -19,13 +19,16 @@ void see_length([[maybe_unused]] Element& element, [[maybe_unused]] double lengt
     if constexpr (requires { element.friction.seen.length; }) element.friction.seen.length = length;
 }
 template <class Element>
-void see_length(Element& element, const StationPair& pair) noexcept { see_length(element, pair.crossing ? 0.0 : pair.length); }
-/// Sets the lengths that the elements of a zone stand for, if their laws ask for them: half of the way to either neighbour along the mean of
-/// both fibres at rest, so that they add up to the line from the first to the last; 0 of crossings and of caps.
+void see_length(Element& element, const StationPair& pair) noexcept {
+    see_length(element, pair.crossing ? 0.0 : pair.length);
+}
+/// Sets the lengths that the elements of a zone stand for, if their laws ask for them: half of the way to either neighbour along
+/// the mean of both fibres at rest, so that they add up to the line from the first to the last; 0 of crossings and of caps.
 /// @param elements  sorted by u_i
 template <class B, class Element>
 void see_lengths([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] std::span<Element> elements) {
-    if constexpr (requires(Element& element) { element.shift.length; } || requires(Element& element) { element.friction.seen.length; }) {
+    if constexpr (
+        requires(Element & element) { element.shift.length; } || requires(Element & element) { element.friction.seen.length; }) {
         Element* before = nullptr;
         const auto is_line = [](const Element& element) { return !element.crossing && !element.end_i && !element.end_j; };
         const auto lines = std::count_if(elements.begin(), elements.end(), is_line);
@@ -39,8 +42,9 @@ void see_lengths([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] st
             const double last = half;
             half = 0.0;
             if (before != nullptr) {
-                half = 0.25 * (mesh.fibre(element.fibre_i).element_length * mesh.apart(element.fibre_i, element.u_i, before->u_i) +
-                               mesh.fibre(element.fibre_j).element_length * mesh.apart(element.fibre_j, element.u_j, before->u_j));
+                half =
+                    0.25 * (mesh.fibre(element.fibre_i).element_length * mesh.apart(element.fibre_i, element.u_i, before->u_i) +
+                            mesh.fibre(element.fibre_j).element_length * mesh.apart(element.fibre_j, element.u_j, before->u_j));
                 see_length(*before, last + half);
             }
             before = &element;
@@ -53,8 +57,10 @@ template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
 void see_directions([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] const Vector& state,
                     [[maybe_unused]] ContactElement<B, Normal, Friction>& element) {
     if constexpr (law::SeeingFriction<Friction>) {
-        element.friction.seen.along_i = TangentPlane(contact_tangent(mesh, state, element.fibre_i, element.u_i).normalized(), element.normal).along;
-        element.friction.seen.along_j = TangentPlane(contact_tangent(mesh, state, element.fibre_j, element.u_j).normalized(), element.normal).along;
+        element.friction.seen.along_i =
+            TangentPlane(contact_tangent(mesh, state, element.fibre_i, element.u_i).normalized(), element.normal).along;
+        element.friction.seen.along_j =
+            TangentPlane(contact_tangent(mesh, state, element.fibre_j, element.u_j).normalized(), element.normal).along;
     }
 }
 template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
@@ -69,30 +75,37 @@ void see_directions([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]]
 template <beam::BeamElement B, class Element>
 law::Approach approach(const beam::Mesh<B>& mesh, const Element& element, double gap) noexcept {
     if constexpr (requires { element.fibre_i; })
-        return {gap, element.shift.length, mesh.fibre(element.fibre_i).section.radius() + mesh.fibre(element.fibre_j).section.radius()};
-    else return {gap, element.shift.length, mesh.fibre(element.fibre).section.radius()};
+        return {gap, element.shift.length,
+                mesh.fibre(element.fibre_i).section.radius() + mesh.fibre(element.fibre_j).section.radius()};
+    else
+        return {gap, element.shift.length, mesh.fibre(element.fibre).section.radius()};
 }
 template <law::NormalLaw Normal, beam::BeamElement B, class Element>
-law::NormalResponse normal_answer(const Normal& normal, [[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] const Element& element, double gap,
-                                  [[maybe_unused]] double stiffness) {
-    if constexpr (law::SeeingNormal<Normal>) return normal.response(approach(mesh, element, gap), 0.0);
-    else return normal.response(gap, stiffness);
+law::NormalResponse normal_answer(const Normal& normal, [[maybe_unused]] const beam::Mesh<B>& mesh,
+                                  [[maybe_unused]] const Element& element, double gap, [[maybe_unused]] double stiffness) {
+    if constexpr (law::SeeingNormal<Normal>)
+        return normal.response(approach(mesh, element, gap), 0.0);
+    else
+        return normal.response(gap, stiffness);
 }
 template <law::NormalLaw Normal, beam::BeamElement B, class Element>
-double normal_energy(const Normal& normal, [[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] const Element& element, double gap,
-                     [[maybe_unused]] double stiffness) {
-    if constexpr (law::SeeingNormal<Normal>) return normal.energy(approach(mesh, element, gap), 0.0);
-    else return normal.energy(gap, stiffness);
+double normal_energy(const Normal& normal, [[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] const Element& element,
+                     double gap, [[maybe_unused]] double stiffness) {
+    if constexpr (law::SeeingNormal<Normal>)
+        return normal.energy(approach(mesh, element, gap), 0.0);
+    else
+        return normal.energy(gap, stiffness);
 }
 
 /// Friction of an element. The factor of a pair or a tool is one on the coefficients of the law.
 /// @param slip   in the tangent plane [length]
 /// @param bound  R_N that bounds friction, >= 0 [force]
 template <law::FrictionLaw Friction, beam::BeamElement B, class Element>
-law::FrictionAnswer<Friction> friction_answer(const Friction& friction, [[maybe_unused]] const beam::Mesh<B>& mesh, const Element& element, const Vec3& slip,
-                                              double factor, double bound) {
+law::FrictionAnswer<Friction> friction_answer(const Friction& friction, [[maybe_unused]] const beam::Mesh<B>& mesh,
+                                              const Element& element, const Vec3& slip, double factor, double bound) {
     if constexpr (law::SeeingFriction<Friction>) {
-        law::Touch touch{slip, element.friction.seen.along_i, element.friction.seen.along_j, element.normal, bound, element.friction.seen.length};
+        law::Touch touch{slip,  element.friction.seen.along_i, element.friction.seen.along_j, element.normal,
+                         bound, element.friction.seen.length};
         if constexpr (requires { element.fibre_i; }) {
             touch.group_i = mesh.fibre(element.fibre_i).group, touch.group_j = mesh.fibre(element.fibre_j).group;
         } else {
@@ -109,8 +122,10 @@ law::FrictionAnswer<Friction> friction_answer(const Friction& friction, [[maybe_
 /// Slope of an element's friction force by its gap, where the bound follows [force / length].
 template <law::FrictionLaw Friction>
 Vec3 friction_slope(const ContactResponse& response, const law::FrictionAnswer<Friction>& friction) noexcept {
-    if constexpr (law::SeeingFriction<Friction>) return response.slope * friction.by_reaction;
-    else return response.slope / response.reaction * friction.force;
+    if constexpr (law::SeeingFriction<Friction>)
+        return response.slope * friction.by_reaction;
+    else
+        return response.slope / response.reaction * friction.force;
 }
 
 }  // namespace fibrant::contact

@@ -23,24 +23,41 @@ namespace detail {
 template <class B>
 class ZoneStations {
 public:
-    ZoneStations(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone, const ContactSpacing& spacing,
-                 std::vector<StationPair>& pairs)
-        : mesh_{mesh}, state_{state}, zone_{zone}, spacing_{spacing}, pairs_{pairs}, before_{pairs.size()}, i_{zone.fibre_i}, j_{zone.fibre_j},
-          h_i_{mesh.fibre(i_).element_length}, h_j_{mesh.fibre(j_).element_length}, low_i_{mesh.bounds(i_).first}, end_i_{mesh.bounds(i_).second}, low_j_{mesh.bounds(j_).first},
+    ZoneStations(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone,
+                 const ContactSpacing& spacing, std::vector<StationPair>& pairs)
+        : mesh_{mesh},
+          state_{state},
+          zone_{zone},
+          spacing_{spacing},
+          pairs_{pairs},
+          before_{pairs.size()},
+          i_{zone.fibre_i},
+          j_{zone.fibre_j},
+          h_i_{mesh.fibre(i_).element_length},
+          h_j_{mesh.fibre(j_).element_length},
+          low_i_{mesh.bounds(i_).first},
+          end_i_{mesh.bounds(i_).second},
+          low_j_{mesh.bounds(j_).first},
           end_j_{mesh.bounds(j_).second},
-          r_{0.5 * (mesh.fibre(i_).section.radius() + mesh.fibre(j_).section.radius())}, h_{0.5 * (h_i_ + h_j_)},
-          thin_{0.5 * (thinnest(mesh.fibre(i_).section) + thinnest(mesh.fibre(j_).section))}, step_{1.0 / spacing.points_per_element}, from_{mean_abscissa(zone.a_i, zone.a_j)}, to_{mean_abscissa(zone.b_i, zone.b_j)} {}
+          r_{0.5 * (mesh.fibre(i_).section.radius() + mesh.fibre(j_).section.radius())},
+          h_{0.5 * (h_i_ + h_j_)},
+          thin_{0.5 * (thinnest(mesh.fibre(i_).section) + thinnest(mesh.fibre(j_).section))},
+          step_{1.0 / spacing.points_per_element},
+          from_{mean_abscissa(zone.a_i, zone.a_j)},
+          to_{mean_abscissa(zone.b_i, zone.b_j)} {}
 
     /// The mutual closest points; with an end beyond which the other fibre goes on, its cap.
     void place_crossing() {
         StationPair pair = closest_points(mesh_, state_, i_, j_, zone_.closest_i, zone_.closest_j);
-        if (is_one(pair)) pair.u_i = zone_.closest_i, pair.u_j = zone_.closest_j, pair.crossing = false;  // nor across both tangents
+        if (is_one(pair))
+            pair.u_i = zone_.closest_i, pair.u_j = zone_.closest_j, pair.crossing = false;  // nor across both tangents
         pair.length = r_;
         const Vec3 centres = mesh_.position(state_, j_, pair.u_j) - mesh_.position(state_, i_, pair.u_i);
         const double off_i = std::abs(centres.dot(mesh_.derivative(state_, i_, pair.u_i).normalized()));
         const double off_j = std::abs(centres.dot(mesh_.derivative(state_, j_, pair.u_j).normalized()));
-        // A fibre's line goes on beyond its end, its end does not: the gap across both tangents is less than that of a cap, by 0.1 r where lines part by a quarter
-        // of r. Then an end that slides to where the one kind begins would be sent back by the other for ever.
+        // A fibre's line goes on beyond its end, its end does not: the gap across both tangents is less than that of a cap, by
+        // 0.1 r where lines part by a quarter of r. Then an end that slides to where the one kind begins would be sent back by
+        // the other for ever.
         const double nearly_none = 0.01 * r_;
         pair.end_i = (pair.u_i <= low_i_ || pair.u_i >= end_i_) && off_i > nearly_none;
         pair.end_j = (pair.u_j <= low_j_ || pair.u_j >= end_j_) && off_j > nearly_none;
@@ -58,7 +75,8 @@ public:
             const double k = mean_abscissa(u_i, u_j) / step_;
             if (std::abs(k - std::round(k)) > 0.1) between.push_back(k);
         });
-        const auto first = static_cast<Index>(std::ceil(from_ / step_ - 1e-6)), last = static_cast<Index>(std::floor(to_ / step_ + 1e-6));
+        const auto first = static_cast<Index>(std::ceil(from_ / step_ - 1e-6)),
+                   last = static_cast<Index>(std::floor(to_ / step_ + 1e-6));
         if (first > last) add_station(0.5, step_ * h_);
         Station station{};
         for (Index k = first; k <= last; ++k) {
@@ -77,27 +95,35 @@ public:
             }
         const auto begin = pairs_.begin() + static_cast<std::ptrdiff_t>(before_);
         pairs_.erase(std::remove_if(begin, pairs_.end(), [&](const StationPair& pair) { return is_one(pair); }), pairs_.end());
-        std::sort(pairs_.begin() + static_cast<std::ptrdiff_t>(before_), pairs_.end(), [](const StationPair& a, const StationPair& b) {
-            return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j;
-        });
+        std::sort(pairs_.begin() + static_cast<std::ptrdiff_t>(before_), pairs_.end(),
+                  [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
     }
 
 private:
-    struct Station { double u_i, u_j, sine; };  // sine of the angle between the fibres
-    struct Turn { double at, angle; };          // of a fibre towards the other one where two of its elements meet, at a part of the way
+    struct Station {
+        double u_i, u_j, sine;
+    };  // sine of the angle between the fibres
+    struct Turn {
+        double at, angle;
+    };  // of a fibre towards the other one where two of its elements meet, at a part of the way
 
-    static double thinnest(const scene::CrossSection& section) noexcept { return std::min(section.semi_axis_1, section.semi_axis_2); }
-    // Direction between two sections, and the length over which lines that slant past each other part: the distance of the centres of round
-    // ones. Of others, what their contours are curved by where they face each other: little where flat, more where they stand on edge.
+    static double thinnest(const scene::CrossSection& section) noexcept {
+        return std::min(section.semi_axis_1, section.semi_axis_2);
+    }
+    // Direction between two sections, and the length over which lines that slant past each other part: the distance of the
+    // centres of round ones. Of others, what their contours are curved by where they face each other: little where flat, more
+    // where they stand on edge.
     std::pair<Vec3, double> facing(double u_i, double u_j) const noexcept {
         const Vec3 centres = mesh_.position(state_, j_, u_j) - mesh_.position(state_, i_, u_i);
         const auto round = [&](Index f) { return mesh_.fibre(f).section.semi_axis_1 == mesh_.fibre(f).section.semi_axis_2; };
         if ((round(i_) && round(j_)) || beam::CentreTouched<B>) return {centres.normalized(), 2.0 * r_};
-        const Vec3 tangent = mean_tangent(mesh_.derivative(state_, i_, u_i).normalized(), mesh_.derivative(state_, j_, u_j).normalized());
+        const Vec3 tangent =
+            mean_tangent(mesh_.derivative(state_, i_, u_i).normalized(), mesh_.derivative(state_, j_, u_j).normalized());
         const SectionAxes axes_i = section_axes(mesh_, state_, i_, u_i), axes_j = section_axes(mesh_, state_, j_, u_j);
         const Vec3 across = centres - centres.dot(tangent) * tangent;
         const Vec3 normal = furthest_direction(across, axes_i, axes_j, tangent, unit_or(across, tangent.unitOrthogonal()));
-        const double sharpest = 0.1;  // of the thinner half axis: sections that are deep in each other have no direction that is furthest
+        const double sharpest =
+            0.1;  // of the thinner half axis: sections that are deep in each other have no direction that is furthest
         return {normal, std::max(sharpest * thin_, normal_turn(across, axes_i, axes_j, tangent, normal).length)};
     }
     // In a bend the points of a fibre that are closest to each other are next to each other, or one.
@@ -105,10 +131,13 @@ private:
         return i_ == j_ && mesh_.apart(i_, pair.u_i, pair.u_j) * h_i_ < self_contact_arc(r_, h_i_);
     }
     double mean_abscissa(double u_i, double u_j) const noexcept {
-        return 0.5 * (h_i_ * u_i + h_j_ * (zone_.b_j < zone_.a_j ? static_cast<double>(mesh_.fibre(j_).elements) - u_j : u_j)) / h_;
+        return 0.5 * (h_i_ * u_i + h_j_ * (zone_.b_j < zone_.a_j ? static_cast<double>(mesh_.fibre(j_).elements) - u_j : u_j)) /
+               h_;
     }
     // Of the zone at a multiple k of the spacing.
-    double share(double k) const noexcept { return to_ > from_ ? std::clamp((k * step_ - from_) / (to_ - from_), 0.0, 1.0) : 0.5; }
+    double share(double k) const noexcept {
+        return to_ > from_ ? std::clamp((k * step_ - from_) / (to_ - from_), 0.0, 1.0) : 0.5;
+    }
     // Abscissae of both fibres at a share of the zone.
     std::pair<double, double> zone_point(double s) const noexcept {
         return {zone_.a_i + s * (zone_.b_i - zone_.a_i), zone_.a_j + s * (zone_.b_j - zone_.a_j)};
@@ -131,7 +160,8 @@ private:
         done = true;
         const Index self = of_i ? i_ : j_, other = of_i ? j_ : i_;
         const Vec3 centre = mesh_.position(state_, self, u);
-        const double low = of_i ? std::min(zone_.a_j, zone_.b_j) : zone_.a_i, high = of_i ? std::max(zone_.a_j, zone_.b_j) : zone_.b_i;
+        const double low = of_i ? std::min(zone_.a_j, zone_.b_j) : zone_.a_i,
+                     high = of_i ? std::max(zone_.a_j, zone_.b_j) : zone_.b_i;
         double v = 0.5 * (low + high);
         const double other_low = of_i ? low_j_ : low_i_, other_end = of_i ? end_j_ : end_i_;
         double best = (mesh_.position(state_, other, v) - centre).squaredNorm();
@@ -159,14 +189,17 @@ private:
         const Index self = of_i ? i_ : j_, other = of_i ? j_ : i_;
         const double other_low = of_i ? low_j_ : low_i_, other_end = of_i ? end_j_ : end_i_;
         const Vec3 origin = mesh_.position(state_, self, u);
-        const Vec3 t = contact_tangent(mesh_, state_, self, u).normalized(), t_other = contact_tangent(mesh_, state_, other, v).normalized();
+        const Vec3 t = contact_tangent(mesh_, state_, self, u).normalized(),
+                   t_other = contact_tangent(mesh_, state_, other, v).normalized();
         const Vec3 tangent = mean_tangent(t, t_other);
         // A station next to it will do, unless the fibres come closer by more than may go unseen between the two.
-        const double near = std::min(0.1 * step_, spacing_.largest_unseen * thin_ / (h_ * std::max(sine_between(t, t_other), 1e-3)));
+        const double near =
+            std::min(0.1 * step_, spacing_.largest_unseen * thin_ / (h_ * std::max(sine_between(t, t_other), 1e-3)));
         for (std::size_t k = before_; k < pairs_.size(); ++k)
             if (std::abs((of_i ? pairs_[k].u_i : pairs_[k].u_j) - u) < near) return true;
         v = plane_section(mesh_, state_, other, v, origin, tangent);
-        if ((v <= other_low || v >= other_end) && std::abs((mesh_.position(state_, other, v) - origin).dot(tangent)) > 0.05 * r_) return false;
+        if ((v <= other_low || v >= other_end) && std::abs((mesh_.position(state_, other, v) - origin).dot(tangent)) > 0.05 * r_)
+            return false;
         pairs_.push_back({of_i ? u : v, of_i ? v : u, false, false, false, 0.0});
         return true;
     }
@@ -175,7 +208,8 @@ private:
     Station add_station(double s, double length) {
         auto [u_i, u_j] = zone_point(s);
         const Vec3 middle = 0.5 * (mesh_.position(state_, i_, u_i) + mesh_.position(state_, j_, u_j));
-        const Vec3 t_i = contact_tangent(mesh_, state_, i_, u_i).normalized(), t_j = contact_tangent(mesh_, state_, j_, u_j).normalized();
+        const Vec3 t_i = contact_tangent(mesh_, state_, i_, u_i).normalized(),
+                   t_j = contact_tangent(mesh_, state_, j_, u_j).normalized();
         const Vec3 tangent = mean_tangent(t_i, t_j);
         u_i = plane_section(mesh_, state_, i_, u_i, middle, tangent);
         u_j = plane_section(mesh_, state_, j_, u_j, middle, tangent);
@@ -193,13 +227,14 @@ private:
         return {u_i, u_j, sine_between(t_i, t_j)};
     }
 
-    // Stations between two that are a step apart, the first at the multiple k of it. Fibres come closer there than at either where they slant
-    // past each other, the distance of their centres being a hyperbola, where they bend towards each other, and where sections are thicker: the
-    // spacing is halved then.
+    // Stations between two that are a step apart, the first at the multiple k of it. Fibres come closer there than at either
+    // where they slant past each other, the distance of their centres being a hyperbola, where they bend towards each other, and
+    // where sections are thicker: the spacing is halved then.
     void add_between(Index k, const Station& low, const Station& high, const std::vector<double>& earlier) {
         const double u_i = 0.5 * (low.u_i + high.u_i), u_j = 0.5 * (low.u_j + high.u_j), sine = std::max(low.sine, high.sine);
         const auto [across, parting] = facing(u_i, u_j);
-        const Vec3 bend = mesh_.second_derivative(state_, j_, u_j) / (h_j_ * h_j_) - mesh_.second_derivative(state_, i_, u_i) / (h_i_ * h_i_);
+        const Vec3 bend =
+            mesh_.second_derivative(state_, j_, u_j) / (h_j_ * h_j_) - mesh_.second_derivative(state_, i_, u_i) / (h_i_ * h_i_);
         const auto bulge = [&, &normal = across](Index fibre, double u, double length) {
             return extents_along(mesh_, state_, fibre, mesh_.locate(fibre, u).first, normal).second() / (length * length);
         };
@@ -237,7 +272,8 @@ private:
             double node = std::min(std::floor(std::max(from_u, to_u) - 1e-6), (of_i ? end_i_ : end_j_) - 1.0);
             for (; node > least; node -= 1.0) {
                 const Index fibre = of_i ? i_ : j_, next = static_cast<Index>(mesh_.wrapped(fibre, node));
-                const double jump = (of_i ? -1.0 : 1.0) * kink(mesh_, state_, fibre, next).dot(across) - extent_kink(mesh_, state_, fibre, next, across);
+                const double jump = (of_i ? -1.0 : 1.0) * kink(mesh_, state_, fibre, next).dot(across) -
+                                    extent_kink(mesh_, state_, fibre, next, across);
                 turns_.push_back({(node - from_u) / (to_u - from_u), std::max(0.0, jump) / (of_i ? h_i_ : h_j_)});
             }
         }
@@ -248,21 +284,22 @@ private:
     const proximity::ProximityZone& zone_;
     const ContactSpacing& spacing_;
     std::vector<StationPair>& pairs_;
-    std::size_t before_;         // pairs of other zones
+    std::size_t before_;  // pairs of other zones
     Index i_, j_;
-    double h_i_, h_j_;           // lengths of an element
+    double h_i_, h_j_;                      // lengths of an element
     double low_i_, end_i_, low_j_, end_j_;  // abscissae of the ends; infinite of closed fibres
-    double r_, h_, thin_;        // means of the two fibres; of their least half axes
-    double step_, from_, to_;    // of the mean abscissa
-    std::array<bool, 4> met_{};  // first and last ends of i and of j that have their cap already
-    std::vector<Turn> turns_;    // between the stations that are looked at
+    double r_, h_, thin_;                   // means of the two fibres; of their least half axes
+    double step_, from_, to_;               // of the mean abscissa
+    std::array<bool, 4> met_{};             // first and last ends of i and of j that have their cap already
+    std::vector<Turn> turns_;               // between the stations that are looked at
 };
 
-/// Puts stations on closed fibres into the form that is remembered: abscissae in [0, elements), on one fibre the lesser first; a zone that goes
-/// all around meets itself, and has its first stations once.
+/// Puts stations on closed fibres into the form that is remembered: abscissae in [0, elements), on one fibre the lesser first; a
+/// zone that goes all around meets itself, and has its first stations once.
 /// @param first  pair of the zone
 template <class B>
-void wrap_stations(const beam::Mesh<B>& mesh, Index i, Index j, double points_per_element, std::size_t first, std::vector<StationPair>& pairs) {
+void wrap_stations(const beam::Mesh<B>& mesh, Index i, Index j, double points_per_element, std::size_t first,
+                   std::vector<StationPair>& pairs) {
     if (!mesh.fibre(i).closed && !mesh.fibre(j).closed) return;
     for (std::size_t k = first; k < pairs.size(); ++k) {
         StationPair& pair = pairs[k];
@@ -271,9 +308,12 @@ void wrap_stations(const beam::Mesh<B>& mesh, Index i, Index j, double points_pe
         std::swap(pair.u_i, pair.u_j), std::swap(pair.end_i, pair.end_j);
     }
     const auto begin = pairs.begin() + static_cast<std::ptrdiff_t>(first);
-    std::sort(begin, pairs.end(), [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
+    std::sort(begin, pairs.end(),
+              [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
     const double same = 0.02 / points_per_element;  // a sixth of the least spacing, which is halved three times [elements]
-    const auto one = [&](const StationPair& a, const StationPair& b) { return mesh.apart(i, a.u_i, b.u_i) < same && mesh.apart(j, a.u_j, b.u_j) < same; };
+    const auto one = [&](const StationPair& a, const StationPair& b) {
+        return mesh.apart(i, a.u_i, b.u_i) < same && mesh.apart(j, a.u_j, b.u_j) < same;
+    };
     pairs.erase(std::unique(begin, pairs.end(), one), pairs.end());
     if (pairs.size() > first + 1 && one(pairs[first], pairs.back())) pairs.pop_back();
 }

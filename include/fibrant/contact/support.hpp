@@ -38,25 +38,27 @@ double support_weights(const beam::Mesh<B>& mesh, const Vector& state, Index fib
 /// Second derivative of a gap by the directors of a section: its support distance is convex in them, so this part of the
 /// tangent is positive. Without it a section between two contacts would tip over like a pencil on its point.
 /// Calls add(first unknown, weights on the nodal vectors, stiffness) of a rank-one term R_N / h (m m^T) (x) N N^T.
-/// Nothing where sections keep their shape or feel nothing: what the particle gains by moving around a round section it loses by turning back.
+/// Nothing where sections keep their shape or feel nothing: what the particle gains by moving around a round section it loses by
+/// turning back.
 /// @param end  the contact is with the rounded end of the fibre, whose particle is the centre
 template <class B, class Add>
-void section_stiffness_term([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] const Vector& state, [[maybe_unused]] Index fibre,
-                            [[maybe_unused]] double u, [[maybe_unused]] Index first, [[maybe_unused]] const Vec3& normal,
-                            [[maybe_unused]] double reaction, [[maybe_unused]] bool end, [[maybe_unused]] const Add& add) {
+void section_stiffness_term([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] const Vector& state,
+                            [[maybe_unused]] Index fibre, [[maybe_unused]] double u, [[maybe_unused]] Index first,
+                            [[maybe_unused]] const Vec3& normal, [[maybe_unused]] double reaction, [[maybe_unused]] bool end,
+                            [[maybe_unused]] const Add& add) {
     if constexpr (beam::DeformableSections<B>) {
-    if (reaction == 0.0 || end) return;
-    const double xi = mesh.locate(fibre, u).second;
-    const beam::ElementWeights<B> w_1 = beam::director_weights<B>(xi, 1), w_2 = beam::director_weights<B>(xi, 2);
-    const scene::CrossSection& section = mesh.fibre(fibre).section;
-    const double p = section.semi_axis_1 * beam::Mesh<B>::template director<1>(state, first, w_1).dot(normal);
-    const double q = section.semi_axis_2 * beam::Mesh<B>::template director<2>(state, first, w_2).dot(normal);
-    const double h = std::hypot(p, q);
-    if (h < 0.1 * std::min(section.semi_axis_1, section.semi_axis_2)) return;
-    beam::ElementWeights<B> weights;
-    for (std::size_t a = 0; a < weights.size(); ++a)
-        weights[a] = (-section.semi_axis_1 * q * w_1[a] + section.semi_axis_2 * p * w_2[a]) / h;
-    add(first, weights, Mat3(reaction / h * normal * normal.transpose()));
+        if (reaction == 0.0 || end) return;
+        const double xi = mesh.locate(fibre, u).second;
+        const beam::ElementWeights<B> w_1 = beam::director_weights<B>(xi, 1), w_2 = beam::director_weights<B>(xi, 2);
+        const scene::CrossSection& section = mesh.fibre(fibre).section;
+        const double p = section.semi_axis_1 * beam::Mesh<B>::template director<1>(state, first, w_1).dot(normal);
+        const double q = section.semi_axis_2 * beam::Mesh<B>::template director<2>(state, first, w_2).dot(normal);
+        const double h = std::hypot(p, q);
+        if (h < 0.1 * std::min(section.semi_axis_1, section.semi_axis_2)) return;
+        beam::ElementWeights<B> weights;
+        for (std::size_t a = 0; a < weights.size(); ++a)
+            weights[a] = (-section.semi_axis_1 * q * w_1[a] + section.semi_axis_2 * p * w_2[a]) / h;
+        add(first, weights, Mat3(reaction / h * normal * normal.transpose()));
     }
 }
 

@@ -4,8 +4,8 @@
 
 #include <fibrant/contact/contact_tangent.hpp>
 #include <fibrant/contact/normal_direction.hpp>
-#include <fibrant/contact/support.hpp>
 #include <fibrant/contact/seen_touch.hpp>
+#include <fibrant/contact/support.hpp>
 #include <fibrant/contact/tool_element.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
 #include <fibrant/core/parallel.hpp>
@@ -70,40 +70,45 @@ public:
     void detect(const Vector& state, const Vector& accepted, double reach, const Normal& normal) {
         std::vector<Record> last = elements_.empty() ? accepted_ : records(state);
         const Index fibres = mesh_->fibre_count();
-        // An increment begins with tools that have moved and fibres that have not: that overlap says nothing of how they will press.
+        // An increment begins with tools that have moved and fibres that have not: that overlap says nothing of how they will
+        // press.
         starting_ = state == accepted;
         std::vector<std::vector<Element>> made(core::at(fibres));
-        core::parallel_for(fibres, [&](Index f) {
-            const double end = static_cast<double>(mesh_->fibre(f).elements);
-            const auto stations = static_cast<Index>(std::ceil(end / step_ - 1e-9));
-            for (Index t = 0; t < core::count(tools_); ++t)
-                for (Index s = 0; s < stations + (mesh_->fibre(f).closed ? 0 : 1); ++s) {
-                    const double u = std::min(end, static_cast<double>(s) * step_);
-                    const Vec3 place = used_pose_[core::at(t)].material(mesh_->position(state, f, u));
-                    const double radius = mesh_->fibre(f).section.radius();
-                    if (scene::tool_distance(tools_[core::at(t)], place).distance > 1.25 * radius + reach) continue;
-                    Element element;
-                    element.u = u;
-                    element.fibre = static_cast<std::int32_t>(f), element.tool = static_cast<std::int32_t>(t);
-                    element.station = static_cast<std::int32_t>(s);
-                    element.first = static_cast<std::int32_t>(mesh_->first_unknown(f, mesh_->locate(f, u).first));
-                    const Record key = key_of(element);
-                    if constexpr (law::Augmenting<Normal>) {
-                        const Record* record = find(last, key);
-                        element.shift.multiplier = record ? record->multiplier : 0.0;
-                    }
-                    const bool last = s == 0 || s == stations;  // half of a step, but of closed fibres
-                    see_length(element, (last && !mesh_->fibre(f).closed ? 0.5 : 1.0) * step_ * mesh_->fibre(f).element_length);
-                    place_particle(element, state, accepted, normal);
-                    if constexpr (core::Active<Friction>) {
-                        if (const Record* record = find(accepted_, key)) {
-                            const TangentPlane plane(tangent(element, state), element.normal);
-                            record->friction.give(plane, element.friction.history);
+        core::parallel_for(
+            fibres,
+            [&](Index f) {
+                const double end = static_cast<double>(mesh_->fibre(f).elements);
+                const auto stations = static_cast<Index>(std::ceil(end / step_ - 1e-9));
+                for (Index t = 0; t < core::count(tools_); ++t)
+                    for (Index s = 0; s < stations + (mesh_->fibre(f).closed ? 0 : 1); ++s) {
+                        const double u = std::min(end, static_cast<double>(s) * step_);
+                        const Vec3 place = used_pose_[core::at(t)].material(mesh_->position(state, f, u));
+                        const double radius = mesh_->fibre(f).section.radius();
+                        if (scene::tool_distance(tools_[core::at(t)], place).distance > 1.25 * radius + reach) continue;
+                        Element element;
+                        element.u = u;
+                        element.fibre = static_cast<std::int32_t>(f), element.tool = static_cast<std::int32_t>(t);
+                        element.station = static_cast<std::int32_t>(s);
+                        element.first = static_cast<std::int32_t>(mesh_->first_unknown(f, mesh_->locate(f, u).first));
+                        const Record key = key_of(element);
+                        if constexpr (law::Augmenting<Normal>) {
+                            const Record* record = find(last, key);
+                            element.shift.multiplier = record ? record->multiplier : 0.0;
                         }
+                        const bool last = s == 0 || s == stations;  // half of a step, but of closed fibres
+                        see_length(element,
+                                   (last && !mesh_->fibre(f).closed ? 0.5 : 1.0) * step_ * mesh_->fibre(f).element_length);
+                        place_particle(element, state, accepted, normal);
+                        if constexpr (core::Active<Friction>) {
+                            if (const Record* record = find(accepted_, key)) {
+                                const TangentPlane plane(tangent(element, state), element.normal);
+                                record->friction.give(plane, element.friction.history);
+                            }
+                        }
+                        made[core::at(f)].push_back(element);
                     }
-                    made[core::at(f)].push_back(element);
-                }
-        }, mesh_->grain());
+            },
+            mesh_->grain());
         for (Index f = 0; f < fibres; ++f) first_[core::at(f + 1)] = first_[core::at(f)] + core::count(made[core::at(f)]);
         core::join(made, elements_);
     }
@@ -111,22 +116,26 @@ public:
     /// Middle loop: normals and particles at the same stations. @returns the largest turn of a normal that carries force [radian]
     double refresh(const Vector& state, const Vector& accepted, const Normal& normal) {
         std::vector<double> angle(elements_.size(), 0.0);
-        core::parallel_for(core::count(elements_), [&](Index k) {
-            Element& element = elements_[core::at(k)];
-            const Vec3 before = element.normal;
-            place_particle(element, state, accepted, normal);
-            if constexpr (core::Active<Friction>) {
-                Vec3& reversible = element.friction.history.reversible;
-                reversible = turned(reversible, before, element.normal);
-                reversible -= reversible.dot(element.normal) * element.normal;
-            }
-            if (k < core::count(responses_) && responses_[core::at(k)].reaction > 0.0)
-                angle[core::at(k)] = std::atan2(before.cross(element.normal).norm(), before.dot(element.normal));
-        }, core::light_items);
+        core::parallel_for(
+            core::count(elements_),
+            [&](Index k) {
+                Element& element = elements_[core::at(k)];
+                const Vec3 before = element.normal;
+                place_particle(element, state, accepted, normal);
+                if constexpr (core::Active<Friction>) {
+                    Vec3& reversible = element.friction.history.reversible;
+                    reversible = turned(reversible, before, element.normal);
+                    reversible -= reversible.dot(element.normal) * element.normal;
+                }
+                if (k < core::count(responses_) && responses_[core::at(k)].reaction > 0.0)
+                    angle[core::at(k)] = std::atan2(before.cross(element.normal).norm(), before.dot(element.normal));
+            },
+            core::light_items);
         hold_reactions();
         return angle.empty() ? 0.0 : *std::max_element(angle.begin(), angle.end());
     }
-    /// The reactions of the last evaluation bound friction from now on; at the start of an increment those that it starts from do.
+    /// The reactions of the last evaluation bound friction from now on; at the start of an increment those that it starts from
+    /// do.
     void hold_reactions() {
         if constexpr (core::Active<Friction>) {
             const bool starting = std::exchange(starting_, false);
@@ -142,22 +151,27 @@ public:
     void evaluate(const Vector& state, const Normal& normal, const Friction& friction) {
         responses_.resize(elements_.size());
         if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
-        core::parallel_for(core::count(elements_), [&](Index k) {
-            Element& element = elements_[core::at(k)];
-            const Vec3 back = back_step(element);
-            Vec3 slip = back;
-            if constexpr (core::Active<Friction>)
-                slip += beam::Mesh<B>::point(state, element.first, element.friction.weights_j) - element.foot - element.friction.accepted_offset;
-            follow_support(element, state);
-            const double gap = element.gap(state) + element.normal.dot(back) + element.shift.value();
-            const law::NormalResponse response = normal_answer(normal, *mesh_, element, gap, stiffness(element));
-            responses_[core::at(k)] = {gap, response.reaction, response.slope};
-            if constexpr (core::Active<Friction>) {
-                slip -= slip.dot(element.normal) * element.normal;
-                const double bound = element.friction.bound < 0.0 ? response.reaction : element.friction.bound;
-                frictions_[core::at(k)] = friction_answer(friction, *mesh_, element, slip, tools_[core::at(element.tool)].friction_factor, bound);
-            }
-        }, core::light_items);
+        core::parallel_for(
+            core::count(elements_),
+            [&](Index k) {
+                Element& element = elements_[core::at(k)];
+                const Vec3 back = back_step(element);
+                Vec3 slip = back;
+                if constexpr (core::Active<Friction>)
+                    slip += beam::Mesh<B>::point(state, element.first, element.friction.weights_j) - element.foot -
+                            element.friction.accepted_offset;
+                follow_support(element, state);
+                const double gap = element.gap(state) + element.normal.dot(back) + element.shift.value();
+                const law::NormalResponse response = normal_answer(normal, *mesh_, element, gap, stiffness(element));
+                responses_[core::at(k)] = {gap, response.reaction, response.slope};
+                if constexpr (core::Active<Friction>) {
+                    slip -= slip.dot(element.normal) * element.normal;
+                    const double bound = element.friction.bound < 0.0 ? response.reaction : element.friction.bound;
+                    frictions_[core::at(k)] =
+                        friction_answer(friction, *mesh_, element, slip, tools_[core::at(element.tool)].friction_factor, bound);
+                }
+            },
+            core::light_items);
     }
 
     /// Force of element k on its particle, against the internal forces [force].
@@ -167,12 +181,15 @@ public:
         return sum;
     }
     void add_forces(Vector& residual) const {
-        core::parallel_for(mesh_->fibre_count(), [&](Index f) {
-            for (Index k = first_[core::at(f)]; k < first_[core::at(f + 1)]; ++k) {
-                const Element& element = elements_[core::at(k)];
-                beam::spread(element.weights, force(k), element.first, residual);
-            }
-        }, mesh_->grain());
+        core::parallel_for(
+            mesh_->fibre_count(),
+            [&](Index f) {
+                for (Index k = first_[core::at(f)]; k < first_[core::at(f + 1)]; ++k) {
+                    const Element& element = elements_[core::at(k)];
+                    beam::spread(element.weights, force(k), element.first, residual);
+                }
+            },
+            mesh_->grain());
     }
     /// Tangent on a fibre, symmetric and positive semidefinite: add(first unknown, weights, stiffness) of rank-one terms.
     template <class Add>
@@ -186,7 +203,8 @@ public:
                 sum += plane * frictions_[core::at(k)].tangent * plane;
             }
             if (!sum.isZero(0.0)) add(element.first, element.weights, sum);
-            section_stiffness_term(*mesh_, state, fibre, element.u, element.first, element.normal, response.reaction, element.end, add);
+            section_stiffness_term(*mesh_, state, fibre, element.u, element.first, element.normal, response.reaction, element.end,
+                                   add);
         }
     }
 
@@ -317,8 +335,8 @@ private:
         for (auto& record : self.accepted_) Record::each(record, see);
         for (auto& value : self.accepted_stiffness_) see(value);
     }
-    /// Sine of a fibre's angle to a tool beyond which its end is rounded, and not its last section a disc; there the two are a twentieth
-    /// of a radius apart. A fibre that lies on a plate and sags keeps its sections.
+    /// Sine of a fibre's angle to a tool beyond which its end is rounded, and not its last section a disc; there the two are a
+    /// twentieth of a radius apart. A fibre that lies on a plate and sags keeps its sections.
     static constexpr double slanted = 0.3;
 
     /// Penetration of each fibre in each tool [length].
@@ -335,7 +353,8 @@ private:
         return contact_tangent(*mesh_, state, element.fibre, element.u).normalized();
     }
     void follow_support(Element& element, const Vector& state) const {
-        element.cap = support_weights(*mesh_, state, element.fibre, element.u, element.first, Vec3(-element.normal), element.end, element.weights);
+        element.cap = support_weights(*mesh_, state, element.fibre, element.u, element.first, Vec3(-element.normal), element.end,
+                                      element.weights);
     }
     /// How far the tool's point stood from its present place, where the last evaluation is of the accepted state.
     Vec3 back_step(const Element& element) const {
@@ -343,23 +362,28 @@ private:
         return element.foot - used_pose_[t].place(pose_[t].material(element.foot));
     }
 
-    void place_particle(Element& element, const Vector& state, const Vector& accepted, [[maybe_unused]] const Normal& normal) const {
+    void place_particle(Element& element, const Vector& state, const Vector& accepted,
+                        [[maybe_unused]] const Normal& normal) const {
         const std::size_t t = core::at(element.tool);
         const scene::ToolPose& pose = pose_[t];
-        element.normal = pose.turn * scene::tool_distance(tools_[t], pose.material(mesh_->position(state, element.fibre, element.u))).normal;
-        // Of a section that faces the tool with its flat side, the furthest particle is now here, now there: a rounded end is not.
+        element.normal =
+            pose.turn * scene::tool_distance(tools_[t], pose.material(mesh_->position(state, element.fibre, element.u))).normal;
+        // Of a section that faces the tool with its flat side, the furthest particle is now here, now there: a rounded end is
+        // not.
         const bool last = element.u == 0.0 || element.u == static_cast<double>(mesh_->fibre(element.fibre).elements);
         element.end = last && std::abs(tangent(element, state).dot(element.normal)) > slanted;
         follow_support(element, state);
         const Vec3 particle = beam::Mesh<B>::point(state, element.first, element.weights);
         element.foot = particle - scene::tool_distance(tools_[t], pose.material(particle)).distance * element.normal;
         if constexpr (law::GapShifting<Normal>) element.shift.shift = normal.gap_shift(element.gap(accepted));
-        if constexpr (law::Augmenting<Normal>) element.shift.shift = -normal.penetration(element.shift.multiplier, stiffness(element));
+        if constexpr (law::Augmenting<Normal>)
+            element.shift.shift = -normal.penetration(element.shift.multiplier, stiffness(element));
         see_directions(*mesh_, state, element);
         if constexpr (core::Active<Friction>) {
             element.friction.weights_j = element.weights;
             const scene::ToolPose& before = accepted_pose_[t];
-            element.friction.accepted_offset = pose.turn * before.turn.transpose() *
+            element.friction.accepted_offset =
+                pose.turn * before.turn.transpose() *
                 (beam::Mesh<B>::point(accepted, element.first, element.weights) - before.place(pose.material(element.foot)));
         }
     }

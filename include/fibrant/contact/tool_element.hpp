@@ -14,14 +14,14 @@ namespace fibrant::contact {
 /// iterates, as those between fibres are.
 template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
 struct ToolElement {
-    double u = 0.0;                        ///< abscissa, in elements
-    beam::Particle<B> weights{};     ///< of the nodal vectors of the fibre's element
-    Vec3 normal = Vec3::Zero();            ///< away from the tool
-    Vec3 foot = Vec3::Zero();              ///< point of the tool that the particle is above [length]
-    double cap = 0.0;                      ///< radius of a fibre's end, taken off the gap [length]
+    double u = 0.0;                                 ///< abscissa, in elements
+    beam::Particle<B> weights{};                    ///< of the nodal vectors of the fibre's element
+    Vec3 normal = Vec3::Zero();                     ///< away from the tool
+    Vec3 foot = Vec3::Zero();                       ///< point of the tool that the particle is above [length]
+    double cap = 0.0;                               ///< radius of a fibre's end, taken off the gap [length]
     std::int32_t fibre = -1, tool = -1, first = 0;  ///< first unknown of the fibre's element
-    std::int32_t station = 0;              ///< of the fibre: stations stand at the same material for ever
-    bool end = false;                      ///< the rounded end of the fibre touches, not its side
+    std::int32_t station = 0;                       ///< of the fibre: stations stand at the same material for ever
+    bool end = false;                               ///< the rounded end of the fibre touches, not its side
     [[no_unique_address]] GapShift<Normal> shift;
     [[no_unique_address]] FrictionState<B, Friction> friction;
 

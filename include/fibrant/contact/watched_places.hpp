@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Places where two fibres were found deeper in each other than contact points say: points of their own, and a stiffer zone.
+/// @file Places where two fibres were found deeper in each other than contact points say: points of their own, and a stiffer
+/// zone.
 
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/contact/allowed_depth.hpp>
@@ -38,7 +39,8 @@ bool has_station(const Stations& stations, double u_i, double u_j) noexcept {
 }
 }  // namespace detail
 
-/// What a new zone takes over from the one before it: the places that are watched, what it may be deep there, and what it does not see.
+/// What a new zone takes over from the one before it: the places that are watched, what it may be deep there, and what it does
+/// not see.
 inline void keep_watch(Zone& zone, const Zone* before) noexcept {
     if (before) zone.watched = before->watched, zone.narrowed = before->narrowed, zone.unseen = before->unseen;
     zone.penetration_factor *= zone.narrowed;
@@ -55,18 +57,21 @@ inline void add_watched(const Zone& zone, std::vector<StationPair>& pairs) {
         pair.u_i = u_i, pair.u_j = u_j, pair.length = length;
         pairs.push_back(pair);
     }
-    std::sort(pairs.begin(), pairs.end(), [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
+    std::sort(pairs.begin(), pairs.end(),
+              [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
 }
 
-/// Mends what is too deep, between two increments: where no contact point stands it gets one, and its zone begins as soft there as what it
-/// would meet asks for. Where one stands that sees less, by the evened kinks of a crossing or by sections that bulge beside it, what it misses is
-/// taken off its gaps from now on. Where it sees all, the zone may be less deep and becomes stiffer at once.
+/// Mends what is too deep, between two increments: where no contact point stands it gets one, and its zone begins as soft there
+/// as what it would meet asks for. Where one stands that sees less, by the evened kinks of a crossing or by sections that bulge
+/// beside it, what it misses is taken off its gaps from now on. Where it sees all, the zone may be less deep and becomes stiffer
+/// at once.
 /// @param allowed  depth of a place that is no deeper [length], > 0
 template <class Mesh, class Contacts>
 void mend(const Mesh& mesh, Contacts& contacts, std::span<const DeepPlace> places, double allowed) {
     const StiffnessAdaptation& adaptation = contacts.parameters().stiffness;
     const double narrowest = 0.02, least_step = 0.3, greatest_step = 0.95;  // of what a zone is allowed, in all and at once
-    const double missed = 0.3, most_unseen = 0.1;  // of what is allowed, from which on a point misses depth; of the radius, beyond which a mesh is too coarse
+    const double missed = 0.3, most_unseen = 0.1;  // of what is allowed, from which on a point misses depth; of the radius,
+                                                   // beyond which a mesh is too coarse
     for (const DeepPlace& place : places) {
         Zone* found = nullptr;
         double nearest = std::numeric_limits<double>::infinity();
@@ -77,28 +82,34 @@ void mend(const Mesh& mesh, Contacts& contacts, std::span<const DeepPlace> place
         for (auto zone = std::lower_bound(zones.begin(), zones.end(), place, before);
              zone != zones.end() && zone->span.fibre_i == place.fibre_i && zone->span.fibre_j == place.fibre_j; ++zone) {
             const auto [low, high] = std::minmax(zone->span.a_j, zone->span.b_j);
-            const double away = std::max({zone->span.a_i - place.u_i, place.u_i - zone->span.b_i, low - place.u_j, place.u_j - high, 0.0});
+            const double away =
+                std::max({zone->span.a_i - place.u_i, place.u_i - zone->span.b_i, low - place.u_j, place.u_j - high, 0.0});
             if (away < nearest) nearest = away, found = &*zone;
         }
         if (!found) continue;  // the next search finds one
         Zone& zone = *found;
         const auto elements = std::span(contacts.elements()).subspan(core::at(zone.first), core::at(zone.last - zone.first));
         const bool open = !mesh.fibre(zone.span.fibre_i).closed && !mesh.fibre(zone.span.fibre_j).closed;
-        const double seen = detail::depth_of(contacts, zone), least = std::max(seen, adaptation.allowed_penetration * zone.penetration_factor);
-        if (open && !zone.followed && detail::holds(zone.span, place.u_i, place.u_j) && !detail::has_station(elements, place.u_i, place.u_j)) {
+        const double seen = detail::depth_of(contacts, zone),
+                     least = std::max(seen, adaptation.allowed_penetration * zone.penetration_factor);
+        if (open && !zone.followed && detail::holds(zone.span, place.u_i, place.u_j) &&
+            !detail::has_station(elements, place.u_i, place.u_j)) {
             zone.watched.at[core::at(zone.watched.count++ % WatchedPlaces::most)] = {place.u_i, place.u_j};
             zone.stiffness *= std::min(1.0, 2.0 * least / place.depth);
             continue;
         }
-        const double radius = std::min(mesh.fibre(zone.span.fibre_i).section.radius(), mesh.fibre(zone.span.fibre_j).section.radius());
+        const double radius =
+            std::min(mesh.fibre(zone.span.fibre_i).section.radius(), mesh.fibre(zone.span.fibre_j).section.radius());
         const double unseen = std::min(zone.unseen + place.depth - std::max(seen, 0.0), most_unseen * radius);
         if (unseen - zone.unseen > missed * allowed) {
             zone.unseen = unseen;
             continue;
         }
-        const double narrowed = std::max(narrowest, zone.narrowed * std::clamp(0.9 * allowed / place.depth, least_step, greatest_step));
+        const double narrowed =
+            std::max(narrowest, zone.narrowed * std::clamp(0.9 * allowed / place.depth, least_step, greatest_step));
         zone.penetration_factor *= narrowed / zone.narrowed, zone.narrowed = narrowed;
-        zone.stiffness = std::max(zone.stiffness, strictly_adapted_stiffness(adaptation, contacts.normal_law(), zone.stiffness, zone.reference, seen, zone.penetration_factor));
+        zone.stiffness = std::max(zone.stiffness, strictly_adapted_stiffness(adaptation, contacts.normal_law(), zone.stiffness,
+                                                                             zone.reference, seen, zone.penetration_factor));
     }
 }
 

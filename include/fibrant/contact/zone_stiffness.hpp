@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <array>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -17,7 +16,8 @@
 
 namespace fibrant::contact {
 
-/// Places of a zone that have a contact point of their own, since it was too deep there unseen; of more than it has room for the last ones.
+/// Places of a zone that have a contact point of their own, since it was too deep there unseen; of more than it has room for the
+/// last ones.
 struct WatchedPlaces {
     static constexpr Index most = 4;
     std::array<std::array<double, 2>, most> at{};  ///< abscissae on both fibres
@@ -27,23 +27,23 @@ struct WatchedPlaces {
 /// A proximity zone with what it remembers. Abscissae are counted in elements.
 struct Zone {
     proximity::ProximityZone span;
-    double stiffness = 0.0;    ///< k_N of its elements [force / length]
-    double reference = 0.0;    ///< elastic stiffness of a section over an element's length, k_el [force / length]
-    bool crossing = false;     ///< carries one contact element
-    bool followed = false;     ///< that one is followed to where its fibres are closest
-    bool forced = false;       ///< its normal is prescribed by a forced order
+    double stiffness = 0.0;  ///< k_N of its elements [force / length]
+    double reference = 0.0;  ///< elastic stiffness of a section over an element's length, k_el [force / length]
+    bool crossing = false;   ///< carries one contact element
+    bool followed = false;   ///< that one is followed to where its fibres are closest
+    bool forced = false;     ///< its normal is prescribed by a forced order
     static constexpr std::size_t most_crossings = 4;
-    std::array<double, most_crossings> valleys{};  ///< where it is followed: directions in the plane of both arc lengths in which its fibres stay closest, of each
-                                                   ///< of its crossings [radian]
-    bool settled = false;      ///< its stations are those of crossings that are followed
-    double friction_factor = 1.0;     ///< of its pair of groups, on the law's coefficient [1]
-    double penetration_factor = 1.0;  ///< of its pair of groups, on the allowed penetration [1]
-    double narrowed = 1.0;            ///< part of it that is left where it is deeper between contact points, in (0, 1]
-    double unseen = 0.0;              ///< depth that its contact points miss, taken off their gaps, >= 0 [length]
+    std::array<double, most_crossings> valleys{};  ///< where it is followed: directions in the plane of both arc lengths in which
+                                                   ///< its fibres stay closest, of each of its crossings [radian]
+    bool settled = false;                          ///< its stations are those of crossings that are followed
+    double friction_factor = 1.0;                  ///< of its pair of groups, on the law's coefficient [1]
+    double penetration_factor = 1.0;               ///< of its pair of groups, on the allowed penetration [1]
+    double narrowed = 1.0;  ///< part of it that is left where it is deeper between contact points, in (0, 1]
+    double unseen = 0.0;    ///< depth that its contact points miss, taken off their gaps, >= 0 [length]
     WatchedPlaces watched;
     /// In the last accepted state, 0 for a pair that had no zone there, infinite where nothing was accepted yet [length].
     double deepest = std::numeric_limits<double>::infinity();
-    Index order = -1;          ///< forced order between the groups of its fibres, or -1
+    Index order = -1;           ///< forced order between the groups of its fibres, or -1
     Index first = 0, last = 0;  ///< its contact elements
 };
 
@@ -54,12 +54,12 @@ struct Zone {
 /// helical wire its radial sink d changes the strain by (d / r_0) cot^2(helix angle).
 struct StiffnessAdaptation {
     double allowed_penetration = core::unset;  ///< p_max [length], > 0
-    double target_fraction = 0.45;             ///< of p_max that a zone is adapted to, since it is deeper between points [1], in (0, 1)
-    double initial_fraction = 0.05;            ///< of k_el, for zones without a predecessor [1], > 0
-    double largest_change = 3.0;               ///< factor at one adaptation [1], > 1
-    double cap_fraction = 10.0;                ///< of k_el, not exceeded by what is no deeper than allowed [1], > 0
-    double reserve = 100.0;                    ///< on the cap, for what is deeper than allowed all the same [1], >= 1
-    double floor_fraction = 1e-3;              ///< of k_el [1], > 0
+    double target_fraction = 0.45;   ///< of p_max that a zone is adapted to, since it is deeper between points [1], in (0, 1)
+    double initial_fraction = 0.05;  ///< of k_el, for zones without a predecessor [1], > 0
+    double largest_change = 3.0;     ///< factor at one adaptation [1], > 1
+    double cap_fraction = 10.0;      ///< of k_el, not exceeded by what is no deeper than allowed [1], > 0
+    double reserve = 100.0;          ///< on the cap, for what is deeper than allowed all the same [1], >= 1
+    double floor_fraction = 1e-3;    ///< of k_el [1], > 0
     void validate() const {
         core::require_positive("StiffnessAdaptation.allowed_penetration", allowed_penetration);
         core::require_between("StiffnessAdaptation.target_fraction", target_fraction, 0.01, 0.999);
@@ -73,14 +73,14 @@ struct StiffnessAdaptation {
     /// A penalty whose floor and cap are one is as stiff as a user wants it, and as deep as that makes it.
     bool adapts() const noexcept { return floor_fraction < cap_fraction; }
 
-    /// Stiffness after an increment in which the zone's largest penetration was `penetration` [length]. One that is beyond the cap stays there
-    /// until it may be less.
+    /// Stiffness after an increment in which the zone's largest penetration was `penetration` [length]. One that is beyond the
+    /// cap stays there until it may be less.
     double adapted(double stiffness, double reference, double penetration, double regularisation_depth) const noexcept {
         if (!(penetration > 0.0)) return stiffness;
         const double lost = std::min(0.5 * regularisation_depth, 0.5 * target_fraction * allowed_penetration);
         const double ratio = std::max(penetration - lost, 0.0) / (target_fraction * allowed_penetration - lost);
-        return std::clamp(stiffness * std::clamp(ratio, 1.0 / largest_change, largest_change),
-                          floor_fraction * reference, std::max(cap_fraction * reference, adapts() ? stiffness : 0.0));
+        return std::clamp(stiffness * std::clamp(ratio, 1.0 / largest_change, largest_change), floor_fraction * reference,
+                          std::max(cap_fraction * reference, adapts() ? stiffness : 0.0));
     }
 };
 
@@ -112,10 +112,14 @@ inline double section_stiffness(const scene::ElasticMaterial& material, double l
     return 0.5 * std::numbers::pi * material.young_modulus / (1.0 - nu * nu) * length;
 }
 
-/// The lesser of what two zones of the same fibres have in common on either one, around closed fibres; on one fibre with either part first.
-inline double common_around(const proximity::ProximityZone& a, const proximity::ProximityZone& b, std::span<const double> periods) noexcept {
+/// The lesser of what two zones of the same fibres have in common on either one, around closed fibres; on one fibre with either
+/// part first.
+inline double common_around(const proximity::ProximityZone& a, const proximity::ProximityZone& b,
+                            std::span<const double> periods) noexcept {
     const auto common = [](double a_1, double a_2, double b_1, double b_2, double period) {
-        const auto overlap = [&](double by) { return std::min(std::max(a_1, a_2) + by, std::max(b_1, b_2)) - std::max(std::min(a_1, a_2) + by, std::min(b_1, b_2)); };
+        const auto overlap = [&](double by) {
+            return std::min(std::max(a_1, a_2) + by, std::max(b_1, b_2)) - std::max(std::min(a_1, a_2) + by, std::min(b_1, b_2));
+        };
         double most = overlap(0.0);
         for (const double turns : {-2.0, -1.0, 1.0, 2.0})
             if (period > 0.0) most = std::max(most, overlap(turns * period));
@@ -124,7 +128,8 @@ inline double common_around(const proximity::ProximityZone& a, const proximity::
     const double period_i = periods[core::at(a.fibre_i)], period_j = periods[core::at(a.fibre_j)];
     const double straight = std::min(common(a.a_i, a.b_i, b.a_i, b.b_i, period_i), common(a.a_j, a.b_j, b.a_j, b.b_j, period_j));
     if (a.fibre_i != a.fibre_j || period_i == 0.0) return straight;
-    return std::max(straight, std::min(common(a.a_i, a.b_i, b.a_j, b.b_j, period_i), common(a.a_j, a.b_j, b.a_i, b.b_i, period_j)));
+    return std::max(straight,
+                    std::min(common(a.a_i, a.b_i, b.a_j, b.b_j, period_i), common(a.a_j, a.b_j, b.a_i, b.b_i, period_j)));
 }
 
 /// Zone of an earlier list (sorted by fibres) that overlaps `span` most, or null. Intervals are widened by `slack`.

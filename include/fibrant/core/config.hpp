@@ -3,7 +3,8 @@
 /// @file What every header relies on: the version, and the arithmetic that the results depend on.
 
 #if defined(__FAST_MATH__)
-#error "fibrant needs IEEE arithmetic: NaN marks unset parameters, and the same bits are promised for any number of threads. Compile without -ffast-math (and without -Ofast)."
+#error \
+    "fibrant needs IEEE arithmetic: NaN marks unset parameters, and the same bits are promised for any number of threads. Compile without -ffast-math (and without -Ofast)."
 #endif
 
 #define FIBRANT_VERSION_MAJOR 0

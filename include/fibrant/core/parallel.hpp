@@ -83,9 +83,12 @@ void join(const std::vector<std::vector<Value>>& parts, std::vector<Value>& whol
     std::vector<std::size_t> first{0};
     for (const auto& part : parts) first.push_back(first.back() + part.size());
     whole.resize(first.back());
-    parallel_for(count(parts), [&](Index p) {
-        std::copy(parts[at(p)].begin(), parts[at(p)].end(), whole.begin() + static_cast<std::ptrdiff_t>(first[at(p)]));
-    }, light_items / 8);
+    parallel_for(
+        count(parts),
+        [&](Index p) {
+            std::copy(parts[at(p)].begin(), parts[at(p)].end(), whole.begin() + static_cast<std::ptrdiff_t>(first[at(p)]));
+        },
+        light_items / 8);
 }
 
 /// Sum over [0, n) of body(first, last), taken on blocks of fixed length and added in their order.
@@ -109,18 +112,22 @@ double largest(Index n, double least, const Body& body, Index block = 2048) {
         double value;
         Most& operator+=(const Most& other) noexcept { return value = std::max(value, other.value), *this; }
     };
-    return ordered_sum(n, Most{least}, [&](Index first, Index last) {
-        Most most{least};
-        for (Index k = first; k < last; ++k) most.value = std::max(most.value, body(k));
-        return most;
-    }, block).value;
+    return ordered_sum(
+               n, Most{least},
+               [&](Index first, Index last) {
+                   Most most{least};
+                   for (Index k = first; k < last; ++k) most.value = std::max(most.value, body(k));
+                   return most;
+               },
+               block)
+        .value;
 }
 
 /// Dot product with bits that do not depend on the number of threads.
 inline double dot(const Vector& a, const Vector& b) {
-    return ordered_sum(a.size(), 0.0, [&](Index first, Index last) {
-        return a.segment(first, last - first).dot(b.segment(first, last - first));
-    }, 8192);
+    return ordered_sum(
+        a.size(), 0.0,
+        [&](Index first, Index last) { return a.segment(first, last - first).dot(b.segment(first, last - first)); }, 8192);
 }
 
 }  // namespace fibrant::core

@@ -28,8 +28,7 @@ inline std::string text(double value) {
 
 /// Throws std::invalid_argument "field = value, but it must be bound".
 [[noreturn]] inline void refuse(std::string_view field, std::string_view value, std::string_view bound) {
-    throw std::invalid_argument(std::string(field) + " = " + std::string(value) + ", but it must be " +
-                                std::string(bound));
+    throw std::invalid_argument(std::string(field) + " = " + std::string(value) + ", but it must be " + std::string(bound));
 }
 
 /// Throws unless `holds`; the value is printed as a number.
@@ -45,14 +44,11 @@ inline void require_not_negative(std::string_view field, double value) {
     require(std::isfinite(value) && value >= 0.0, field, value, "finite and >= 0");
 }
 
-inline void require_finite(std::string_view field, double value) {
-    require(std::isfinite(value), field, value, "finite");
-}
+inline void require_finite(std::string_view field, double value) { require(std::isfinite(value), field, value, "finite"); }
 
 /// Throws unless low <= value <= high.
 inline void require_between(std::string_view field, double value, double low, double high) {
-    require(std::isfinite(value) && value >= low && value <= high, field, value,
-            "in [" + text(low) + ", " + text(high) + "]");
+    require(std::isfinite(value) && value >= low && value <= high, field, value, "in [" + text(low) + ", " + text(high) + "]");
 }
 
 /// Throws unless value >= low.
@@ -87,8 +83,9 @@ struct Inactive {};
 
 /// A part of a model: a value that is built from its parameters.
 template <class P>
-concept Policy = std::copyable<P> && requires { typename P::Parameters; } &&
-                 std::constructible_from<P, const typename P::Parameters&>;
+concept Policy = std::copyable<P> && requires {
+    typename P::Parameters;
+} && std::constructible_from<P, const typename P::Parameters&>;
 
 /// A policy that does something; `if constexpr (Active<P>)` leaves out what an inactive one does not need.
 template <class P>

@@ -98,7 +98,11 @@ inline SpinCoefficients spin_coefficients(double p) noexcept {
         return {a[0], b[0], c[0], 2.0 * a[1], 2.0 * b[1], 2.0 * c[1]};
     }
     const double s = std::sin(p), k = std::cos(p);
-    return {s / p, (1.0 - k) / t, (p - s) / (t * p), (p * k - s) / (t * p), (p * s - 2.0 * (1.0 - k)) / (t * t),
+    return {s / p,
+            (1.0 - k) / t,
+            (p - s) / (t * p),
+            (p * k - s) / (t * p),
+            (p * s - 2.0 * (1.0 - k)) / (t * t),
             (p * (1.0 - k) - 3.0 * (p - s)) / (t * t * p)};
 }
 

@@ -14,7 +14,8 @@ namespace fibrant::core {
 
 inline constexpr int most_eigen_rows = 16;
 
-/// Eigenvalues and eigenvectors of a symmetric matrix of plain numbers, by Jacobi's rotations (Golub and Van Loan, Matrix Computations, section 8.5).
+/// Eigenvalues and eigenvectors of a symmetric matrix of plain numbers, by Jacobi's rotations (Golub and Van Loan, Matrix
+/// Computations, section 8.5).
 /// @param size     rows, at most `most_eigen_rows`
 /// @param matrix   column by column; its lower half is read, and all of it is used up
 /// @param vectors  gets eigenvectors of unit length, as columns
@@ -39,7 +40,8 @@ inline void symmetric_eigen(int size, double* matrix, double* vectors, double* v
                 if (std::abs(off) <= 0.5 * std::numeric_limits<double>::epsilon() * largest) continue;
                 turned = true;
                 const double half = 0.5 * (a(q, q) - a(p, p)) / off;
-                const double t = (half < 0.0 ? -1.0 : 1.0) / (std::abs(half) + std::hypot(1.0, half)), c = 1.0 / std::hypot(1.0, t), s = t * c;
+                const double t = (half < 0.0 ? -1.0 : 1.0) / (std::abs(half) + std::hypot(1.0, half)),
+                             c = 1.0 / std::hypot(1.0, t), s = t * c;
                 a(p, p) -= t * off, a(q, q) += t * off;
                 a(p, q) = a(q, p) = 0.0;
                 for (int k = 0; k < size; ++k) {

@@ -9,9 +9,14 @@
 
 namespace fibrant::damping {
 
-/// A spring from every centre to its last place, or to one that moves on with its group; directors count at the surface. It holds what
-/// nothing else holds. A static increment with it is a step of implicit Euler for a motion that is damped by stiffness * time step.
-class PlaceSprings : public term::NoSearch, public term::NoBands, public term::NoCouplings, public term::NoEnergy, public term::NoMemory,
+/// A spring from every centre to its last place, or to one that moves on with its group; directors count at the surface. It holds
+/// what nothing else holds. A static increment with it is a step of implicit Euler for a motion that is damped by stiffness *
+/// time step.
+class PlaceSprings : public term::NoSearch,
+                     public term::NoBands,
+                     public term::NoCouplings,
+                     public term::NoEnergy,
+                     public term::NoMemory,
                      public term::NoPicture {
 public:
     static constexpr auto role = term::Role::aid;
@@ -46,7 +51,8 @@ public:
         }
         for (const scene::ImageVector& one : layout_->images) force.segment<3>(3 * one.image).setZero();
         for (Index f = 0; f < core::count(harder_); ++f)
-            if (harder(f) != 1.0) scene::for_own_vectors(*layout_, f, [&](Index v, double) { force.segment<3>(3 * v) *= harder(f); });
+            if (harder(f) != 1.0)
+                scene::for_own_vectors(*layout_, f, [&](Index v, double) { force.segment<3>(3 * v) *= harder(f); });
         return force;
     }
     void add_forces(const Vector& state, Vector& sum) const {

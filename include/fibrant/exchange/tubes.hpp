@@ -44,7 +44,7 @@ inline LineFrames frames_of(const std::vector<Vec3>& points, bool closed) {
     const std::size_t n = p.size();
     core::require_at_least("frames_of.points", core::count(p), 2);
     LineFrames frames{std::vector<Vec3>(n), std::vector<Vec3>(n), std::vector<Vec3>(n)};
-    std::vector<Vec3> &tangent = frames.tangent, &g = frames.first;
+    std::vector<Vec3>&tangent = frames.tangent, &g = frames.first;
     for (std::size_t k = 0; k < n; ++k) {
         const Vec3 before = k > 0 ? p[k] - p[k - 1] : closed ? p[0] - p[n - 1] : p[1] - p[0];
         const Vec3 after = k + 1 < n ? p[k + 1] - p[k] : closed ? p[0] - p[k] : p[k] - p[k - 1];

@@ -11,7 +11,8 @@ namespace fibrant::inertia {
 
 /// A step of duration dt from (q, v, a): M (q' - place)/c2 + share F(q') + (1 - share) F_n + contact(q') = 0, with
 ///   place = q + by_velocity v + by_acceleration a,   a' = (q' - place)/c2,   v' = v + old_acceleration a + new_acceleration a',
-/// F the forces of the fibres less the loads, F_n those at the start. What it errs by is error_old a + error_new a', to its leading order.
+/// F the forces of the fibres less the loads, F_n those at the start. What it errs by is error_old a + error_new a', to its
+/// leading order.
 struct TimeStep {
     double by_velocity = 0.0;                 ///< [time]
     double by_acceleration = 0.0;             ///< [time^2]
@@ -34,8 +35,8 @@ concept TimeIntegrator = core::Policy<I> && requires(const I integrator, double 
 };
 
 /// The scheme of Hilber, Hughes and Taylor (1977) by its spectral radius at high frequencies, rho: alpha = (1 - rho)/(1 + rho),
-/// beta = (1 + alpha)^2/4, gamma = 1/2 + alpha; forces of fibres and loads count by 1 - alpha at the end of the step and by alpha at its
-/// start. Of second order in free motion. Contact, friction and what materials remember are those of the end: then an
+/// beta = (1 + alpha)^2/4, gamma = 1/2 + alpha; forces of fibres and loads count by 1 - alpha at the end of the step and by alpha
+/// at its start. Of second order in free motion. Contact, friction and what materials remember are those of the end: then an
 /// impact that a step does not resolve takes energy and gives none, at the price of first order in contact.
 class GeneralisedAlpha {
 public:

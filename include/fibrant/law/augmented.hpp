@@ -30,11 +30,7 @@ public:
     double energy(double gap, double stiffness) const noexcept { return law_.energy(gap, stiffness); }
     double penetration(double reaction, double stiffness) const noexcept { return law_.penetration(reaction, stiffness); }
     double largest_penetration() const noexcept { return largest_penetration_; }
-    double regularisation_depth() const noexcept
-        requires Regularised<Law>
-    {
-        return law_.regularisation_depth();
-    }
+    double regularisation_depth() const noexcept requires Regularised<Law> { return law_.regularisation_depth(); }
 
 private:
     Law law_;

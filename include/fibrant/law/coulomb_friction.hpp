@@ -18,8 +18,8 @@ concept FrictionRise = requires(double y) {
     { R::work(y) } -> std::same_as<double>;
 };
 
-/// R_T = mu R_N f(|u| / u_max) along the reversible displacement u up to u_max, and sliding at mu R_N beyond (Durville, section 15.3.2).
-/// The chapter prints no formula; this is the return mapping in the tangent plane.
+/// R_T = mu R_N f(|u| / u_max) along the reversible displacement u up to u_max, and sliding at mu R_N beyond (Durville,
+/// section 15.3.2). The chapter prints no formula; this is the return mapping in the tangent plane.
 template <FrictionRise Rise>
 class CoulombFriction {
 public:

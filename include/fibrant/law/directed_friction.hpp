@@ -12,12 +12,13 @@ namespace fibrant::law {
 
 namespace detail {
 
-/// Bound of friction by direction, R_T . M^-1 R_T <= load^2, with the slip of least force (associated: most is dissipated). Elastic over
-/// s(u) = sqrt(u . M u) up to `range`, then sliding: the return mapping of the potential load s(u).
+/// Bound of friction by direction, R_T . M^-1 R_T <= load^2, with the slip of least force (associated: most is dissipated).
+/// Elastic over s(u) = sqrt(u . M u) up to `range`, then sliding: the return mapping of the potential load s(u).
 /// @param load   >= 0 [force]; the metric has the squares of the coefficients
 /// @param range  coefficient times reversible displacement
 template <class History>
-void slide(double load, const Mat3& metric, double range, const Vec3& slip, const History& accepted, SeenFriction<History>& answer) noexcept {
+void slide(double load, const Mat3& metric, double range, const Vec3& slip, const History& accepted,
+           SeenFriction<History>& answer) noexcept {
     const Vec3 trial = accepted.reversible + slip, push = metric * trial;
     const double size = std::sqrt(std::max(0.0, trial.dot(push))), most = std::max(size, range);
     answer.force = load / most * push;
@@ -41,15 +42,16 @@ inline Mat3 circle(double coefficient, const Vec3& normal) noexcept {
 
 }  // namespace detail
 
-/// Coulomb friction of another coefficient along fibres than across, and of another power of the pressure than one: a line load q carries
-/// a q^n a unit of length (Bowden and Young 1951; Howell 1953 for textile fibres), so an element R_N over l carries a R_N^n l^(1 - n). A
-/// pair's ellipse is the mean of those of both fibres. Crossings and ends have no line load: they obey Coulomb's law.
+/// Coulomb friction of another coefficient along fibres than across, and of another power of the pressure than one: a line load q
+/// carries a q^n a unit of length (Bowden and Young 1951; Howell 1953 for textile fibres), so an element R_N over l carries a
+/// R_N^n l^(1 - n). A pair's ellipse is the mean of those of both fibres. Crossings and ends have no line load: they obey
+/// Coulomb's law.
 class DirectedFriction {
 public:
     struct Parameters {
-        double along = core::unset;   ///< a along a fibre [(force / length)^(1 - n)], > 0
-        double across = core::unset;  ///< a across it, likewise
-        double exponent = 1.0;        ///< n [1], in (0, 1]
+        double along = core::unset;            ///< a along a fibre [(force / length)^(1 - n)], > 0
+        double across = core::unset;           ///< a across it, likewise
+        double exponent = 1.0;                 ///< n [1], in (0, 1]
         double crossing_along = core::unset;   ///< coefficient of crossings [1], > 0; unset: `along`, for n = 1
         double crossing_across = core::unset;  ///< likewise
         double largest_coefficient = 2.0;      ///< of R_T over R_N along a fibre, which a q^(n - 1) is without a bound [1], > 0
@@ -58,8 +60,10 @@ public:
             core::require_positive("DirectedFriction.along", along);
             core::require_positive("DirectedFriction.across", across);
             core::require(exponent > 0.0 && exponent <= 1.0, "DirectedFriction.exponent", exponent, "in (0, 1]");
-            if (exponent < 1.0 || !std::isnan(crossing_along)) core::require_positive("DirectedFriction.crossing_along", crossing_along);
-            if (exponent < 1.0 || !std::isnan(crossing_across)) core::require_positive("DirectedFriction.crossing_across", crossing_across);
+            if (exponent < 1.0 || !std::isnan(crossing_along))
+                core::require_positive("DirectedFriction.crossing_along", crossing_along);
+            if (exponent < 1.0 || !std::isnan(crossing_across))
+                core::require_positive("DirectedFriction.crossing_across", crossing_across);
             core::require_positive("DirectedFriction.largest_coefficient", largest_coefficient);
             core::require_positive("DirectedFriction.reversible_displacement", reversible_displacement);
         }
@@ -76,9 +80,11 @@ public:
         if (!(touch.reaction > 0.0)) return answer;
         const bool line = touch.length > 0.0;
         const double along = line ? p_.along : p_.crossing_along, across = line ? p_.across : p_.crossing_across;
-        double share = line && p_.exponent < 1.0 ? std::pow(touch.length / touch.reaction, 1.0 - p_.exponent) : 1.0, power = line ? p_.exponent : 1.0;
+        double share = line && p_.exponent < 1.0 ? std::pow(touch.length / touch.reaction, 1.0 - p_.exponent) : 1.0,
+               power = line ? p_.exponent : 1.0;
         if (along * share > p_.largest_coefficient) share = p_.largest_coefficient / along, power = 1.0;
-        const Mat3 metric = 0.5 * (detail::ellipse(along, across, touch.along_i, touch.normal) + detail::ellipse(along, across, touch.along_j, touch.normal));
+        const Mat3 metric = 0.5 * (detail::ellipse(along, across, touch.along_i, touch.normal) +
+                                   detail::ellipse(along, across, touch.along_j, touch.normal));
         detail::slide(share * touch.reaction, metric, along * p_.reversible_displacement, touch.slip, accepted, answer);
         answer.by_reaction = power / touch.reaction * answer.force;
         return answer;
@@ -88,7 +94,8 @@ private:
     Parameters p_;
 };
 
-/// Coulomb friction of a pair that also sticks: mu (R_N + p_a l) where it touches (Derjaguin 1934), so that it resists without a load.
+/// Coulomb friction of a pair that also sticks: mu (R_N + p_a l) where it touches (Derjaguin 1934), so that it resists without a
+/// load.
 class AdhesiveFriction {
 public:
     struct Parameters {
@@ -111,7 +118,8 @@ public:
         SeenFriction<History> answer;
         if (!(touch.reaction > 0.0)) return answer;
         const double load = touch.reaction + (touch.length > 0.0 ? p_.line_adhesion * touch.length : p_.crossing_adhesion);
-        detail::slide(load, detail::circle(p_.friction_coefficient, touch.normal), p_.friction_coefficient * p_.reversible_displacement, touch.slip, accepted, answer);
+        detail::slide(load, detail::circle(p_.friction_coefficient, touch.normal),
+                      p_.friction_coefficient * p_.reversible_displacement, touch.slip, accepted, answer);
         answer.by_reaction = answer.force / load;
         return answer;
     }
@@ -120,8 +128,8 @@ private:
     Parameters p_;
 };
 
-/// Coulomb friction that falls from a static to a kinetic coefficient with the way slid: mu = k + (s - k) exp(-slid / d). The way is that of
-/// accepted increments, so that friction has a potential in each; it is not forgotten.
+/// Coulomb friction that falls from a static to a kinetic coefficient with the way slid: mu = k + (s - k) exp(-slid / d). The way
+/// is that of accepted increments, so that friction has a potential in each; it is not forgotten.
 class SlipWeakeningFriction {
 public:
     struct Parameters {
@@ -131,8 +139,9 @@ public:
         double reversible_displacement = core::unset;  ///< [length], > 0
         void validate() const {
             core::require_positive("SlipWeakeningFriction.kinetic_coefficient", kinetic_coefficient);
-            core::require(std::isfinite(static_coefficient) && static_coefficient >= kinetic_coefficient, "SlipWeakeningFriction.static_coefficient",
-                          static_coefficient, "finite and >= kinetic_coefficient = " + core::text(kinetic_coefficient));
+            core::require(std::isfinite(static_coefficient) && static_coefficient >= kinetic_coefficient,
+                          "SlipWeakeningFriction.static_coefficient", static_coefficient,
+                          "finite and >= kinetic_coefficient = " + core::text(kinetic_coefficient));
             core::require_positive("SlipWeakeningFriction.weakening_length", weakening_length);
             core::require_positive("SlipWeakeningFriction.reversible_displacement", reversible_displacement);
         }
@@ -146,8 +155,10 @@ public:
         SeenFriction<History> answer;
         answer.history.numbers = accepted.numbers;
         if (!(touch.reaction > 0.0)) return answer;
-        const double s = p_.static_coefficient, k = p_.kinetic_coefficient, mu = k + (s - k) * std::exp(-accepted.numbers[0] / p_.weakening_length);
-        detail::slide(touch.reaction, detail::circle(mu, touch.normal), mu * p_.reversible_displacement, touch.slip, accepted, answer);
+        const double s = p_.static_coefficient, k = p_.kinetic_coefficient,
+                     mu = k + (s - k) * std::exp(-accepted.numbers[0] / p_.weakening_length);
+        detail::slide(touch.reaction, detail::circle(mu, touch.normal), mu * p_.reversible_displacement, touch.slip, accepted,
+                      answer);
         answer.by_reaction = answer.force / touch.reaction;
         answer.history.numbers[0] += answer.dissipated / (mu * touch.reaction);
         return answer;
@@ -157,8 +168,8 @@ private:
     Parameters p_;
 };
 
-/// A law and a fluid between the fibres beside it: c l du/dt, of a line of contact, where fibres touch. With Coulomb's a Bingham solid. A
-/// stage has to have a duration.
+/// A law and a fluid between the fibres beside it: c l du/dt, of a line of contact, where fibres touch. With Coulomb's a Bingham
+/// solid. A stage has to have a duration.
 template <SeeingFriction Law>
 class Lubricated {
 public:

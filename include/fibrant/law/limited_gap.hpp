@@ -25,19 +25,14 @@ public:
             core::require(limit > 0.0, "LimitedGap.limit", limit, "> 0");
         }
     };
-    explicit LimitedGap(const Parameters& parameters)
-        : law_{core::validated(parameters).law}, limit_{parameters.limit} {}
+    explicit LimitedGap(const Parameters& parameters) : law_{core::validated(parameters).law}, limit_{parameters.limit} {}
 
     /// Offset of an element whose gap is `gap` at the last accepted state, >= 0 [length].
     double gap_shift(double gap) const noexcept { return std::max(0.0, -gap - limit_); }
 
     NormalResponse response(double gap, double stiffness) const noexcept { return law_.response(gap, stiffness); }
     double energy(double gap, double stiffness) const noexcept { return law_.energy(gap, stiffness); }
-    double regularisation_depth() const noexcept
-        requires Regularised<Law>
-    {
-        return law_.regularisation_depth();
-    }
+    double regularisation_depth() const noexcept requires Regularised<Law> { return law_.regularisation_depth(); }
     double limit() const noexcept { return limit_; }
 
     /// The same law with another limit [length], > 0.

@@ -20,9 +20,7 @@ public:
     }
 
     /// Work stored by a penetration [force * length].
-    double energy(double gap, double stiffness) const noexcept {
-        return gap >= 0.0 ? 0.0 : 0.5 * stiffness * gap * gap;
-    }
+    double energy(double gap, double stiffness) const noexcept { return gap >= 0.0 ? 0.0 : 0.5 * stiffness * gap * gap; }
 
     /// Penetration under a reaction >= 0 [length].
     double penetration(double reaction, double stiffness) const noexcept { return reaction / stiffness; }

@@ -42,11 +42,13 @@ concept NormalLaw = core::Policy<L> && requires(const L law, const typename deta
     { law.energy(gap, stiffness) } -> std::same_as<double>;
 };
 
-/// A physical law, `using Sees = Approach`: asked by that instead of the gap, and by no stiffness, for its own is a property, which no
-/// adaptation touches; what a fibre sinks is its answer and no fault. Owed beside what NormalLaw owes: two elements of half the length
-/// answer as one.
+/// A physical law, `using Sees = Approach`: asked by that instead of the gap, and by no stiffness, for its own is a property,
+/// which no adaptation touches; what a fibre sinks is its answer and no fault. Owed beside what NormalLaw owes: two elements of
+/// half the length answer as one.
 template <class L>
-concept SeeingNormal = NormalLaw<L> && requires { requires std::same_as<typename L::Sees, Approach>; };
+concept SeeingNormal = NormalLaw<L> && requires {
+    requires std::same_as<typename L::Sees, Approach>;
+};
 
 /// A normal law that shifts the gap of each contact element by an amount chosen when an increment starts.
 template <class L>

@@ -9,8 +9,8 @@
 
 namespace fibrant::law {
 
-/// R = K l p^m of a line of contact, K_x p^m_x of a crossing. Hertz's crossing of round elastic fibres has m_x = 3/2; soft bundles about 2.4.
-/// For beams whose sections keep their shape: those that flatten by themselves would be soft twice.
+/// R = K l p^m of a line of contact, K_x p^m_x of a crossing. Hertz's crossing of round elastic fibres has m_x = 3/2; soft
+/// bundles about 2.4. For beams whose sections keep their shape: those that flatten by themselves would be soft twice.
 class PowerNormal {
 public:
     using Sees = Approach;
@@ -40,15 +40,18 @@ public:
     }
 
 private:
-    struct Law { double stiffness, exponent; };
+    struct Law {
+        double stiffness, exponent;
+    };
     Law of(const Approach& a) const noexcept {
-        return a.length > 0.0 ? Law{p_.line_stiffness * a.length, p_.line_exponent} : Law{p_.crossing_stiffness, p_.crossing_exponent};
+        return a.length > 0.0 ? Law{p_.line_stiffness * a.length, p_.line_exponent}
+                              : Law{p_.crossing_stiffness, p_.crossing_exponent};
     }
     Parameters p_;
 };
 
-/// Bundles of fibres that are pressed harden as they fill: R = R_0 [(1 - p/(e D))^-q - 1], e D what is left of the sum D of both radii at
-/// most (after van Wyk 1946). Beyond `last_part` of e D it goes on straight, so that an iteration may try what it likes.
+/// Bundles of fibres that are pressed harden as they fill: R = R_0 [(1 - p/(e D))^-q - 1], e D what is left of the sum D of both
+/// radii at most (after van Wyk 1946). Beyond `last_part` of e D it goes on straight, so that an iteration may try what it likes.
 class HardeningNormal {
 public:
     using Sees = Approach;
@@ -68,15 +71,18 @@ public:
     explicit HardeningNormal(const Parameters& parameters) : p_{core::validated(parameters)} {}
     NormalResponse response(const Approach& a, double = 0.0) const noexcept {
         if (a.gap >= 0.0) return {0.0, 0.0};
-        const double R = force(a), limit = p_.share * a.reach, x = std::min(last_part, -a.gap / limit), beyond = -a.gap - x * limit;
+        const double R = force(a), limit = p_.share * a.reach, x = std::min(last_part, -a.gap / limit),
+                     beyond = -a.gap - x * limit;
         const double slope = R * p_.exponent / limit * std::pow(1.0 - x, -p_.exponent - 1.0);
         return {R * (std::pow(1.0 - x, -p_.exponent) - 1.0) + slope * beyond, -slope};
     }
     double energy(const Approach& a, double = 0.0) const noexcept {
         if (a.gap >= 0.0) return 0.0;
-        const double R = force(a), q = p_.exponent, limit = p_.share * a.reach, x = std::min(last_part, -a.gap / limit), beyond = -a.gap - x * limit;
+        const double R = force(a), q = p_.exponent, limit = p_.share * a.reach, x = std::min(last_part, -a.gap / limit),
+                     beyond = -a.gap - x * limit;
         const double slope = R * q / limit * std::pow(1.0 - x, -q - 1.0);
-        return R * (limit / (q - 1.0) * (std::pow(1.0 - x, 1.0 - q) - 1.0) - x * limit) + (R * (std::pow(1.0 - x, -q) - 1.0) + 0.5 * slope * beyond) * beyond;
+        return R * (limit / (q - 1.0) * (std::pow(1.0 - x, 1.0 - q) - 1.0) - x * limit) +
+               (R * (std::pow(1.0 - x, -q) - 1.0) + 0.5 * slope * beyond) * beyond;
     }
 
 private:

@@ -16,9 +16,7 @@ class RegularisedPenalty {
 public:
     struct Parameters {
         double regularisation_depth = core::unset;  ///< p_reg [length], > 0
-        void validate() const {
-            core::require_positive("RegularisedPenalty.regularisation_depth", regularisation_depth);
-        }
+        void validate() const { core::require_positive("RegularisedPenalty.regularisation_depth", regularisation_depth); }
     };
     explicit RegularisedPenalty(const Parameters& parameters) : parameters_{core::validated(parameters)} {}
 
@@ -42,7 +40,8 @@ public:
     /// Penetration under a reaction >= 0 [length].
     double penetration(double reaction, double stiffness) const noexcept {
         const double depth = parameters_.regularisation_depth;
-        return reaction < 0.5 * stiffness * depth ? std::sqrt(2.0 * depth * reaction / stiffness) : reaction / stiffness + 0.5 * depth;
+        return reaction < 0.5 * stiffness * depth ? std::sqrt(2.0 * depth * reaction / stiffness)
+                                                  : reaction / stiffness + 0.5 * depth;
     }
 
     double regularisation_depth() const noexcept { return parameters_.regularisation_depth; }

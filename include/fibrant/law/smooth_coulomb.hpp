@@ -14,8 +14,8 @@ struct RoundedRise {
     static constexpr double work(double y) noexcept { return y * y * (1.0 - y / 3.0); }
 };
 
-/// Coulomb friction that bends over into sliding: twice as stiff as RegularisedCoulomb at first, and with a slope that has no jump where
-/// sliding begins.
+/// Coulomb friction that bends over into sliding: twice as stiff as RegularisedCoulomb at first, and with a slope that has no
+/// jump where sliding begins.
 using SmoothCoulomb = CoulombFriction<RoundedRise>;
 static_assert(FrictionLaw<SmoothCoulomb> && core::Active<SmoothCoulomb>);
 

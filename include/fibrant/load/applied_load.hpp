@@ -16,7 +16,11 @@ namespace fibrant::load {
 
 /// Loads of a scene on a mesh: the term that every model has.
 template <beam::BeamElement B>
-class AppliedLoad : public term::NoSearch, public term::NoSpring, public term::NoCouplings, public term::NoEnergy, public term::NoMemory,
+class AppliedLoad : public term::NoSearch,
+                    public term::NoSpring,
+                    public term::NoCouplings,
+                    public term::NoEnergy,
+                    public term::NoMemory,
                     public term::NoPicture {
 public:
     static constexpr auto role = term::Role::external;
@@ -24,14 +28,17 @@ public:
     struct Slot {
         Parameters applied{};
     };
-    explicit AppliedLoad(const term::SiteOf<B>& site, const Parameters& = {}) : AppliedLoad(site.assembly(), site.mesh(), site.channels()) {}
+    explicit AppliedLoad(const term::SiteOf<B>& site, const Parameters& = {})
+        : AppliedLoad(site.assembly(), site.mesh(), site.channels()) {}
     AppliedLoad(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const scene::Channels& channels) {
         const auto item = [&](const auto& load, int vector, bool there, const Vec3& value) {
             if (!there) core::refuse("load.vector", std::to_string(vector), "a vector of the beam's nodes");
-            return Item{mesh.node_vector(load.at.fibre, connection::station_node(mesh, load.at), vector), channels.find(load.channel), value};
+            return Item{mesh.node_vector(load.at.fibre, connection::station_node(mesh, load.at), vector),
+                        channels.find(load.channel), value};
         };
         for (const scene::LinePressure& load : assembly.pressures())
-            pressures_.push_back({load.fibre, channels.find(load.channel), mesh.fibre(load.fibre).elements, mesh.first_unknown(load.fibre, 0), load.pressure, core::cross_matrix(load.axis)});
+            pressures_.push_back({load.fibre, channels.find(load.channel), mesh.fibre(load.fibre).elements,
+                                  mesh.first_unknown(load.fibre, 0), load.pressure, core::cross_matrix(load.axis)});
         if constexpr (beam::TurningSections<B>) {  // what acts on directors turns the section
             for (const scene::DeadForce& load : assembly.forces()) {
                 if (load.vector == scene::NodeVector::position) {
@@ -46,7 +53,8 @@ public:
         }
         for (const scene::DeadForce& load : assembly.forces()) {
             const int vector = static_cast<int>(load.vector);
-            forces_.push_back(item(load, vector, vector == 0 || (vector < B::vectors_per_node && !beam::CentrelineOnly<B>), load.force));
+            forces_.push_back(
+                item(load, vector, vector == 0 || (vector < B::vectors_per_node && !beam::CentrelineOnly<B>), load.force));
         }
         for (const scene::Moment& load : assembly.moments()) {
             int vector = static_cast<int>(load.director);
@@ -144,14 +152,15 @@ private:
         }
     }
 
-    static constexpr Index vectors = B::nodes * B::vectors_per_node;  // of an element
+    static constexpr Index vectors = B::nodes * B::vectors_per_node;                        // of an element
     using Coupling = std::array<std::array<double, core::at(vectors)>, core::at(vectors)>;  // rows
     struct Pressure {
         Index fibre, channel, elements, first_unknown;
         double value;
         Mat3 across;  // axis x
     };
-    /// Integral of the weights of the centreline times those of its derivative: what the vectors of an element are to its forces under a line pressure.
+    /// Integral of the weights of the centreline times those of its derivative: what the vectors of an element are to its forces
+    /// under a line pressure.
     static Coupling coupling() noexcept {
         Coupling sum{};
         const double place = std::sqrt(0.6);  // Gauss, exact to the fifth degree

@@ -9,7 +9,11 @@
 namespace fibrant::load {
 
 /// Forces along the tangent of a fibre where they act. They have no potential; the tangent is symmetrised.
-class FollowerForces : public term::NoSearch, public term::NoSpring, public term::NoCouplings, public term::NoEnergy, public term::NoMemory,
+class FollowerForces : public term::NoSearch,
+                       public term::NoSpring,
+                       public term::NoCouplings,
+                       public term::NoEnergy,
+                       public term::NoMemory,
                        public term::NoPicture {
 public:
     static constexpr auto role = term::Role::external;
@@ -52,7 +56,8 @@ public:
             Matrix stiffness(3 * one.at.vectors, 3 * one.at.vectors);
             for (Index a = 0; a < one.at.vectors; ++a)
                 for (Index b = 0; b < one.at.vectors; ++b)
-                    stiffness.block<3, 3>(3 * a, 3 * b) = -0.5 * (w[core::at(a)] * v[core::at(b)] + v[core::at(a)] * w[core::at(b)]) * turn;
+                    stiffness.block<3, 3>(3 * a, 3 * b) =
+                        -0.5 * (w[core::at(a)] * v[core::at(b)] + v[core::at(a)] * w[core::at(b)]) * turn;
             bands.element(one.at.fibre, one.at.element, stiffness);
         }
     }

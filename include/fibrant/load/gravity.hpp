@@ -7,12 +7,16 @@
 namespace fibrant::load {
 
 /// A dead force on all that fibres are made of: weight times the area of the section at rest, a rest length.
-class Gravity : public term::NoSearch, public term::NoStiffness, public term::NoEnergy, public term::NoMemory, public term::NoPicture {
+class Gravity : public term::NoSearch,
+                public term::NoStiffness,
+                public term::NoEnergy,
+                public term::NoMemory,
+                public term::NoPicture {
 public:
     static constexpr auto role = term::Role::external;
     struct Parameters {
         Vec3 weight = Vec3::Constant(core::unset);  ///< density times acceleration, at amplitude 1 [force / length^3]
-        std::string channel = "gravity";  ///< whose amplitude it is multiplied by
+        std::string channel = "gravity";            ///< whose amplitude it is multiplied by
         void validate() const { scene::require_finite("Gravity.weight", weight); }
     };
     struct Slot {

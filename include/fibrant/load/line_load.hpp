@@ -9,14 +9,18 @@
 namespace fibrant::load {
 
 /// Dead forces along fibres, uniform by rest length.
-class LineLoads : public term::NoSearch, public term::NoStiffness, public term::NoEnergy, public term::NoMemory, public term::NoPicture {
+class LineLoads : public term::NoSearch,
+                  public term::NoStiffness,
+                  public term::NoEnergy,
+                  public term::NoMemory,
+                  public term::NoPicture {
 public:
     static constexpr auto role = term::Role::external;
     struct Load {
-        Index fibre = -1;  ///< number of the fibre that it acts on
+        Index fibre = -1;                          ///< number of the fibre that it acts on
         Vec3 force = Vec3::Constant(core::unset);  ///< at amplitude 1 [force / length]
         double from = 0.0, to = 1.0;               ///< parts of the fibre's rest length, 0 <= from < to <= 1
-        std::string channel = "load";  ///< whose amplitude it is multiplied by
+        std::string channel = "load";              ///< whose amplitude it is multiplied by
         void validate() const {
             scene::require_finite("LineLoads.Load.force", force);
             core::require_between("LineLoads.Load.from", from, 0.0, 1.0);

@@ -26,19 +26,19 @@ inline double uniform(std::uint64_t seed, std::uint64_t a, std::uint64_t b) noex
 }  // namespace detail
 
 /// Elastic fibre of a strength that varies along it. A length l survives the stress s with the probability exp(-(l/L0) (s/s0)^m)
-/// (Weibull 1951): each point draws s0 ((L0/l) X)^(1/m) for the length l that it stands for, X exponential, so that the weakest of a
-/// fibre's points has exactly the distribution of its length, however it is cut.
+/// (Weibull 1951): each point draws s0 ((L0/l) X)^(1/m) for the length l that it stands for, X exponential, so that the weakest
+/// of a fibre's points has exactly the distribution of its length, however it is cut.
 ///
-/// A bent fibre is weighed over its flaws: sigma_eff = [mean of (sigma_t + sigma_b cos)_+^m]^(1/m) over perimeter or area. Where that
-/// reaches the strength at the end of an increment the point breaks (Simulator: the most loaded one, then equilibrium again), and all its
-/// stresses are multiplied by `left_over`: not by 0, for the nodes beyond it must be held by something.
+/// A bent fibre is weighed over its flaws: sigma_eff = [mean of (sigma_t + sigma_b cos)_+^m]^(1/m) over perimeter or area. Where
+/// that reaches the strength at the end of an increment the point breaks (Simulator: the most loaded one, then equilibrium
+/// again), and all its stresses are multiplied by `left_over`: not by 0, for the nodes beyond it must be held by something.
 class Brittle {
 public:
     struct Parameters {
         double strength = core::unset;          ///< s0 [force / length^2], > 0
         double modulus = core::unset;           ///< Weibull's m [1], > 0
         double reference_length = core::unset;  ///< L0 [length], > 0
-        Flaws flaws = Flaws::surface;  ///< where a fibre has its flaws, which decides how strength falls with size
+        Flaws flaws = Flaws::surface;           ///< where a fibre has its flaws, which decides how strength falls with size
         std::uint64_t seed = 1;                 ///< of the lots
         void validate() const {
             core::require_positive("Brittle.strength", strength);
@@ -51,7 +51,9 @@ public:
         double strength = 0.0;  ///< [force / length^2]
         double broken = 0.0;    ///< 0 or 1
         template <class Self, class See>
-        static void visit(Self& h, const See& see) { see(h.strength), see(h.broken); }
+        static void visit(Self& h, const See& see) {
+            see(h.strength), see(h.broken);
+        }
         /// The nearer one: parts of an element share its lot.
         static History between(const History& a, const History& b, double t) { return t < 0.5 ? a : b; }
     };
@@ -64,11 +66,12 @@ public:
 
     explicit Brittle(const Parameters& parameters) : p_{core::validated(parameters)} {}
     Section section(const beam::SectionConstants& shape, const scene::ElasticMaterial& elastic, double shear_factor) const {
-        return {ElasticSection(shape, elastic, shear_factor), elastic.young_modulus, 2.0 * std::sqrt(shape.second_moment_1 / shape.area),
-                2.0 * std::sqrt(shape.second_moment_2 / shape.area)};
+        return {ElasticSection(shape, elastic, shear_factor), elastic.young_modulus,
+                2.0 * std::sqrt(shape.second_moment_1 / shape.area), 2.0 * std::sqrt(shape.second_moment_2 / shape.area)};
     }
     History fresh(const Section&, const PointPlace& place) const {
-        const double lot = -std::log(detail::uniform(p_.seed, static_cast<std::uint64_t>(place.fibre), static_cast<std::uint64_t>(place.point)));
+        const double lot =
+            -std::log(detail::uniform(p_.seed, static_cast<std::uint64_t>(place.fibre), static_cast<std::uint64_t>(place.point)));
         return {p_.strength * std::pow(p_.reference_length / place.length * lot, 1.0 / p_.modulus), 0.0};
     }
     Answer response(const Section& section, const SectionStrains& e, const History& accepted, const Drive&) const noexcept {

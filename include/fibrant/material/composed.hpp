@@ -26,17 +26,20 @@ template <class L>
 concept AxialLaw = core::Policy<L> && requires(const L law, double stiffness, double e) {
     { law.response(stiffness, e) } -> std::same_as<AxialAnswer>;
 };
-/// Law of the curvatures, isotropic: told as those of a round section of the same mean stiffness. @param stiffness E I [force * length^2]
+/// Law of the curvatures, isotropic: told as those of a round section of the same mean stiffness. @param stiffness E I [force *
+/// length^2]
 template <class L>
 concept BendingLaw = core::Policy<L> && beam::Memory<typename L::History> &&
     requires(const L law, double stiffness, const std::array<double, 2>& b, const typename L::History& accepted) {
-        { law.response(stiffness, b, accepted) } -> std::same_as<BendingAnswer<typename L::History>>;
-    };
+    { law.response(stiffness, b, accepted) } -> std::same_as<BendingAnswer<typename L::History>>;
+};
 
 struct LinearStretch {
     using Parameters = core::NoParameters;
     explicit LinearStretch(const Parameters& = {}) {}
-    AxialAnswer response(double stiffness, double e) const noexcept { return {stiffness * e, stiffness, 0.0, 0.5 * stiffness * e * e}; }
+    AxialAnswer response(double stiffness, double e) const noexcept {
+        return {stiffness * e, stiffness, 0.0, 0.5 * stiffness * e * e};
+    }
 };
 
 /// A string: carries tension, and next to nothing in compression. The slope rises from d E A to E A over the strains 0 to e_s.
@@ -54,7 +57,9 @@ public:
     AxialAnswer response(double EA, double e) const noexcept {
         const double d = p_.left_over, s = p_.transition, rest = 1.0 - d;
         if (e <= 0.0) return {EA * d * e, EA * d, 0.0, 0.5 * EA * d * e * e};
-        if (e < s) return {EA * (d * e + rest * e * e / (2.0 * s)), EA * (d + rest * e / s), EA * rest / s, EA * (0.5 * d * e * e + rest * e * e * e / (6.0 * s))};
+        if (e < s)
+            return {EA * (d * e + rest * e * e / (2.0 * s)), EA * (d + rest * e / s), EA * rest / s,
+                    EA * (0.5 * d * e * e + rest * e * e * e / (6.0 * s))};
         return {EA * (e - 0.5 * rest * s), EA, 0.0, EA * (0.5 * e * e - 0.5 * rest * s * e + rest * s * s / 6.0)};
     }
 
@@ -88,7 +93,8 @@ public:
         const double f = p_.left_over, k0 = p_.curvature, k = std::hypot(b[0], b[1]), y = k / k0, gone = -std::expm1(-y);
         const double secant = B * (f + (1.0 - f) * (y > 0.0 ? gone / y : 1.0)), slope = B * (f + (1.0 - f) * (1.0 - gone));
         // k_0^2 (y - gone), which loses no digits where y is small
-        const double stored = 0.5 * B * f * k * k + B * (1.0 - f) * k0 * k0 * (y > 1e-3 ? y - gone : y * y * (0.5 - y / 6.0 + y * y / 24.0));
+        const double stored =
+            0.5 * B * f * k * k + B * (1.0 - f) * k0 * k0 * (y > 1e-3 ? y - gone : y * y * (0.5 - y / 6.0 + y * y / 24.0));
         BendingAnswer<History> answer{{secant * b[0], secant * b[1]}, {secant, 0.0, secant}, {}, stored, 0.0};
         if (k > 0.0) {
             const double n0 = b[0] / k, n1 = b[1] / k, more = slope - secant;
@@ -101,9 +107,9 @@ private:
     Parameters p_;
 };
 
-/// Hysteresis of bending by stops in parallel (Prandtl 1928, Ishlinskii 1944): M = f B b + sum m_i, each m_i elastic of stiffness g_i B up
-/// to |m_i| = g_i B k_i, where it slides. Its loops close, obey Masing's rule and do not drift. A measured first curve of slope B at
-/// first is met at the k_i by g_i = drop of its slope there over B.
+/// Hysteresis of bending by stops in parallel (Prandtl 1928, Ishlinskii 1944): M = f B b + sum m_i, each m_i elastic of stiffness
+/// g_i B up to |m_i| = g_i B k_i, where it slides. Its loops close, obey Masing's rule and do not drift. A measured first curve
+/// of slope B at first is met at the k_i by g_i = drop of its slope there over B.
 template <int Stops>
 class BendingStops {
     static_assert(Stops >= 1);
@@ -122,7 +128,8 @@ public:
             }
             core::require(sum <= 1.0 + 1e-12, "BendingStops.share: sum", sum, "<= 1");
         }
-        /// Stops that meet a first curve at equal steps of curvature. @param moment  M(k), slope >= 0 that falls; @param stiffness  its slope at 0
+        /// Stops that meet a first curve at equal steps of curvature. @param moment  M(k), slope >= 0 that falls; @param
+        /// stiffness  its slope at 0
         template <class Moment>
         static Parameters of_curve(const Moment& moment, double stiffness, double step) {
             Parameters p;
@@ -160,16 +167,19 @@ public:
         double left = 1.0;
         for (const double g : p_.share) left -= g;
         left = std::max(0.0, left);
-        BendingAnswer<History> answer{{left * B * b[0], left * B * b[1]}, {left * B, 0.0, left * B}, {}, 0.5 * left * B * (b[0] * b[0] + b[1] * b[1]), 0.0};
+        BendingAnswer<History> answer{
+            {left * B * b[0], left * B * b[1]}, {left * B, 0.0, left * B}, {}, 0.5 * left * B * (b[0] * b[0] + b[1] * b[1]), 0.0};
         answer.history.curvature = b;
         for (std::size_t i = 0; i < count; ++i) {
             const double g = p_.share[i], bound = g * p_.curvature[i];
-            std::array<double, 2> m{accepted.moment[i][0] + g * (b[0] - accepted.curvature[0]), accepted.moment[i][1] + g * (b[1] - accepted.curvature[1])};
+            std::array<double, 2> m{accepted.moment[i][0] + g * (b[0] - accepted.curvature[0]),
+                                    accepted.moment[i][1] + g * (b[1] - accepted.curvature[1])};
             const double size = std::hypot(m[0], m[1]);
             if (size > bound * (1.0 + beam::at_bound)) {
                 const double n0 = m[0] / size, n1 = m[1] / size, t = B * g * bound / size;
                 m = {bound * n0, bound * n1};
-                answer.tangent[0] += t * (1.0 - n0 * n0), answer.tangent[1] -= t * n0 * n1, answer.tangent[2] += t * (1.0 - n1 * n1);
+                answer.tangent[0] += t * (1.0 - n0 * n0), answer.tangent[1] -= t * n0 * n1,
+                    answer.tangent[2] += t * (1.0 - n1 * n1);
                 answer.dissipated += B * bound * (size - bound) / g;
             } else {
                 answer.tangent[0] += B * g, answer.tangent[2] += B * g;
@@ -184,8 +194,8 @@ private:
     Parameters p_;
 };
 
-/// Stretch by one law, bending by another, torsion, shear and the section elastic. Where the stretch carries less than E A e, the section
-/// contracts by less: by nu times N / (E A), or that of a slack bundle would swell.
+/// Stretch by one law, bending by another, torsion, shear and the section elastic. Where the stretch carries less than E A e, the
+/// section contracts by less: by nu times N / (E A), or that of a slack bundle would swell.
 template <AxialLaw Axial, BendingLaw Bending>
 class Composed {
 public:
@@ -196,8 +206,11 @@ public:
     };
     using History = typename Bending::History;
     using Section = ElasticSection;
-    static constexpr auto entries = beam::detail::with_diagonal(std::array<beam::Entry, 5>{{{strain::e11, strain::e22}, {strain::c12, strain::c21},
-        {strain::e11, strain::e33}, {strain::e22, strain::e33}, {strain::b1, strain::b2}}});
+    static constexpr auto entries = beam::detail::with_diagonal(std::array<beam::Entry, 5>{{{strain::e11, strain::e22},
+                                                                                            {strain::c12, strain::c21},
+                                                                                            {strain::e11, strain::e33},
+                                                                                            {strain::e22, strain::e33},
+                                                                                            {strain::b1, strain::b2}}});
     static constexpr bool has_rate = false;
     using Answer = beam::SectionAnswer<History, entries.size()>;
 
@@ -219,7 +232,8 @@ public:
         const double both = answer.stress[strain::e11] + answer.stress[strain::e22];
         answer.stress[strain::e33] = N.force - slack * both;
         answer.stored += N.stored;
-        const double B1 = section.diagonal[strain::b1], B2 = section.diagonal[strain::b2], B = std::sqrt(B1 * B2), s1 = std::sqrt(B1 / B), s2 = std::sqrt(B2 / B);
+        const double B1 = section.diagonal[strain::b1], B2 = section.diagonal[strain::b2], B = std::sqrt(B1 * B2),
+                     s1 = std::sqrt(B1 / B), s2 = std::sqrt(B2 / B);
         const auto M = bending_.response(B, {s1 * e[strain::b1], s2 * e[strain::b2]}, accepted);
         answer.stress[strain::b1] = s1 * M.moment[0], answer.stress[strain::b2] = s2 * M.moment[1];
         answer.stored += M.stored, answer.dissipated = M.dissipated, answer.history = M.history;
@@ -228,7 +242,8 @@ public:
         const double c01 = C[12];
         answer.tangent[14] = -slack * (C[0] + c01), answer.tangent[15] = -slack * (C[1] + c01);
         answer.tangent[strain::e33] = N.slope + slack * slack * (C[0] + C[1] + 2.0 * c01) + nu * N.bend / EA * both;
-        answer.tangent[strain::b1] = s1 * s1 * M.tangent[0], answer.tangent[strain::b2] = s2 * s2 * M.tangent[2], answer.tangent[16] = s1 * s2 * M.tangent[1];
+        answer.tangent[strain::b1] = s1 * s1 * M.tangent[0], answer.tangent[strain::b2] = s2 * s2 * M.tangent[2],
+        answer.tangent[16] = s1 * s2 * M.tangent[1];
         return answer;
     }
 

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file A section that is free of stress in another shape than at rest: heat, moisture, shrinkage, growth, curvature and twist set in.
+/// @file A section that is free of stress in another shape than at rest: heat, moisture, shrinkage, growth, curvature and twist
+/// set in.
 
 #include <fibrant/material/elastic.hpp>
 
 namespace fibrant::material {
 
-/// Law of the strains less those of a free fibre, which a channel drives. At amplitude a a free fibre is 1 + a `along` times as long and
-/// 1 + a `across` times as wide, and bent and twisted by a times what is told: exactly, with no energy. Its strains are those of
-/// x = x_0 + xi_1 g_1 + xi_2 g_2 in that shape: E33 = (l^2 - 1)/2, E11 = E22 = (m^2 - 1)/2, b_a = -l m kappa_a, c21 = -c12 = m^2 tau.
+/// Law of the strains less those of a free fibre, which a channel drives. At amplitude a a free fibre is 1 + a `along` times as
+/// long and 1 + a `across` times as wide, and bent and twisted by a times what is told: exactly, with no energy. Its strains are
+/// those of x = x_0 + xi_1 g_1 + xi_2 g_2 in that shape: E33 = (l^2 - 1)/2, E11 = E22 = (m^2 - 1)/2, b_a = -l m kappa_a, c21 =
+/// -c12 = m^2 tau.
 ///
-/// Additive: the stiffness stays that of a unit of old length, right to the first order of a a growth. What drives it does the work
-/// -S . d(free strain), booked by trapezia.
+/// Additive: the stiffness stays that of a unit of old length, right to the first order of a a growth. What drives it does the
+/// work -S . d(free strain), booked by trapezia.
 template <beam::SectionMaterial Base>
 class Eigenstrain {
 public:
@@ -74,22 +76,18 @@ public:
         SectionStrains x;
         for (std::size_t c = 0; c < e.size(); ++c) x[c] = e[c] - now[c];
         const auto base = base_.response(section, x, accepted.base, drive);
-        Answer answer{base.stress, base.tangent, {base.history, base.stress, drive.amplitude}, base.stored, base.dissipated, base.driven};
-        for (std::size_t c = 0; c < e.size(); ++c) answer.driven -= 0.5 * (base.stress[c] + accepted.stress[c]) * (now[c] - before[c]);
+        Answer answer{base.stress, base.tangent,    {base.history, base.stress, drive.amplitude},
+                      base.stored, base.dissipated, base.driven};
+        for (std::size_t c = 0; c < e.size(); ++c)
+            answer.driven -= 0.5 * (base.stress[c] + accepted.stress[c]) * (now[c] - before[c]);
         return answer;
     }
-    double utilisation(const Section& section, SectionStrains e, const History& accepted) const
-        requires beam::Breakable<Base>
-    {
+    double utilisation(const Section& section, SectionStrains e, const History& accepted) const requires beam::Breakable<Base> {
         const SectionStrains now = free(section, accepted.amplitude);
         for (std::size_t c = 0; c < e.size(); ++c) e[c] -= now[c];
         return base_.utilisation(section, e, accepted.base);
     }
-    void break_now(History& history) const
-        requires beam::Breakable<Base>
-    {
-        base_.break_now(history.base);
-    }
+    void break_now(History& history) const requires beam::Breakable<Base> { base_.break_now(history.base); }
 
 private:
     Base base_;

@@ -17,8 +17,9 @@ namespace strain = beam::strain;
 /// Stiffnesses of a section, a unit of rest length. The energy is half the quadratic form of
 ///   A [E_L E33^2 + k_T (X11 + X22)^2 + G_TT ((X11 - X22)^2 + (2 E12)^2) + ks G_LT ((2 E13)^2 + (2 E23)^2)]
 ///   + E_L (I1 b1^2 + I2 b2^2) + G_LT [I1 (c11^2 + c21^2) + I2 (c12^2 + c22^2)],
-/// 1/k_T = 2 (1 - nu_TT)/E_T - 4 nu_LT^2/E_L the plane-strain bulk modulus (Hashin and Rosen 1964), G_TT = E_T/(2 (1 + nu_TT)). The twist
-/// (c21 - c12)/2 counts as sqrt(torsion_factor) times itself, as in beam::SectionLaw, whose split law this is if isotropic.
+/// 1/k_T = 2 (1 - nu_TT)/E_T - 4 nu_LT^2/E_L the plane-strain bulk modulus (Hashin and Rosen 1964), G_TT = E_T/(2 (1 + nu_TT)).
+/// The twist (c21 - c12)/2 counts as sqrt(torsion_factor) times itself, as in beam::SectionLaw, whose split law this is if
+/// isotropic.
 struct ElasticSection {
     double contraction = 0.0;                  ///< nu_LT [1]
     std::array<double, 12> diagonal{};         ///< by `strain`

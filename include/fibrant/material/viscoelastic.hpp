@@ -16,11 +16,12 @@ inline double third_order_rest(double z, double x) noexcept {
 }
 }  // namespace detail
 
-/// S = C [(1 - sum g_i) eps + sum g_i v_i], v_i' = eps' - v_i/tau_i, v_i the elastic strain of branch i (generalised Maxwell model; the
-/// exact step for a constant rate is that of Taylor, Pister, Goudreau 1970). C is that of Elastic: isotropic or transversely isotropic.
+/// S = C [(1 - sum g_i) eps + sum g_i v_i], v_i' = eps' - v_i/tau_i, v_i the elastic strain of branch i (generalised Maxwell
+/// model; the exact step for a constant rate is that of Taylor, Pister, Goudreau 1970). C is that of Elastic: isotropic or
+/// transversely isotropic.
 ///
-/// An increment of no duration is instantaneous, one of a very long one relaxed; its length is limited by how straight the path is, not
-/// by a time constant. Stored and dissipated are the work of the straight path, to rounding.
+/// An increment of no duration is instantaneous, one of a very long one relaxed; its length is limited by how straight the path
+/// is, not by a time constant. Stored and dissipated are the work of the straight path, to rounding.
 template <int Branches>
 class Viscoelastic {
     static_assert(Branches >= 1);
@@ -95,8 +96,8 @@ public:
             if (!(z > 0.0)) continue;
             // The integral of v . C v over the increment, v(s) = old exp(-s) + (change / z)(1 - exp(-s)).
             const double rest = std::isfinite(z) ? detail::third_order_rest(z, gone) / z / z : 0.0;
-            answer.dissipated += g * (0.5 * gone * (2.0 - gone) * section.product(old, old) + gone * phi * section.product(old, change) +
-                                      rest * section.product(change, change));
+            answer.dissipated += g * (0.5 * gone * (2.0 - gone) * section.product(old, old) +
+                                      gone * phi * section.product(old, change) + rest * section.product(change, change));
         }
         answer.stress = section.stress(all);
         answer.tangent = section.tangent(modulus);

@@ -9,12 +9,14 @@
 
 namespace fibrant::material {
 
-/// Von Mises plasticity with linear kinematic hardening at Rings x Angles points of a round section (rings at Gauss points of the squared
-/// radius, so that area and second moments are exact). At each the stress (sigma, tau_1, tau_2) obeys q^2 = sigma^2 + 3 tau^2 of stress
-/// less back stress, q <= sy; closest point (Simo and Hughes, Computational Inelasticity, ch. 3, for a diagonal elasticity):
+/// Von Mises plasticity with linear kinematic hardening at Rings x Angles points of a round section (rings at Gauss points of the
+/// squared radius, so that area and second moments are exact). At each the stress (sigma, tau_1, tau_2) obeys q^2 = sigma^2 + 3
+/// tau^2 of stress less back stress, q <= sy; closest point (Simo and Hughes, Computational Inelasticity, ch. 3, for a diagonal
+/// elasticity):
 ///   x_i = x_trial,i / (1 + l (C + H)_i P_i),  x . P x = sy^2,  d ep = l P x,  C = (E, G, G),  H = (h, h/3, h/3),  P = (1, 3, 3).
-/// Plastic flow keeps the volume: the section contracts by half of the mean of what was accepted (what its own stress does on that is
-/// not booked: a free section has none). The strains of the section stay elastic. Strains are Green's: right to 1 % up to 5 %.
+/// Plastic flow keeps the volume: the section contracts by half of the mean of what was accepted (what its own stress does on
+/// that is not booked: a free section has none). The strains of the section stay elastic. Strains are Green's: right to 1 % up to
+/// 5 %.
 ///
 /// With 3 x 16 points the moment beyond yield is within 1.4 % of the continuous section's, in any direction.
 template <int Rings, int Angles>
@@ -64,9 +66,11 @@ public:
     explicit WireOf(const Parameters& parameters) : p_{core::validated(parameters)} {}
     /// Throws std::invalid_argument for sections that are not round and for fibres that are not isotropic.
     Section section(const beam::SectionConstants& shape, const scene::ElasticMaterial& elastic, double shear_factor) const {
-        if (elastic.transverse.given()) core::refuse("Wire: ElasticMaterial.transverse", "given", "left out: a wire is isotropic");
+        if (elastic.transverse.given())
+            core::refuse("Wire: ElasticMaterial.transverse", "given", "left out: a wire is isotropic");
         Section s{ElasticSection(shape, elastic, shear_factor)};
-        const double uneven = std::abs(shape.second_moment_1 / shape.second_moment_2 - 1.0) + std::abs(shape.torsion_factor - 1.0);
+        const double uneven =
+            std::abs(shape.second_moment_1 / shape.second_moment_2 - 1.0) + std::abs(shape.torsion_factor - 1.0);
         core::require(uneven < 1e-9, "Wire: second_moment_1 / second_moment_2 - 1", uneven, "0: a round section");
         s.area = shape.area, s.radius = 2.0 * std::sqrt(shape.second_moment_1 / shape.area);
         s.young = elastic.young_modulus, s.shear = elastic.shear_modulus();
@@ -84,7 +88,8 @@ public:
         for (std::size_t k = 0; k < count; ++k) {
             const Point& at = points[k];
             const double x1 = section.radius * at.x, x2 = section.radius * at.y, w = section.area * at.weight;
-            const Three eps{e[strain::e33] + x1 * e[strain::b1] + x2 * e[strain::b2], e[strain::e13] + x1 * e[strain::c11] + x2 * e[strain::c12],
+            const Three eps{e[strain::e33] + x1 * e[strain::b1] + x2 * e[strain::b2],
+                            e[strain::e13] + x1 * e[strain::c11] + x2 * e[strain::c12],
                             e[strain::e23] + x1 * e[strain::c21] + x2 * e[strain::c22]};
             mean += at.weight * accepted.plastic[k][0];
             Three& plastic = answer.history.plastic[k];
@@ -121,7 +126,8 @@ public:
         for (std::size_t k = 0; k < entries.size(); ++k) {
             const auto [a, b] = entries[k];
             // Blocks of two point strains are whole above the diagonal of `of`; what of them lies below it in K is added.
-            if (a >= 3) answer.tangent[k] = a == b || same_point_strain(a, b) ? K(a - 3, b - 3) : K(a - 3, b - 3) + K(b - 3, a - 3);
+            if (a >= 3)
+                answer.tangent[k] = a == b || same_point_strain(a, b) ? K(a - 3, b - 3) : K(a - 3, b - 3) + K(b - 3, a - 3);
         }
         for (std::size_t c = 0; c < 3; ++c) answer.tangent[c] = section.diagonal[c];
         answer.tangent[12] = section.lateral;
@@ -146,7 +152,9 @@ private:
         return all;
     }();
     static constexpr int point_strain(int c) noexcept {
-        return c == strain::e33 || c == strain::b1 || c == strain::b2 ? 0 : c == strain::e13 || c == strain::c11 || c == strain::c12 ? 1 : 2;
+        return c == strain::e33 || c == strain::b1 || c == strain::b2     ? 0
+               : c == strain::e13 || c == strain::c11 || c == strain::c12 ? 1
+                                                                          : 2;
     }
     static constexpr bool same_point_strain(int a, int b) noexcept { return point_strain(a) == point_strain(b); }
 

@@ -32,11 +32,11 @@ struct ContactStatistics {
     Index fibre_pairs = 0;                                       ///< with an active element
     double least_gap = std::numeric_limits<double>::infinity();  ///< of all elements [length]
     double greatest_penetration = 0;                             ///< [length], >= 0
-    double greatest_penetration_over_radius = 0;  ///< over the smaller circumscribed radius of the pair [1]
-    double sum_of_reactions = 0;                  ///< [force]
-    double sum_of_friction = 0;                   ///< of the lengths of R_T [force]
-    Histogram reaction;                           ///< of active elements [force]
-    Histogram penetration;                        ///< of active elements [length]
+    double greatest_penetration_over_radius = 0;                 ///< over the smaller circumscribed radius of the pair [1]
+    double sum_of_reactions = 0;                                 ///< [force]
+    double sum_of_friction = 0;                                  ///< of the lengths of R_T [force]
+    Histogram reaction;                                          ///< of active elements [force]
+    Histogram penetration;                                       ///< of active elements [length]
     Mat3 orientation = Mat3::Zero();  ///< mean of N N^T over active elements, trace 1; zero if there are none
 };
 
@@ -52,8 +52,7 @@ inline ContactStatistics contact_statistics(const Snapshot& snapshot, Index bins
         const double radius = std::min(snapshot.fibres[core::at(contact.fibre_i)].section.radius(),
                                        snapshot.fibres[core::at(contact.fibre_j)].section.radius());
         answer.greatest_penetration = std::max(answer.greatest_penetration, penetration);
-        answer.greatest_penetration_over_radius =
-            std::max(answer.greatest_penetration_over_radius, penetration / radius);
+        answer.greatest_penetration_over_radius = std::max(answer.greatest_penetration_over_radius, penetration / radius);
         if (!(contact.reaction > 0.0)) continue;
         ++answer.active;
         if (contact.crossing) ++answer.crossings;

@@ -23,7 +23,7 @@ namespace fibrant::observe {
 
 /// The closest two fibres.
 struct LeastGap {
-    double gap = std::numeric_limits<double>::infinity();  ///< between surfaces, < 0 in penetration [length]
+    double gap = std::numeric_limits<double>::infinity();              ///< between surfaces, < 0 in penetration [length]
     double gap_over_radius = std::numeric_limits<double>::infinity();  ///< over the smaller radius at rest [1]
     Index fibre_i = -1, fibre_j = -1;
     Vec3 position = Vec3::Zero();  ///< half way between the two axes [length]
@@ -31,9 +31,9 @@ struct LeastGap {
 };
 
 /// Half extent of a fibre's deformed section along a unit direction [length].
-inline double section_extent(const FibreSnapshot& fibre, const NodalCurve& curve, double t,
-                             const Vec3& direction) {
-    return fibre.section.extent(curve.interpolate(std::span<const Vec3>{fibre.director_1}, t), curve.interpolate(std::span<const Vec3>{fibre.director_2}, t), direction);
+inline double section_extent(const FibreSnapshot& fibre, const NodalCurve& curve, double t, const Vec3& direction) {
+    return fibre.section.extent(curve.interpolate(std::span<const Vec3>{fibre.director_1}, t),
+                                curve.interpolate(std::span<const Vec3>{fibre.director_2}, t), direction);
 }
 
 namespace detail {
@@ -42,8 +42,7 @@ namespace detail {
 ///
 /// Newton's method on the squared distance with a Levenberg-Marquardt damping, which near-parallel curves need, kept in
 /// the intervals; the distance never rises.
-inline void closest_points(const NodalCurve& a, const NodalCurve& b, double a_from, double b_from, double& t,
-                           double& u) {
+inline void closest_points(const NodalCurve& a, const NodalCurve& b, double a_from, double b_from, double& t, double& u) {
     const auto half_square = [&](double p, double q) { return 0.5 * (a.position(p) - b.position(q)).squaredNorm(); };
     double value = half_square(t, u), damping = 1e-6;
     for (int iteration = 0; iteration < 40 && damping < 1e6; ++iteration) {
@@ -81,8 +80,8 @@ enum class OwnTurns : std::uint8_t { left_out, counted };
 
 namespace detail {
 
-/// Pairs of node intervals of a snapshot's fibres, and how close their surfaces are. Of a search over the half elements, inflated by their
-/// deviation from the chord.
+/// Pairs of node intervals of a snapshot's fibres, and how close their surfaces are. Of a search over the half elements, inflated
+/// by their deviation from the chord.
 template <proximity::ProximitySearch Search>
 class SurfacePairs {
 public:
@@ -110,7 +109,8 @@ public:
             lines_[k] = {fibre.position, radius, inflation_[k], -1};
             lines_[k].closed = fibre.closed;
             if (own_turns == OwnTurns::counted)
-                lines_[k].self_skip = contact::self_contact_arc(fibre.section.radius(), curve.length(0.0, curve.end()) / static_cast<double>(curve.elements()));
+                lines_[k].self_skip = contact::self_contact_arc(
+                    fibre.section.radius(), curve.length(0.0, curve.end()) / static_cast<double>(curve.elements()));
             first_[k + 1] = core::count(owner_);
             greatest_radius_ = std::max(greatest_radius_, radius);
             for (const Vec3& node : fibre.position) extent_ = std::max(extent_, (node - snapshot.fibres[0].position[0]).norm());
@@ -133,8 +133,9 @@ public:
             const auto &a = lines_[core::at(i)].points, &b = lines_[core::at(j)].points;
             const Vec3 u = a[core::at(p + 1)] - a[core::at(p)], v = b[core::at(q + 1)] - b[core::at(q)];
             const auto near = proximity::segment_distance(a[core::at(p)], u, b[core::at(q)], v);
-            found[core::at(n)] = {std::sqrt(near.squared) - inflation_[core::at(i)][core::at(p)] - inflation_[core::at(j)][core::at(q)] -
-                                      wide_[core::at(i)][core::at(p)] - wide_[core::at(j)][core::at(q)],
+            found[core::at(n)] = {std::sqrt(near.squared) - inflation_[core::at(i)][core::at(p)] -
+                                      inflation_[core::at(j)][core::at(q)] - wide_[core::at(i)][core::at(p)] -
+                                      wide_[core::at(j)][core::at(q)],
                                   static_cast<double>(p) + near.s,
                                   static_cast<double>(q) + near.t,
                                   i,
@@ -149,7 +150,8 @@ public:
         return found;
     }
 
-    /// Round sections are closest where the curves are, along the line that joins these points; others are searched by `PairedPieces`.
+    /// Round sections are closest where the curves are, along the line that joins these points; others are searched by
+    /// `PairedPieces`.
     /// @param most  gap beyond which it is not looked for, and infinite
     SurfaceGap measured(const Candidate& candidate, double most) const {
         const FibreSurface &i = surfaces_[core::at(candidate.i)], &j = surfaces_[core::at(candidate.j)];
@@ -157,7 +159,8 @@ public:
         closest_points(i.curve(), j.curve(), static_cast<double>(candidate.p), static_cast<double>(candidate.q), t, u);
         const Vec3 apart = j.curve().position(u) - i.curve().position(t);
         const double distance = apart.norm();
-        const double widest = wide_[core::at(candidate.i)][core::at(candidate.p)] + wide_[core::at(candidate.j)][core::at(candidate.q)];
+        const double widest =
+            wide_[core::at(candidate.i)][core::at(candidate.p)] + wide_[core::at(candidate.j)][core::at(candidate.q)];
         if (distance - widest > most) return SurfaceGap{};
         if (round_[core::at(candidate.i)] == 0 || round_[core::at(candidate.j)] == 0)
             return PairedPieces(i, j, static_cast<double>(candidate.p), static_cast<double>(candidate.q)).closest(t, u);
@@ -170,13 +173,16 @@ public:
         if (candidate.i != candidate.j) return true;
         const double nearest = 1e-6;
         const double p = static_cast<double>(candidate.p), q = static_cast<double>(candidate.q);
-        const bool around = snapshot_->fibres[core::at(candidate.i)].closed && q - p > 0.5 * surfaces_[core::at(candidate.i)].curve().end();
-        return !(around ? found.t < p + nearest || found.u > q + 1.0 - nearest : found.t > p + 1.0 - nearest || found.u < q + nearest);
+        const bool around =
+            snapshot_->fibres[core::at(candidate.i)].closed && q - p > 0.5 * surfaces_[core::at(candidate.i)].curve().end();
+        return !(around ? found.t < p + nearest || found.u > q + 1.0 - nearest
+                        : found.t > p + 1.0 - nearest || found.u < q + nearest);
     }
 
     LeastGap place(const Candidate& candidate, const SurfaceGap& found) const {
         const FibreSurface &i = surfaces_[core::at(candidate.i)], &j = surfaces_[core::at(candidate.j)];
-        const scene::CrossSection &one = snapshot_->fibres[core::at(candidate.i)].section, &other = snapshot_->fibres[core::at(candidate.j)].section;
+        const scene::CrossSection &one = snapshot_->fibres[core::at(candidate.i)].section,
+                                  &other = snapshot_->fibres[core::at(candidate.j)].section;
         const double radius = std::min({one.semi_axis_1, one.semi_axis_2, other.semi_axis_1, other.semi_axis_2});
         const Vec3 middle = 0.5 * (i.curve().position(found.t) + j.curve().position(found.u));
         return {found.gap, found.gap / radius, candidate.i, candidate.j, middle, found.t, found.u};
@@ -218,37 +224,50 @@ LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns =
         for (std::size_t start = 0, count = 0; start < candidates.size() && candidates[start].bound < least.gap; start += count) {
             count = std::min(together, candidates.size() - start);
             together = std::min(most, 2 * together);
-            core::parallel_for<core::Share::turns>(static_cast<Index>(count), [&](Index k) { found[core::at(k)] = surfaces.measured(candidates[start + core::at(k)], least.gap); });
+            core::parallel_for<core::Share::turns>(static_cast<Index>(count), [&](Index k) {
+                found[core::at(k)] = surfaces.measured(candidates[start + core::at(k)], least.gap);
+            });
             for (std::size_t k = 0; k < count; ++k)
-                if (found[k].gap < least.gap && surfaces.counts(candidates[start + k], found[k])) least = surfaces.place(candidates[start + k], found[k]);
+                if (found[k].gap < least.gap && surfaces.counts(candidates[start + k], found[k]))
+                    least = surfaces.place(candidates[start + k], found[k]);
         }
         if (reach > 2.0 * surfaces.extent()) break;  // a single fibre
     }
     return least;
 }
 
-/// Every place where the surfaces of two fibres are deeper in each other than `depth`, the deepest first: of two of the same fibres that are
-/// less than a node interval apart on both, the deeper one.
+/// Every place where the surfaces of two fibres are deeper in each other than `depth`, the deepest first: of two of the same
+/// fibres that are less than a node interval apart on both, the deeper one.
 /// @param depth  >= 0 [length]
 template <proximity::ProximitySearch Search>
-std::vector<LeastGap> deep_places(const Snapshot& snapshot, Search search, double depth, OwnTurns own_turns = OwnTurns::left_out) {
+std::vector<LeastGap> deep_places(const Snapshot& snapshot, Search search, double depth,
+                                  OwnTurns own_turns = OwnTurns::left_out) {
     detail::SurfacePairs<Search> surfaces(snapshot, std::move(search), own_turns);
     auto candidates = surfaces.candidates(0.0);
-    candidates.resize(core::at(std::partition_point(candidates.begin(), candidates.end(), [&](const auto& one) { return one.bound < -depth; }) - candidates.begin()));
+    candidates.resize(
+        core::at(std::partition_point(candidates.begin(), candidates.end(), [&](const auto& one) { return one.bound < -depth; }) -
+                 candidates.begin()));
     std::vector<SurfaceGap> found(candidates.size());
-    core::parallel_for<core::Share::turns>(core::count(candidates), [&](Index k) { found[core::at(k)] = surfaces.measured(candidates[core::at(k)], -depth); });
+    core::parallel_for<core::Share::turns>(
+        core::count(candidates), [&](Index k) { found[core::at(k)] = surfaces.measured(candidates[core::at(k)], -depth); });
     std::vector<LeastGap> places;
     for (std::size_t k = 0; k < found.size(); ++k)
-        if (found[k].gap < -depth && surfaces.counts(candidates[k], found[k])) places.push_back(surfaces.place(candidates[k], found[k]));
-    const auto deeper = [](const LeastGap& a, const LeastGap& b) { return std::tie(a.gap, a.fibre_i, a.fibre_j, a.t, a.u) < std::tie(b.gap, b.fibre_i, b.fibre_j, b.t, b.u); };
+        if (found[k].gap < -depth && surfaces.counts(candidates[k], found[k]))
+            places.push_back(surfaces.place(candidates[k], found[k]));
+    const auto deeper = [](const LeastGap& a, const LeastGap& b) {
+        return std::tie(a.gap, a.fibre_i, a.fibre_j, a.t, a.u) < std::tie(b.gap, b.fibre_i, b.fibre_j, b.t, b.u);
+    };
     // Fibre by fibre, so that each is compared with those of its own pair alone.
     std::sort(places.begin(), places.end(), [&](const LeastGap& a, const LeastGap& b) {
-        return std::tie(a.fibre_i, a.fibre_j) != std::tie(b.fibre_i, b.fibre_j) ? std::tie(a.fibre_i, a.fibre_j) < std::tie(b.fibre_i, b.fibre_j) : deeper(a, b);
+        return std::tie(a.fibre_i, a.fibre_j) != std::tie(b.fibre_i, b.fibre_j)
+                   ? std::tie(a.fibre_i, a.fibre_j) < std::tie(b.fibre_i, b.fibre_j)
+                   : deeper(a, b);
     });
     std::vector<LeastGap> kept;
     for (const LeastGap& place : places) {
         bool near = false;
-        for (auto other = kept.rbegin(); !near && other != kept.rend() && other->fibre_i == place.fibre_i && other->fibre_j == place.fibre_j; ++other)
+        for (auto other = kept.rbegin();
+             !near && other != kept.rend() && other->fibre_i == place.fibre_i && other->fibre_j == place.fibre_j; ++other)
             near = std::abs(other->t - place.t) < 1.0 && std::abs(other->u - place.u) < 1.0;
         if (!near) kept.push_back(place);
     }

@@ -60,8 +60,7 @@ public:
     template <class Value>
     Value interpolate(std::span<const Value> values, double t) const noexcept {
         const auto [first, s] = local(t);
-        return 0.5 * s * (s - 1.0) * values[first] + (1.0 - s * s) * values[first + 1] +
-               0.5 * s * (s + 1.0) * values[first + 2];
+        return 0.5 * s * (s - 1.0) * values[first] + (1.0 - s * s) * values[first + 1] + 0.5 * s * (s + 1.0) * values[first + 2];
     }
 
     /// Calls visit(t, weight) at Gauss points of arc length between two parameters, `weight` in units of length.
@@ -110,7 +109,8 @@ public:
 private:
     static std::span<const Vec3> checked(const FibreSnapshot& fibre) {
         if (fibre.interpolation != Interpolation::quadratic)
-            core::refuse("FibreSnapshot.interpolation", fibre.interpolation == Interpolation::linear ? "linear" : "cubic", "quadratic");
+            core::refuse("FibreSnapshot.interpolation", fibre.interpolation == Interpolation::linear ? "linear" : "cubic",
+                         "quadratic");
         return fibre.position;
     }
     struct Local {

@@ -24,8 +24,8 @@ public:
         points_.push_back(point);
         return core::count(points_) - 1;
     }
-    /// Points [first, first + count) as a line, which comes back to the first if it is closed. Cells are numbered vertices first, then lines, each in
-    /// order.
+    /// Points [first, first + count) as a line, which comes back to the first if it is closed. Cells are numbered vertices first,
+    /// then lines, each in order.
     void add_line(Index first, Index count, bool closed = false) {
         for (Index k = 0; k < count; ++k) line_points_.push_back(first + k);
         if (closed) line_points_.push_back(first);
@@ -50,15 +50,16 @@ public:
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
             "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"" +
             std::to_string(points_.size()) + "\" NumberOfVerts=\"" + std::to_string(vertex_points_.size()) +
-            "\" NumberOfLines=\"" + std::to_string(line_ends_.size()) +
-            "\" NumberOfStrips=\"0\" NumberOfPolys=\"" + std::to_string(triangle_points_.size() / 3) + "\">\n";
+            "\" NumberOfLines=\"" + std::to_string(line_ends_.size()) + "\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
+            std::to_string(triangle_points_.size() / 3) + "\">\n";
         std::string data;
         data.reserve(bytes() + 8192);  // and the header
         write_arrays(head, data, "PointData", point_data_, points_.size());
         write_arrays(head, data, "CellData", cell_data_, cells);
         head += "<Points>\n";
         static_assert(sizeof(Vec3) == 3 * sizeof(double));
-        write_array<double>(head, data, "Points", "Float64", 3, {reinterpret_cast<const double*>(points_.data()), 3 * points_.size()});
+        write_array<double>(head, data, "Points", "Float64", 3,
+                            {reinterpret_cast<const double*>(points_.data()), 3 * points_.size()});
         head += "</Points>\n";
         std::vector<std::int64_t> ends;
         for (std::size_t k = 0; k < vertex_points_.size(); ++k) ends.push_back(static_cast<std::int64_t>(k + 1));
@@ -83,7 +84,9 @@ private:
 
     /// Of all arrays.
     std::size_t bytes() const noexcept {
-        std::size_t sum = 24 * points_.size() + 8 * (2 * vertex_points_.size() + line_points_.size() + line_ends_.size() + triangle_points_.size() * 4 / 3) + 64;
+        std::size_t sum =
+            24 * points_.size() +
+            8 * (2 * vertex_points_.size() + line_points_.size() + line_ends_.size() + triangle_points_.size() * 4 / 3) + 64;
         for (const auto* arrays : {&point_data_, &cell_data_})
             for (const Array& array : *arrays) sum += 4 * array.values.size() + 8;
         return sum;
@@ -106,9 +109,8 @@ private:
     template <class Number>
     static void write_array(std::string& head, std::string& data, const std::string& name, const char* type,
                             std::size_t components, std::span<const Number> values) {
-        head += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) +
-                "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"appended\" offset=\"" +
-                std::to_string(data.size()) + "\"/>\n";
+        head += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) + "\" NumberOfComponents=\"" +
+                std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(data.size()) + "\"/>\n";
         const std::uint64_t bytes = values.size() * sizeof(Number);
         const std::size_t start = data.size();
         data.resize(start + sizeof bytes + bytes);
@@ -116,8 +118,8 @@ private:
         if (bytes > 0) std::memcpy(data.data() + start + sizeof bytes, values.data(), bytes);
     }
 
-    static void write_arrays(std::string& head, std::string& data, const std::string& kind,
-                             const std::vector<Array>& arrays, std::size_t count) {
+    static void write_arrays(std::string& head, std::string& data, const std::string& kind, const std::vector<Array>& arrays,
+                             std::size_t count) {
         head += "<" + kind + ">\n";
         for (const Array& array : arrays) {
             if (array.values.size() != count * array.components)
@@ -175,8 +177,7 @@ public:
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
             "byte_order=\"LittleEndian\">\n<Collection>\n";
         for (const Entry& entry : entries_)
-            text += "<DataSet timestep=\"" + shortest(entry.time) + "\" group=\"\" part=\"0\" file=\"" + entry.file +
-                    "\"/>\n";
+            text += "<DataSet timestep=\"" + shortest(entry.time) + "\" group=\"\" part=\"0\" file=\"" + entry.file + "\"/>\n";
         write_file(path_, text + "</Collection>\n</VTKFile>\n");
     }
 

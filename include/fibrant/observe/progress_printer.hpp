@@ -28,8 +28,8 @@ inline std::string clock_text(double seconds) {
 
 /// An observer that prints a line after each increment, under a heading, and one for each attempt that was given up.
 ///
-/// depth/r is the greatest penetration; left is the time that the rest of the programme takes at the pace of this process' increments so
-/// far, from the second on: a stage that ends as soon as it is at rest takes less.
+/// depth/r is the greatest penetration; left is the time that the rest of the programme takes at the pace of this process'
+/// increments so far, from the second on: a stage that ends as soon as it is at rest takes less.
 class ProgressPrinter {
 public:
     struct Parameters {
@@ -46,14 +46,15 @@ public:
     ProgressPrinter(const Parameters& parameters, std::ostream& out) : parameters_{core::validated(parameters)}, out_{&out} {}
 
     /// @param increment  a `simulation::IncrementReport`
-    /// @param figures    named values, such as a force: the first of them end the line. A name that is too wide for its column is cut.
+    /// @param figures    named values, such as a force: the first of them end the line. A name that is too wide for its column is
+    /// cut.
     template <class IncrementReport>
     void reported(const IncrementReport& increment, std::span<const Column> figures = {}) {
         figures = figures.first(std::min(figures.size(), static_cast<std::size_t>(parameters_.figures)));
         const auto& counts = increment.counts;
         if (lines_++ % parameters_.heading_every == 0) {
-            print("%4s %-10s %6s %6s %6s %6s %8s %9s %9s %7s %4s %8s", "inc", "stage", "done", "passes", "newton", "linear", "residual", "elements", "active",
-                  "depth/r", "cuts", "left");
+            print("%4s %-10s %6s %6s %6s %6s %8s %9s %9s %7s %4s %8s", "inc", "stage", "done", "passes", "newton", "linear",
+                  "residual", "elements", "active", "depth/r", "cuts", "left");
             for (const Column& figure : figures) print("  %12.12s", figure.name.c_str());
             *out_ << '\n';
         }
@@ -64,9 +65,10 @@ public:
             seconds_ += increment.seconds;
         const double done = increment.progress - first_;
         const std::string left = done > 0.0 ? clock_text(seconds_ * (1.0 - increment.progress) / done) : "?";
-        print("%4td %-10.10s %5.1f%% %6td %6td %6td %8.1e %9td %9td %7.4f %4td %8s", increment.number, increment.stage.c_str(), 100.0 * increment.progress,
-              counts.contact_passes, counts.newton, counts.linear_iterations, increment.residual, increment.contact.elements, increment.contact.active,
-              increment.contact.greatest_penetration / parameters_.radius, increment.cuts, left.c_str());
+        print("%4td %-10.10s %5.1f%% %6td %6td %6td %8.1e %9td %9td %7.4f %4td %8s", increment.number, increment.stage.c_str(),
+              100.0 * increment.progress, counts.contact_passes, counts.newton, counts.linear_iterations, increment.residual,
+              increment.contact.elements, increment.contact.active, increment.contact.greatest_penetration / parameters_.radius,
+              increment.cuts, left.c_str());
         for (const Column& figure : figures) print("  %12.5g", std::strtod(figure.value.c_str(), nullptr));
         *out_ << std::endl;
     }
@@ -75,8 +77,8 @@ public:
     /// @param attempt  a `simulation::FailedAttempt`
     template <class FailedAttempt>
     void gave_up(const FailedAttempt& attempt) const {
-        print("%4td %-10.10s attempt %td given up after %td Newton iterations, %s since the increment began: ", attempt.number, attempt.stage.c_str(),
-              attempt.attempts, attempt.newton, clock_text(attempt.seconds).c_str());
+        print("%4td %-10.10s attempt %td given up after %td Newton iterations, %s since the increment began: ", attempt.number,
+              attempt.stage.c_str(), attempt.attempts, attempt.newton, clock_text(attempt.seconds).c_str());
         *out_ << attempt.reason << std::endl;
     }
 

@@ -47,13 +47,13 @@ struct ContactSnapshot {
 /// A contact of a fibre with a rigid tool; the normal points away from the tool.
 struct ToolContactSnapshot {
     Index fibre = -1, tool = -1;
-    double abscissa = 0;             ///< rest arc length [length]
-    Vec3 position = Vec3::Zero();    ///< of the tool's point below the particle [length]
-    Vec3 normal = Vec3::Zero();      ///< [1]
-    double gap = 0;                  ///< < 0 in penetration [length]
-    double reaction = 0;             ///< >= 0 [force], on the fibre along the normal
-    Vec3 friction = Vec3::Zero();    ///< on the tool [force]
-    double stiffness = 0;            ///< [force / length]
+    double abscissa = 0;           ///< rest arc length [length]
+    Vec3 position = Vec3::Zero();  ///< of the tool's point below the particle [length]
+    Vec3 normal = Vec3::Zero();    ///< [1]
+    double gap = 0;                ///< < 0 in penetration [length]
+    double reaction = 0;           ///< >= 0 [force], on the fibre along the normal
+    Vec3 friction = Vec3::Zero();  ///< on the tool [force]
+    double stiffness = 0;          ///< [force / length]
 };
 
 /// A bonding element.
@@ -73,11 +73,11 @@ struct SolidSnapshot {
 
 /// State after an accepted increment.
 struct Snapshot {
-    Index increment = 0;      ///< accepted increments so far
-    std::string stage;        ///< name of the loading stage
-    double progress = 0;      ///< of the whole loading, in [0, 1]
+    Index increment = 0;  ///< accepted increments so far
+    std::string stage;    ///< name of the loading stage
+    double progress = 0;  ///< of the whole loading, in [0, 1]
     std::vector<FibreSnapshot> fibres;
-    std::vector<ContactSnapshot> contacts;  ///< active ones and candidates, sorted by fibres and abscissa
+    std::vector<ContactSnapshot> contacts;           ///< active ones and candidates, sorted by fibres and abscissa
     std::vector<ToolContactSnapshot> tool_contacts;  ///< sorted by fibre, tool and abscissa
     SolidSnapshot solid;
 };

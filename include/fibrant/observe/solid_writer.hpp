@@ -23,10 +23,14 @@ inline double von_mises(const Mat3& stress) noexcept {
 /// (xx, yy, zz, xy, yz, xz) and the von Mises stress. Empty if there is no solid.
 inline std::string solid_data(const SolidSnapshot& solid) {
     if (solid.cells.empty()) return {};
-    std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n"
-                       "<Piece NumberOfPoints=\"" + std::to_string(solid.position.size()) + "\" NumberOfCells=\"" + std::to_string(solid.cells.size()) + "\">\n";
+    std::string text =
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+        "byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n"
+        "<Piece NumberOfPoints=\"" +
+        std::to_string(solid.position.size()) + "\" NumberOfCells=\"" + std::to_string(solid.cells.size()) + "\">\n";
     const auto open = [&](const std::string& name, const char* type, int components) {
-        text += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + name + "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"ascii\">\n";
+        text += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+                std::to_string(components) + "\" format=\"ascii\">\n";
     };
     const auto number = [&](double value) { text += shortest(static_cast<double>(static_cast<float>(value))) + " "; };
     const auto vectors = [&](const std::string& name, const std::vector<Vec3>& values) {

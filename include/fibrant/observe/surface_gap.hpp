@@ -33,7 +33,9 @@ public:
         return size * (derivative == 1 ? along.tangent(t) : along.second(t));
     }
     /// Half extent of the section at t along a unit direction [length].
-    double extent(double t, const Vec3& direction) const noexcept { return std::hypot(axis(0, t).dot(direction), axis(1, t).dot(direction)); }
+    double extent(double t, const Vec3& direction) const noexcept {
+        return std::hypot(axis(0, t).dot(direction), axis(1, t).dot(direction));
+    }
     /// Greatest half extent in any direction of the sections of an element's nodes, the one that holds a node interval [length].
     double greatest_extent(std::size_t piece) const noexcept {
         double most = 0.0;
@@ -47,7 +49,9 @@ public:
         if (fibre_->section.semi_axis_1 != fibre_->section.semi_axis_2) return false;
         for (std::size_t node = 0; node < fibre_->position.size(); ++node) {
             const Vec3 &p = fibre_->director_1[node], &q = fibre_->director_2[node];
-            if (std::abs(p.squaredNorm() - 1.0) > rounding || std::abs(q.squaredNorm() - 1.0) > rounding || std::abs(p.dot(q)) > rounding) return false;
+            if (std::abs(p.squaredNorm() - 1.0) > rounding || std::abs(q.squaredNorm() - 1.0) > rounding ||
+                std::abs(p.dot(q)) > rounding)
+                return false;
         }
         return true;
     }
@@ -67,13 +71,16 @@ struct SurfaceGap {
 /// Two fibres within one node interval each.
 ///
 /// The gap of two sections is the greatest F(n) = n.d - h_i(n) - h_j(n) over unit directions, that of two surfaces its least over
-/// pairs of sections. It is sought first among pairs in planes across the mean of the tangents, where n is one angle, sampled all round
-/// and all along; from there, and from the closest points of the centrelines where a fibre ends, in both abscissae and all
+/// pairs of sections. It is sought first among pairs in planes across the mean of the tangents, where n is one angle, sampled all
+/// round and all along; from there, and from the closest points of the centrelines where a fibre ends, in both abscissae and all
 /// directions. Nothing here knows of contact elements.
 class PairedPieces {
 public:
     /// @param from_i, from_j  first parameter of either node interval
-    PairedPieces(const FibreSurface& i, const FibreSurface& j, double from_i, double from_j) : i_{i}, j_{j}, from_{from_i, from_j},
+    PairedPieces(const FibreSurface& i, const FibreSurface& j, double from_i, double from_j)
+        : i_{i},
+          j_{j},
+          from_{from_i, from_j},
           sense_{i.curve().tangent(from_i + 0.5).dot(j.curve().tangent(from_j + 0.5)) < 0.0 ? -1.0 : 1.0} {}
 
     /// @param t, u  closest points of the two centrelines in the intervals
@@ -105,7 +112,9 @@ private:
     static constexpr double interval = 1.0 - 1e-10;  // a node itself belongs to the element that follows
 
     Vec3 between(double t, double u) const noexcept { return j_.curve().position(u) - i_.curve().position(t); }
-    double value(double t, double u, const Vec3& n) const noexcept { return n.dot(between(t, u)) - i_.extent(t, n) - j_.extent(u, n); }
+    double value(double t, double u, const Vec3& n) const noexcept {
+        return n.dot(between(t, u)) - i_.extent(t, n) - j_.extent(u, n);
+    }
     bool inside(double t, double u) const noexcept {
         return t > from_[0] && t < from_[0] + 1.0 && u > from_[1] && u < from_[1] + 1.0;
     }
@@ -159,7 +168,8 @@ private:
         for (int k = 0; k < around; ++k) angles[core::at(k)] = 2.0 * std::numbers::pi * k / around;
         for (std::size_t s = 0; s < 2; ++s) {
             const core::Two &p = sections[s].p, &q = sections[s].q;
-            const double wide = 0.5 * std::atan2(2.0 * (p[0] * p[1] + q[0] * q[1]), p[0] * p[0] + q[0] * q[0] - p[1] * p[1] - q[1] * q[1]);
+            const double wide =
+                0.5 * std::atan2(2.0 * (p[0] * p[1] + q[0] * q[1]), p[0] * p[0] + q[0] * q[0] - p[1] * p[1] - q[1] * q[1]);
             for (std::size_t k = 0; k < 4; ++k) {
                 const double angle = wide + 0.5 * std::numbers::pi * static_cast<double>(k);
                 angles[around + 4 * s + k] = angle - 2.0 * std::numbers::pi * std::floor(angle / (2.0 * std::numbers::pi));
@@ -357,7 +367,8 @@ private:
             step[0] *= part, step[1] *= part;
             bool lower = false;
             for (int halvings = 0; halvings < 20 && !lower; ++halvings, step[0] *= 0.5, step[1] *= 0.5) {
-                const std::array<double, 2> next{std::clamp(s[0] + step[0], from_[0], last[0]), std::clamp(s[1] + step[1], from_[1], last[1])};
+                const std::array<double, 2> next{std::clamp(s[0] + step[0], from_[0], last[0]),
+                                                 std::clamp(s[1] + step[1], from_[1], last[1])};
                 Vec3 turned = n;
                 const bool facing_end = climb(next, turned);
                 const double gap = value(next[0], next[1], turned);
@@ -371,8 +382,8 @@ private:
         return true;
     }
 
-    /// Of two in each other: where F is level in both abscissae and in n, nearby and inside the intervals. Sections alone could be
-    /// parted along the fibres, so it is no maximum among all directions.
+    /// Of two in each other: where F is level in both abscissae and in n, nearby and inside the intervals. Sections alone could
+    /// be parted along the fibres, so it is no maximum among all directions.
     bool settle_within(SurfaceGap& place) const noexcept {
         std::array<double, 2> s{place.t, place.u};
         Vec3 n = place.normal;

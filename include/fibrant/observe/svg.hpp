@@ -57,17 +57,17 @@ inline std::string point_text(const Eigen::Vector2d& p, int decimals = 1) {
 }
 
 inline std::string svg_text(double x, double y, std::string_view text, std::string_view more = "") {
-    return "<text x=\"" + rounded(x, 1) + "\" y=\"" + rounded(y, 1) + "\"" + std::string{more} + ">" +
-           xml_escaped(text) + "</text>\n";
+    return "<text x=\"" + rounded(x, 1) + "\" y=\"" + rounded(y, 1) + "\"" + std::string{more} + ">" + xml_escaped(text) +
+           "</text>\n";
 }
 
 /// A whole file: white page, style, body, title at the top left.
 inline std::string svg_page(double width, double height, const std::string& style, const std::string& body,
                             const std::string& title) {
     const std::string w = rounded(width, 0), h = rounded(height, 0);
-    std::string page = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + w + "\" height=\"" + h +
-                       "\" viewBox=\"0 0 " + w + " " + h + "\">\n<style>text{font:16px sans-serif;fill:#222}\n" +
-                       style + "</style>\n<rect width=\"" + w + "\" height=\"" + h + "\" fill=\"#fff\"/>\n" + body;
+    std::string page = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + w + "\" height=\"" + h + "\" viewBox=\"0 0 " + w +
+                       " " + h + "\">\n<style>text{font:16px sans-serif;fill:#222}\n" + style + "</style>\n<rect width=\"" + w +
+                       "\" height=\"" + h + "\" fill=\"#fff\"/>\n" + body;
     if (!title.empty()) page += svg_text(16, 28, title);
     return page + "</svg>\n";
 }
@@ -81,8 +81,7 @@ inline double round_length(double length) noexcept {
 }
 
 /// A scale bar whose left end is at (x, y), at most `longest` pixels long.
-inline std::string svg_scale_bar(double x, double y, double longest, double pixels_per_length,
-                                 const std::string& unit) {
+inline std::string svg_scale_bar(double x, double y, double longest, double pixels_per_length, const std::string& unit) {
     const double length = round_length(longest / pixels_per_length), pixels = length * pixels_per_length;
     const std::string end = rounded(x + pixels, 1), start = rounded(x, 1);
     return "<path d=\"M" + start + " " + rounded(y - 5, 1) + "v10m0-5H" + end +

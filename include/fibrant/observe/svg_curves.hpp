@@ -41,7 +41,8 @@ inline PlotAxis round_axis(double low, double high) {
     if (!(high > low)) high = low + std::max(1e-12, std::abs(low)), low -= std::max(1e-12, std::abs(low));
     const double step = round_step(high - low);
     PlotAxis axis{step * std::floor(low / step + 1e-9), step * std::ceil(high / step - 1e-9), {}};
-    for (double k = std::round(axis.low / step); k * step <= axis.high + 0.01 * step; k += 1.0) axis.ticks.emplace_back(k * step, tick_text(k * step, step));
+    for (double k = std::round(axis.low / step); k * step <= axis.high + 0.01 * step; k += 1.0)
+        axis.ticks.emplace_back(k * step, tick_text(k * step, step));
     return axis;
 }
 }  // namespace detail

@@ -65,11 +65,13 @@ inline std::string plot_svg(const PlotFrame& plot) {
     std::string body;
     for (const auto& [value, text] : plot.x.ticks) {
         const double x = place_x(value);
-        body += "<path class=\"g\" d=\"M" + rounded(x, 1) + " " + rounded(top, 1) + "V" + rounded(bottom, 1) + "\"/>\n" + svg_text(x, bottom + 18.0, text, " class=\"t\" text-anchor=\"middle\"");
+        body += "<path class=\"g\" d=\"M" + rounded(x, 1) + " " + rounded(top, 1) + "V" + rounded(bottom, 1) + "\"/>\n" +
+                svg_text(x, bottom + 18.0, text, " class=\"t\" text-anchor=\"middle\"");
     }
     for (const auto& [value, text] : plot.y.ticks) {
         const double y = place_y(value);
-        body += "<path class=\"g\" d=\"M" + rounded(left, 1) + " " + rounded(y, 1) + "H" + rounded(right, 1) + "\"/>\n" + svg_text(left - 6.0, y + 4.0, text, " class=\"t\" text-anchor=\"end\"");
+        body += "<path class=\"g\" d=\"M" + rounded(left, 1) + " " + rounded(y, 1) + "H" + rounded(right, 1) + "\"/>\n" +
+                svg_text(left - 6.0, y + 4.0, text, " class=\"t\" text-anchor=\"end\"");
     }
     const Palette palette;
     for (std::size_t l = 0; l < plot.lines.size(); ++l) {
@@ -78,16 +80,20 @@ inline std::string plot_svg(const PlotFrame& plot) {
         for (const auto& [x, y] : plot.lines[l].points) {
             const Eigen::Vector2d p(place_x(x), place_y(y));
             path += (path.empty() ? "M" : "L") + point_text(p);
-            if (plot.dot_radius > 0.0) marks += "<circle cx=\"" + rounded(p.x(), 1) + "\" cy=\"" + rounded(p.y(), 1) + "\" r=\"" + rounded(plot.dot_radius, 1) + "\" fill=\"" + colour + "\"/>\n";
+            if (plot.dot_radius > 0.0)
+                marks += "<circle cx=\"" + rounded(p.x(), 1) + "\" cy=\"" + rounded(p.y(), 1) + "\" r=\"" +
+                         rounded(plot.dot_radius, 1) + "\" fill=\"" + colour + "\"/>\n";
         }
         if (path.empty()) continue;
         body += "<path class=\"l\" d=\"" + path + "\" stroke=\"" + colour + "\"/>\n" + marks;
         if (!plot.names) continue;
         const double y = top + 10.0 + 20.0 * static_cast<double>(l);
-        body += "<path class=\"l\" d=\"M" + rounded(right + 12.0, 1) + " " + rounded(y - 5.0, 1) + "h18\" stroke=\"" + colour + "\"/>\n" + svg_text(right + 36.0, y, plot.lines[l].name, " class=\"t\"");
+        body += "<path class=\"l\" d=\"M" + rounded(right + 12.0, 1) + " " + rounded(y - 5.0, 1) + "h18\" stroke=\"" + colour +
+                "\"/>\n" + svg_text(right + 36.0, y, plot.lines[l].name, " class=\"t\"");
     }
     body += svg_text(0.5 * (left + right), plot.height - 14.0, plot.x_label, " class=\"t\" text-anchor=\"middle\"");
-    body += svg_text(18.0, 0.5 * (top + bottom), plot.y_label, " class=\"t\" text-anchor=\"middle\" transform=\"rotate(-90 18 " + rounded(0.5 * (top + bottom), 1) + ")\"");
+    body += svg_text(18.0, 0.5 * (top + bottom), plot.y_label,
+                     " class=\"t\" text-anchor=\"middle\" transform=\"rotate(-90 18 " + rounded(0.5 * (top + bottom), 1) + ")\"");
     return svg_page(plot.width, plot.height, ".t{font-size:13px}.g{stroke:#ddd}.l{fill:none;stroke-width:2}\n", body, plot.title);
 }
 
@@ -116,7 +122,8 @@ inline std::string log_log_svg(const LogLogPlot& plot) {
         if (last > first && last <= 10.0) {
             detail::PlotAxis axis{std::log10(first * unit), std::log10(last * unit), {}};
             const Index digits = std::max<Index>(0, static_cast<Index>(-std::floor(low + 1e-9)));
-            for (double k = first; k <= last; k += 1.0) axis.ticks.emplace_back(std::log10(k * unit), rounded(k * unit, static_cast<int>(digits)));
+            for (double k = first; k <= last; k += 1.0)
+                axis.ticks.emplace_back(std::log10(k * unit), rounded(k * unit, static_cast<int>(digits)));
             return axis;
         }
         detail::PlotAxis axis{std::floor(low), std::max(std::ceil(high), std::floor(low) + 1.0), {}};

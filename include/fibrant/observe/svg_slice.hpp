@@ -23,9 +23,9 @@ struct SliceParameters {
     Index axis = 0;                 ///< across which the plane lies: 0 for x, 1 for y, 2 for z
     double position = core::unset;  ///< of the plane on that axis [length]
     double width = 1200.0;          ///< of the picture, >= 100 [pixels]; the height follows
-    std::string title;  ///< above the picture; empty: none
-    std::string unit;  ///< of lengths, for the scale bar
-    Palette palette;  ///< colours by fibre and group
+    std::string title;              ///< above the picture; empty: none
+    std::string unit;               ///< of lengths, for the scale bar
+    Palette palette;                ///< colours by fibre and group
 
     void validate() const {
         core::require(axis >= 0 && axis <= 2, "SliceParameters.axis", static_cast<double>(axis), "0, 1 or 2");
@@ -47,8 +47,7 @@ namespace detail {
 class SliceStrip {
 public:
     /// @param beyond  signed distance of the centre from the plane   @param lean  sine of the angle of fibre and plane
-    void add(const Eigen::Vector2d& centre, const Eigen::Vector2d& direction, double beyond, double lean,
-             double radius) {
+    void add(const Eigen::Vector2d& centre, const Eigen::Vector2d& direction, double beyond, double lean, double radius) {
         const double square = radius * radius - beyond * beyond / (1.0 - lean * lean);
         if (square <= 0.0) return;
         const Eigen::Vector2d side = std::sqrt(square) * Eigen::Vector2d{-direction.y(), direction.x()};
@@ -84,9 +83,12 @@ inline std::vector<SliceShape> slice_shapes(const Snapshot& snapshot, Index axis
             strip = {};
         };
         const std::size_t chords = fibre.position.size() - 1;
-        // Around a closed fibre from where it passes through: no strip is cut where it begins, unless all of it lies in the plane.
+        // Around a closed fibre from where it passes through: no strip is cut where it begins, unless all of it lies in the
+        // plane.
         std::size_t start = 0;
-        const auto passes = [&](std::size_t node) { return std::abs((fibre.position[node + 1] - fibre.position[node]).normalized()[axis]) >= 0.5; };
+        const auto passes = [&](std::size_t node) {
+            return std::abs((fibre.position[node + 1] - fibre.position[node]).normalized()[axis]) >= 0.5;
+        };
         while (fibre.closed && start < chords && !passes(start)) ++start;
         for (std::size_t chord_number = 0; chord_number < chords; ++chord_number) {
             const std::size_t node = (start + chord_number) % chords;
@@ -102,8 +104,7 @@ inline std::vector<SliceShape> slice_shapes(const Snapshot& snapshot, Index axis
                     Vec3 across = -lean * tangent;
                     across[axis] += 1.0;
                     if (beyond * beyond >= radius * radius * (1.0 - lean * lean)) close_strip();
-                    strip.add(flat(a + s * chord - beyond / (1.0 - lean * lean) * across), direction, beyond, lean,
-                              radius);
+                    strip.add(flat(a + s * chord - beyond / (1.0 - lean * lean) * across), direction, beyond, lean, radius);
                 }
                 continue;
             }
@@ -115,8 +116,7 @@ inline std::vector<SliceShape> slice_shapes(const Snapshot& snapshot, Index axis
                 return flat(v - v[axis] / lean * tangent);
             };
             const Eigen::Vector2d p = carried(fibre.director_1, fibre.section.semi_axis_1),
-                                  q = carried(fibre.director_2, fibre.section.semi_axis_2),
-                                  centre = flat(a + s * chord);
+                                  q = carried(fibre.director_2, fibre.section.semi_axis_2), centre = flat(a + s * chord);
             SliceShape shape{{}, static_cast<Index>(k), false};
             constexpr int corners = 32;
             for (int corner = 0; corner < corners; ++corner) {
@@ -162,14 +162,12 @@ inline std::string svg_slice(const Snapshot& snapshot, const SliceParameters& pa
         body += "z\"/>\n";
     }
     for (const SliceShape& shape : shapes) {
-        const Colour colour = parameters.palette.of(shape.fibre, snapshot.fibres[core::at(shape.fibre)].group)
-                                  .toned(shape.along ? 1.5 : 1.0);
-        body += "<path fill=\"" + colour.text() + "\" stroke=\"" + colour.toned(shape.along ? 0.75 : 0.4).text() +
-                "\" d=\"M";
+        const Colour colour =
+            parameters.palette.of(shape.fibre, snapshot.fibres[core::at(shape.fibre)].group).toned(shape.along ? 1.5 : 1.0);
+        body += "<path fill=\"" + colour.text() + "\" stroke=\"" + colour.toned(shape.along ? 0.75 : 0.4).text() + "\" d=\"M";
         for (const Eigen::Vector2d& corner : shape.outline)
             body += (&corner == shape.outline.data() ? "" : "L") +
-                    detail::point_text(
-                        {left + scale * (corner.x() - low.x()), margin + scale * (high.y() - corner.y())}, 2);
+                    detail::point_text({left + scale * (corner.x() - low.x()), margin + scale * (high.y() - corner.y())}, 2);
         body += "z\"/>\n";
     }
     const char* names[] = {"x", "y", "z"};
@@ -180,7 +178,8 @@ inline std::string svg_slice(const Snapshot& snapshot, const SliceParameters& pa
     body += detail::svg_text(x - 5.0, y - 46.0, names[parameters.axis == 2 ? 1 : 2]);
     body += detail::svg_scale_bar(24.0, height - 24.0, 0.2 * parameters.width, scale, parameters.unit);
     std::string title = parameters.title.empty() ? std::string{} : parameters.title + ", ";
-    const int digits = std::max(0, 3 - static_cast<int>(std::floor(std::log10(high.x() - low.x()))));  // to a thousandth of the picture
+    const int digits =
+        std::max(0, 3 - static_cast<int>(std::floor(std::log10(high.x() - low.x()))));  // to a thousandth of the picture
     title += std::string(names[parameters.axis]) + " = " + rounded(parameters.position, digits);
     if (!parameters.unit.empty()) title += " " + parameters.unit;
     return detail::svg_page(parameters.width, height, "path{stroke-width:.7}\n", body, title);

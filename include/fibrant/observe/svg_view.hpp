@@ -24,9 +24,9 @@ struct ViewParameters {
     double elevation = 35.0;  ///< of the eye above the plane z = 0, in [-90, 90] [degrees]
     double width = 1200.0;    ///< of the picture, >= 100 [pixels]; the height follows
     Index pieces = 30000;     ///< at most about so many pieces of fibres are drawn, >= 1
-    std::string title;  ///< above the picture; empty: none
-    std::string unit;  ///< of lengths, for the scale bar
-    Palette palette;  ///< colours by fibre and group
+    std::string title;        ///< above the picture; empty: none
+    std::string unit;         ///< of lengths, for the scale bar
+    Palette palette;          ///< colours by fibre and group
 
     void validate() const {
         core::require_finite("ViewParameters.azimuth", azimuth);
@@ -90,8 +90,8 @@ public:
         for (Index row = ys.first; row <= ys.second; ++row) {
             for (Index column = xs.first; column <= xs.second; ++column) {
                 char& cell = covered_[core::at(row * columns_ + column)];
-                if (cell != 0 || !piece.holds({(static_cast<double>(column) + 0.5) * cell_,
-                                               (static_cast<double>(row) + 0.5) * cell_}))
+                if (cell != 0 ||
+                    !piece.holds({(static_cast<double>(column) + 0.5) * cell_, (static_cast<double>(row) + 0.5) * cell_}))
                     continue;
                 any = true;
                 cell = 1;
@@ -151,8 +151,7 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
         const std::size_t nodes = fibre.position.size();
         if (nodes < 2) continue;
         double length = 0.0;
-        for (std::size_t node = 1; node < nodes; ++node)
-            length += (fibre.position[node] - fibre.position[node - 1]).norm();
+        for (std::size_t node = 1; node < nodes; ++node) length += (fibre.position[node] - fibre.position[node - 1]).norm();
         const double step = std::max(1.5 * fibre.section.radius(), total / static_cast<double>(parameters.pieces));
         const auto count = std::max<Index>(1, static_cast<Index>(std::ceil(length / step)));
         const auto at = [&](Index piece, const std::vector<Vec3>& values) -> Vec3 {
@@ -168,7 +167,8 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
             // Half the width of the silhouette: extent of the section across the line of sight.
             Vec3 across = tangent.cross(eye);
             across = across.norm() > 1e-6 ? Vec3(across.normalized()) : right;
-            const double half_width = scale * fibre.section.extent(at(piece, fibre.director_1), at(piece, fibre.director_2), across);
+            const double half_width =
+                scale * fibre.section.extent(at(piece, fibre.director_1), at(piece, fibre.director_2), across);
             thinnest = std::min(thinnest, half_width);
             pieces.push_back({on_page(a), on_page(b), half_width, 0.5 * eye.dot(a + b), tangent, static_cast<Index>(k),
                               detail::PieceKind::line});
@@ -178,24 +178,28 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
         const std::size_t last_piece = pieces.size() - 1;
         for (Index joint = 0; joint <= count; ++joint) {
             const bool end = (joint == 0 || joint == count) && !fibre.closed;
-            const detail::ViewPiece before = fibre.closed && joint == 0 ? pieces[last_piece] : pieces[std::max(first_piece + core::at(joint), first_piece + 1) - 1];
-            const detail::ViewPiece after = fibre.closed && joint == count ? pieces[first_piece] : pieces[std::min(first_piece + core::at(joint), last_piece)];
+            const detail::ViewPiece before = fibre.closed && joint == 0
+                                                 ? pieces[last_piece]
+                                                 : pieces[std::max(first_piece + core::at(joint), first_piece + 1) - 1];
+            const detail::ViewPiece after = fibre.closed && joint == count
+                                                ? pieces[first_piece]
+                                                : pieces[std::min(first_piece + core::at(joint), last_piece)];
             const Vec3 centre = at(joint, fibre.position);
             const Vec3 axis_1 = fibre.section.semi_axis_1 * at(joint, fibre.director_1);
             const Vec3 axis_2 = fibre.section.semi_axis_2 * at(joint, fibre.director_2);
             const Vec3 outwards = joint == 0 ? Vec3(-after.tangent) : before.tangent;
             const bool face = end && outwards.dot(eye) > 0.0;
             const double radius = fibre.section.radius();
-            detail::ViewPiece section{on_page(centre),
-                                      on_page(centre),
-                                      scale * radius,
-                                      face ? std::max(before.depth, after.depth) + radius
-                                           : std::min(before.depth, after.depth) - 0.01 * radius,
-                                      face ? outwards : Vec3(before.tangent),
-                                      static_cast<Index>(k),
-                                      face ? detail::PieceKind::cut_face : detail::PieceKind::section,
-                                      scale * Eigen::Vector2d{right.dot(axis_1), -up.dot(axis_1)},
-                                      scale * Eigen::Vector2d{right.dot(axis_2), -up.dot(axis_2)}};
+            detail::ViewPiece section{
+                on_page(centre),
+                on_page(centre),
+                scale * radius,
+                face ? std::max(before.depth, after.depth) + radius : std::min(before.depth, after.depth) - 0.01 * radius,
+                face ? outwards : Vec3(before.tangent),
+                static_cast<Index>(k),
+                face ? detail::PieceKind::cut_face : detail::PieceKind::section,
+                scale * Eigen::Vector2d{right.dot(axis_1), -up.dot(axis_1)},
+                scale * Eigen::Vector2d{right.dot(axis_2), -up.dot(axis_2)}};
             // Seen edge-on it is a line.
             const double area = section.axis_1.x() * section.axis_2.y() - section.axis_1.y() * section.axis_2.x();
             if (std::abs(area) > 0.03 * section.half_width * section.half_width) pieces.push_back(section);
@@ -204,8 +208,7 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
 
     std::vector<std::size_t> order(pieces.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return pieces[a].depth > pieces[b].depth; });
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return pieces[a].depth > pieces[b].depth; });
     detail::Coverage coverage(parameters.width, height, std::max(0.25, 0.25 * thinnest));
     std::erase_if(order, [&](std::size_t k) { return !coverage.shows(pieces[k]); });
 
@@ -243,8 +246,8 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
             body += "<path class=\"" + std::string(face ? "f" : "s") + name + "\" d=\"M";
             for (int corner = 0; corner < 12; ++corner) {
                 const double angle = std::numbers::pi * corner / 6.0;
-                body += (corner == 0 ? "" : "L") + detail::point_text(piece.from + std::cos(angle) * piece.axis_1 +
-                                                                      std::sin(angle) * piece.axis_2);
+                body += (corner == 0 ? "" : "L") +
+                        detail::point_text(piece.from + std::cos(angle) * piece.axis_1 + std::sin(angle) * piece.axis_2);
             }
             body += "z\"/>\n";
             continue;

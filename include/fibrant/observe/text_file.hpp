@@ -26,8 +26,7 @@ inline std::string shortest(double value) {
 /// With at most `decimals` digits after the point, without trailing zeros.
 inline std::string rounded(double value, int decimals) {
     std::array<char, 400> buffer{};
-    const auto end =
-        std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, decimals).ptr;
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, decimals).ptr;
     std::string text{buffer.data(), end};
     if (text.find('.') != std::string::npos) {
         text.erase(text.find_last_not_of('0') + 1);

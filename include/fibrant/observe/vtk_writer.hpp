@@ -11,7 +11,8 @@
 
 namespace fibrant::observe {
 
-/// A polyline a fibre, that comes back to its first point where the fibre is closed; at the nodes radius, director_1, director_2, displacement, curvature; of the lines fibre, group.
+/// A polyline a fibre, that comes back to its first point where the fibre is closed; at the nodes radius, director_1, director_2,
+/// displacement, curvature; of the lines fibre, group.
 inline PolyData fibre_data(const Snapshot& snapshot) {
     PolyData data;
     std::vector<double> radius, curvature, number, group;
@@ -44,7 +45,8 @@ inline PolyData fibre_data(const Snapshot& snapshot) {
 }
 
 /// A vertex a contact element, with reaction, penetration (0 where open), gap, stiffness, crossing (1 or 0), the two
-/// fibres, and the vectors normal, normal_force (on fibre_j) and friction (on fibre_i). Of a contact with tool t, fibre_i is -1 - t.
+/// fibres, and the vectors normal, normal_force (on fibre_j) and friction (on fibre_i). Of a contact with tool t, fibre_i is -1 -
+/// t.
 inline PolyData contact_data(const Snapshot& snapshot) {
     PolyData data;
     std::vector<double> reaction, penetration, gap, stiffness, crossing, fibre_i, fibre_j;

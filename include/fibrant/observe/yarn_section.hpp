@@ -19,9 +19,7 @@ using Vec2 = Eigen::Vector2d;
 /// Ellipse { centre + cos a axis_1 + sin a axis_2 }.
 struct SectionEllipse {
     Vec2 centre = Vec2::Zero(), axis_1 = Vec2::Zero(), axis_2 = Vec2::Zero();
-    double area() const noexcept {
-        return std::numbers::pi * std::abs(axis_1.x() * axis_2.y() - axis_1.y() * axis_2.x());
-    }
+    double area() const noexcept { return std::numbers::pi * std::abs(axis_1.x() * axis_2.y() - axis_1.y() * axis_2.x()); }
 };
 
 /// Convex hull of points in the plane, counter-clockwise (Andrew's monotone chain), O(n log n).
@@ -46,15 +44,15 @@ inline std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
 
 /// Shape of a yarn where a plane cuts it.
 struct YarnSection {
-    std::vector<SectionEllipse> fibres;  ///< in the plane; first axis across the yarn, second upwards
-    std::vector<Vec2> hull;              ///< convex, counter-clockwise [length]
-    double area = 0;                     ///< of the hull [length^2]
-    double fibre_area = 0;               ///< sum over the fibres [length^2]
-    double fibre_volume_fraction = 0;    ///< fibre_area / area [1]
-    Vec2 centroid = Vec2::Zero();        ///< of the hull [length]
+    std::vector<SectionEllipse> fibres;                        ///< in the plane; first axis across the yarn, second upwards
+    std::vector<Vec2> hull;                                    ///< convex, counter-clockwise [length]
+    double area = 0;                                           ///< of the hull [length^2]
+    double fibre_area = 0;                                     ///< sum over the fibres [length^2]
+    double fibre_volume_fraction = 0;                          ///< fibre_area / area [1]
+    Vec2 centroid = Vec2::Zero();                              ///< of the hull [length]
     Eigen::Matrix2d second_moments = Eigen::Matrix2d::Zero();  ///< of the hull about its centroid [length^4]
-    double width = 0, thickness = 0;  ///< extents along the principal axes, the wider one first [length]
-    double aspect = 0;                ///< width / thickness [1]
+    double width = 0, thickness = 0;                           ///< extents along the principal axes, the wider one first [length]
+    double aspect = 0;                                         ///< width / thickness [1]
 };
 
 /// Hull and moments of ellipses in a plane. The outline of each ellipse is a polygon of equal area with `sides` sides,
@@ -70,8 +68,7 @@ inline YarnSection section_of(std::vector<SectionEllipse> ellipses, Index sides 
         section.fibre_area += ellipse.area();
         for (Index k = 0; k < sides; ++k) {
             const double angle = turn * (static_cast<double>(k) + 0.5);
-            points.push_back(ellipse.centre +
-                             scale * (std::cos(angle) * ellipse.axis_1 + std::sin(angle) * ellipse.axis_2));
+            points.push_back(ellipse.centre + scale * (std::cos(angle) * ellipse.axis_1 + std::sin(angle) * ellipse.axis_2));
         }
     }
     if (points.empty()) return section;
@@ -85,16 +82,15 @@ inline YarnSection section_of(std::vector<SectionEllipse> ellipses, Index sides 
         const double doubled = a.x() * b.y() - a.y() * b.x();
         section.area += 0.5 * doubled;
         first += doubled / 6.0 * (a + b);
-        second += doubled / 24.0 *
-                  (2.0 * a * a.transpose() + 2.0 * b * b.transpose() + a * b.transpose() + b * a.transpose());
+        second += doubled / 24.0 * (2.0 * a * a.transpose() + 2.0 * b * b.transpose() + a * b.transpose() + b * a.transpose());
     }
     const Vec2 middle = first / section.area;
     section.centroid = corner + middle;
     section.second_moments = second - section.area * middle * middle.transpose();
     section.fibre_volume_fraction = section.fibre_area / section.area;
     // Angle of the principal axis with the greater moment.
-    const double angle = 0.5 * std::atan2(2.0 * section.second_moments(0, 1),
-                                          section.second_moments(0, 0) - section.second_moments(1, 1));
+    const double angle =
+        0.5 * std::atan2(2.0 * section.second_moments(0, 1), section.second_moments(0, 0) - section.second_moments(1, 1));
     for (const bool wide : {true, false}) {
         const Vec2 axis = wide ? Vec2{std::cos(angle), std::sin(angle)} : Vec2{-std::sin(angle), std::cos(angle)};
         double low = axis.dot(section.hull.front()), high = low;

@@ -9,8 +9,8 @@
 
 namespace fibrant::proximity {
 
-/// `BvhSearch` where many segments are much thicker than many others, and where they are long and lie along each other; else `GridSearch`.
-/// It looks at the data at each call; both give the same pairs in the same order.
+/// `BvhSearch` where many segments are much thicker than many others, and where they are long and lie along each other; else
+/// `GridSearch`. It looks at the data at each call; both give the same pairs in the same order.
 class AutomaticSearch : public detail::InTwoHalves<AutomaticSearch> {
 public:
     using Parameters = core::NoParameters;
@@ -22,7 +22,9 @@ public:
         tree_taken_ = wants_tree(table);
         tree_taken_ ? tree_.build(table) : grid_.build(table);
     }
-    std::vector<SegmentPair> search(const detail::SegmentTable& table) { return tree_taken_ ? tree_.search(table) : grid_.search(table); }
+    std::vector<SegmentPair> search(const detail::SegmentTable& table) {
+        return tree_taken_ ? tree_.search(table) : grid_.search(table);
+    }
     /// @}
 
     bool takes_tree() const noexcept { return tree_taken_; }  ///< at the last call

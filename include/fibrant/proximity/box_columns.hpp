@@ -106,11 +106,10 @@ private:
         // Sixteen independent comparisons into bytes, which compilers turn into vector instructions of any width.
         alignas(16) unsigned char hit[width];
         for (std::int32_t l = 0; l < width; ++l)
-            hit[l] = static_cast<unsigned char>(
-                static_cast<int>(x0[l] <= box.high[0]) & static_cast<int>(x1[l] >= box.low[0]) &
-                static_cast<int>(y0[l] <= box.high[1]) & static_cast<int>(y1[l] >= box.low[1]) &
-                static_cast<int>(z0[l] <= box.high[2]) & static_cast<int>(z1[l] >= box.low[2]) &
-                static_cast<int>(group[l] != box.group));
+            hit[l] = static_cast<unsigned char>(static_cast<int>(x0[l] <= box.high[0]) & static_cast<int>(x1[l] >= box.low[0]) &
+                                                static_cast<int>(y0[l] <= box.high[1]) & static_cast<int>(y1[l] >= box.low[1]) &
+                                                static_cast<int>(z0[l] <= box.high[2]) & static_cast<int>(z1[l] >= box.low[2]) &
+                                                static_cast<int>(group[l] != box.group));
         std::uint64_t half[2];
         std::memcpy(half, hit, sizeof half);
         if constexpr (std::endian::native == std::endian::little) {

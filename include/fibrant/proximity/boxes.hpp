@@ -106,20 +106,25 @@ private:
     static constexpr double rounding = 3.0e-7;  // of single precision, five times
     static constexpr double crude = 0.1;        // slack over thickness beyond which boxes overlap that segments do not
 
-    /// What stands far apart comes together: along each axis the empty spaces between the intervals that segments cover are taken out. Segments that
-    /// may be close lie in one interval along every axis and move together. Without it one stray fibre costs all others their precision.
+    /// What stands far apart comes together: along each axis the empty spaces between the intervals that segments cover are taken
+    /// out. Segments that may be close lie in one interval along every axis and move together. Without it one stray fibre costs
+    /// all others their precision.
     void close_gaps(const SegmentTable& table) {
         Vec3 extent = Vec3::Zero();
         for (std::size_t axis = 0; axis < 3; ++axis) {
             std::vector<std::pair<double, double>> covered(core::at(table.size()));
-            core::parallel_for(table.size(), [&](Index k) {
-                const SegmentRecord record = table.record(static_cast<std::int32_t>(k));
-                const Vec3 start{record.start.x - middle[0], record.start.y - middle[1], record.start.z - middle[2]};
-                const Vec3 chord{record.chord.x, record.chord.y, record.chord.z};
-                const auto row = static_cast<Index>(axis);
-                const double a = (axes * start)[row], b = (axes * (start + chord))[row], wide = (record.half + 0.5 * table.reach()) * (1.0 + 1.0e-6);
-                covered[core::at(k)] = {std::min(a, b) - wide, std::max(a, b) + wide};
-            }, core::light_items);
+            core::parallel_for(
+                table.size(),
+                [&](Index k) {
+                    const SegmentRecord record = table.record(static_cast<std::int32_t>(k));
+                    const Vec3 start{record.start.x - middle[0], record.start.y - middle[1], record.start.z - middle[2]};
+                    const Vec3 chord{record.chord.x, record.chord.y, record.chord.z};
+                    const auto row = static_cast<Index>(axis);
+                    const double a = (axes * start)[row], b = (axes * (start + chord))[row],
+                                 wide = (record.half + 0.5 * table.reach()) * (1.0 + 1.0e-6);
+                    covered[core::at(k)] = {std::min(a, b) - wide, std::max(a, b) + wide};
+                },
+                core::light_items);
             std::sort(covered.begin(), covered.end());
             std::vector<Interval>& found = intervals_[axis];
             double high = covered.front().first, taken = high;
@@ -140,7 +145,8 @@ private:
         Vec3 sum;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double low = std::min(a[static_cast<Index>(axis)], b[static_cast<Index>(axis)]);
-            const auto next = std::upper_bound(intervals_[axis].begin(), intervals_[axis].end(), low, [](double x, const Interval& one) { return x < one.from; });
+            const auto next = std::upper_bound(intervals_[axis].begin(), intervals_[axis].end(), low,
+                                               [](double x, const Interval& one) { return x < one.from; });
             sum[static_cast<Index>(axis)] = std::prev(next)->taken;
         }
         return sum;

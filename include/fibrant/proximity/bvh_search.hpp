@@ -13,8 +13,8 @@ namespace fibrant::proximity {
 /// Tree of sixteen children a node over runs of four consecutive segments, or over single ones where these are so long that
 /// the box of a run would be mostly empty. Leaves stand in the order of a space-filling curve.
 ///
-/// Nothing in it depends on a size of cells, so it serves sets of fibres that no grid suits. Result and order do not depend on the
-/// number of threads.
+/// Nothing in it depends on a size of cells, so it serves sets of fibres that no grid suits. Result and order do not depend on
+/// the number of threads.
 class BvhSearch : public detail::InTwoHalves<BvhSearch> {
 public:
     using Parameters = core::NoParameters;
@@ -55,8 +55,11 @@ public:
             core::parallel_for(blocks, [&](Index b) {
                 detail::CandidateSink sink(table, records_.data(), nullptr, nullptr, close_[core::at(b)]);
                 detail::BoxTree::Scratch scratch;
-                const auto take = [&](std::int32_t run, std::span<const detail::Candidate> hits) { pair_runs(run, hits, table.selfish(), sink); };
-                for (auto node = static_cast<std::int32_t>(b * together); node < std::min<Index>(tree_.nodes(), (b + 1) * together); ++node)
+                const auto take = [&](std::int32_t run, std::span<const detail::Candidate> hits) {
+                    pair_runs(run, hits, table.selfish(), sink);
+                };
+                for (auto node = static_cast<std::int32_t>(b * together);
+                     node < std::min<Index>(tree_.nodes(), (b + 1) * together); ++node)
                     tree_.visit_overlaps(node, scratch, take);
                 sink.flush();
             });
@@ -94,11 +97,14 @@ private:
 
     /// Runs by the Morton code of their middles, 21 bits an axis, which is as fine as single precision. Fills entries_.
     void sort_along_curve(const std::vector<detail::Box>& runs) {
-        const auto middle = [](const detail::Box& box, int axis) { return 0.5 * (static_cast<double>(box.low[axis]) + static_cast<double>(box.high[axis])); };
+        const auto middle = [](const detail::Box& box, int axis) {
+            return 0.5 * (static_cast<double>(box.low[axis]) + static_cast<double>(box.high[axis]));
+        };
         double low[3] = {1e300, 1e300, 1e300}, size = 0.0;
         for (int axis = 0; axis < 3; ++axis) {
             double high = -1e300;
-            for (const detail::Box& box : runs) low[axis] = std::min(low[axis], middle(box, axis)), high = std::max(high, middle(box, axis));
+            for (const detail::Box& box : runs)
+                low[axis] = std::min(low[axis], middle(box, axis)), high = std::max(high, middle(box, axis));
             size = std::max(size, high - low[axis]);
         }
         const double scale = size > 0.0 ? 2097151.0 / size : 0.0;
@@ -112,7 +118,8 @@ private:
         entries_.resize(runs.size());
         for (std::size_t r = 0; r < runs.size(); ++r) {
             std::uint64_t key = 0;
-            for (int axis = 0; axis < 3; ++axis) key |= spread(static_cast<std::uint64_t>((middle(runs[r], axis) - low[axis]) * scale)) << axis;
+            for (int axis = 0; axis < 3; ++axis)
+                key |= spread(static_cast<std::uint64_t>((middle(runs[r], axis) - low[axis]) * scale)) << axis;
             entries_[r] = {key, static_cast<std::int32_t>(r)};
         }
         detail::sort_by_key(entries_, spare_, std::uint64_t{1} << 63);
@@ -133,11 +140,11 @@ private:
 
     static constexpr double single_from = 16.0;
 
-    std::vector<std::int32_t> run_first_;            // first segment of each run, in the order of the fibres
-    std::vector<detail::CellEntry> entries_, spare_; // runs in the order of the curve
-    std::vector<std::int32_t> first_;                // place of the first segment of each run, in that order
-    detail::BoxColumns segments_;                    // boxes by place
-    std::vector<detail::SegmentRecord> records_;     // by place
+    std::vector<std::int32_t> run_first_;             // first segment of each run, in the order of the fibres
+    std::vector<detail::CellEntry> entries_, spare_;  // runs in the order of the curve
+    std::vector<std::int32_t> first_;                 // place of the first segment of each run, in that order
+    detail::BoxColumns segments_;                     // boxes by place
+    std::vector<detail::SegmentRecord> records_;      // by place
     detail::BoxTree tree_;
     std::vector<std::vector<SegmentPair>> close_;
     detail::PairSorter sorter_;

@@ -11,8 +11,8 @@ class CandidateSink {
 public:
     /// @param records       of segments
     /// @param map_a, map_b  places of the first and second of a candidate to places of records; null where they are these
-    CandidateSink(const SegmentTable& table, const SegmentRecord* records, const std::int32_t* map_a,
-                  const std::int32_t* map_b, std::vector<SegmentPair>& close)
+    CandidateSink(const SegmentTable& table, const SegmentRecord* records, const std::int32_t* map_a, const std::int32_t* map_b,
+                  std::vector<SegmentPair>& close)
         : table_(table), records_(records), map_a_(map_a), map_b_(map_b), close_(close), batch_(least) {}
 
     Candidate* room(std::int32_t n) {

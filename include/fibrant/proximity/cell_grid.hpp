@@ -38,8 +38,7 @@ public:
     void build(const std::vector<Box>& boxes, std::span<const std::int32_t> members) {
         measure(boxes, members);
         entries_.resize(members.size());
-        for (std::size_t k = 0; k < members.size(); ++k)
-            entries_[k] = {key(boxes[core::at(members[k])]), members[k]};
+        for (std::size_t k = 0; k < members.size(); ++k) entries_[k] = {key(boxes[core::at(members[k])]), members[k]};
         sort_by_key(entries_, spare_, cells_[0] * cells_[1] * cells_[2]);
         const auto n = static_cast<std::int32_t>(members.size());
         columns_.resize(n);

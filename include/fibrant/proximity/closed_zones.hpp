@@ -41,9 +41,9 @@ inline double extended(double s, double outside, const SegmentRecord& of, const 
 
 /// Makes the zones of two fibres of which one is closed, or of a closed one with itself.
 ///
-/// The plane of the two segment numbers is wound up there: pairs that touch are followed from the first one on, and numbers go on with
-/// them, so that a zone does not end where its fibre does. On one fibre (i, j) and (j, i) are the same pair. A zone that comes back to its own
-/// start ends half-way around from where it began, with every pair in it once.
+/// The plane of the two segment numbers is wound up there: pairs that touch are followed from the first one on, and numbers go on
+/// with them, so that a zone does not end where its fibre does. On one fibre (i, j) and (j, i) are the same pair. A zone that
+/// comes back to its own start ends half-way around from where it began, with every pair in it once.
 class ClosedZoneMaker {
 public:
     explicit ClosedZoneMaker(const SegmentTable& table) : table_(table) {}
@@ -54,7 +54,9 @@ public:
         pairs_ = pairs;
         const std::int32_t i = table_.fibre(pairs.front().i), j = table_.fibre(pairs.front().j);
         first_ = {table_.first(i), table_.first(j)};
-        const auto period = [&](std::int32_t f) { return table_.centreline(f).closed ? table_.first(f + 1) - table_.first(f) : 0; };
+        const auto period = [&](std::int32_t f) {
+            return table_.centreline(f).closed ? table_.first(f + 1) - table_.first(f) : 0;
+        };
         period_ = {period(i), period(j)};
         self_ = i == j;
         const std::size_t n = pairs.size();
@@ -86,7 +88,9 @@ public:
 
 private:
     static constexpr double clearly = 0.5;  // as of ZoneMaker
-    struct Place { std::int32_t i = 0, j = 0; };  // numbers on both fibres, from their first segments on and around
+    struct Place {
+        std::int32_t i = 0, j = 0;
+    };  // numbers on both fibres, from their first segments on and around
     struct Extent {
         Place least{2147483647, 2147483647}, most{-2147483647, -2147483647};
         double sense = 0.0;
@@ -108,7 +112,8 @@ private:
         const bool turned = self_ && pair.i > pair.j;
         if (turned) std::swap(pair.i, pair.j);
         const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), pair);
-        return {found != pairs_.end() && *found == pair ? static_cast<std::size_t>(found - pairs_.begin()) : pairs_.size(), turned};
+        return {found != pairs_.end() && *found == pair ? static_cast<std::size_t>(found - pairs_.begin()) : pairs_.size(),
+                turned};
     }
 
     /// Numbers the zones, and gives each pair its place.
@@ -155,12 +160,14 @@ private:
     /// Takes a pair into its zone: the closest points, and the ends where the pair is at one.
     void measure(std::size_t k, const Extent& extent, ProximityZone& zone) const {
         const bool turned = turned_[k] != 0;
-        const SegmentRecord i = table_.record(turned ? pairs_[k].j : pairs_[k].i), j = table_.record(turned ? pairs_[k].i : pairs_[k].j);
+        const SegmentRecord i = table_.record(turned ? pairs_[k].j : pairs_[k].i),
+                            j = table_.record(turned ? pairs_[k].i : pairs_[k].j);
         const SegmentDistance closest = segment_distance(i.start - j.start, i.chord, j.chord);
         const Place& place = place_[k];
         const double p = place.i, q = place.j, s = p + closest.s, t = q + closest.t;
         if (zone.fibre_i < 0) zone = {0, 0, s, s, t, t, s, t, std::sqrt(closest.squared)};
-        if (closest.squared < zone.distance * zone.distance) zone.closest_i = s, zone.closest_j = t, zone.distance = std::sqrt(closest.squared);
+        if (closest.squared < zone.distance * zone.distance)
+            zone.closest_i = s, zone.closest_j = t, zone.distance = std::sqrt(closest.squared);
         zone.a_i = std::min(zone.a_i, s), zone.b_i = std::max(zone.b_i, s);
         zone.a_j = std::min(zone.a_j, t), zone.b_j = std::max(zone.b_j, t);
         const double threshold = i.half + j.half + table_.reach();

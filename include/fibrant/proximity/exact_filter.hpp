@@ -44,7 +44,8 @@ struct FilterLanes {
             y[l] = b;
         }
         for (int l = 0; l < size; l += 4) {
-            const __m512d t0 = even(x[l], x[l + 1]), t1 = odd(x[l], x[l + 1]), t2 = even(x[l + 2], x[l + 3]), t3 = odd(x[l + 2], x[l + 3]);
+            const __m512d t0 = even(x[l], x[l + 1]), t1 = odd(x[l], x[l + 1]), t2 = even(x[l + 2], x[l + 3]),
+                          t3 = odd(x[l + 2], x[l + 3]);
             s[l] = low_pairs(t0, t2);       // columns 0 and 4
             s[l + 1] = low_pairs(t1, t3);   // 1 and 5
             s[l + 2] = high_pairs(t0, t2);  // 2 and 6
@@ -76,11 +77,13 @@ struct FilterLanes {
 #endif
     }
 
-    // Without masked instructions g++ keeps this scalar, twice as slow, unless told that no operation traps; the values are the same.
+    // Without masked instructions g++ keeps this scalar, twice as slow, unless told that no operation traps; the values are the
+    // same.
 #if defined(__GNUC__) && !defined(__clang__)
     __attribute__((optimize("no-trapping-math")))
 #endif
-    void measure() noexcept {
+    void
+    measure() noexcept {
         for (int l = 0; l < size; ++l)
             squared[l] = least_squared({w[0][l], w[1][l], w[2][l]}, {u[0][l], u[1][l], u[2][l]}, {v[0][l], v[1][l], v[2][l]});
     }
@@ -89,7 +92,8 @@ struct FilterLanes {
     SegmentPair* take(int n, SegmentPair* out) const noexcept {
 #if defined(FIBRANT_FILTER_AVX512)
         const __m512d bound = _mm512_load_pd(threshold);
-        const auto close = static_cast<__mmask8>(_mm512_cmp_pd_mask(_mm512_load_pd(squared), _mm512_mul_pd(bound, bound), _CMP_LT_OQ) & ((1U << n) - 1U));
+        const auto close = static_cast<__mmask8>(
+            _mm512_cmp_pd_mask(_mm512_load_pd(squared), _mm512_mul_pd(bound, bound), _CMP_LT_OQ) & ((1U << n) - 1U));
         _mm512_storeu_si512(out, _mm512_maskz_compress_epi64(close, _mm512_load_si512(pair)));
         return out + std::popcount(static_cast<unsigned>(close));
 #else
@@ -108,8 +112,9 @@ struct FilterLanes {
 #if defined(__GNUC__)
 __attribute__((noinline))
 #endif
-inline void keep_close(const SegmentTable& table, const SegmentRecord* records, std::span<const Candidate> candidates,
-                       std::vector<SegmentPair>& close) {
+inline void
+keep_close(const SegmentTable& table, const SegmentRecord* records, std::span<const Candidate> candidates,
+           std::vector<SegmentPair>& close) {
     constexpr std::size_t ahead = 12;  // candidates to ask memory for in advance
     constexpr int room = 512;
     FilterLanes lanes;

@@ -38,8 +38,8 @@ public:
 
     /// Memory that is kept, without the pairs [byte].
     std::size_t bytes() const noexcept {
-        std::size_t sum = (first_.capacity() + owner_.capacity()) * sizeof(std::int32_t) + boxes_.capacity() * sizeof(detail::Box) +
-                          records_.capacity() * sizeof(detail::SegmentRecord);
+        std::size_t sum = (first_.capacity() + owner_.capacity()) * sizeof(std::int32_t) +
+                          boxes_.capacity() * sizeof(detail::Box) + records_.capacity() * sizeof(detail::SegmentRecord);
         for (const detail::CellGrid& grid : levels_) sum += grid.bytes();
         for (const auto& places : place_owner_) sum += places.capacity() * sizeof(std::int32_t);
         return sum;
@@ -53,11 +53,13 @@ private:
         const detail::BoxFrame frame(table);
         const std::int32_t n = table.size();
         const double mean = frame.mean_length, thickness = frame.mean_thickness;
-        const double piece = mean > pieces_from * thickness ? std::max(piece_length * thickness, mean / most_pieces) : 2.0 * std::max(mean, thickness);
+        const double piece = mean > pieces_from * thickness ? std::max(piece_length * thickness, mean / most_pieces)
+                                                            : 2.0 * std::max(mean, thickness);
         cut_ = frame.longest > piece;
         if (!cut_) {
             boxes_.resize(core::at(n));
-            in_blocks(n, block, [&](Index, std::int32_t k) { boxes_[core::at(k)] = frame.whole_box(table.record(k), table.reach()); });
+            in_blocks(n, block,
+                      [&](Index, std::int32_t k) { boxes_[core::at(k)] = frame.whole_box(table.record(k), table.reach()); });
             return;
         }
         first_.resize(core::at(n) + 1);
@@ -133,9 +135,8 @@ private:
                 place_owner_[level][core::at(k)] = cut_ ? owner_[core::at(box)] : box;
             }
         }
-        in_blocks(table.size(), block, [&](Index, std::int32_t k) {
-            records_[core::at(k)] = table.record(mapped ? k : levels_[0].box(k));
-        });
+        in_blocks(table.size(), block,
+                  [&](Index, std::int32_t k) { records_[core::at(k)] = table.record(mapped ? k : levels_[0].box(k)); });
     }
 
     /// Fills the first blocks of `close_`, in an order that the data alone gives.
@@ -157,13 +158,14 @@ private:
         }
     }
 
-    /// Boxes of a level against those of a finer one. The few large ones ask the fine grid, unless they cover so many rows of its cells that
-    /// the many small ones ask the coarse grid sooner: its rows around a small box are nine at most.
+    /// Boxes of a level against those of a finer one. The few large ones ask the fine grid, unless they cover so many rows of its
+    /// cells that the many small ones ask the coarse grid sooner: its rows around a small box are nine at most.
     std::size_t search_between(const detail::SegmentTable& table, std::size_t upper, std::size_t lower, std::size_t done) {
         constexpr Index together = 256;
         const double enough = 9.0 * levels_[lower].size();
         double rows = 0.0;
-        for (std::int32_t k = 0; k < levels_[upper].size() && rows <= enough; ++k) rows += levels_[lower].rows_of(boxes_[core::at(levels_[upper].box(k))]);
+        for (std::int32_t k = 0; k < levels_[upper].size() && rows <= enough; ++k)
+            rows += levels_[lower].rows_of(boxes_[core::at(levels_[upper].box(k))]);
         const std::size_t asking = rows <= enough ? upper : lower, asked = rows <= enough ? lower : upper;
         const detail::CellGrid& grid = levels_[asking];
         const Index blocks = (grid.size() + together - 1) / together;
@@ -192,9 +194,9 @@ private:
     static constexpr double pieces_from = 32.0, piece_length = 24.0;  // thicknesses: fastest on oblique mats of slender fibres
     static constexpr double most_pieces = 8.0;  // of a segment of mean length: long straight fibres would else take all memory
 
-    bool cut_ = false;                  // some segment has several boxes
-    std::vector<std::int32_t> first_;   // first box of each segment
-    std::vector<std::int32_t> owner_;   // segment of each box, where cut
+    bool cut_ = false;                 // some segment has several boxes
+    std::vector<std::int32_t> first_;  // first box of each segment
+    std::vector<std::int32_t> owner_;  // segment of each box, where cut
     std::vector<detail::Box> boxes_;
     std::vector<detail::CellGrid> levels_;
     std::vector<std::vector<std::int32_t>> place_owner_;  // of each level: segment at each place

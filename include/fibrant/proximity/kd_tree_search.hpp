@@ -65,8 +65,8 @@ public:
 
 private:
     static constexpr std::size_t leaf = 20;
-    using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, MiddlePoints>, MiddlePoints, 3,
-                                                     std::int32_t>;
+    using Tree =
+        nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, MiddlePoints>, MiddlePoints, 3, std::int32_t>;
     MiddlePoints points_;
     Tree tree_;
 };

@@ -27,7 +27,8 @@ inline SegmentDistance segment_distance(const MovingSegment& a, const MovingSegm
     return segment_distance(a.start_at(time), a.chord_at(time), b.start_at(time), b.chord_at(time));
 }
 
-/// Greatest relative motion of any point of one against any of the other: it is bilinear in their places, so greatest at ends [length].
+/// Greatest relative motion of any point of one against any of the other: it is bilinear in their places, so greatest at ends
+/// [length].
 inline double relative_motion(const MovingSegment& a, const MovingSegment& b) noexcept {
     return std::sqrt(std::max({(a.start_motion - b.start_motion).squaredNorm(), (a.start_motion - b.end_motion).squaredNorm(),
                                (a.end_motion - b.start_motion).squaredNorm(), (a.end_motion - b.end_motion).squaredNorm()}));
@@ -36,14 +37,15 @@ inline double relative_motion(const MovingSegment& a, const MovingSegment& b) no
 /// Where two moving segments are at the first time at which they are as close as asked.
 struct Approach {
     bool close = false;
-    double time = 0.0;      ///< in [0, 1]
+    double time = 0.0;        ///< in [0, 1]
     double s = 0.0, t = 0.0;  ///< closest points then
-    double distance = 0.0;  ///< then [length]
+    double distance = 0.0;    ///< then [length]
 };
 
 /// First time at which two moving segments are closer than `near`, or, where excused(s, t) says so of their closest points, than
-/// `nearest`. Conservative advancement (Mirtich, Impulse-based dynamic simulation of rigid body systems, 1996): a distance shrinks no
-/// faster than the relative motion, so no approach is stepped over, be the segments parallel, crossing or in one plane.
+/// `nearest`. Conservative advancement (Mirtich, Impulse-based dynamic simulation of rigid body systems, 1996): a distance
+/// shrinks no faster than the relative motion, so no approach is stepped over, be the segments parallel, crossing or in one
+/// plane.
 /// @param near     [length], > 0       @param nearest  [length], in (0, near]
 template <class Excused>
 Approach first_approach(const MovingSegment& a, const MovingSegment& b, double near, double nearest, const Excused& excused) {
@@ -66,8 +68,8 @@ Approach first_approach(const MovingSegment& a, const MovingSegment& b, double n
     return at.close = true, at;
 }
 
-/// Tree of boxes that move with what is in them, over segments: which pairs may come close during the motion. What moves together, however
-/// far, costs no more than what stands still.
+/// Tree of boxes that move with what is in them, over segments: which pairs may come close during the motion. What moves
+/// together, however far, costs no more than what stands still.
 class MovingTree {
 public:
     /// @param margins  around each segment: pairs are found that come closer than the sum of their two [length]
@@ -78,8 +80,8 @@ public:
         if (!segments.empty()) build(0, static_cast<std::int32_t>(segments.size()));
     }
 
-    /// Calls visit(task, k, l) once for each two segments k < l whose moving boxes meet; tasks are run on all threads and numbered in an
-    /// order that the data alone give, from 0 below `tasks()`.
+    /// Calls visit(task, k, l) once for each two segments k < l whose moving boxes meet; tasks are run on all threads and
+    /// numbered in an order that the data alone give, from 0 below `tasks()`.
     template <class Visit>
     void visit_pairs(const Visit& visit) const {
         core::parallel_for<core::Share::turns>(core::count(tasks_), [&](Index n) {
@@ -87,8 +89,10 @@ public:
             while (!stack.empty()) {
                 const Pair pair = stack.back();
                 stack.pop_back();
-                if (leaf(pair)) visit_leaves(n, pair, visit);
-                else split(pair, stack);
+                if (leaf(pair))
+                    visit_leaves(n, pair, visit);
+                else
+                    split(pair, stack);
             }
         });
     }
@@ -101,8 +105,10 @@ public:
             std::vector<Pair> next;
             more = false;
             for (const Pair& pair : tasks_) {
-                if (leaf(pair)) next.push_back(pair);
-                else split(pair, next), more = true;
+                if (leaf(pair))
+                    next.push_back(pair);
+                else
+                    split(pair, next), more = true;
             }
             tasks_.swap(next);
         }
@@ -153,8 +159,10 @@ private:
                 return;
             }
             const double time = first / (first - last);
-            if (first < 0.0) from = std::max(from, time - rounding);
-            else to = std::min(to, time + rounding);
+            if (first < 0.0)
+                from = std::max(from, time - rounding);
+            else
+                to = std::min(to, time + rounding);
         }
     };
     struct Node {
@@ -183,10 +191,11 @@ private:
         for (int other = 1; other < 3; ++other)
             if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
         const std::int32_t middle = first + (last - first) / 2;
-        std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last, [&](std::int32_t a, std::int32_t b) {
-            const double x = boxes_[core::at(a)].middle(axis), y = boxes_[core::at(b)].middle(axis);
-            return x != y ? x < y : a < b;
-        });
+        std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last,
+                         [&](std::int32_t a, std::int32_t b) {
+                             const double x = boxes_[core::at(a)].middle(axis), y = boxes_[core::at(b)].middle(axis);
+                             return x != y ? x < y : a < b;
+                         });
         const std::int32_t left = build(first, middle);
         nodes_[core::at(number)].left = left;
         const std::int32_t right = build(middle, last);

@@ -16,12 +16,12 @@ namespace fibrant::proximity {
 
 /// One fibre as a polyline with a round section. It does not own what it points to.
 struct Centreline {
-    std::span<const Vec3> points;        ///< vertices in order, at least 2 [length]
-    double radius = core::unset;         ///< > 0 [length]
+    std::span<const Vec3> points;  ///< vertices in order, at least 2 [length]
+    double radius = core::unset;   ///< > 0 [length]
     /// Of each segment: bound of the curve's deviation from the chord, >= 0 [length]; empty means 0 everywhere. With
     /// x'' = x0 - 2 x1 + x2 constant over a quadratic element, a piece 1/n of it deviates by at most |x''| / (2 n^2).
     std::span<const double> inflation{};
-    Index family = -1;                   ///< fibres of the same family >= 0 never pair
+    Index family = -1;  ///< fibres of the same family >= 0 never pair
     /// Segments of the fibre itself pair only if the arc between their closest ends exceeds this [length].
     double self_skip = std::numeric_limits<double>::infinity();
     bool closed = false;  ///< its last vertex is its first one: arcs and zones go on around it
@@ -34,8 +34,8 @@ struct SegmentPair {
 };
 
 /// Part of two fibres along which they are close: an interval of each, in vertex units of its polyline
-/// (2.25 is a quarter of the way from vertex 2 to vertex 3). Around a closed fibre it may reach beyond the last vertex, or begin before
-/// the first; a zone of a closed fibre with itself has either part first.
+/// (2.25 is a quarter of the way from vertex 2 to vertex 3). Around a closed fibre it may reach beyond the last vertex, or begin
+/// before the first; a zone of a closed fibre with itself has either part first.
 struct ProximityZone {
     Index fibre_i = -1, fibre_j = -1;     ///< fibre_i <= fibre_j
     double a_i = 0, b_i = 0;              ///< a_i <= b_i
@@ -54,10 +54,9 @@ struct ProximityZone {
 /// (a fibre of one vertex, a coordinate that is not finite) throws std::invalid_argument with fibre and vertex.
 /// `find` may reuse buffers of the search: one search object serves one thread at a time.
 template <class S>
-concept ProximitySearch =
-    core::Policy<S> && requires(S search, std::span<const Centreline> fibres, double reach) {
-        { search.find(fibres, reach) } -> std::same_as<std::vector<ProximityZone>>;
-        { search.pairs(fibres, reach) } -> std::same_as<std::vector<SegmentPair>>;  // sorted, without repeats
-    };
+concept ProximitySearch = core::Policy<S> && requires(S search, std::span<const Centreline> fibres, double reach) {
+    { search.find(fibres, reach) } -> std::same_as<std::vector<ProximityZone>>;
+    { search.pairs(fibres, reach) } -> std::same_as<std::vector<SegmentPair>>;  // sorted, without repeats
+};
 
 }  // namespace fibrant::proximity

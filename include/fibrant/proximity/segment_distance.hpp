@@ -10,8 +10,8 @@ namespace fibrant::proximity {
 
 /// Closest points of two segments: start + s chord and start' + t chord'.
 struct SegmentDistance {
-    double squared = 0;    ///< [length^2]
-    double s = 0, t = 0;   ///< in [0, 1]; not unique where the segments are parallel
+    double squared = 0;   ///< [length^2]
+    double s = 0, t = 0;  ///< in [0, 1]; not unique where the segments are parallel
 };
 
 namespace detail {
@@ -20,8 +20,12 @@ namespace detail {
 struct Plain3 {
     double x, y, z;
 };
-[[gnu::always_inline]] inline constexpr Plain3 operator-(const Plain3& a, const Plain3& b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-[[gnu::always_inline]] inline constexpr double dot(const Plain3& a, const Plain3& b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
+[[gnu::always_inline]] inline constexpr Plain3 operator-(const Plain3& a, const Plain3& b) noexcept {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+[[gnu::always_inline]] inline constexpr double dot(const Plain3& a, const Plain3& b) noexcept {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 inline Plain3 plain(const Vec3& v) noexcept { return {v[0], v[1], v[2]}; }
 
 /// To [0, 1], and not a number to 0.
@@ -30,7 +34,8 @@ inline Plain3 plain(const Vec3& v) noexcept { return {v[0], v[1], v[2]}; }
     return x < 1.0 ? x : 1.0;
 }
 
-[[gnu::always_inline]] inline constexpr double squared_between(const Plain3& w, const Plain3& u, const Plain3& v, double s, double t) noexcept {
+[[gnu::always_inline]] inline constexpr double squared_between(const Plain3& w, const Plain3& u, const Plain3& v, double s,
+                                                               double t) noexcept {
     const Plain3 difference{w.x + s * u.x - t * v.x, w.y + s * u.y - t * v.y, w.z + s * u.z - t * v.z};
     return dot(difference, difference);
 }

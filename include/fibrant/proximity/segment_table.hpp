@@ -14,9 +14,9 @@ namespace fibrant::proximity::detail {
 /// What the filter reads of a segment, in one cache line.
 struct alignas(64) SegmentRecord {
     Plain3 start, chord;
-    double half;             ///< radius + inflation
-    std::int32_t segment;    ///< global number
-    std::int32_t group;      ///< its family, or -1 - fibre: segments of one group do not pair, but by self_skip
+    double half;           ///< radius + inflation
+    std::int32_t segment;  ///< global number
+    std::int32_t group;    ///< its family, or -1 - fibre: segments of one group do not pair, but by self_skip
 };
 static_assert(sizeof(SegmentRecord) == 64);
 
@@ -99,8 +99,7 @@ private:
                          "none or one a segment, " + std::to_string(line.points.size() - 1));
         for (std::size_t k = 0; k < line.inflation.size(); ++k)
             if (!(line.inflation[k] >= 0.0) || !std::isfinite(line.inflation[k]))
-                core::require_not_negative(name(", segment ").append(std::to_string(k)).append(": inflation"),
-                                           line.inflation[k]);
+                core::require_not_negative(name(", segment ").append(std::to_string(k)).append(": inflation"), line.inflation[k]);
     }
 
     void measure_arcs() {

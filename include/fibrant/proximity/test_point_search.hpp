@@ -12,15 +12,15 @@ namespace detail {
 /// A point of a fibre, and the segments that hold all of the fibre for which it is the nearest such point.
 struct TestPoint {
     Plain3 position;
-    double range;                 // largest radius + inflation of the fibre
-    std::int32_t first, last;     // segments, both included
+    double range;              // largest radius + inflation of the fibre
+    std::int32_t first, last;  // segments, both included
 };
 
 /// Takes pairs of boxes around test points to pairs of test points, and these to pairs of segments.
 class TestPointSink {
 public:
-    TestPointSink(const SegmentTable& table, const SegmentRecord* records, const std::vector<TestPoint>& points,
-                  double spacing, const CellGrid& grid, std::vector<SegmentPair>& close)
+    TestPointSink(const SegmentTable& table, const SegmentRecord* records, const std::vector<TestPoint>& points, double spacing,
+                  const CellGrid& grid, std::vector<SegmentPair>& close)
         : table_(table), records_(records), points_(points), spacing_(spacing), grid_(grid), close_(close) {}
 
     Candidate* room(std::int32_t n) {
@@ -78,8 +78,8 @@ public:
         std::vector<detail::Box> boxes(points.size());
         std::vector<std::int32_t> all(points.size());
         for (std::size_t k = 0; k < points.size(); ++k) {
-            const detail::SegmentRecord place{points[k].position, {0.0, 0.0, 0.0}, 0.0, static_cast<std::int32_t>(k),
-                                              table.record(points[k].first).group};
+            const detail::SegmentRecord place{
+                points[k].position, {0.0, 0.0, 0.0}, 0.0, static_cast<std::int32_t>(k), table.record(points[k].first).group};
             boxes[k] = frame.box(place, 0.0, 1.0, points[k].range + 0.5 * (reach + parameters_.spacing));
             all[k] = static_cast<std::int32_t>(k);
         }

@@ -119,7 +119,8 @@ private:
     void make_list(std::span<const Centreline> fibres, double reach) {
         std::vector<Centreline> listed(fibres.begin(), fibres.end());
         for (Centreline& line : listed)
-            if (std::isfinite(line.self_skip)) line.self_skip = 0.0;  // arcs stretch while the list lives: the filter applies the rule
+            if (std::isfinite(line.self_skip))
+                line.self_skip = 0.0;  // arcs stretch while the list lives: the filter applies the rule
         list_ = base_.pairs(listed, reach + skin_);
         reach_ = reach;
     }

@@ -33,7 +33,8 @@ public:
     /// @param pairs  all of these two, sorted by segment
     void append(std::span<const SegmentPair> pairs, std::vector<ProximityZone>& zones) {
         pairs_ = pairs;
-        if (table_.centreline(table_.fibre(pairs.front().i)).closed || table_.centreline(table_.fibre(pairs.front().j)).closed) return closed_.append(pairs, zones);
+        if (table_.centreline(table_.fibre(pairs.front().i)).closed || table_.centreline(table_.fibre(pairs.front().j)).closed)
+            return closed_.append(pairs, zones);
         const std::size_t n = pairs_.size();
         closest_.resize(n);
         sense_.resize(n);
@@ -107,9 +108,7 @@ private:
         }
     }
 
-    bool same_way(std::size_t a, std::size_t b) const {
-        return mixed_[a] == 0 || (sense_[a] < 0.0) == (sense_[b] < 0.0);
-    }
+    bool same_way(std::size_t a, std::size_t b) const { return mixed_[a] == 0 || (sense_[a] < 0.0) == (sense_[b] < 0.0); }
 
     /// Undoes the components that run clearly both ways, as where a fibre turns back along another, to be joined again
     /// by sense. A crossing near 90 degrees, whose sense is noise, stays whole. Returns whether there are any.

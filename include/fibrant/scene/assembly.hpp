@@ -31,19 +31,19 @@ struct FibreSpecification {
     Curve start{};
     CrossSection section{};  ///< at rest
     ElasticMaterial material{};
-    Index elements = 0;                       ///< along the fibre, >= 1
-    Vec3 director = Vec3::Zero();             ///< g_1 at the first end, less its axial part; zero: any
-    Index group = -1;                         ///< from Assembly::add_group, or -1
-    /// The end is the start: `start`, or `curve` where there is none, closes smoothly, and so do the directors. The rest shape may be open: of a
-    /// closed fibre that is given by its start alone it is straight.
+    Index elements = 0;            ///< along the fibre, >= 1
+    Vec3 director = Vec3::Zero();  ///< g_1 at the first end, less its axial part; zero: any
+    Index group = -1;              ///< from Assembly::add_group, or -1
+    /// The end is the start: `start`, or `curve` where there is none, closes smoothly, and so do the directors. The rest shape
+    /// may be open: of a closed fibre that is given by its start alone it is straight.
     bool closed = false;
-    double twist = 0.0;                       ///< of a closed fibre: by which it is turned along itself before it is closed [radian]
+    double twist = 0.0;  ///< of a closed fibre: by which it is turned along itself before it is closed [radian]
 
-    std::string law_channel{};                ///< that drives the law of its section: heat, shrinkage, growth; empty: none
+    std::string law_channel{};  ///< that drives the law of its section: heat, shrinkage, growth; empty: none
 
     /// A closed fibre that is straight at rest, as long as its start is.
     bool straightened() const noexcept { return closed && start && !curve && !from.allFinite() && !to.allFinite(); }
-    std::string name{};                       ///< what messages call it beside its number; may be left out
+    std::string name{};  ///< what messages call it beside its number; may be left out
 
     /// Curves are looked at when they are cut into elements.
     void validate() const {
@@ -56,7 +56,8 @@ struct FibreSpecification {
         core::require_finite("fibre.twist", twist);
         if (closed) {
             core::require_at_least("fibre.elements, of a closed fibre", elements, 3);
-            if (!start && !curve) core::refuse("fibre.closed", "a straight fibre", "a curve, or a start, that ends where it begins");
+            if (!start && !curve)
+                core::refuse("fibre.closed", "a straight fibre", "a curve, or a start, that ends where it begins");
         } else {
             core::require(twist == 0.0, "fibre.twist", twist, "0, of a fibre that is not closed");
         }
@@ -96,11 +97,12 @@ public:
     /// @returns index of the fibre, counted from 0
     /// @throws std::invalid_argument naming the field that is wrong
     Index add(const FibreSpecification& fibre) {
-        core::with_place([&] { return label("fibre", core::count(fibres_), fibre.name); }, [&] {
-            fibre.validate();
-            if (fibre.group < -1 || fibre.group >= core::count(groups_))
-                core::refuse("fibre.group", std::to_string(fibre.group), "-1 or a group of this assembly");
-        });
+        core::with_place([&] { return label("fibre", core::count(fibres_), fibre.name); },
+                         [&] {
+                             fibre.validate();
+                             if (fibre.group < -1 || fibre.group >= core::count(groups_))
+                                 core::refuse("fibre.group", std::to_string(fibre.group), "-1 or a group of this assembly");
+                         });
         fibres_.push_back(fibre);
         return core::count(fibres_) - 1;
     }
@@ -121,7 +123,8 @@ public:
 
     /// Takes away all holds of some fibres.
     void release(const std::vector<Index>& fibres) {
-        std::erase_if(holds_, [&](const Hold& hold) { return std::find(fibres.begin(), fibres.end(), hold.at.fibre) != fibres.end(); });
+        std::erase_if(holds_,
+                      [&](const Hold& hold) { return std::find(fibres.begin(), fibres.end(), hold.at.fibre) != fibres.end(); });
     }
 
     /// Holds the centre of a section in the given directions.
@@ -202,10 +205,12 @@ public:
 
     void apply(const LinePressure& load) {
         check(first_end(load.fibre));
-        core::with_place([&] { return label("fibre", load.fibre, fibres_[core::at(load.fibre)].name); }, [&] {
-            core::require_finite("LinePressure.pressure", load.pressure);
-            core::require(std::abs(load.axis.norm() - 1.0) < 1e-9, "LinePressure.axis: length", load.axis.norm(), "1");
-        });
+        core::with_place([&] { return label("fibre", load.fibre, fibres_[core::at(load.fibre)].name); },
+                         [&] {
+                             core::require_finite("LinePressure.pressure", load.pressure);
+                             core::require(std::abs(load.axis.norm() - 1.0) < 1e-9, "LinePressure.axis: length", load.axis.norm(),
+                                           "1");
+                         });
         pressures_.push_back(load);
     }
 
@@ -214,13 +219,15 @@ public:
             if (group < 0 || group >= core::count(groups_))
                 core::refuse("ForcedOrder.group", std::to_string(group), "a group of this assembly");
         const auto place = [&] {
-            return label("order", core::count(orders_)) + ", of " + group_label(order.above) + " above " + group_label(order.below);
+            return label("order", core::count(orders_)) + ", of " + group_label(order.above) + " above " +
+                   group_label(order.below);
         };
         core::with_place(place, [&] {
             order.validate();
             const auto opposite = order_of_.find({order.below, order.above});
             if (opposite != order_of_.end())
-                core::refuse("ForcedOrder.above", std::to_string(order.above), "below: " + label("order", opposite->second) + " says so");
+                core::refuse("ForcedOrder.above", std::to_string(order.above),
+                             "below: " + label("order", opposite->second) + " says so");
             const double sine = orders_.empty() ? 0.0 : orders_.front().axis.cross(order.axis).norm();
             core::require(sine <= matrix_rounding, "ForcedOrder.axis: sine of the angle to that of order 0", sine, "0");
         });
@@ -249,16 +256,19 @@ public:
     /// A rigid body, for models that have a part `Connections`.
     /// @returns index of the body, counted from 0
     Index add(RigidBody body) {
-        if (body.parent < -1 || body.parent >= core::count(bodies_)) core::refuse("RigidBody.parent", std::to_string(body.parent), "-1 or an earlier body");
+        if (body.parent < -1 || body.parent >= core::count(bodies_))
+            core::refuse("RigidBody.parent", std::to_string(body.parent), "-1 or an earlier body");
         core::with_place([&] { return label("body", core::count(bodies_), body.name); }, [&] { body.validate(); });
         bodies_.push_back(std::move(body));
         return core::count(bodies_) - 1;
     }
 
     void connect(AverageConnection connection) {
-        if (connection.body < 0 || connection.body >= core::count(bodies_)) core::refuse("AverageConnection.body", std::to_string(connection.body), "a body of this assembly");
+        if (connection.body < 0 || connection.body >= core::count(bodies_))
+            core::refuse("AverageConnection.body", std::to_string(connection.body), "a body of this assembly");
         const auto place = [&] {
-            return label("connection", core::count(averages_)) + " to " + label("body", connection.body, bodies_[core::at(connection.body)].name);
+            return label("connection", core::count(averages_)) + " to " +
+                   label("body", connection.body, bodies_[core::at(connection.body)].name);
         };
         core::with_place(place, [&] {
             connection.validate();
@@ -275,8 +285,10 @@ public:
     /// Clamps a section to a body: position and rotation follow it, the section's stretches are free.
     void clamp_to(Index body, Station at, const Mat3& section) {
         connect({.ends = {at}, .body = body});
-        connect({.ends = {at}, .vector = NodeVector::director_1, .body = body, .directions = section, .tied = {false, true, true}});
-        connect({.ends = {at}, .vector = NodeVector::director_2, .body = body, .directions = section, .tied = {true, false, true}});
+        connect(
+            {.ends = {at}, .vector = NodeVector::director_1, .body = body, .directions = section, .tied = {false, true, true}});
+        connect(
+            {.ends = {at}, .vector = NodeVector::director_2, .body = body, .directions = section, .tied = {true, false, true}});
     }
 
     /// @returns index of the cell, counted from 0
@@ -286,7 +298,8 @@ public:
         return core::count(cells_) - 1;
     }
     void connect(const PeriodicPair& pair) {
-        if (pair.cell < 0 || pair.cell >= core::count(cells_)) core::refuse("PeriodicPair.cell", std::to_string(pair.cell), "a cell of this assembly");
+        if (pair.cell < 0 || pair.cell >= core::count(cells_))
+            core::refuse("PeriodicPair.cell", std::to_string(pair.cell), "a cell of this assembly");
         check(pair.first), check(pair.last);
         core::with_place([&] { return "from " + station_label(pair.first) + " to " + station_label(pair.last); },
                          [&] { require_finite("PeriodicPair.period", pair.period); });
@@ -335,7 +348,8 @@ public:
 private:
     static std::function<Mat3(double)> by_amplitude(const Vec3& rotation) {
         if (!(rotation.norm() > 0.0)) return {};
-        return [rotation](double amplitude) { return Mat3(Eigen::AngleAxisd(amplitude * rotation.norm(), rotation.normalized())); };
+        return
+            [rotation](double amplitude) { return Mat3(Eigen::AngleAxisd(amplitude * rotation.norm(), rotation.normalized())); };
     }
     void check(const Station& at) const {
         if (at.fibre < 0 || at.fibre >= core::count(fibres_))

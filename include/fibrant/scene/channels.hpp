@@ -30,7 +30,8 @@ public:
             if (coordinate.value != 0.0) names_.push_back(coordinate.channel);
         };
         for (const RigidBody& body : assembly.bodies())
-            std::for_each(body.translation.begin(), body.translation.end(), drive), std::for_each(body.rotation.begin(), body.rotation.end(), drive);
+            std::for_each(body.translation.begin(), body.translation.end(), drive),
+                std::for_each(body.rotation.begin(), body.rotation.end(), drive);
         for (const AverageConnection& average : assembly.averages())
             if (!average.displacement.isZero(0.0)) names_.push_back(average.channel);
         for (const PeriodicCell& cell : assembly.cells()) std::for_each(cell.gradient.begin(), cell.gradient.end(), drive);

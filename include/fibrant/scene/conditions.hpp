@@ -44,15 +44,15 @@ inline void require_at(const std::string& of, double amplitude, const std::funct
 /// amplitude of the channel. A rotation of a director turns the direction; of a position, turns it about the origin of
 /// `pivot`.
 struct Hold {
-    Station at{};  ///< fibre and place on it
+    Station at{};                              ///< fibre and place on it
     NodeVector vector = NodeVector::position;  ///< position or director of the node that lies there
-    Mat3 directions = Mat3::Identity();  ///< symmetric projector on what is held
-    Axes axes = Axes::space;             ///< of `directions`
-    std::string channel = "motion";  ///< whose amplitude drives it
-    Vec3 displacement = Vec3::Zero();    ///< at amplitude 1 [length], or [1] for a director
-    std::function<Vec3(double)> path{};  ///< displacement at amplitude a, where it is not proportional
-    std::function<Mat3(double)> rotation{};  ///< at amplitude a; none: identity
-    Vec3 pivot = Vec3::Zero();           ///< of the rotation of a position [length]
+    Mat3 directions = Mat3::Identity();        ///< symmetric projector on what is held
+    Axes axes = Axes::space;                   ///< of `directions`
+    std::string channel = "motion";            ///< whose amplitude drives it
+    Vec3 displacement = Vec3::Zero();          ///< at amplitude 1 [length], or [1] for a director
+    std::function<Vec3(double)> path{};        ///< displacement at amplitude a, where it is not proportional
+    std::function<Mat3(double)> rotation{};    ///< at amplitude a; none: identity
+    Vec3 pivot = Vec3::Zero();                 ///< of the rotation of a position [length]
 
     void validate() const {
         require_vector("Hold.vector", vector);
@@ -66,10 +66,10 @@ struct Hold {
 /// A force that keeps its direction and size. On a director it is a force at the material point one length unit off the
 /// axis, so a force Q at xi_1 = r acts as Q on the position and r Q on g_1.
 struct DeadForce {
-    Station at{};  ///< fibre and place on it
+    Station at{};                              ///< fibre and place on it
     NodeVector vector = NodeVector::position;  ///< position or director of the node that lies there
-    Vec3 force = Vec3::Zero();  ///< at amplitude 1 [force], [force * length] on a director
-    std::string channel = "load";  ///< whose amplitude it is multiplied by
+    Vec3 force = Vec3::Zero();                 ///< at amplitude 1 [force], [force * length] on a director
+    std::string channel = "load";              ///< whose amplitude it is multiplied by
 
     void validate() const {
         require_vector("DeadForce.vector", vector);
@@ -80,10 +80,10 @@ struct DeadForce {
 /// A moment about a fixed axis, applied to a section through one director: force M x g / |g|^2. The moment
 /// must stay perpendicular to that director; the tangent is symmetrised, exact while the director turns in a plane.
 struct Moment {
-    Station at{};  ///< fibre and place on it
+    Station at{};                                  ///< fibre and place on it
     NodeVector director = NodeVector::director_1;  ///< that it turns
-    Vec3 moment = Vec3::Zero();  ///< at amplitude 1 [force * length]
-    std::string channel = "load";  ///< whose amplitude it is multiplied by
+    Vec3 moment = Vec3::Zero();                    ///< at amplitude 1 [force * length]
+    std::string channel = "load";                  ///< whose amplitude it is multiplied by
 
     void validate() const {
         require_vector("Moment.director", director);
@@ -92,14 +92,14 @@ struct Moment {
     }
 };
 
-/// A force per length of the line as it lies, across it: pressure * axis x tangent, so that it follows the fibre. Around a closed fibre in a plane,
-/// anticlockwise about the axis, it is that of a fluid outside, and has a potential: pressure times the area inside. Beyond the ends of an open one
-/// it has none, and the tangent is symmetrised.
+/// A force per length of the line as it lies, across it: pressure * axis x tangent, so that it follows the fibre. Around a closed
+/// fibre in a plane, anticlockwise about the axis, it is that of a fluid outside, and has a potential: pressure times the area
+/// inside. Beyond the ends of an open one it has none, and the tangent is symmetrised.
 struct LinePressure {
     Index fibre = -1;
     double pressure = core::unset;  ///< at amplitude 1 [force / length]
     Vec3 axis = Vec3::UnitZ();      ///< unit
-    std::string channel = "load";  ///< whose amplitude it is multiplied by
+    std::string channel = "load";   ///< whose amplitude it is multiplied by
 };
 
 /// Contact between the fibres of two groups, or within one, where it is not that of the laws. A fibre that is in no rule counts

@@ -25,13 +25,9 @@ struct CrossSection {
     /// [length^2]
     double area() const noexcept { return std::numbers::pi * semi_axis_1 * semi_axis_2; }
     /// Integral of xi_1^2 [length^4]: bending that turns g_1.
-    double second_moment_1() const noexcept {
-        return inertia_factor * 0.25 * area() * semi_axis_1 * semi_axis_1;
-    }
+    double second_moment_1() const noexcept { return inertia_factor * 0.25 * area() * semi_axis_1 * semi_axis_1; }
     /// Integral of xi_2^2 [length^4].
-    double second_moment_2() const noexcept {
-        return inertia_factor * 0.25 * area() * semi_axis_2 * semi_axis_2;
-    }
+    double second_moment_2() const noexcept { return inertia_factor * 0.25 * area() * semi_axis_2 * semi_axis_2; }
     /// Circumscribed radius [length]: what a search has to reach.
     double radius() const noexcept { return std::max(semi_axis_1, semi_axis_2); }
     /// Half extent along a unit direction of the section that the directors deform [length].
@@ -43,7 +39,8 @@ struct CrossSection {
     double greatest_extent(const Vec3& g_1, const Vec3& g_2) const noexcept {
         const double pp = semi_axis_1 * semi_axis_1 * g_1.squaredNorm(), qq = semi_axis_2 * semi_axis_2 * g_2.squaredNorm();
         const double mixed = semi_axis_1 * semi_axis_2 * g_1.dot(g_2), half = 0.5 * (pp - qq);
-        return std::sqrt(0.5 * (pp + qq) + std::sqrt(half * half + mixed * mixed));  // greatest singular value of the two half axes
+        return std::sqrt(0.5 * (pp + qq) +
+                         std::sqrt(half * half + mixed * mixed));  // greatest singular value of the two half axes
     }
     /// True over kinematic torsion constant of the ellipse, 4 a^2 b^2 / (a^2 + b^2)^2 [1]; 1 for a circle.
     double torsion_factor() const noexcept {

@@ -21,8 +21,8 @@ struct Chain {
     bool closed = false;         ///< its last node is the image of its first one
 };
 
-/// A vector that is the same unknown as another one: the end of a closed chain in memory. It has the value of its source wherever values
-/// are read, forces on it act on its source, and a system holds it as if it were prescribed altogether.
+/// A vector that is the same unknown as another one: the end of a closed chain in memory. It has the value of its source wherever
+/// values are read, forces on it act on its source, and a system holds it as if it were prescribed altogether.
 struct ImageVector {
     Index image = -1, source = -1;
 };
@@ -40,11 +40,11 @@ struct HeldVector {
 /// vector with another one and none that is held.
 struct Tie {
     std::vector<Index> vectors;
-    std::vector<double> weights;      ///< w, of squares that sum to 1 [1]
-    Mat3 axes = Mat3::Identity();     ///< orthonormal columns, of which the first `count` are tied
+    std::vector<double> weights;   ///< w, of squares that sum to 1 [1]
+    Mat3 axes = Mat3::Identity();  ///< orthonormal columns, of which the first `count` are tied
     Index count = 3;
-    Index first = 0;                  ///< number of the first of its scalars among those of all ties
-    double support = 0.0;             ///< what a preconditioner holds each vector by in the place of the tie [force / length]
+    Index first = 0;       ///< number of the first of its scalars among those of all ties
+    double support = 0.0;  ///< what a preconditioner holds each vector by in the place of the tie [force / length]
 };
 
 /// Ways in which tied scalars may move together, as the free motions of a rigid body move them.
@@ -57,12 +57,12 @@ struct TiedMotion {
 /// Layout of a system: unknown k is component k % 3 of vector k / 3.
 struct DofLayout {
     std::vector<Chain> chains;
-    std::vector<VectorKind> kind;  ///< of each vector
-    std::vector<Vec3> value;       ///< of each vector: current position [length] or director [1]
-    std::vector<double> length;    ///< makes a vector a displacement: 1 for a position, the radius for a director
-    std::vector<HeldVector> held;  ///< sorted by vector, each vector at most once
+    std::vector<VectorKind> kind;     ///< of each vector
+    std::vector<Vec3> value;          ///< of each vector: current position [length] or director [1]
+    std::vector<double> length;       ///< makes a vector a displacement: 1 for a position, the radius for a director
+    std::vector<HeldVector> held;     ///< sorted by vector, each vector at most once
     std::vector<ImageVector> images;  ///< of closed chains, sorted; each is among `held` too
-    std::vector<Tie> ties;         ///< none, but for averages and periodic cells
+    std::vector<Tie> ties;            ///< none, but for averages and periodic cells
     std::vector<TiedMotion> motions;  ///< of ties, that share no scalar
     /// Of the scene, powers of two, so that to measure by them changes no bit: a radius [length], and a stiffness of positions.
     /// What a solver compares, or keeps in few bits, it measures by them: no number of its own depends on the units of a scene.

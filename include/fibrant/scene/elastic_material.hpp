@@ -19,8 +19,8 @@ struct TransverseConstants {
     bool given() const noexcept { return !(std::isnan(young_modulus) && std::isnan(poisson_ratio) && std::isnan(shear_modulus)); }
 };
 
-/// Isotropic elasticity (St Venant-Kirchhoff when strains are finite); with `transverse` these are E_L and nu_LT, along the fibre, and
-/// nu_LT is the contraction across under tension along.
+/// Isotropic elasticity (St Venant-Kirchhoff when strains are finite); with `transverse` these are E_L and nu_LT, along the
+/// fibre, and nu_LT is the contraction across under tension along.
 struct ElasticMaterial {
     double young_modulus = core::unset;  ///< E [force / length^2], > 0
     double poisson_ratio = core::unset;  ///< nu [1], in (-1, 0.5); with `transverse` nu_LT^2 < E_L (1 - nu_TT) / (2 E_T)
@@ -31,13 +31,14 @@ struct ElasticMaterial {
         core::require_positive("ElasticMaterial.young_modulus", young_modulus);
         core::require_at_least("ElasticMaterial.law", law, 0);
         if (!transverse.given()) {
-            core::require(poisson_ratio > -1.0 && poisson_ratio < 0.5, "ElasticMaterial.poisson_ratio", poisson_ratio, "> -1 and < 0.5");
+            core::require(poisson_ratio > -1.0 && poisson_ratio < 0.5, "ElasticMaterial.poisson_ratio", poisson_ratio,
+                          "> -1 and < 0.5");
             return;
         }
         core::require_positive("ElasticMaterial.transverse.young_modulus", transverse.young_modulus);
         core::require_positive("ElasticMaterial.transverse.shear_modulus", transverse.shear_modulus);
-        core::require(transverse.poisson_ratio > -1.0 && transverse.poisson_ratio < 1.0, "ElasticMaterial.transverse.poisson_ratio",
-                      transverse.poisson_ratio, "> -1 and < 1");
+        core::require(transverse.poisson_ratio > -1.0 && transverse.poisson_ratio < 1.0,
+                      "ElasticMaterial.transverse.poisson_ratio", transverse.poisson_ratio, "> -1 and < 1");
         const double bound = std::sqrt(0.5 * young_modulus * (1.0 - transverse.poisson_ratio) / transverse.young_modulus);
         core::require(std::abs(poisson_ratio) < bound, "ElasticMaterial.poisson_ratio", poisson_ratio,
                       "between -" + core::text(bound) + " and " + core::text(bound) + ", or the energy is not positive");
@@ -45,7 +46,8 @@ struct ElasticMaterial {
     /// Throws std::invalid_argument for constants that only a beam with a law of its own takes.
     void require_isotropic(const std::string& user) const {
         if (transverse.given())
-            core::refuse(user + ": ElasticMaterial.transverse", "given", "left out: " + user + " is isotropic; beam::With<..., material::Elastic> is not");
+            core::refuse(user + ": ElasticMaterial.transverse", "given",
+                         "left out: " + user + " is isotropic; beam::With<..., material::Elastic> is not");
         if (law != 0) core::refuse(user + ": ElasticMaterial.law", std::to_string(law), "0: " + user + " has one law");
     }
     /// Modulus E* of a section that two opposite line loads press at held length [force / length^2]: E / (1 - nu^2) if isotropic.
@@ -54,11 +56,11 @@ struct ElasticMaterial {
         return (transverse.given() ? transverse.young_modulus : young_modulus) / (1.0 - poisson_ratio * poisson_ratio * share);
     }
     /// First Lame constant, if isotropic [force / length^2].
-    double lame() const noexcept {
-        return young_modulus * poisson_ratio / ((1.0 + poisson_ratio) * (1.0 - 2.0 * poisson_ratio));
-    }
+    double lame() const noexcept { return young_modulus * poisson_ratio / ((1.0 + poisson_ratio) * (1.0 - 2.0 * poisson_ratio)); }
     /// Shear modulus G, between the fibre and its section [force / length^2].
-    double shear_modulus() const noexcept { return transverse.given() ? transverse.shear_modulus : 0.5 * young_modulus / (1.0 + poisson_ratio); }
+    double shear_modulus() const noexcept {
+        return transverse.given() ? transverse.shear_modulus : 0.5 * young_modulus / (1.0 + poisson_ratio);
+    }
 };
 
 }  // namespace fibrant::scene

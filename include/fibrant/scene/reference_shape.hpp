@@ -101,8 +101,8 @@ inline std::string curve_place(double parameter, const Vec3& position) {
 
 /// One march along a curve with `fine` steps between two nodes. @returns whether nodes came to be as far apart as they should;
 /// if `last`, throws where they did not.
-inline bool march(const Curve& curve, Index nodes, Index fine, const Vec3& director, const std::string& name, bool closed, bool last_attempt,
-                  ReferenceShape& shape) {
+inline bool march(const Curve& curve, Index nodes, Index fine, const Vec3& director, const std::string& name, bool closed,
+                  bool last_attempt, ReferenceShape& shape) {
     const Index steps = (nodes - 1) * fine;
     std::vector<double> arc(core::at(steps + 1), 0.0);
     Vec3 last = curve(0.0);
@@ -122,8 +122,9 @@ inline bool march(const Curve& curve, Index nodes, Index fine, const Vec3& direc
     for (Index k = 0; k < steps; ++k)
         if (const double span = arc[core::at(k + 1)] - arc[core::at(k)]; !(span > least_speed * mean)) {
             const double t = static_cast<double>(k) / static_cast<double>(steps);
-            core::refuse(name + ": speed", core::text(span / mean), "> " + core::text(least_speed) +
-                         " of its mean everywhere: its points repeat, or it stands still" + curve_place(t, curve(t)));
+            core::refuse(name + ": speed", core::text(span / mean),
+                         "> " + core::text(least_speed) + " of its mean everywhere: its points repeat, or it stands still" +
+                             curve_place(t, curve(t)));
         }
 
     const double difference = 0.25 / static_cast<double>(steps);
@@ -137,13 +138,14 @@ inline bool march(const Curve& curve, Index nodes, Index fine, const Vec3& direc
         while (k + 1 < steps && arc[core::at(k + 1)] < wanted) ++k;
         const double span = arc[core::at(k + 1)] - arc[core::at(k)];
         const double t = std::clamp(
-            m == steps ? 1.0
-                       : (static_cast<double>(k) + (wanted - arc[core::at(k)]) / span) / static_cast<double>(steps), 0.0, 1.0);
+            m == steps ? 1.0 : (static_cast<double>(k) + (wanted - arc[core::at(k)]) / span) / static_cast<double>(steps), 0.0,
+            1.0);
         const Vec3 position = curve(t);
         const Vec3 derivative = curve_derivative(curve, t, difference, closed), tangent = derivative.normalized();
         if (!(derivative.norm() > least_speed * length))
-            core::refuse(name + ": speed", core::text(derivative.norm() / length), "> " + core::text(least_speed) +
-                         " of its mean everywhere: its points repeat, or it stands still" + curve_place(t, position));
+            core::refuse(name + ": speed", core::text(derivative.norm() / length),
+                         "> " + core::text(least_speed) + " of its mean everywhere: its points repeat, or it stands still" +
+                             curve_place(t, position));
         if (m == 0) {
             const Vec3 start = director - director.dot(tangent) * tangent;
             frame.director_1 =
@@ -169,11 +171,14 @@ inline bool march(const Curve& curve, Index nodes, Index fine, const Vec3& direc
     const double spacing = length / static_cast<double>(nodes - 1);
     if (longest <= longest_step * spacing && uneven <= largest_unevenness) return true;
     if (last_attempt && longest > longest_step * spacing)
-        core::refuse(name + ": step", core::text(longest), "<= " + core::text(longest_step * spacing) + ", " + core::text(longest_step) +
-                     " of the distance of two nodes: it jumps, or its points are too uneven" + curve_place(at_longest, curve(at_longest)));
+        core::refuse(name + ": step", core::text(longest),
+                     "<= " + core::text(longest_step * spacing) + ", " + core::text(longest_step) +
+                         " of the distance of two nodes: it jumps, or its points are too uneven" +
+                         curve_place(at_longest, curve(at_longest)));
     if (last_attempt)
-        core::refuse(name + ": unevenness of nodes", core::text(uneven), "<= " + core::text(largest_unevenness) +
-                     ": its points are too uneven" + curve_place(at_uneven, curve(at_uneven)));
+        core::refuse(
+            name + ": unevenness of nodes", core::text(uneven),
+            "<= " + core::text(largest_unevenness) + ": its points are too uneven" + curve_place(at_uneven, curve(at_uneven)));
     return false;
 }
 
@@ -188,7 +193,8 @@ inline bool march(const Curve& curve, Index nodes, Index fine, const Vec3& direc
 /// @param director  g_1 at the start is its part perpendicular to the tangent; zero: any
 /// @param name      what messages call the curve
 /// @param closed    the curve ends where it begins, and its tangent there is that of a curve that goes on
-/// @throws std::invalid_argument if the curve is not finite, stands still, jumps, runs too unevenly or does not close where it should; it says where
+/// @throws std::invalid_argument if the curve is not finite, stands still, jumps, runs too unevenly or does not close where it
+/// should; it says where
 inline ReferenceShape reference_shape(const Curve& curve, Index nodes, const Vec3& director = Vec3::Zero(),
                                       const std::string& name = "fibre.curve", bool closed = false) {
     core::require_at_least("reference_frames.nodes", nodes, 2);
@@ -197,7 +203,8 @@ inline ReferenceShape reference_shape(const Curve& curve, Index nodes, const Vec
     for (Index steps = fine; !detail::march(curve, nodes, steps, director, name, closed, steps >= finest, shape);) steps *= 4;
     return shape;
 }
-inline std::vector<NodeFrame> reference_frames(const Curve& curve, Index nodes, const Vec3& director = Vec3::Zero(), bool closed = false) {
+inline std::vector<NodeFrame> reference_frames(const Curve& curve, Index nodes, const Vec3& director = Vec3::Zero(),
+                                               bool closed = false) {
     return reference_shape(curve, nodes, director, "fibre.curve", closed).frames;
 }
 
@@ -211,8 +218,8 @@ inline void turn_along(std::vector<NodeFrame>& frames, double angle) {
     }
 }
 
-/// Angle by which the last section of a closed curve has to be turned to lie on the first one, in (-pi, pi] [radian]. Directors that are carried along
-/// a curve in space by parallel transport come back turned by 2 pi times its writhe (Fuller 1971).
+/// Angle by which the last section of a closed curve has to be turned to lie on the first one, in (-pi, pi] [radian]. Directors
+/// that are carried along a curve in space by parallel transport come back turned by 2 pi times its writhe (Fuller 1971).
 inline double closing_angle(const std::vector<NodeFrame>& frames) {
     const NodeFrame &first = frames.front(), &last = frames.back();
     return std::atan2(first.director_1.dot(last.director_2), first.director_1.dot(last.director_1));
@@ -228,8 +235,8 @@ inline std::vector<NodeFrame> straight_frames(const Vec3& from, const Vec3& to, 
     NodeFrame frame;
     frame.tangent = (to - from) / length;
     const Vec3 start = director - director.dot(frame.tangent) * frame.tangent;
-    frame.director_1 = start.norm() > 1e-6 * director.norm() && director.norm() > 0.0 ? start.normalized()
-                                                                                      : any_perpendicular(frame.tangent);
+    frame.director_1 =
+        start.norm() > 1e-6 * director.norm() && director.norm() > 0.0 ? start.normalized() : any_perpendicular(frame.tangent);
     frame.director_2 = frame.tangent.cross(frame.director_1);
     std::vector<NodeFrame> frames(core::at(nodes), frame);
     for (Index k = 0; k < nodes; ++k) {

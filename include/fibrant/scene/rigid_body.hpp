@@ -29,7 +29,7 @@ struct Coordinate {
 /// Held rotations make one rotation vector; free ones come after it. Of two free rotations the third axis is held to first
 /// order in an increment's turn.
 struct RigidBody {
-    std::string name{};  ///< in tables and messages
+    std::string name{};             ///< in tables and messages
     Vec3 position = Vec3::Zero();   ///< of the master node at the start [length]
     Mat3 frame = Mat3::Identity();  ///< columns: from the master to the other three nodes at the start, orthonormal
     Index parent = -1;              ///< an earlier body, or -1 for space
@@ -52,14 +52,14 @@ struct SolidNode {
 /// move as they like. One end alone is hinged; one end whose directors are tied too is clamped. Nodes of solids have positions
 /// only, and count in the mean as ends of fibres do.
 struct AverageConnection {
-    std::vector<Station> ends{};  ///< places of fibres that count in the mean
-    std::vector<SolidNode> nodes{};  ///< nodes of solids that count in the mean
-    NodeVector vector = NodeVector::position;  ///< what is tied: positions, or a director
-    Index body = -1;  ///< number of the body in the assembly
-    Mat3 directions = Mat3::Identity();               ///< columns at the start, orthonormal; they turn with the body
-    std::array<bool, 3> tied{true, true, true};       ///< which of them
-    Vec3 displacement = Vec3::Zero();                 ///< of the mean along the directions at amplitude 1 [length]
-    std::string channel = "motion";  ///< whose amplitude drives it
+    std::vector<Station> ends{};                 ///< places of fibres that count in the mean
+    std::vector<SolidNode> nodes{};              ///< nodes of solids that count in the mean
+    NodeVector vector = NodeVector::position;    ///< what is tied: positions, or a director
+    Index body = -1;                             ///< number of the body in the assembly
+    Mat3 directions = Mat3::Identity();          ///< columns at the start, orthonormal; they turn with the body
+    std::array<bool, 3> tied{true, true, true};  ///< which of them
+    Vec3 displacement = Vec3::Zero();            ///< of the mean along the directions at amplitude 1 [length]
+    std::string channel = "motion";              ///< whose amplitude drives it
 
     void validate() const {
         if (ends.empty() && nodes.empty()) core::refuse("AverageConnection.ends", "none", "at least one");
@@ -73,9 +73,9 @@ struct AverageConnection {
 
 /// Displacement gradient of a repeating cell: what one period more in direction j moves in direction i.
 struct PeriodicCell {
-    std::string name{};  ///< in tables and messages
-    double volume = 1.0;                     ///< a force of a free component is its stress times this [length^3], > 0
-    std::array<Coordinate, 9> gradient{};    ///< component (i, j) at i + 3 j [1]; free ones under a stress
+    std::string name{};                    ///< in tables and messages
+    double volume = 1.0;                   ///< a force of a free component is its stress times this [length^3], > 0
+    std::array<Coordinate, 9> gradient{};  ///< component (i, j) at i + 3 j [1]; free ones under a stress
 
     void validate() const {
         core::require_positive("PeriodicCell.volume", volume);

@@ -16,8 +16,8 @@ namespace fibrant::scene {
 
 /// Elastic body of 8-node hexahedra, for models that have a part `Solid`. It is at rest where its nodes are.
 struct Solid {
-    std::vector<Vec3> nodes;                   ///< [length]
-    std::vector<std::array<Index, 8>> cells;   ///< nodes of each cell: round one face, then the opposite one in the same order
+    std::vector<Vec3> nodes;                  ///< [length]
+    std::vector<std::array<Index, 8>> cells;  ///< nodes of each cell: round one face, then the opposite one in the same order
     ElasticMaterial material{};
 
     /// Jacobians are checked by the part that meshes the solid.
@@ -31,16 +31,17 @@ struct Solid {
             if (!nodes[n].allFinite()) core::refuse("Solid.nodes[" + std::to_string(n) + "]", text(nodes[n]), "finite");
         for (const std::array<Index, 8>& cell : cells)
             for (const Index node : cell)
-                if (node < 0 || node >= core::count(nodes)) core::refuse("Solid.cells", std::to_string(node), "a node of the solid");
+                if (node < 0 || node >= core::count(nodes))
+                    core::refuse("Solid.cells", std::to_string(node), "a node of the solid");
     }
 };
 
 /// Components of nodes of a solid that follow a prescribed path, as `Hold` says it of a fibre's node.
 struct SolidHold {
-    Index solid = 0;  ///< number of the solid in the assembly
-    std::vector<Index> nodes;  ///< that are held
+    Index solid = 0;                         ///< number of the solid in the assembly
+    std::vector<Index> nodes;                ///< that are held
     Mat3 directions = Mat3::Identity();      ///< symmetric projector on what is held; it turns with `rotation`
-    std::string channel = "motion";  ///< whose amplitude drives it
+    std::string channel = "motion";          ///< whose amplitude drives it
     Vec3 displacement = Vec3::Zero();        ///< at amplitude 1 [length]
     std::function<Vec3(double)> path{};      ///< displacement at amplitude a, where it is not proportional
     std::function<Mat3(double)> rotation{};  ///< at amplitude a; none: identity

@@ -10,7 +10,9 @@
 namespace fibrant::scene {
 
 /// Number of tied scalars.
-inline Index tied_scalars(const std::vector<Tie>& ties) noexcept { return ties.empty() ? 0 : ties.back().first + ties.back().count; }
+inline Index tied_scalars(const std::vector<Tie>& ties) noexcept {
+    return ties.empty() ? 0 : ties.back().first + ties.back().count;
+}
 inline Index tied_scalars(const DofLayout& layout) noexcept { return tied_scalars(layout.ties); }
 
 /// B x: the tied scalars of a vector.

@@ -18,16 +18,16 @@ enum class ToolShape { plane, cylinder, sphere };
 ///
 /// A material point X of the tool is at origin + rotation(a) (X - origin) + displacement(a); a is the amplitude of the channel.
 struct Tool {
-    std::string name{};  ///< in tables and messages
+    std::string name{};                  ///< in tables and messages
     ToolShape shape = ToolShape::plane;  ///< of its surface
-    Vec3 origin = Vec3::Zero();     ///< a point of the plane or of the cylinder's axis, or the centre of the sphere [length]
-    Vec3 axis = Vec3::UnitZ();      ///< normal of the plane, on the fibres' side, or direction of the cylinder; made unit
-    double radius = core::unset;    ///< of a cylinder or a sphere [length], > 0
-    bool hollow = false;            ///< fibres are inside the cylinder or the sphere
-    double friction_factor = 1.0;   ///< on the coefficient of the friction law [1], >= 0
-    std::string channel = "tools";  ///< whose amplitude drives it
-    Vec3 displacement = Vec3::Zero();        ///< at amplitude 1 [length]
-    std::function<Vec3(double)> path{};      ///< displacement at amplitude a, where it is not proportional
+    Vec3 origin = Vec3::Zero();          ///< a point of the plane or of the cylinder's axis, or the centre of the sphere [length]
+    Vec3 axis = Vec3::UnitZ();           ///< normal of the plane, on the fibres' side, or direction of the cylinder; made unit
+    double radius = core::unset;         ///< of a cylinder or a sphere [length], > 0
+    bool hollow = false;                 ///< fibres are inside the cylinder or the sphere
+    double friction_factor = 1.0;        ///< on the coefficient of the friction law [1], >= 0
+    std::string channel = "tools";       ///< whose amplitude drives it
+    Vec3 displacement = Vec3::Zero();    ///< at amplitude 1 [length]
+    std::function<Vec3(double)> path{};  ///< displacement at amplitude a, where it is not proportional
     std::function<Mat3(double)> rotation{};  ///< at amplitude a, about the origin; none: identity
 
     void validate() const {

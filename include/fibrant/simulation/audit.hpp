@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Audit of the state that a run has come to, which takes nothing from contact elements: the true least gap, and sections right side out.
+/// @file Audit of the state that a run has come to, which takes nothing from contact elements: the true least gap, and sections
+/// right side out.
 
 #include <fibrant/observe/least_gap.hpp>
 #include <fibrant/proximity/grid_search.hpp>
@@ -25,13 +26,14 @@ struct Audit {
     bool clean() const noexcept { return !inside_out && !(least_gap.gap < -allowed); }
 };
 
-/// How deep fibres may be in each other between contact points as well, by what the parameters state: the greatest penetration that any pair of
-/// groups is allowed, and what contact points may leave unseen between two of them [length].
+/// How deep fibres may be in each other between contact points as well, by what the parameters state: the greatest penetration
+/// that any pair of groups is allowed, and what contact points may leave unseen between two of them [length].
 /// @param radius  of the thinnest fibre [length]
 template <class Contacts>
 double stated_depth(const Contacts& contacts, const contact::ContactParameters& parameters, double radius) {
     double allowed = parameters.stiffness.allowed_penetration, factor = 1.0;
-    if constexpr (requires { contacts.normal_law().largest_penetration(); }) allowed = contacts.normal_law().largest_penetration();
+    if constexpr (requires { contacts.normal_law().largest_penetration(); })
+        allowed = contacts.normal_law().largest_penetration();
     for (const contact::Zone& zone : contacts.zones()) factor = std::max(factor, zone.penetration_factor / zone.narrowed);
     return factor * allowed + parameters.spacing.largest_unseen * radius;
 }
@@ -71,8 +73,9 @@ Audit audit(const Simulator& simulator, double allowed = core::unset) {
     Audit answer;
     answer.allowed = std::isnan(allowed) ? stated_depth(simulator.contacts(), parameters, radius) : allowed;
     answer.inside_out = beam::first_inside_out(simulator.mesh(), simulator.beam(), simulator.state());
-    answer.least_gap = observe::least_gap(detail::curves_of(simulator.mesh(), simulator.state()), proximity::GridSearch{},
-                                          parameters.detection.self_contact ? observe::OwnTurns::counted : observe::OwnTurns::left_out);
+    answer.least_gap =
+        observe::least_gap(detail::curves_of(simulator.mesh(), simulator.state()), proximity::GridSearch{},
+                           parameters.detection.self_contact ? observe::OwnTurns::counted : observe::OwnTurns::left_out);
     return answer;
 }
 

@@ -10,10 +10,10 @@
 
 namespace fibrant::simulation {
 
-/// An equilibrium may end, and the next one may be far (a rod that throws a loop, yarns that slip over each other without friction). No
-/// increment is small enough to get there. Springs from every centre to its last place are: the amplitudes stand, increments follow
-/// with ever softer springs, and the last one has none, so that what a run goes on from is in balance. What springs took is `damped`
-/// in the balance of energies.
+/// An equilibrium may end, and the next one may be far (a rod that throws a loop, yarns that slip over each other without
+/// friction). No increment is small enough to get there. Springs from every centre to its last place are: the amplitudes stand,
+/// increments follow with ever softer springs, and the last one has none, so that what a run goes on from is in balance. What
+/// springs took is `damped` in the balance of energies.
 struct Calming {
     double springs = 0.0;  ///< now [force / length]
     double held = 0.0;     ///< springs of the last increment
@@ -27,10 +27,10 @@ struct Calming {
     static constexpr double first_fraction = 1.0 / 16.0;
     /// Of the springs over the softest: to a fibre that is held as hard as it is stiff in itself.
     static constexpr double range = 1e9;
-    static constexpr double none = 0.01;                  ///< over the softest: below, springs are left out
-    static constexpr double on_its_way = 0.05;            ///< of a radius in an increment: a leap that has begun
-    static constexpr double forget = 0.8;                 ///< factor on what has failed, after an increment
-    static constexpr Index most_steps = 200;              ///< at the same amplitudes
+    static constexpr double none = 0.01;        ///< over the softest: below, springs are left out
+    static constexpr double on_its_way = 0.05;  ///< of a radius in an increment: a leap that has begun
+    static constexpr double forget = 0.8;       ///< factor on what has failed, after an increment
+    static constexpr Index most_steps = 200;    ///< at the same amplitudes
 
     /// Where each increment ends in another leap, however small, it is not leaps that stop it.
     static constexpr Index most_in_row = 8;
@@ -41,7 +41,8 @@ struct Calming {
     static double softest(const beam::Mesh<B>& mesh) {
         double spring = 0.0;
         for (const beam::MeshFibre& fibre : mesh.fibres()) {
-            const double bending = fibre.material.young_modulus * std::min(fibre.section.second_moment_1(), fibre.section.second_moment_2());
+            const double bending =
+                fibre.material.young_modulus * std::min(fibre.section.second_moment_1(), fibre.section.second_moment_2());
             const double wave = bending * std::pow(2.0 * std::numbers::pi / fibre.length(), 4);
             spring = std::max(spring, wave * fibre.element_length / static_cast<double>(B::nodes - 1));
         }

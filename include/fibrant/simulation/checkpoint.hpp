@@ -102,19 +102,18 @@ public:
         if (sum != CheckpointWriter::hash(data_.data(), data_.size())) fail();
     }
     template <class T>
-        requires std::is_trivially_copyable_v<T>
-    T get() {
-        if (sizeof(T) > left()) fail();
-        const char* from = data_.data() + position_;
-        position_ += sizeof(T);
-        if constexpr (std::is_same_v<T, bool>) {
-            return *from != 0;
-        } else {
-            T value;
-            std::memcpy(static_cast<void*>(&value), from, sizeof(T));
-            return value;
+        requires std::is_trivially_copyable_v<T> T get() {
+            if (sizeof(T) > left()) fail();
+            const char* from = data_.data() + position_;
+            position_ += sizeof(T);
+            if constexpr (std::is_same_v<T, bool>) {
+                return *from != 0;
+            } else {
+                T value;
+                std::memcpy(static_cast<void*>(&value), from, sizeof(T));
+                return value;
+            }
         }
-    }
     /// How many items follow, of at least so many bytes each: never more than the file still has.
     Index get_count(std::size_t bytes_each) {
         const auto size = get<std::uint64_t>();

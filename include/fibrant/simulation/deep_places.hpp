@@ -16,22 +16,24 @@ namespace fibrant::simulation {
 /// How deep fibres may be anywhere at the end of a stage [length]; NaN where nobody asks.
 /// @param radius  of the thinnest fibre [length]
 template <Model M, class Contacts>
-double deepest_at_end(const Loading<M>& loading, const Stage<M>& stage, bool last, const Contacts& contacts, const contact::ContactParameters& parameters, double radius) {
+double deepest_at_end(const Loading<M>& loading, const Stage<M>& stage, bool last, const Contacts& contacts,
+                      const contact::ContactParameters& parameters, double radius) {
     const bool stated = parameters.stiffness.adapts();  // a penalty that is one number is as deep as it is
     if (!stage.deepest && !(last && loading.audited && stated)) return core::unset;
     if (!std::isnan(loading.deepest_over_radius)) return loading.deepest_over_radius * radius;
     return stage.deepest ? *stage.deepest : stated_depth(contacts, parameters, radius);
 }
 
-/// Looks for places that are deeper than allowed at the end of the present stage, and mends them. @returns what is deepest, in words; empty if
-/// nothing is, or nobody asks.
+/// Looks for places that are deeper than allowed at the end of the present stage, and mends them. @returns what is deepest, in
+/// words; empty if nothing is, or nobody asks.
 /// @param radius    of the thinnest fibre [length]
 /// @param position  counts mends that had no success
 template <Model M, class Simulator, class Contacts>
-std::string mend_deep_places(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Simulator& simulator, Contacts& contacts, double radius,
-                             Position& position) {
+std::string mend_deep_places(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Simulator& simulator,
+                             Contacts& contacts, double radius, Position& position) {
     const Stage<M>& stage = stages[core::at(position.stage)];
-    const double allowed = deepest_at_end(loading, stage, &stage == &stages.back(), contacts, simulator.parameters().contact, radius);
+    const double allowed =
+        deepest_at_end(loading, stage, &stage == &stages.back(), contacts, simulator.parameters().contact, radius);
     if (!(allowed > 0.0)) return {};
     const auto& mesh = simulator.mesh();
     const observe::Snapshot shot = detail::curves_of(mesh, simulator.state());
@@ -43,18 +45,21 @@ std::string mend_deep_places(const Loading<M>& loading, const std::vector<Stage<
     std::vector<contact::DeepPlace> places;
     for (const observe::LeastGap& place : deep) {
         const auto abscissa = [&](Index fibre, double t) {
-            return t * static_cast<double>(mesh.fibre(fibre).elements) / static_cast<double>(shot.fibres[core::at(fibre)].position.size() - 1);
+            return t * static_cast<double>(mesh.fibre(fibre).elements) /
+                   static_cast<double>(shot.fibres[core::at(fibre)].position.size() - 1);
         };
-        places.push_back({place.fibre_i, place.fibre_j, abscissa(place.fibre_i, place.t), abscissa(place.fibre_j, place.u), -place.gap});
+        places.push_back(
+            {place.fibre_i, place.fibre_j, abscissa(place.fibre_i, place.t), abscissa(place.fibre_j, place.u), -place.gap});
     }
     contact::mend(mesh, contacts, places, allowed);
     const double better = 0.97;  // of what was deepest: a success
     if (-deep.front().gap < better * position.mended) position.mended = -deep.front().gap, position.mends = 0;
     ++position.mends;
     const observe::LeastGap& worst = deep.front();
-    return ": fibres " + std::to_string(worst.fibre_i) + " and " + std::to_string(worst.fibre_j) + " stay " + core::text(-worst.gap / radius) + " radii deep in each other at (" +
-           core::text(worst.position.x()) + ", " + core::text(worst.position.y()) + ", " + core::text(worst.position.z()) + "), allowed are " + core::text(allowed / radius) +
-           ": more elements a fibre, or a greater allowed penetration";
+    return ": fibres " + std::to_string(worst.fibre_i) + " and " + std::to_string(worst.fibre_j) + " stay " +
+           core::text(-worst.gap / radius) + " radii deep in each other at (" + core::text(worst.position.x()) + ", " +
+           core::text(worst.position.y()) + ", " + core::text(worst.position.z()) + "), allowed are " +
+           core::text(allowed / radius) + ": more elements a fibre, or a greater allowed penetration";
 }
 
 }  // namespace fibrant::simulation

@@ -12,29 +12,31 @@ namespace fibrant::simulation {
 /// Books what an increment took, stored and lost.
 ///
 /// Loads and supports work by trapezia: their forces vary linearly from the state that an increment starts from to that which it
-/// ends with. Contact elements are renewed in between, turned and weighed anew with the fibres. The forces of those that carry the
-/// end are therefore not those that the start was in balance with, and what contact stores and takes, which is booked on the
-/// elements of the end, is of a path that begins with a jump of forces. Along a path without it renewal works as well, by half of that
-/// jump: counted as rearranged with what the elements store at once, it leaves an error of second order. Fibres along each other have
-/// their normals of then, or those that slid around each other would seem to have been deep in each other. A pair that lies far deeper
-/// where the increment started than its zone did is of places that came together since: it carried nothing there, and has none of this.
+/// ends with. Contact elements are renewed in between, turned and weighed anew with the fibres. The forces of those that carry
+/// the end are therefore not those that the start was in balance with, and what contact stores and takes, which is booked on the
+/// elements of the end, is of a path that begins with a jump of forces. Along a path without it renewal works as well, by half of
+/// that jump: counted as rearranged with what the elements store at once, it leaves an error of second order. Fibres along each
+/// other have their normals of then, or those that slid around each other would seem to have been deep in each other. A pair that
+/// lies far deeper where the increment started than its zone did is of places that came together since: it carried nothing there,
+/// and has none of this.
 class EnergyAccount {
 public:
     const EnergyBalance& balance() const noexcept { return balance_; }
     /// Force of the damping at the end of the last increment [force].
     const Vector& damping() const noexcept { return damping_; }
 
-    /// What fibres and solids store in a state that a run begins with counts as work done before. What held them so lets go over the
-    /// first increment.
+    /// What fibres and solids store in a state that a run begins with counts as work done before. What held them so lets go over
+    /// the first increment.
     template <class Equilibrium>
     void start(Equilibrium& equilibrium, const Vector& state) {
         const double elastic = equilibrium.elastic_energy(state);
         balance_.external += elastic - balance_.elastic;
         balance_.elastic = elastic;
-        if constexpr (Equilibrium::moves) equilibrium.terms().moving([&](const auto& term) {
-            balance_.external += term.kinetic(state) - balance_.kinetic;
-            balance_.kinetic = term.kinetic(state);
-        });
+        if constexpr (Equilibrium::moves)
+            equilibrium.terms().moving([&](const auto& term) {
+                balance_.external += term.kinetic(state) - balance_.kinetic;
+                balance_.kinetic = term.kinetic(state);
+            });
         external_ = contact_.size() == state.size() ? contact_ : Vector(Vector::Zero(state.size()));
         equilibrium.add_internal_forces(state, external_);
         damping_.resize(0);
@@ -64,14 +66,16 @@ public:
     void book(const Equilibrium& equilibrium, Contacts& contacts, const Vector& from, const Vector& to, bool leap) {
         const double error_before = balance_.error();
         const Vector way = to - from;
-        if constexpr (Equilibrium::moves) equilibrium.terms().moving([&](const auto& term) {
-            // What lets go is there from the start on.
-            if (term.begins()) external_ = equilibrium.external() + equilibrium.reaction();
-            balance_.kinetic = term.kinetic(to);
-        });
+        if constexpr (Equilibrium::moves)
+            equilibrium.terms().moving([&](const auto& term) {
+                // What lets go is there from the start on.
+                if (term.begins()) external_ = equilibrium.external() + equilibrium.reaction();
+                balance_.kinetic = term.kinetic(to);
+            });
         balance_.external += trapezium(way, external_, equilibrium.external() + equilibrium.reaction());
         balance_.damped += trapezium(way, damping_, equilibrium.damping_force(to));
-        if constexpr (requires { contacts.tools(); }) balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(true);
+        if constexpr (requires { contacts.tools(); })
+            balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(true);
         const contact::ContactFigures end = contacts.figures(to);
         const auto pairs = contacts.turn_back(from);
         contacts.evaluate(from, true);  // the same contact elements, where the increment started
@@ -80,7 +84,8 @@ public:
         contacts.add_forces(renewed);
         if (contact_.size() != to.size()) contact_ = Vector::Zero(to.size());
         if (!leap) balance_.rearranged -= 0.5 * way.dot(contact_ - renewed);
-        if constexpr (requires { contacts.tools(); }) balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(false);
+        if constexpr (requires { contacts.tools(); })
+            balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(false);
         contacts.turn_forth(pairs);
         contacts.evaluate(to);
         contact_.setZero();

@@ -45,62 +45,68 @@ inline constexpr double most_fraction = 1e3;
 template <Model M>
 struct Stage {
     std::string name = "loading";
-    Index increments = 10;                      ///< that its ramps take when none is cut, >= 1
-    /// Of its ramps, for laws with a rate and for inertia, >= 0; what follows them takes no time, with inertia steps of it [time].
+    Index increments = 10;  ///< that its ramps take when none is cut, >= 1
+    /// Of its ramps, for laws with a rate and for inertia, >= 0; what follows them takes no time, with inertia steps of it
+    /// [time].
     double duration = 0.0;
-    std::vector<Ramp> ramps{};                  ///< channels that it moves; none, and no stages: all to 1
-    GapLimitOf<typename M::Normal> gap_limit{};  ///< of a law that limits the gap [length], as std::optional; scaled down when cut
-    bool gap_limit_when_cut = false;            ///< limited in increments that were cut alone: what Newton's method cannot solve at once is softer then
+    std::vector<Ramp> ramps{};  ///< channels that it moves; none, and no stages: all to 1
+    GapLimitOf<typename M::Normal>
+        gap_limit{};  ///< of a law that limits the gap [length], as std::optional; scaled down when cut
+    bool gap_limit_when_cut =
+        false;  ///< limited in increments that were cut alone: what Newton's method cannot solve at once is softer then
     /// That increments may grow to over what they are, their gap limit and allowed penetration with them and damping against
     /// them, where fibres are far deeper in each other than they are shown and are parted with ease [1], in [1, 1000].
     double largest_fraction = 1.0;
     std::optional<double> allowed_penetration{};  ///< that the penalty adapts to in this stage, for the model's [length]
-    bool forced_orders = false;                 ///< keep the scene's forced orders
+    bool forced_orders = false;                   ///< keep the scene's forced orders
     /// Spring from every centre to its last accepted place [force / length]: keeps what is slack from leaping.
     double damping = 0.0;
-    bool damping_goes_on = false;               ///< starts from what the stage before it ended with, if that is less
-    /// The place moves on with the mean motion of the fibre's group in the last increment: what is driven steadily is not held back. An
-    /// increment of which no last one tells is solved twice.
+    bool damping_goes_on = false;  ///< starts from what the stage before it ended with, if that is less
+    /// The place moves on with the mean motion of the fibre's group in the last increment: what is driven steadily is not held
+    /// back. An increment of which no last one tells is solved twice.
     bool damping_carried = false;
     /// Factor on the damping after each increment without a cut, in (0, 1]; a cut raises it again.
     double damping_decay = 1.0;
     /// Where damping decays, an `until` holds only once the damping's force is at most this part of the scale of forces, which
     /// a residual is measured by too, >= 0. 0: once there is no damping at all.
     double damping_share = 0.0;
-    /// Where forces balance to less than half of that share and `until` still does not hold, damping rises instead of falling: what moves is
-    /// slack, and the less it is held the further it leaps into others, so that contacts never come to the penetration that is allowed.
+    /// Where forces balance to less than half of that share and `until` still does not hold, damping rises instead of falling:
+    /// what moves is slack, and the less it is held the further it leaps into others, so that contacts never come to the
+    /// penetration that is allowed.
     bool damping_waits = false;
     /// Greatest displacement of an increment after which damping is lowered [length], > 0.
     double damping_calm = std::numeric_limits<double>::infinity();
     /// Displacement beyond which an attempt at an increment is given up and cut [length], > 0.
     double largest_displacement = std::numeric_limits<double>::infinity();
-    /// The stage ends only once no two fibres are deeper in each other than this anywhere, as `observe::least_gap` measures it [length], > 0. Pairs
-    /// that are get contact points there and become stiffer; where that has no success the run stops and says so.
+    /// The stage ends only once no two fibres are deeper in each other than this anywhere, as `observe::least_gap` measures it
+    /// [length], > 0. Pairs that are get contact points there and become stiffer; where that has no success the run stops and
+    /// says so.
     std::optional<double> deepest{};
     double patience = 1.0;  ///< on the limit of Newton's iterations: what hardly resists bending converges slowly [1], in [1, 10]
-    double looseness = 1.0;                     ///< on the tolerances of contact and normal passes, >= 1
+    double looseness = 1.0;  ///< on the tolerances of contact and normal passes, >= 1
     std::optional<typename M::Normal> normal{};
     std::optional<typename M::Friction> friction{};
     /// Once the ramps are over: goes on, all else constant, until this is true. None: ends with the ramps.
     std::function<bool(const IncrementReport&)> until{};
-    /// Increments after which a stage whose ramps are over ends, be its `until` true or not, >= 1: what creeps for ever may do so no longer.
+    /// Increments after which a stage whose ramps are over ends, be its `until` true or not, >= 1: what creeps for ever may do so
+    /// no longer.
     Index enough_increments = std::numeric_limits<Index>::max();
-    Index most_increments = 100;                ///< of the whole stage, beyond which the run stops unconverged
+    Index most_increments = 100;  ///< of the whole stage, beyond which the run stops unconverged
 };
 
 /// What a simulator runs. With no stages, one that takes all channels to 1 in `increments`.
 template <Model M>
 struct Loading {
-    Index increments = 10;  ///< of a loading without stages, >= 1
-    std::vector<Stage<M>> stages{};  ///< one after the other; none: all channels go to 1 together
+    Index increments = 10;                    ///< of a loading without stages, >= 1
+    std::vector<Stage<M>> stages{};           ///< one after the other; none: all channels go to 1 together
     std::vector<double> damping_of_fibres{};  ///< of each fibre over that of the stages, >= 1; empty: of all the same
-    double smallest_fraction = 1.0 / 256.0;  ///< of an increment, below which the run stops
-    double growth = 1.5;                     ///< of the fraction after two increments without a cut
-    Index most_rejected = 200;               ///< attempts in a whole run
-    bool calmed = false;                     ///< stages without damping follow leaps by springs that they take away again (`Calming`)
-    std::string checkpoint{};                ///< file written after accepted increments; empty: none
-    double checkpoint_seconds = 0.0;         ///< at least between two of them, but for the end of a stage or of the run, >= 0
-    bool resume = false;                     ///< start from that file, if it exists
+    double smallest_fraction = 1.0 / 256.0;   ///< of an increment, below which the run stops
+    double growth = 1.5;                      ///< of the fraction after two increments without a cut
+    Index most_rejected = 200;                ///< attempts in a whole run
+    bool calmed = false;              ///< stages without damping follow leaps by springs that they take away again (`Calming`)
+    std::string checkpoint{};         ///< file written after accepted increments; empty: none
+    double checkpoint_seconds = 0.0;  ///< at least between two of them, but for the end of a stage or of the run, >= 0
+    bool resume = false;              ///< start from that file, if it exists
     /// The last stage is held to `Stage::deepest`, where it names none to `stated_depth`, unless penalties stay what they are.
     bool audited = true;
     double deepest_over_radius = core::unset;  ///< of the thinnest fibre: in the place of both [1], > 0
@@ -117,24 +123,28 @@ struct Loading {
         core::require(growth > 1.0, "Loading.growth", growth, "> 1");
         core::require_finite("Loading.growth", growth);
         core::require_at_least("Loading.most_rejected", most_rejected, 0);
-        for (const double over : damping_of_fibres) core::require(over >= 1.0 && over < 1e12, "Loading.damping_of_fibres", over, ">= 1 and < 1e12");
+        for (const double over : damping_of_fibres)
+            core::require(over >= 1.0 && over < 1e12, "Loading.damping_of_fibres", over, ">= 1 and < 1e12");
         const std::string timed = law::FrictionWithRate<typename M::Friction> ? "the law of friction has a rate"
                                   : MovesInTime<M>                            ? "fibres have inertia"
                                                                               : "";
         if (!timed.empty() && stages.empty())
             core::refuse("Loading.stages", "none", "at least one that has a duration: " + timed);
         for (const Stage<M>& stage : stages) {
-            if (!timed.empty()) core::require(stage.duration > 0.0, "Stage.duration of stage " + stage.name, stage.duration, "> 0: " + timed);
+            if (!timed.empty())
+                core::require(stage.duration > 0.0, "Stage.duration of stage " + stage.name, stage.duration, "> 0: " + timed);
             core::require_at_least("Stage.increments", stage.increments, 1);
             core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);
             core::require_at_least("Stage.enough_increments", stage.enough_increments, 1);
             core::require_not_negative("Stage.damping", stage.damping);
             core::require_not_negative("Stage.duration", stage.duration);
-            core::require(stage.damping_decay > 0.0 && stage.damping_decay <= 1.0, "Stage.damping_decay", stage.damping_decay, "in (0, 1]");
+            core::require(stage.damping_decay > 0.0 && stage.damping_decay <= 1.0, "Stage.damping_decay", stage.damping_decay,
+                          "in (0, 1]");
             core::require(stage.damping_calm > 0.0, "Stage.damping_calm", stage.damping_calm, "> 0");
             core::require_not_negative("Stage.damping_share", stage.damping_share);
             core::require(stage.largest_displacement > 0.0, "Stage.largest_displacement", stage.largest_displacement, "> 0");
-            core::require(stage.looseness >= 1.0 && stage.looseness <= 1000.0, "Stage.looseness", stage.looseness, "in [1, 1000]");
+            core::require(stage.looseness >= 1.0 && stage.looseness <= 1000.0, "Stage.looseness", stage.looseness,
+                          "in [1, 1000]");
             core::require_between("Stage.patience", stage.patience, 1.0, 10.0);
             if (stage.allowed_penetration) core::require_positive("Stage.allowed_penetration", *stage.allowed_penetration);
             if (stage.deepest) core::require_positive("Stage.deepest", *stage.deepest);
@@ -163,8 +173,8 @@ inline std::function<bool(const IncrementReport&)> until_settled(double displace
     };
 }
 
-/// Part of a loading that is done, in [0, 1]: stages count by their increments, but one that goes on until it is at rest, which nothing
-/// foretells, as the mean of the others.
+/// Part of a loading that is done, in [0, 1]: stages count by their increments, but one that goes on until it is at rest, which
+/// nothing foretells, as the mean of the others.
 /// @param stage  that is under way, in [0, stages.size())
 /// @param part   of it that is done, in [0, 1]
 template <Model M>

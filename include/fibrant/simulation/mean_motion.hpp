@@ -13,9 +13,9 @@
 namespace fibrant::simulation {
 
 /// Field that is nearest, over the centres of a group's nodes, to their displacement in the last increment, and by how much
-/// channels changed in it: affine and, of a group twice as long as it is wide, bent by the square of the place along it. What a further change of the same
-/// channels would move is foretold in proportion; other channels foretell nothing. Nothing depends on the axes, and a rigid motion that
-/// is repeated is foretold exactly.
+/// channels changed in it: affine and, of a group twice as long as it is wide, bent by the square of the place along it. What a
+/// further change of the same channels would move is foretold in proportion; other channels foretell nothing. Nothing depends on
+/// the axes, and a rigid motion that is repeated is foretold exactly.
 class MeanMotion {
 public:
     MeanMotion() = default;
@@ -27,8 +27,8 @@ public:
         fields_.assign(core::at(groups), Field{});
     }
 
-    /// Takes over the motion of an increment. One that goes on the same way by less than half of what is known, the last bit of a ramp
-    /// or one that was cut, is added to half of that: alone it would tell little of the next.
+    /// Takes over the motion of an increment. One that goes on the same way by less than half of what is known, the last bit of a
+    /// ramp or one that was cut, is added to half of that: alone it would tell little of the next.
     /// @param change  of the amplitudes
     template <beam::BeamElement B>
     void learn(const beam::Mesh<B>& mesh, const Vector& before, const Vector& after, const std::vector<double>& change) {
@@ -63,14 +63,16 @@ public:
                     for (Index r = 0; r < 3; ++r)
                         bend[g].inverse(r, c) += axes.vectors()(r, k) * axes.vectors()(c, k) / axes.values()[k];
             fields_[g].gradient = lean[g] * bend[g].inverse;
-            if (axes.values()[2] > 4.0 * axes.values()[1]) fields_[g].axis = axes.vectors().col(2) / std::sqrt(axes.values()[2] / count[g]);
+            if (axes.values()[2] > 4.0 * axes.values()[1])
+                fields_[g].axis = axes.vectors().col(2) / std::sqrt(axes.values()[2] / count[g]);
         }
         // What an affine field leaves of the square of the place along the axis, and what the motion has of that.
         each_centre(mesh, [&](std::size_t g, Index v) {
             const double out = std::pow(fields_[g].axis.dot(arm(g, v)), 2);
             bend[g].mean += out / count[g], bend[g].lean += out * arm(g, v);
         });
-        for (std::size_t g = 0; g < fields_.size(); ++g) fields_[g].level = bend[g].mean, fields_[g].slope = bend[g].inverse * bend[g].lean;
+        for (std::size_t g = 0; g < fields_.size(); ++g)
+            fields_[g].level = bend[g].mean, fields_[g].slope = bend[g].inverse * bend[g].lean;
         each_centre(mesh, [&](std::size_t g, Index v) {
             const double part = fields_[g].bow(arm(g, v));
             bend[g].square += part * part / count[g], bend[g].moved += part * moved(g, v) / count[g];
@@ -89,17 +91,20 @@ public:
         if (same == 0.0) return state;
         const double part = std::clamp(same / square, -largest_part, largest_part);
         Vector moved = state;
-        each_centre(mesh, [&](std::size_t g, Index v) {
-            moved.segment<3>(3 * v) += part * fields_[g].at(state.segment<3>(3 * v));
-        });
+        each_centre(mesh,
+                    [&](std::size_t g, Index v) { moved.segment<3>(3 * v) += part * fields_[g].at(state.segment<3>(3 * v)); });
         return moved;
     }
 
     /// Every number that it keeps, for a file.
     template <class Body>
-    void each(const Body& body) { each_of(*this, body); }
+    void each(const Body& body) {
+        each_of(*this, body);
+    }
     template <class Body>
-    void each(const Body& body) const { each_of(*this, body); }
+    void each(const Body& body) const {
+        each_of(*this, body);
+    }
 
 private:
     static constexpr double largest_part = 2.0;  ///< of an increment that a motion is trusted for
@@ -107,7 +112,8 @@ private:
     struct Field {
         Vec3 middle = Vec3::Zero(), shift = Vec3::Zero();
         Mat3 gradient = Mat3::Zero();
-        Vec3 axis = Vec3::Zero(), slope = Vec3::Zero(), bend = Vec3::Zero();  // axis: over the root mean square of the places along it
+        Vec3 axis = Vec3::Zero(), slope = Vec3::Zero(),
+             bend = Vec3::Zero();  // axis: over the root mean square of the places along it
         double level = 0.0;
 
         double bow(const Vec3& arm) const noexcept { return std::pow(axis.dot(arm), 2) - level - slope.dot(arm); }
@@ -139,13 +145,14 @@ private:
     static void each_of(Self& self, const Body& body) {
         for (auto& change : self.change_) body(change);
         for (auto& field : self.fields_) {
-            for (int k = 0; k < 3; ++k) body(field.middle[k]), body(field.shift[k]), body(field.axis[k]), body(field.slope[k]), body(field.bend[k]);
+            for (int k = 0; k < 3; ++k)
+                body(field.middle[k]), body(field.shift[k]), body(field.axis[k]), body(field.slope[k]), body(field.bend[k]);
             body(field.level);
             for (int k = 0; k < 9; ++k) body(field.gradient.data()[k]);
         }
     }
 
-    std::vector<Field> fields_;   ///< first that of the fibres of no group, then one a group
+    std::vector<Field> fields_;  ///< first that of the fibres of no group, then one a group
     std::vector<double> change_;
 };
 

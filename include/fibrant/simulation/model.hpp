@@ -24,16 +24,31 @@ namespace fibrant::simulation {
 
 // One concept a part, so that a missing or ill-formed one is named by the compiler.
 template <class M>
-concept HasBeam = requires { typename M::Beam; } && beam::BeamElement<typename M::Beam>;
+concept HasBeam = requires {
+    typename M::Beam;
+}
+&&beam::BeamElement<typename M::Beam>;
 template <class M>
-concept HasProximity = requires { typename M::Proximity; } && proximity::ProximitySearch<typename M::Proximity>;
+concept HasProximity = requires {
+    typename M::Proximity;
+}
+&&proximity::ProximitySearch<typename M::Proximity>;
 template <class M>
-concept HasNormal = requires { typename M::Normal; } && law::NormalLaw<typename M::Normal>;
+concept HasNormal = requires {
+    typename M::Normal;
+}
+&&law::NormalLaw<typename M::Normal>;
 template <class M>
-concept HasFriction = requires { typename M::Friction; } && law::FrictionLaw<typename M::Friction> && law::HistoryIsKept<typename M::Friction>;
+concept HasFriction = requires {
+    typename M::Friction;
+}
+&&law::FrictionLaw<typename M::Friction>&& law::HistoryIsKept<typename M::Friction>;
 /// A model whose fibres are bonded to solids says so: `using Solid = connection::BondedSolid<...>;`. May be left out too.
 template <class M>
-concept HasSolid = requires { typename M::Solid; } && core::Policy<typename M::Solid> && core::Active<typename M::Solid>;
+concept HasSolid = requires {
+    typename M::Solid;
+}
+&&core::Policy<typename M::Solid>&& core::Active<typename M::Solid>;
 
 namespace detail {
 template <class M>
@@ -47,26 +62,41 @@ struct SolidOf<M> {
 }  // namespace detail
 
 template <class M>
-concept HasSolver = requires { typename M::Solver; } &&
-    solver::LinearSolver<typename M::Solver, assembly::Seen<typename assembly::SystemOf<typename M::Beam, typename detail::SolidOf<M>::Type>::Type>>;
+concept HasSolver = requires {
+    typename M::Solver;
+}
+&&solver::LinearSolver<typename M::Solver,
+                       assembly::Seen<typename assembly::SystemOf<typename M::Beam, typename detail::SolidOf<M>::Type>::Type>>;
 
 /// A model whose scenes have rigid tools says so: `using Tools = contact::RigidTools;`. It may be left out, as the next.
 template <class M>
-concept HasTools = requires { typename M::Tools; } && core::Policy<typename M::Tools> && core::Active<typename M::Tools>;
+concept HasTools = requires {
+    typename M::Tools;
+}
+&&core::Policy<typename M::Tools>&& core::Active<typename M::Tools>;
 
-/// A model whose scenes tie fibre ends to rigid bodies or to periodic images says so: `using Connections = connection::RigidBodies;`.
+/// A model whose scenes tie fibre ends to rigid bodies or to periodic images says so: `using Connections =
+/// connection::RigidBodies;`.
 template <class M>
-concept HasConnections = requires { typename M::Connections; } && core::Policy<typename M::Connections> && core::Active<typename M::Connections>;
+concept HasConnections = requires {
+    typename M::Connections;
+}
+&&core::Policy<typename M::Connections>&& core::Active<typename M::Connections>;
 
-/// Before an increment is accepted, its motion is checked for fibres that would pass through each other unseen. A model whose scenes rule
-/// that out says so: `using Passage = contact::NoPassage;`. May be left out, and then nothing is.
+/// Before an increment is accepted, its motion is checked for fibres that would pass through each other unseen. A model whose
+/// scenes rule that out says so: `using Passage = contact::NoPassage;`. May be left out, and then nothing is.
 template <class M>
-concept HasPassage = requires { typename M::Passage; } && core::Policy<typename M::Passage>;
+concept HasPassage = requires {
+    typename M::Passage;
+}
+&&core::Policy<typename M::Passage>;
 
-/// A model whose fibres are pushed by more than contacts and what a scene applies says so: `using Acts = term::List<load::Gravity, ...>;`.
-/// May be left out.
+/// A model whose fibres are pushed by more than contacts and what a scene applies says so: `using Acts =
+/// term::List<load::Gravity, ...>;`. May be left out.
 template <class M>
-concept HasActs = requires { typename M::Acts; };
+concept HasActs = requires {
+    typename M::Acts;
+};
 /// Where it has a list, that is one of terms.
 template <class M>
 concept ActsAreTerms = !HasActs<M> || term::ListFor<typename M::Acts, typename M::Beam>;
@@ -85,8 +115,8 @@ concept SpellsActs = !detail::NearActs<M>;
 
 /// A model names its Beam, Proximity, Normal, Friction and Solver, each of which satisfies its own contract.
 template <class M>
-concept Model = HasBeam<M> && HasProximity<M> && HasNormal<M> && HasFriction<M> && HasSolver<M> && ActsAreTerms<M> && SpellsTools<M> &&
-                SpellsConnections<M> && SpellsSolid<M> && SpellsPassage<M> && SpellsActs<M>;
+concept Model = HasBeam<M> && HasProximity<M> && HasNormal<M> && HasFriction<M> && HasSolver<M> && ActsAreTerms<M> &&
+    SpellsTools<M> && SpellsConnections<M> && SpellsSolid<M> && SpellsPassage<M> && SpellsActs<M>;
 
 namespace detail {
 template <Model M>
@@ -126,7 +156,9 @@ struct ConnectionsOf<M> {
     using Type = typename M::Connections;
 };
 template <class B, class... T>
-constexpr bool any_moves(const term::List<T...>&) { return (term::Moving<term::For<T, B>> || ...); }
+constexpr bool any_moves(const term::List<T...>&) {
+    return (term::Moving<term::For<T, B>> || ...);
+}
 }  // namespace detail
 
 /// A model whose fibres move in time: one of its terms is inertia.

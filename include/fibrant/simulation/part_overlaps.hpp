@@ -18,29 +18,33 @@
 
 namespace fibrant::simulation {
 
-/// How fibres are parted. All follows from radii, moduli, lengths of elements and the allowed penetration; nothing has to be given.
+/// How fibres are parted. All follows from radii, moduli, lengths of elements and the allowed penetration; nothing has to be
+/// given.
 struct PartingParameters {
     double allowed_penetration = core::unset;  ///< at the end [length], > 0; unset: that of the model's contacts
-    double gap_limit_over_radius = 0.3;        ///< that fibres part by in an increment, over the radius of the thinnest one that overlaps [1], in (0, 1]
-    /// Lets holds of fibres that do not part with them go along, if these begin at rest: conditions count from where a run begins, so
-    /// their ends are held there.
+    double gap_limit_over_radius =
+        0.3;  ///< that fibres part by in an increment, over the radius of the thinnest one that overlaps [1], in (0, 1]
+    /// Lets holds of fibres that do not part with them go along, if these begin at rest: conditions count from where a run
+    /// begins, so their ends are held there.
     bool loosen_holds = true;
-    Index most_increments = 400;               ///< of all, >= 1
+    Index most_increments = 400;  ///< of all, >= 1
 
     void validate() const {
-        if (!std::isnan(allowed_penetration)) core::require_positive("PartingParameters.allowed_penetration", allowed_penetration);
-        core::require(gap_limit_over_radius > 0.0 && gap_limit_over_radius <= 1.0, "PartingParameters.gap_limit_over_radius", gap_limit_over_radius, "in (0, 1]");
+        if (!std::isnan(allowed_penetration))
+            core::require_positive("PartingParameters.allowed_penetration", allowed_penetration);
+        core::require(gap_limit_over_radius > 0.0 && gap_limit_over_radius <= 1.0, "PartingParameters.gap_limit_over_radius",
+                      gap_limit_over_radius, "in (0, 1]");
         core::require_at_least("PartingParameters.most_increments", most_increments, 1);
     }
 };
 
 /// What came of it.
 struct Parting {
-    bool parted = false;              ///< no two fibres are deeper in each other than allowed, anywhere
-    std::string reason;               ///< why not: the two fibres that are deepest in each other, how deep and where
-    contact::Overlap before, after;   ///< deepest
-    Vector start;                     ///< nodal vectors of the fibres, for Assembly::begin_at
-    std::vector<Index> loosened;      ///< fibres whose holds went along
+    bool parted = false;             ///< no two fibres are deeper in each other than allowed, anywhere
+    std::string reason;              ///< why not: the two fibres that are deepest in each other, how deep and where
+    contact::Overlap before, after;  ///< deepest
+    Vector start;                    ///< nodal vectors of the fibres, for Assembly::begin_at
+    std::vector<Index> loosened;     ///< fibres whose holds went along
     Index increments = 0;
     solver::IterationCounts counts;
 };
@@ -50,11 +54,15 @@ namespace detail {
 template <class M>
 struct SameTools {};
 template <HasTools M>
-struct SameTools<M> { using Tools = typename M::Tools; };
+struct SameTools<M> {
+    using Tools = typename M::Tools;
+};
 template <class M>
 struct SameConnections {};
 template <HasConnections M>
-struct SameConnections<M> { using Connections = typename M::Connections; };
+struct SameConnections<M> {
+    using Connections = typename M::Connections;
+};
 
 /// The model of the parting: parts of the user's, but for laws that let go gently.
 template <Model M>
@@ -77,7 +85,8 @@ public:
     OverlapParter(const ModelParameters<M>& given, const PartingParameters& parting) : parting_{core::validated(parting)} {
         parameters_.beam = given.beam, parameters_.proximity = given.proximity, parameters_.solver = given.solver;
         parameters_.contact = given.contact, parameters_.iteration = given.iteration;
-        if (!std::isnan(parting.allowed_penetration)) parameters_.contact.stiffness.allowed_penetration = parting.allowed_penetration;
+        if (!std::isnan(parting.allowed_penetration))
+            parameters_.contact.stiffness.allowed_penetration = parting.allowed_penetration;
         allowed_ = parameters_.contact.stiffness.allowed_penetration;
         core::require_positive("StiffnessAdaptation.allowed_penetration", allowed_);
         parameters_.contact.normal.kept_within = kept_within;
@@ -118,14 +127,16 @@ public:
 private:
     /// Of the distance at which sections touch, within which normals are kept: half is no more than a lean of a quarter turn.
     static constexpr double kept_within = 1.0;
-    /// Length over which a push bends a fibre, over its radius: springs of the damping are the bedding that it is pushed against. Short
-    /// against most fibres, and long enough that the push, some 8 E I (gap limit) / length^3, dents no section.
+    /// Length over which a push bends a fibre, over its radius: springs of the damping are the bedding that it is pushed against.
+    /// Short against most fibres, and long enough that the push, some 8 E I (gap limit) / length^3, dents no section.
     static constexpr double bending_length = 10.0;
     /// Part of the radius of the thinner fibre that two sections may give way by: more, and they are squeezed, not parted.
     static constexpr double greatest_squeeze = 0.05;
-    static constexpr double slack = 5.0;  ///< on the penetration at which fibres have parted, before contact is as stiff as it is to be
+    static constexpr double slack =
+        5.0;  ///< on the penetration at which fibres have parted, before contact is as stiff as it is to be
 
-    std::vector<typename Contacts::Memory::Record> sides(const scene::Assembly& assembly, const beam::Mesh<typename M::Beam>& mesh) const {
+    std::vector<typename Contacts::Memory::Record> sides(const scene::Assembly& assembly,
+                                                         const beam::Mesh<typename M::Beam>& mesh) const {
         typename M::Proximity search(parameters_.proximity);
         const contact::ForcedOrders orders(assembly, mesh);
         const std::vector<contact::Zone> zones =
@@ -134,7 +145,8 @@ private:
         for (const contact::Zone& zone : zones)
             if (!zone.forced) own.push_back(zone);
         std::vector<typename Contacts::Memory::Record> records;
-        for (const auto& side : contact::OverlapSides<typename M::Beam>(mesh, mesh.start_state()).of(own, parameters_.contact.spacing)) {
+        for (const auto& side :
+             contact::OverlapSides<typename M::Beam>(mesh, mesh.start_state()).of(own, parameters_.contact.spacing)) {
             typename Contacts::Memory::Record record;
             record.fibre_i = static_cast<std::int32_t>(side.fibre_i), record.fibre_j = static_cast<std::int32_t>(side.fibre_j);
             record.u_i = side.u_i, record.u_j = side.u_j, record.normal = side.normal;
@@ -143,10 +155,12 @@ private:
         return records;
     }
 
-    Loading<Parted> loading(const beam::Mesh<typename M::Beam>& mesh, double limit, double target, bool forced, double depth) const {
+    Loading<Parted> loading(const beam::Mesh<typename M::Beam>& mesh, double limit, double target, bool forced,
+                            double depth) const {
         double bedding = std::numeric_limits<double>::infinity();  // of the most slender fibre's node [force / length]
         for (const beam::MeshFibre& fibre : mesh.fibres()) {
-            const double bending = fibre.material.young_modulus * std::min(fibre.section.second_moment_1(), fibre.section.second_moment_2());
+            const double bending =
+                fibre.material.young_modulus * std::min(fibre.section.second_moment_1(), fibre.section.second_moment_2());
             const double node = fibre.element_length / static_cast<double>(M::Beam::nodes - 1);
             bedding = std::min(bedding, 4.0 * bending * node / std::pow(bending_length * fibre.section.radius(), 4));
         }
@@ -185,7 +199,8 @@ private:
                 simulator.snapshot(), typename M::Proximity(parameters_.proximity),
                 parameters_.contact.detection.self_contact ? observe::OwnTurns::counted : observe::OwnTurns::left_out);
             if (-least.gap > found.depth) {
-                const double radius = std::min(simulator.mesh().fibre(least.fibre_i).section.radius(), simulator.mesh().fibre(least.fibre_j).section.radius());
+                const double radius = std::min(simulator.mesh().fibre(least.fibre_i).section.radius(),
+                                               simulator.mesh().fibre(least.fibre_j).section.radius());
                 found = {least.fibre_i, least.fibre_j, 0.0, 0.0, -least.gap, radius, radius, least.position};
                 if (found.depth > allowed_) deep.push_back(found.fibre_i), deep.push_back(found.fibre_j);
             }
@@ -203,19 +218,20 @@ private:
 
 }  // namespace detail
 
-/// Parts all fibres of a scene that lie in each other where it begins: side by side, one in the other, thin in thick, on one line, in
-/// themselves where the model's contacts are searched for that. Forced orders of the scene are kept; where there is none, fibres part
-/// by least motion (contact::OverlapSides).
+/// Parts all fibres of a scene that lie in each other where it begins: side by side, one in the other, thin in thick, on one
+/// line, in themselves where the model's contacts are searched for that. Forced orders of the scene are kept; where there is
+/// none, fibres part by least motion (contact::OverlapSides).
 ///
-/// Contact is shown a limited gap (Durville, section 15.3.5), without friction, and what moves is bedded in springs to its last place;
-/// then the fibres come to rest under the allowed penetration. What is held stays; fibres that do not part so take their holds along, if
-/// `loosen_holds`. A scene that begins at `start` has conditions that count from there:
+/// Contact is shown a limited gap (Durville, section 15.3.5), without friction, and what moves is bedded in springs to its last
+/// place; then the fibres come to rest under the allowed penetration. What is held stays; fibres that do not part so take their
+/// holds along, if `loosen_holds`. A scene that begins at `start` has conditions that count from there:
 ///     const auto parting = simulation::part_overlaps<Model>(assembly, parameters);
 ///     if (parting.parted) assembly.begin_at(parting.start);
 /// @returns a report, with the two fibres that are deepest in each other and how deep they are where not all have parted
 /// @throws std::invalid_argument for a wrong scene or parameter
 template <Model M>
-Parting part_overlaps(const scene::Assembly& assembly, const ModelParameters<M>& parameters, const PartingParameters& parting = PartingParameters()) {
+Parting part_overlaps(const scene::Assembly& assembly, const ModelParameters<M>& parameters,
+                      const PartingParameters& parting = PartingParameters()) {
     detail::OverlapParter<M> parter(parameters, parting);
     Parting result;
     std::vector<Index> deep;

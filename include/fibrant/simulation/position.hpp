@@ -23,12 +23,12 @@ struct Position {
     double damping_floor = 0.0;  ///< that it does not fall below: what has failed is not tried again at once
     bool stage_over = false;
     Calming calming{};
-    Index mends = 0;             ///< of pairs that are too deep unseen, since that last became better
+    Index mends = 0;  ///< of pairs that are too deep unseen, since that last became better
     double mended = std::numeric_limits<double>::infinity();  ///< how deep they are then [length]
-    bool following = false;      ///< places of crossings are followed
-    std::pair<Index, double> tried{-1, 0.0};  ///< accepted increments and fraction at which another following was tried last
-    std::vector<double> from;    ///< amplitudes at the start of the stage
-    std::vector<double> holding; ///< damping of each fibre over that of all, >= 1
+    bool following = false;                                   ///< places of crossings are followed
+    std::pair<Index, double> tried{-1, 0.0};       ///< accepted increments and fraction at which another following was tried last
+    std::vector<double> from;                      ///< amplitudes at the start of the stage
+    std::vector<double> holding;                   ///< damping of each fibre over that of all, >= 1
     static constexpr double least_damping = 1e-3;  ///< over that of the stage: below, none
     static constexpr double vanishing = 1e-6;      ///< the same where damping waits: it ends by its share, and by halves
     static constexpr double few = 0.1;             ///< of the fibres, which alone are held harder
@@ -47,11 +47,13 @@ struct Position {
 
     /// Duration of an increment of a stage.
     template <Model M>
-    double step(const Stage<M>& present) const noexcept { return present.duration * fraction / static_cast<double>(present.increments); }
+    double step(const Stage<M>& present) const noexcept {
+        return present.duration * fraction / static_cast<double>(present.increments);
+    }
 
-    /// After an attempt that has failed. What stops increments is often one fibre, or two at the edge of a bundle: those that moved
-    /// most in the last iteration or pass, if they are few, are held four times as hard, and the increment stays as it is. Else it
-    /// is made smaller, and damping of all rises.
+    /// After an attempt that has failed. What stops increments is often one fibre, or two at the edge of a bundle: those that
+    /// moved most in the last iteration or pass, if they are few, are held four times as hard, and the increment stays as it is.
+    /// Else it is made smaller, and damping of all rises.
     /// @param moved     of each fibre, in what did not settle [length]; empty: not known
     /// @param allowed   that it may be without harm [length]
     /// @param attempts  at this increment that have failed, >= 1
@@ -70,8 +72,8 @@ struct Position {
         damping = std::clamp(4.0 * damping, least_damping, 1.0 / least_damping);
     }
 
-    /// An attempt has failed: the other way of finding places is tried before anything else is, once at a size of increment. Where that fails
-    /// too the first one is taken up again. @returns whether the same increment is to be tried
+    /// An attempt has failed: the other way of finding places is tried before anything else is, once at a size of increment.
+    /// Where that fails too the first one is taken up again. @returns whether the same increment is to be tried
     bool try_other_places(contact::Places places) {
         if (places != contact::Places::as_needed) return false;
         following = !following;
@@ -104,12 +106,15 @@ struct Position {
     template <Model M>
     void adapt_damping(const Stage<M>& present, const IncrementReport& increment, double effort) {
         const double before = damping;
-        // What holds little enough falls no further: without any, a slack fibre is sought all over the place, and the last stage takes what it takes.
-        const bool waits = present.damping_waits && progress >= 1.0, enough = waits && damping > 0.0 && increment.damping <= present.damping_share;
+        // What holds little enough falls no further: without any, a slack fibre is sought all over the place, and the last stage
+        // takes what it takes.
+        const bool waits = present.damping_waits && progress >= 1.0,
+                   enough = waits && damping > 0.0 && increment.damping <= present.damping_share;
         if (waits && !stage_over && increment.damping < 0.5 * present.damping_share)
             damping = std::clamp(2.0 * damping, least_damping, 1.0 / least_damping);
         else if (!enough && increment.cuts == 0 && increment.displacement <= present.damping_calm && effort <= 0.6)
-            damping = std::max(damping * (damping > 1.0 ? 0.5 : std::pow(present.damping_decay, fraction)), std::min(damping, damping_floor));
+            damping = std::max(damping * (damping > 1.0 ? 0.5 : std::pow(present.damping_decay, fraction)),
+                               std::min(damping, damping_floor));
         else if (present.damping_decay < 1.0 && effort > 0.75)
             damping = std::min(2.0 * damping, 1.0 / least_damping);
         if (damping < (waits ? vanishing : least_damping)) damping = 0.0;
@@ -138,14 +143,21 @@ struct Position {
     }
 
     template <Model M>
-    bool limits_gap(const Stage<M>& present) const noexcept { return present.gap_limit && (fraction < 1.0 || !present.gap_limit_when_cut); }
+    bool limits_gap(const Stage<M>& present) const noexcept {
+        return present.gap_limit && (fraction < 1.0 || !present.gap_limit_when_cut);
+    }
 
-    /// What was mended without success is solved to what is stated: a state that only nearly balances does not show what a mend does.
+    /// What was mended without success is solved to what is stated: a state that only nearly balances does not show what a mend
+    /// does.
     template <Model M>
-    double looseness(const Stage<M>& present) const noexcept { return mends > 1 ? 1.0 : present.looseness; }
+    double looseness(const Stage<M>& present) const noexcept {
+        return mends > 1 ? 1.0 : present.looseness;
+    }
 
     /// Why a stage is given up, before what else is known.
-    std::string not_ended(const std::string& name) const { return "stage " + name + " did not reach its end in " + std::to_string(in_stage) + " increments"; }
+    std::string not_ended(const std::string& name) const {
+        return "stage " + name + " did not reach its end in " + std::to_string(in_stage) + " increments";
+    }
 
     /// Damping of each fibre over that of all. @param own  what each has by itself; empty: 1
     std::vector<double> held_by_fibre(const std::vector<double>& own) const {
@@ -162,14 +174,17 @@ struct Position {
         const auto finite = [](double value) { return std::isfinite(value) && value >= 0.0; };
         return stage >= 0 && stage <= stages && in_stage >= 0 && accepted >= 0 && finite(progress) && fraction > 0.0 &&
                fraction <= most_fraction && finite(displacement) && finite(damping) && finite(damping_floor) && calming.sound() &&
-               mends >= 0 && mended >= 0.0 &&
-               std::all_of(holding.begin(), holding.end(), finite);
+               mends >= 0 && mended >= 0.0 && std::all_of(holding.begin(), holding.end(), finite);
     }
 
     template <class Body>
-    void each(const Body& body) { each_of(*this, body); }
+    void each(const Body& body) {
+        each_of(*this, body);
+    }
     template <class Body>
-    void each(const Body& body) const { each_of(*this, body); }
+    void each(const Body& body) const {
+        each_of(*this, body);
+    }
 
 private:
     /// @returns false where too many moved, or one that did is held as hard as may be
@@ -190,13 +205,15 @@ private:
         body(self.stage), body(self.in_stage), body(self.accepted), body(self.easy);
         body(self.progress), body(self.fraction), body(self.displacement), body(self.mends), body(self.mended);
         Calming::each_of(self.calming, body);
-        body(self.damping), body(self.damping_floor), body(self.stage_over), body(self.following), body(self.tried.first), body(self.tried.second);
+        body(self.damping), body(self.damping_floor), body(self.stage_over), body(self.following), body(self.tried.first),
+            body(self.tried.second);
         for (auto& amplitude : self.from) body(amplitude);
         for (auto& factor : self.holding) body(factor);
     }
 };
 
-/// Of a loading without stages, in increments that take the place of one: the least fraction of increments bounds cuts before that.
+/// Of a loading without stages, in increments that take the place of one: the least fraction of increments bounds cuts before
+/// that.
 inline constexpr Index cuts_to_expect = 20;
 
 /// The stages of a loading; with none, one that takes all channels to 1.
@@ -213,11 +230,14 @@ std::vector<Stage<M>> stages_of(const Loading<M>& loading, const connection::Cha
 
 /// Amplitudes at a progress of a stage, in [0, 1]; `amplitudes` are those now.
 template <Model M>
-std::vector<double> amplitudes_at(const Stage<M>& stage, double progress, const Position& position, const connection::Channels& channels, std::vector<double> amplitudes) {
+std::vector<double> amplitudes_at(const Stage<M>& stage, double progress, const Position& position,
+                                  const connection::Channels& channels, std::vector<double> amplitudes) {
     for (const Ramp& ramp : stage.ramps) {
         const std::size_t c = core::at(channels.find(ramp.channel));
         const double from = position.from[c];
-        amplitudes[c] = ramp.at_once ? ramp.to : ramp.geometric ? from * std::pow(ramp.to / from, progress) : from + progress * (ramp.to - from);
+        amplitudes[c] = ramp.at_once     ? ramp.to
+                        : ramp.geometric ? from * std::pow(ramp.to / from, progress)
+                                         : from + progress * (ramp.to - from);
     }
     return amplitudes;
 }
@@ -230,7 +250,8 @@ inline std::vector<double> difference(std::vector<double> a, const std::vector<d
 
 /// Throws std::invalid_argument unless the ramps of all stages are of channels, and geometric ones between numbers > 0.
 template <Model M>
-void check_ramps(const std::vector<Stage<M>>& stages, const connection::Channels& channels, const std::vector<double>& amplitudes) {
+void check_ramps(const std::vector<Stage<M>>& stages, const connection::Channels& channels,
+                 const std::vector<double>& amplitudes) {
     std::vector<double> reached = amplitudes;
     for (const Stage<M>& stage : stages) {
         const std::vector<double> from = reached;

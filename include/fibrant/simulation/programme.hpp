@@ -14,27 +14,28 @@ namespace fibrant::simulation {
 /// One stage: its ramps, as often to and fro as it says, or a rest until nothing moves any more.
 struct ProgrammeStage {
     std::string name = "loading";
-    Index increments = 10;        ///< of each ramp, >= 1
-    std::vector<Ramp> ramps{};    ///< channels that it moves, and where to
-    Index cycles = 0;             ///< times to and back again; 0: to, and no further, >= 0
-    double back = 0.0;            ///< amplitude at the end of each cycle
+    Index increments = 10;             ///< of each ramp, >= 1
+    std::vector<Ramp> ramps{};         ///< channels that it moves, and where to
+    Index cycles = 0;                  ///< times to and back again; 0: to, and no further, >= 0
+    double back = 0.0;                 ///< amplitude at the end of each cycle
     std::optional<double> friction{};  ///< coefficient from here on [1], >= 0
-    bool rest = false;            ///< goes on until forces balance, after its ramps
-    double damping = 0.0;         ///< over that of the programme [1], >= 0; falls in a stage that rests, is carried along in others
-    double looseness = 5.0;       ///< on the tolerances of passes, >= 1
+    bool rest = false;                 ///< goes on until forces balance, after its ramps
+    double damping = 0.0;    ///< over that of the programme [1], >= 0; falls in a stage that rests, is carried along in others
+    double looseness = 5.0;  ///< on the tolerances of passes, >= 1
 };
 
 /// A programme and what its stages share.
 struct LoadProgramme {
-    std::vector<ProgrammeStage> stages{};  ///< one after the other, at least one
-    double damping = 0.0;               ///< unit of the stages' damping [force / length], >= 0
-    double rest_motion = core::unset;   ///< of an increment at rest [length], > 0, unless
-    double rest_share = 1e-4;           ///< damping holds no more than this part of the forces [1], in (0, 0.01]
+    std::vector<ProgrammeStage> stages{};   ///< one after the other, at least one
+    double damping = 0.0;                   ///< unit of the stages' damping [force / length], >= 0
+    double rest_motion = core::unset;       ///< of an increment at rest [length], > 0, unless
+    double rest_share = 1e-4;               ///< damping holds no more than this part of the forces [1], in (0, 0.01]
     double rest_penetration = core::unset;  ///< allowed at rest [length], > 0
-    double calm = std::numeric_limits<double>::infinity();  ///< greatest displacement of an increment after which damping falls [length], > 0
-    double reversible_displacement = core::unset;  ///< of friction [length], > 0 where a stage changes it
+    double calm = std::numeric_limits<double>::infinity();  ///< greatest displacement of an increment after which damping falls
+                                                            ///< [length], > 0
+    double reversible_displacement = core::unset;           ///< of friction [length], > 0 where a stage changes it
     double largest_displacement = std::numeric_limits<double>::infinity();  ///< of an increment [length], > 0
-    Index halvings = 0;                 ///< of all increments of ramps, >= 0
+    Index halvings = 0;                                                     ///< of all increments of ramps, >= 0
 
     void validate() const {
         core::require_not_negative("LoadProgramme.damping", damping);

@@ -31,8 +31,8 @@ struct RunParts {
     Laws& laws;  // of sections
 };
 template <class Contacts, class Equilibrium, class Mesh, class Laws>
-RunParts(Vector&, std::vector<double>&, EnergyAccount&, Contacts&, Equilibrium&, Position&, MeanMotion&, core::StageClock&, Mesh&, Laws&)
-    -> RunParts<Contacts, Equilibrium, Mesh, Laws>;
+RunParts(Vector&, std::vector<double>&, EnergyAccount&, Contacts&, Equilibrium&, Position&, MeanMotion&, core::StageClock&, Mesh&,
+         Laws&) -> RunParts<Contacts, Equilibrium, Mesh, Laws>;
 
 template <Model M, class Contacts, class Equilibrium, class Mesh, class Laws>
 void put_run(CheckpointWriter& file, const RunParts<Contacts, Equilibrium, Mesh, Laws>& run, const Report& report) {
@@ -44,7 +44,8 @@ void put_run(CheckpointWriter& file, const RunParts<Contacts, Equilibrium, Mesh,
     for (const double amplitude : run.amplitudes) put(amplitude);
     std::as_const(run.position).each(put);
     if constexpr (HasTools<M>) run.contacts.tools().each_accepted(put);
-    if constexpr (HasConnections<M>) run.equilibrium.ties().motion().each_accepted([&](const auto& value) { put_value(file, value); });
+    if constexpr (HasConnections<M>)
+        run.equilibrium.ties().motion().each_accepted([&](const auto& value) { put_value(file, value); });
     if constexpr (HasSolid<M>) put_solid(file, run.equilibrium.solid());
     put(report.rejected_increments), put(report.counts), put(run.clock.seconds());
     put(core::count(report.increments));
@@ -59,8 +60,10 @@ void get_fibres(CheckpointReader& file, const RunParts<Contacts, Equilibrium, Me
     const Index size = run.state.size();
     run.state = get_state(file, size);
     run.energy.each([&]<class Value>(Value& value) {
-        if constexpr (std::is_same_v<Value, Vector>) value = get_state(file, size, true);
-        else value = file.get<Value>();
+        if constexpr (std::is_same_v<Value, Vector>)
+            value = get_state(file, size, true);
+        else
+            value = file.get<Value>();
     });
     std::vector<typename Contacts::Memory::Record> records;
     std::vector<contact::Zone> zones;
@@ -73,7 +76,8 @@ void get_fibres(CheckpointReader& file, const RunParts<Contacts, Equilibrium, Me
 /// @param stages  of the loading
 /// @param placed  is called once amplitudes and position stand
 template <Model M, class Contacts, class Equilibrium, class Mesh, class Laws, class Placed>
-void get_rest(CheckpointReader& file, const RunParts<Contacts, Equilibrium, Mesh, Laws>& run, Index stages, Report& report, const Placed& placed) {
+void get_rest(CheckpointReader& file, const RunParts<Contacts, Equilibrium, Mesh, Laws>& run, Index stages, Report& report,
+              const Placed& placed) {
     const auto get = [&]<class Value>(Value& value) { value = file.get<Value>(); };
     for (double& amplitude : run.amplitudes) get(amplitude);
     run.position.each(get);
@@ -94,8 +98,10 @@ void get_rest(CheckpointReader& file, const RunParts<Contacts, Equilibrium, Mesh
     run.motion.each(get);
     run.equilibrium.terms().each([&](auto& term) {
         term.each([&]<class Value>(Value& value) {
-            if constexpr (std::is_same_v<Value, Vector>) value = get_state(file, value.size());
-            else get(value);
+            if constexpr (std::is_same_v<Value, Vector>)
+                value = get_state(file, value.size());
+            else
+                get(value);
         });
         term.restore();
     });

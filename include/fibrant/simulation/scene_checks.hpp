@@ -7,7 +7,6 @@
 #include <fibrant/core/symmetric_eigen.hpp>
 #include <fibrant/simulation/position.hpp>
 
-
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -17,7 +16,8 @@ namespace fibrant::simulation {
 
 /// Throws std::invalid_argument where holds of a nodal vector contradict each other, at rest or as one channel goes to 1.
 template <beam::BeamElement B>
-void require_agreement(const connection::PrescribedMotion<B>& motion, const beam::Mesh<B>& mesh, const connection::Channels& channels) {
+void require_agreement(const connection::PrescribedMotion<B>& motion, const beam::Mesh<B>& mesh,
+                       const connection::Channels& channels) {
     std::vector<double> amplitudes(channels.names().size(), 0.0);
     motion.check(amplitudes, mesh, true);
     for (double& amplitude : amplitudes) {
@@ -39,14 +39,15 @@ void require_paths(const std::vector<Stage<M>>& stages, const connection::Prescr
         position.from = amplitudes;
         const Index looks = std::min(stage.increments, most_looks);
         for (Index k = 1; k <= looks; ++k) {
-            amplitudes = amplitudes_at(stage, static_cast<double>(k) / static_cast<double>(looks), position, channels, amplitudes);
+            amplitudes =
+                amplitudes_at(stage, static_cast<double>(k) / static_cast<double>(looks), position, channels, amplitudes);
             core::with_place([&] { return "stage '" + stage.name + "'"; }, [&] { motion.check(amplitudes, mesh, true); });
         }
     }
 }
 
-/// A direction in which the scene as a whole can move with nothing against it, if there is one: no hold, tie to a body that is not loose
-/// or hold of a solid has a part along it. Tools count as holding.
+/// A direction in which the scene as a whole can move with nothing against it, if there is one: no hold, tie to a body that is
+/// not loose or hold of a solid has a part along it. Tools count as holding.
 template <beam::BeamElement B>
 std::optional<Vec3> loose_direction(const scene::Assembly& assembly, const beam::Mesh<B>& mesh) {
     if (!assembly.tools().empty()) return {};
@@ -69,20 +70,22 @@ std::optional<Vec3> loose_direction(const scene::Assembly& assembly, const beam:
     return Vec3(solver.vectors().col(0));
 }
 
-/// What is said of a stage without damping of a scene that can move as a whole; empty if there is none. A scene may be good but for what
-/// its loading leaves out, so it is a reason to stop and no exception.
+/// What is said of a stage without damping of a scene that can move as a whole; empty if there is none. A scene may be good but
+/// for what its loading leaves out, so it is a reason to stop and no exception.
 template <Model M>
 std::string unheld(const std::vector<Stage<M>>& stages, const std::optional<Vec3>& loose) {
     if (!loose) return {};
     for (const Stage<M>& stage : stages)
         if (stage.damping == 0.0)
-            return "stage " + stage.name + ": assembly.holds = none" + (loose->isZero(0.0) ? "" : " along " + scene::text(*loose)) +
-                   ", but it must be such that the scene cannot move as a whole: hold a station, tie it to a body, or give the stage a damping";
+            return "stage " + stage.name + ": assembly.holds = none" +
+                   (loose->isZero(0.0) ? "" : " along " + scene::text(*loose)) +
+                   ", but it must be such that the scene cannot move as a whole: hold a station, tie it to a body, or give the "
+                   "stage a damping";
     return {};
 }
 
-/// Overlap of the sections of two fibres where a run begins, over the radius of the thinner one, beyond which it is not begun without a
-/// limited gap [1]: the axis of one is in the other, and by which side they are to part is a guess.
+/// Overlap of the sections of two fibres where a run begins, over the radius of the thinner one, beyond which it is not begun
+/// without a limited gap [1]: the axis of one is in the other, and by which side they are to part is a guess.
 inline constexpr double deepest_start = 1.0;
 
 /// look(contacts) at the contacts of a simulator as they would be made now; the last accepted ones stay.
@@ -98,7 +101,7 @@ auto look_at_contacts(Simulator& simulator, bool forced, const Look& look) {
 
 /// Fibres that are in each other where a run begins, deeper than allowed.
 struct StartOverlap {
-    std::string said;       ///< empty: none are
+    std::string said;  ///< empty: none are
     bool too_deep = false;
 
     /// @param first   stage of the run; one that limits the gap may begin anywhere

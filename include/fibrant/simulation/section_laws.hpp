@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file What a run does for laws of sections that remember: it drives them, lets them accept, breaks them, and keeps what they remember.
+/// @file What a run does for laws of sections that remember: it drives them, lets them accept, breaks them, and keeps what they
+/// remember.
 
 #include <fibrant/beam/element_memory.hpp>
 #include <fibrant/beam/mesh.hpp>
@@ -17,11 +18,12 @@
 
 namespace fibrant::simulation {
 
-/// Tells inertia and a law of friction that has a rate how long an increment lasts; in one that takes no time what flows is at rest. Where
-/// fibres move none takes no time: what follows the ramps of a stage goes on in steps of it. @returns the duration
+/// Tells inertia and a law of friction that has a rate how long an increment lasts; in one that takes no time what flows is at
+/// rest. Where fibres move none takes no time: what follows the ramps of a stage goes on in steps of it. @returns the duration
 /// @param step  part of the stage that the increment is made for, if that is not over
 template <class Contacts, class Equilibrium>
-double let_last([[maybe_unused]] Contacts& contacts, [[maybe_unused]] Equilibrium& equilibrium, double duration, [[maybe_unused]] double step) {
+double let_last([[maybe_unused]] Contacts& contacts, [[maybe_unused]] Equilibrium& equilibrium, double duration,
+                [[maybe_unused]] double step) {
     if constexpr (Equilibrium::moves) {
         if (!(duration > 0.0)) duration = step;
         equilibrium.terms().moving([&](auto& term) { term.last(duration); });
@@ -60,8 +62,9 @@ public:
     static void go_on_from(const auto&, const auto&) noexcept {}
 };
 
-/// Points break one at a time: after an increment in which one reaches its strength, equilibrium is found again at the same amplitudes,
-/// until none does. An increment that overshoots a strength by more than `overshoot` is cut, so that the first to break is the right one.
+/// Points break one at a time: after an increment in which one reaches its strength, equilibrium is found again at the same
+/// amplitudes, until none does. An increment that overshoots a strength by more than `overshoot` is cut, so that the first to
+/// break is the right one.
 template <beam::Remembering B>
 class SectionLaws<B> {
     using M = typename B::Material;
@@ -70,20 +73,23 @@ public:
     using Mesh = beam::Mesh<B>;
     static constexpr double overshoot = 0.02;  ///< of a strength, at which an increment is still accepted [1]
 
-    SectionLaws(const scene::Assembly& assembly, Mesh& mesh, const B& beam, const connection::Channels& channels) : channel_(core::at(mesh.fibre_count()), -1) {
+    SectionLaws(const scene::Assembly& assembly, Mesh& mesh, const B& beam, const connection::Channels& channels)
+        : channel_(core::at(mesh.fibre_count()), -1) {
         for_elements(mesh, [&](Index f, Index e, typename B::Rest& rest) { beam.place(rest, f, e); });
         for (Index f = 0; f < mesh.fibre_count(); ++f)
-            if (const std::string& channel = assembly.fibres()[core::at(f)].law_channel; !channel.empty()) channel_[core::at(f)] = channels.find(channel);
+            if (const std::string& channel = assembly.fibres()[core::at(f)].law_channel; !channel.empty())
+                channel_[core::at(f)] = channels.find(channel);
     }
     /// Whether a point has broken, so that the next increment moves nothing.
     bool again() const noexcept { return again_; }
-    /// Throws std::invalid_argument for stages without a duration, if the law has a rate. Memory that has come from another mesh is put
-    /// where the strains of this one have it: back on bounds that they would exceed. @returns whether it was
+    /// Throws std::invalid_argument for stages without a duration, if the law has a rate. Memory that has come from another mesh
+    /// is put where the strains of this one have it: back on bounds that they would exceed. @returns whether it was
     template <class Stages>
     bool begin(const Stages& stages, Mesh& mesh, const B& beam, const Vector& state) {
         if constexpr (M::has_rate)
             for (const auto& stage : stages)
-                core::require(stage.duration > 0.0, "Stage.duration of stage " + stage.name, stage.duration, "> 0: the law of the section has a rate");
+                core::require(stage.duration > 0.0, "Stage.duration of stage " + stage.name, stage.duration,
+                              "> 0: the law of the section has a rate");
         if (settled_) return false;
         for_elements(mesh, [&](Index f, Index e, typename B::Rest& rest) { beam.accept(rest, mesh.element(state, f, e)); });
         return settled_ = true;
@@ -95,11 +101,14 @@ public:
         });
     }
     /// Why a state that has converged is not accepted; empty if it is.
-    std::string refusal([[maybe_unused]] const Mesh& mesh, [[maybe_unused]] const B& beam, [[maybe_unused]] const Vector& state) const {
+    std::string refusal([[maybe_unused]] const Mesh& mesh, [[maybe_unused]] const B& beam,
+                        [[maybe_unused]] const Vector& state) const {
         if constexpr (beam::Breakable<M>) {
             if (again_) return {};
             const Weakest most = weakest(mesh, beam, state);
-            if (most.use > 1.0 + overshoot) return mesh.element_label(most.fibre, most.element) + ": stress over strength = " + core::text(most.use) + ", more than " + core::text(1.0 + overshoot) + " at once";
+            if (most.use > 1.0 + overshoot)
+                return mesh.element_label(most.fibre, most.element) + ": stress over strength = " + core::text(most.use) +
+                       ", more than " + core::text(1.0 + overshoot) + " at once";
         }
         return {};
     }
@@ -130,14 +139,16 @@ public:
         Vector all(count(mesh));
         Index k = 0;
         all[k++] = (again_ ? 1.0 : 0.0) + (settled_ ? 0.0 : from_other_mesh);
-        for_elements(mesh, [&](Index, Index, typename B::Rest& rest) { B::visit(rest, [&](const double& value) { all[k++] = value; }); });
+        for_elements(
+            mesh, [&](Index, Index, typename B::Rest& rest) { B::visit(rest, [&](const double& value) { all[k++] = value; }); });
         return all;
     }
     void take(Mesh& mesh, const Vector& all) {
         Index k = 0;
         settled_ = all[k] < from_other_mesh;
         again_ = std::fmod(all[k++], from_other_mesh) != 0.0;
-        for_elements(mesh, [&](Index, Index, typename B::Rest& rest) { B::visit(rest, [&](double& value) { value = all[k++]; }); });
+        for_elements(mesh,
+                     [&](Index, Index, typename B::Rest& rest) { B::visit(rest, [&](double& value) { value = all[k++]; }); });
     }
     static Index count(Mesh& mesh) {
         Index sum = 1;
@@ -150,7 +161,8 @@ public:
         laws.take(mesh, all);
         for_elements(finer, [&](Index f, Index e, typename B::Rest& part) {
             auto xi = B::point_places;
-            for (double& place : xi) place = (2.0 * static_cast<double>(e % parts) + 1.0 + place) / static_cast<double>(parts) - 1.0;
+            for (double& place : xi)
+                place = (2.0 * static_cast<double>(e % parts) + 1.0 + place) / static_cast<double>(parts) - 1.0;
             B::take_part(part, mesh.rest(f, e / parts), xi, B::point_places);
         });
         laws.settled_ = false;
@@ -160,7 +172,8 @@ public:
     template <class Other>
     static void go_on_from(Mesh& mesh, const Other& other) {
         if constexpr (std::same_as<Other, Mesh>)
-            for (std::size_t k = 0; k < mesh.rests().size(); ++k) mesh.rests()[k].memory.accepted = other.rests()[k].memory.accepted;
+            for (std::size_t k = 0; k < mesh.rests().size(); ++k)
+                mesh.rests()[k].memory.accepted = other.rests()[k].memory.accepted;
     }
 
 private:
@@ -174,7 +187,8 @@ private:
         Weakest most;
         for (Index f = 0; f < mesh.fibre_count(); ++f)
             for (Index e = 0; e < mesh.fibre(f).elements; ++e)
-                if (const auto [use, point] = beam.weakest(mesh.rest(f, e), mesh.element(state, f, e)); use > most.use) most = {use, f, e, point};
+                if (const auto [use, point] = beam.weakest(mesh.rest(f, e), mesh.element(state, f, e)); use > most.use)
+                    most = {use, f, e, point};
         return most;
     }
     template <class Body>

@@ -25,7 +25,8 @@
 
 namespace fibrant::simulation {
 
-/// A scene in mechanical equilibrium, taken through a loading by quasi-static increments; with `inertia::Inertia` in motion, by steps of time.
+/// A scene in mechanical equilibrium, taken through a loading by quasi-static increments; with `inertia::Inertia` in motion, by
+/// steps of time.
 template <Model M>
 class Simulator {
 public:
@@ -53,8 +54,8 @@ public:
     }
     Report run_watched(const Loading<M>& loading, std::span<const Watcher> watchers);
 
-    /// Starts from what a run of another scene of the same fibres left in a checkpoint, with what its contacts remember. What is held,
-    /// tied and applied is that of this scene: averages and periodic pairs count from there.
+    /// Starts from what a run of another scene of the same fibres left in a checkpoint, with what its contacts remember. What is
+    /// held, tied and applied is that of this scene: averages and periodic pairs count from there.
     /// @throws std::runtime_error if the file cannot be read or has other fibres
     void start_from(const std::string& checkpoint);
 
@@ -69,7 +70,8 @@ public:
     double amplitude(const std::string& channel) const { return amplitudes_[core::at(channels_.find(channel))]; }
     /// Force that the support exerts on a held nodal vector, in its held directions [force].
     Vec3 reaction(const scene::Station& at, scene::NodeVector vector = scene::NodeVector::position) const {
-        return equilibrium_.reaction().size() > 0 ? Vec3(equilibrium_.reaction().template segment<3>(first_of(at, vector))) : Vec3(Vec3::Zero());
+        return equilibrium_.reaction().size() > 0 ? Vec3(equilibrium_.reaction().template segment<3>(first_of(at, vector)))
+                                                  : Vec3(Vec3::Zero());
     }
     /// Value of a nodal vector now.
     Vec3 value(const scene::Station& at, scene::NodeVector vector = scene::NodeVector::position) const {
@@ -110,7 +112,8 @@ private:
 
     /// One accepted increment, after as many cuts as it takes; gave_up(attempt) hears of it.
     template <class GaveUp>
-    bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report, const GaveUp& gave_up) {
+    bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report,
+                 const GaveUp& gave_up) {
         const auto start = std::chrono::steady_clock::now();
         IncrementReport increment;
         double effort = 0.0;  // iterations a normal pass of it, over how many it may take
@@ -124,23 +127,28 @@ private:
             }
             const double progress = laws_.again() ? position_.progress : position_.next(stage);
             if constexpr (law::GapLimiting<typename M::Normal>) {
-                const double limit = position_.limits_gap(stage) ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
+                const double limit =
+                    position_.limits_gap(stage) ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
                 contacts_.normal_law() = contacts_.normal_law().with_limit(limit);
             }
             const double stride = position_.stride();
             const double stated = parameters_.contact.stiffness.allowed_penetration;
             contacts_.allow_penetration(stride * stage.allowed_penetration.value_or(stated));
-            const std::vector<double> amplitudes = amplitudes_at(stage, progress, position_, channels_, amplitudes_), change = difference(amplitudes, amplitudes_);
+            const std::vector<double> amplitudes = amplitudes_at(stage, progress, position_, channels_, amplitudes_),
+                                      change = difference(amplitudes, amplitudes_);
             if (const std::string reason = turned_too_far(mesh_, equilibrium_, amplitudes_, amplitudes); !reason.empty()) {
                 ++increment.cuts, position_.fraction *= 0.5, position_.easy = 0;
-                gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, 2.0 * position_.fraction, position_.damping, 0, reason, core::seconds_since(start)});
+                gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, 2.0 * position_.fraction,
+                                      position_.damping, 0, reason, core::seconds_since(start)});
                 if (position_.fraction >= loading.smallest_fraction) continue;
                 report.reason = present + reason;
                 return false;
             }
             Vector trial = state_;
             move_tools(amplitudes);
-            laws_.drive(mesh_, amplitudes, let_last(contacts_, equilibrium_, stage.duration * (progress - position_.progress), position_.step(stage)));
+            laws_.drive(
+                mesh_, amplitudes,
+                let_last(contacts_, equilibrium_, stage.duration * (progress - position_.progress), position_.step(stage)));
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping / stride + position_.calming.springs,
                                position_.held_by_fibre(loading.damping_of_fibres));
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
@@ -152,15 +160,20 @@ private:
             const double shown = stage.forced_orders ? stride * stage.gap_limit.value_or(0.0) : 0.0;
             const double ahead = std::max(position_.displacement, shown);
             solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, position_.looseness(stage),
-                                                         stride * stage.largest_displacement);
+                                                        stride * stage.largest_displacement);
             increment.counts += attempt.counts;
             const Index most = std::max<Index>(1, attempt.counts.normal_passes) * iteration.newton_limit;
             effort = static_cast<double>(attempt.counts.newton) / static_cast<double>(most);
             if (attempt.converged) {
-                attempt.reason = clock_.time(core::Part::search, [&] { return refusal(mesh_, beam_, passage_, contacts_, state_, trial, stage.forced_orders, touching); });
+                attempt.reason = clock_.time(core::Part::search, [&] {
+                    return refusal(mesh_, beam_, passage_, contacts_, state_, trial, stage.forced_orders, touching);
+                });
                 if (attempt.reason.empty()) attempt.reason = laws_.refusal(mesh_, beam_, trial);
-                equilibrium_.terms().moving([&](auto& term) { if (attempt.reason.empty()) attempt.reason = term.refusal(trial); });
-                if (!attempt.reason.empty()) attempt.converged = false, attempt.unsettled.resize(0);  // whoever moved most is not at fault
+                equilibrium_.terms().moving([&](auto& term) {
+                    if (attempt.reason.empty()) attempt.reason = term.refusal(trial);
+                });
+                if (!attempt.reason.empty())
+                    attempt.converged = false, attempt.unsettled.resize(0);  // whoever moved most is not at fault
             }
             // What nothing foretells would be held back: the first tells.
             if (attempt.converged && stage.damping_carried && stage.damping > 0.0 && !rehearsed && !motion_.foretells(change)) {
@@ -186,16 +199,16 @@ private:
                 break;
             }
             ++report.rejected_increments, ++increment.cuts;
-            gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, position_.fraction, position_.damping, attempt.counts.newton, attempt.reason,
-                                  core::seconds_since(start)});
+            gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, position_.fraction, position_.damping,
+                                  attempt.counts.newton, attempt.reason, core::seconds_since(start)});
             contacts_.restore(), equilibrium_.restore();
             if (touching && !stage.forced_orders && !position_.calming.resting) {
                 const bool again = position_.try_other_places(parameters_.contact.places);
                 contacts_.places().follow(position_.following);
                 if (again) continue;
             }
-            if (loading.calmed && report.rejected_increments <= loading.most_rejected && stage.damping == 0.0 && !stage.forced_orders &&
-                position_.calming.harder(position_.fraction, Calming::softest(mesh_))) {
+            if (loading.calmed && report.rejected_increments <= loading.most_rejected && stage.damping == 0.0 &&
+                !stage.forced_orders && position_.calming.harder(position_.fraction, Calming::softest(mesh_))) {
                 contacts_.places().follow(position_.following = parameters_.contact.places == contact::Places::as_needed);
                 continue;
             }
@@ -208,8 +221,10 @@ private:
         }
         increment.contact = contacts_.figures(state_);
         position_.displacement = increment.displacement;
-        if (!position_.calming.active()) position_.calming.none_taken();
-        else position_.calming.soften_after(increment.unstable, increment.displacement / radius_, Calming::softest(mesh_));
+        if (!position_.calming.active())
+            position_.calming.none_taken();
+        else
+            position_.calming.soften_after(increment.unstable, increment.displacement / radius_, Calming::softest(mesh_));
         ++position_.accepted, position_.in_stage += position_.calming.resting ? 0 : 1;
         if (may_grow(equilibrium_, loading.growth)) position_.grow(stage, increment, loading.growth, effort);
         increment.number = position_.accepted, increment.stage = stage.name, increment.stage_progress = position_.progress;
@@ -217,13 +232,16 @@ private:
         // At rest: what holds takes no more force than the balance may miss anyway.
         const bool reached = position_.progress >= 1.0 && !position_.calming.resting && (!stage.until || stage.until(increment));
         const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
-        deep_ = touching && reached && !held && !laws_.again() ? mend_deep_places(loading, stages, *this, contacts_, radius_, position_) : std::string();
-        position_.stage_over =
-            !laws_.again() && ((reached && !held && deep_.empty()) || (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments));
+        deep_ = touching && reached && !held && !laws_.again()
+                    ? mend_deep_places(loading, stages, *this, contacts_, radius_, position_)
+                    : std::string();
+        position_.stage_over = !laws_.again() && ((reached && !held && deep_.empty()) ||
+                                                  (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments));
         position_.adapt_damping(stage, increment, effort);
         contacts_.accept(state_), equilibrium_.accept(state_);
         if constexpr (HasSolid<M>)
-            if (equilibrium_.solid().accept(state_) > 0) energy_.release(equilibrium_.elastic_energy(state_));  // bonds that had too much
+            if (equilibrium_.solid().accept(state_) > 0)
+                energy_.release(equilibrium_.elastic_energy(state_));  // bonds that had too much
         increment.seconds = core::seconds_since(start);
         report.counts += increment.counts;
         report.increments.push_back(increment);
@@ -246,13 +264,18 @@ private:
         }
         for (const IncrementReport& increment : report.increments) report.most_use.add(increment.use);
         report.energy = energy_.balance();
-        if constexpr (requires { { linear_.account() } -> std::convertible_to<std::string>; }) report.solver = linear_.account();
+        if constexpr (requires {
+                          { linear_.account() } -> std::convertible_to<std::string>;
+                      })
+            report.solver = linear_.account();
         report.seconds = clock_.seconds();
         report.wall_seconds += core::seconds_since(start);
     }
 
     /// All of a run that goes into its checkpoint.
-    auto parts() noexcept { return RunParts{state_, amplitudes_, energy_, contacts_, equilibrium_, position_, motion_, clock_, mesh_, laws_}; }
+    auto parts() noexcept {
+        return RunParts{state_, amplitudes_, energy_, contacts_, equilibrium_, position_, motion_, clock_, mesh_, laws_};
+    }
     void write_checkpoint(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Report& report) {
         CheckpointWriter file;
         put_identity<M>(file, mesh_, channels_, stages, loading.scene);
@@ -281,7 +304,7 @@ private:
     Vector state_;
     std::vector<double> amplitudes_;
     double radius_ = 0.0;
-    std::string deep_;  ///< what is too deep, in words
+    std::string deep_;           ///< what is too deep, in words
     std::optional<Vec3> loose_;  ///< what nothing holds the scene along
     std::vector<Index> tool_channels_;
     Position position_;
@@ -290,17 +313,27 @@ private:
     core::StageClock clock_;
 };
 
-// What a program calls stands outside of the class: `extern template class` then leaves all below it to the file that has `template class`.
+// What a program calls stands outside of the class: `extern template class` then leaves all below it to the file that has
+// `template class`.
 
 template <Model M>
 Simulator<M>::Simulator(const scene::Assembly& assembly, const ModelParameters<M>& parameters)
-    : parameters_{checked(parameters)}, beam_{parameters.beam}, mesh_{assembly, beam_},
+    : parameters_{checked(parameters)},
+      beam_{parameters.beam},
+      mesh_{assembly, beam_},
       channels_{assembly, term::channels_of<Beam>(Acts(), parameters.acts)},
-      contacts_{assembly, mesh_, parameters.contact, typename M::Proximity(parameters.proximity),
-                typename M::Normal(parameters.normal), typename M::Friction(parameters.friction)},
-      equilibrium_{assembly, mesh_, beam_, contacts_, channels_, Solid(parameters.solid), parameters.acts}, passage_{mesh_, parameters.contact.detection},
-      linear_{parameters.solver}, laws_{assembly, mesh_, beam_, channels_},
-      state_{mesh_.start_state()}, amplitudes_(channels_.names().size(), 0.0) {
+      contacts_{assembly,
+                mesh_,
+                parameters.contact,
+                typename M::Proximity(parameters.proximity),
+                typename M::Normal(parameters.normal),
+                typename M::Friction(parameters.friction)},
+      equilibrium_{assembly, mesh_, beam_, contacts_, channels_, Solid(parameters.solid), parameters.acts},
+      passage_{mesh_, parameters.contact.detection},
+      linear_{parameters.solver},
+      laws_{assembly, mesh_, beam_, channels_},
+      state_{mesh_.start_state()},
+      amplitudes_(channels_.names().size(), 0.0) {
     if (mesh_.fibre_count() == 0) core::refuse("assembly.fibres", "none", "at least one fibre");
     if constexpr (HasTools<M>) {
         for (const scene::Tool& tool : assembly.tools()) tool_channels_.push_back(channels_.find(tool.channel));
@@ -310,8 +343,10 @@ Simulator<M>::Simulator(const scene::Assembly& assembly, const ModelParameters<M
     }
     if (const auto bodies = assembly.bodies().size() + assembly.cells().size(); !HasConnections<M> && bodies > 0)
         core::refuse("assembly.bodies", std::to_string(bodies), "none, for a model without a part Connections");
-    if constexpr (HasSolid<M>) state_ = equilibrium_.solid().with_rest(state_);
-    else if (!assembly.solids().empty()) core::refuse("assembly.solids", std::to_string(assembly.solids().size()), "none, for a model without a part Solid");
+    if constexpr (HasSolid<M>)
+        state_ = equilibrium_.solid().with_rest(state_);
+    else if (!assembly.solids().empty())
+        core::refuse("assembly.solids", std::to_string(assembly.solids().size()), "none, for a model without a part Solid");
     require_agreement(equilibrium_.motion(), mesh_, channels_);
     if constexpr (!Equilibrium::moves) loose_ = loose_direction(assembly, mesh_);
     radius_ = mesh_.fibre(0).section.radius();
@@ -329,7 +364,8 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
     const std::vector<Stage<M>> stages = stages_of(loading, channels_);
     check_ramps(stages, channels_, amplitudes_);
     if (const Index given = core::count(loading.damping_of_fibres); given > 0 && given != mesh_.fibre_count())
-        core::refuse("Loading.damping_of_fibres", std::to_string(given) + " numbers", "one for each of " + std::to_string(mesh_.fibre_count()) + " fibres");
+        core::refuse("Loading.damping_of_fibres", std::to_string(given) + " numbers",
+                     "one for each of " + std::to_string(mesh_.fibre_count()) + " fibres");
     if (laws_.begin(stages, mesh_, beam_, state_)) energy_.start_from_other(equilibrium_, state_);
     require_paths(stages, equilibrium_.motion(), mesh_, channels_, amplitudes_);
     Report report;
@@ -354,7 +390,7 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
         const Stage<M>& stage = stages[core::at(position_.stage)];
         take_laws(stage);
         while (!position_.stage_over) {
-            const auto gave_up = [&](const FailedAttempt& attempt) { 
+            const auto gave_up = [&](const FailedAttempt& attempt) {
                 for (const Watcher& watcher : watchers)
                     if (watcher.gave_up) watcher.gave_up(watcher.observer, attempt);
             };
@@ -369,7 +405,9 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
                 for (const Watcher& watcher : watchers) show(watcher, report.increments.back());
                 const auto now = std::chrono::steady_clock::now();
                 unsaved = !loading.checkpoint.empty();
-                if (!unsaved || (!position_.stage_over && std::chrono::duration<double>(now - saved).count() < loading.checkpoint_seconds)) return;
+                if (!unsaved ||
+                    (!position_.stage_over && std::chrono::duration<double>(now - saved).count() < loading.checkpoint_seconds))
+                    return;
                 write_checkpoint(loading, stages, report);
                 saved = now, unsaved = false;
             });

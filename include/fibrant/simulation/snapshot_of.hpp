@@ -14,32 +14,36 @@ namespace fibrant::simulation {
 
 /// Curve of a beam's centreline between its nodes.
 template <beam::BeamElement Beam>
-inline constexpr observe::Interpolation interpolation = Beam::nodes == 3 ? observe::Interpolation::quadratic
-                                                        : requires { Beam::centreline_bend_weights(0.0); } ? observe::Interpolation::cubic
-                                                                                                           : observe::Interpolation::linear;
+inline constexpr observe::Interpolation interpolation = Beam::nodes == 3 ? observe::Interpolation::quadratic : requires {
+    Beam::centreline_bend_weights(0.0);
+}
+? observe::Interpolation::cubic : observe::Interpolation::linear;
 
 /// Fibres at their nodes.
 template <beam::BeamElement Beam>
 observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const Vector& state) {
     observe::Snapshot shot;
     shot.fibres.resize(core::at(mesh.fibre_count()));
-    core::parallel_for(mesh.fibre_count(), [&](Index f) {
-        observe::FibreSnapshot& fibre = shot.fibres[core::at(f)];
-        fibre.interpolation = interpolation<Beam>;
-        fibre.section = mesh.fibre(f).section;
-        fibre.group = mesh.fibre(f).group, fibre.closed = mesh.fibre(f).closed;
-        for (Index a = 0; a < mesh.node_count(f); ++a) {
-            const double u = static_cast<double>(a) / static_cast<double>(Beam::nodes - 1);
-            const Vec3 position = mesh.position(state, f, u);
-            const Vec3 first = mesh.derivative(state, f, u), second = mesh.second_derivative(state, f, u);
-            fibre.position.push_back(position);
-            fibre.displacement.push_back(position - mesh.position(mesh.rest_state(), f, u));
-            const auto [director_1, director_2] = mesh.directors(state, f, u);
-            fibre.director_1.push_back(director_1);
-            fibre.director_2.push_back(director_2);
-            fibre.curvature.push_back(first.cross(second).norm() / std::pow(first.norm(), 3));
-        }
-    }, mesh.grain());
+    core::parallel_for(
+        mesh.fibre_count(),
+        [&](Index f) {
+            observe::FibreSnapshot& fibre = shot.fibres[core::at(f)];
+            fibre.interpolation = interpolation<Beam>;
+            fibre.section = mesh.fibre(f).section;
+            fibre.group = mesh.fibre(f).group, fibre.closed = mesh.fibre(f).closed;
+            for (Index a = 0; a < mesh.node_count(f); ++a) {
+                const double u = static_cast<double>(a) / static_cast<double>(Beam::nodes - 1);
+                const Vec3 position = mesh.position(state, f, u);
+                const Vec3 first = mesh.derivative(state, f, u), second = mesh.second_derivative(state, f, u);
+                fibre.position.push_back(position);
+                fibre.displacement.push_back(position - mesh.position(mesh.rest_state(), f, u));
+                const auto [director_1, director_2] = mesh.directors(state, f, u);
+                fibre.director_1.push_back(director_1);
+                fibre.director_2.push_back(director_2);
+                fibre.curvature.push_back(first.cross(second).norm() / std::pow(first.norm(), 3));
+            }
+        },
+        mesh.grain());
     return shot;
 }
 
@@ -50,21 +54,24 @@ observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const contact::Conta
     using Mesh = beam::Mesh<Beam>;
     observe::Snapshot shot = snapshot_of(mesh, state);
     shot.contacts.resize(contacts.elements().size());
-    core::parallel_for(core::count(shot.contacts), [&](Index k) {
-        const auto& element = contacts.elements()[core::at(k)];
-        observe::ContactSnapshot& contact = shot.contacts[core::at(k)];
-        contact.fibre_i = element.fibre_i, contact.fibre_j = element.fibre_j;
-        contact.abscissa_i = element.u_i * mesh.fibre(element.fibre_i).element_length;
-        contact.abscissa_j = element.u_j * mesh.fibre(element.fibre_j).element_length;
-        contact.position = 0.5 * (Mesh::point(state, element.first_i, element.weights_i) +
-                                  Mesh::point(state, element.first_j, element.weights_j));
-        contact.normal = element.normal;
-        contact.gap = element.gap(state);
-        contact.reaction = contacts.responses()[core::at(k)].reaction;
-        if constexpr (core::Active<Friction>) contact.friction = contacts.frictions()[core::at(k)].force;
-        contact.stiffness = contacts.stiffness(element);
-        contact.crossing = element.crossing;
-    }, core::light_items);
+    core::parallel_for(
+        core::count(shot.contacts),
+        [&](Index k) {
+            const auto& element = contacts.elements()[core::at(k)];
+            observe::ContactSnapshot& contact = shot.contacts[core::at(k)];
+            contact.fibre_i = element.fibre_i, contact.fibre_j = element.fibre_j;
+            contact.abscissa_i = element.u_i * mesh.fibre(element.fibre_i).element_length;
+            contact.abscissa_j = element.u_j * mesh.fibre(element.fibre_j).element_length;
+            contact.position = 0.5 * (Mesh::point(state, element.first_i, element.weights_i) +
+                                      Mesh::point(state, element.first_j, element.weights_j));
+            contact.normal = element.normal;
+            contact.gap = element.gap(state);
+            contact.reaction = contacts.responses()[core::at(k)].reaction;
+            if constexpr (core::Active<Friction>) contact.friction = contacts.frictions()[core::at(k)].force;
+            contact.stiffness = contacts.stiffness(element);
+            contact.crossing = element.crossing;
+        },
+        core::light_items);
     return shot;
 }
 
@@ -99,7 +106,8 @@ void add_solid(observe::Snapshot& shot, const Solid& solid, const Vector& state)
     }
     for (std::size_t b = 0; b < solid.bonds().size(); ++b)
         if (!solid.bonds()[b].section)
-            out.bonds.push_back({state.segment<3>(3 * solid.bonds()[b].vector), solid.holds(b) ? solid.bond_force(state, b) : Vec3(Vec3::Zero()), solid.holds(b)});
+            out.bonds.push_back({state.segment<3>(3 * solid.bonds()[b].vector),
+                                 solid.holds(b) ? solid.bond_force(state, b) : Vec3(Vec3::Zero()), solid.holds(b)});
 }
 
 }  // namespace fibrant::simulation

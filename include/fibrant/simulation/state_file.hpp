@@ -39,7 +39,8 @@ std::uint64_t fibre_identity(const beam::Mesh<B>& mesh) {
         scene.put(fibre.section.semi_axis_1), scene.put(fibre.section.semi_axis_2), scene.put(fibre.section.inertia_factor);
         scene.put(fibre.material.young_modulus), scene.put(fibre.material.poisson_ratio);
         if (fibre.material.law != 0) scene.put(fibre.material.law);
-        if (const scene::TransverseConstants& t = fibre.material.transverse; t.given()) scene.put(t.young_modulus), scene.put(t.poisson_ratio), scene.put(t.shear_modulus);
+        if (const scene::TransverseConstants& t = fibre.material.transverse; t.given())
+            scene.put(t.young_modulus), scene.put(t.poisson_ratio), scene.put(t.shear_modulus);
     }
     return scene.identity();
 }
@@ -148,7 +149,8 @@ void get_memory(CheckpointReader& file, std::vector<Record>& records, std::vecto
         std::memcpy(static_cast<void*>(&zone), bytes.data(), bytes.size());
         const proximity::ProximityZone& span = zone.span;
         file.require(known(span.fibre_i) && known(span.fibre_j) && zone.stiffness >= 0.0 && !std::isnan(zone.deepest));
-        file.require(zone.narrowed > 0.0 && zone.narrowed <= 1.0 && zone.watched.count >= 0 && zone.unseen >= 0.0 && std::isfinite(zone.unseen));
+        file.require(zone.narrowed > 0.0 && zone.narrowed <= 1.0 && zone.watched.count >= 0 && zone.unseen >= 0.0 &&
+                     std::isfinite(zone.unseen));
         for (const auto& place : zone.watched.at) file.require(std::isfinite(place[0]) && std::isfinite(place[1]));
         for (const double place : {span.a_i, span.b_i, span.a_j, span.b_j, span.closest_i, span.closest_j, zone.stiffness})
             file.require(std::isfinite(place));

@@ -30,8 +30,10 @@ StoredState<M> read_state(const std::string& path, const beam::Mesh<typename M::
     StoredState<M> stored{.state = get_state(file, mesh.rest_state().size())};
     EnergyAccount before;
     before.each([&]<class Value>(Value& value) {
-        if constexpr (std::is_same_v<Value, Vector>) value = file.get_vector();
-        else value = file.get<Value>();
+        if constexpr (std::is_same_v<Value, Vector>)
+            value = file.get_vector();
+        else
+            value = file.get<Value>();
     });
     get_memory(file, stored.records, stored.zones, mesh.fibre_count());
     stored.laws = file.get_vector();

@@ -13,8 +13,8 @@ struct Wrench {
     Vec3 moment = Vec3::Zero();  ///< about the origin that was asked for [force * length]
 };
 
-/// Moment of a force on a nodal vector about its section's centre: of a director, or a tangent, by its lever; of a rotation vector,
-/// whose force works on its change, by the spin of that.
+/// Moment of a force on a nodal vector about its section's centre: of a director, or a tangent, by its lever; of a rotation
+/// vector, whose force works on its change, by the spin of that.
 template <beam::BeamElement B>
 Vec3 vector_moment(Index vector, const Vec3& value, const Vec3& force) {
     if (B::kinds[core::at(vector)] == scene::VectorKind::rotation) return core::spin_matrix(value).transpose().inverse() * force;
@@ -23,7 +23,8 @@ Vec3 vector_moment(Index vector, const Vec3& value, const Vec3& force) {
 
 /// What supports exert on sections: on their centres, and on all that turns with them.
 template <Model M>
-Wrench support_wrench(const Simulator<M>& simulator, std::span<const scene::Station> sections, const Vec3& origin = Vec3::Zero()) {
+Wrench support_wrench(const Simulator<M>& simulator, std::span<const scene::Station> sections,
+                      const Vec3& origin = Vec3::Zero()) {
     Wrench sum;
     for (const scene::Station& at : sections) {
         const Vec3 force = simulator.reaction(at);

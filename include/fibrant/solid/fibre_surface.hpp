@@ -58,7 +58,8 @@ public:
         for (std::size_t b = 1; b < start_.size(); ++b) start_[b] += start_[b - 1];
         list_.resize(core::at(start_.back()));
         std::vector<Index> next(start_.begin(), start_.end() - 1);
-        for (Index k = 0; k < core::count(segments_); ++k) each_bucket(segments_[core::at(k)], [&](Index b) { list_[core::at(next[core::at(b)]++)] = k; });
+        for (Index k = 0; k < core::count(segments_); ++k)
+            each_bucket(segments_[core::at(k)], [&](Index b) { list_[core::at(next[core::at(b)]++)] = k; });
     }
 
     /// Height of the surface that is seen from above (sign 1) or from below (sign -1); none in a pore.

@@ -177,7 +177,8 @@ private:
         }
     }
 
-    static void add_up(const Rest& rest, const CellNodes& now, const Work& work, CellVector& force, CellMatrix* tangent, bool tension_only) {
+    static void add_up(const Rest& rest, const CellNodes& now, const Work& work, CellVector& force, CellMatrix* tangent,
+                       bool tension_only) {
         force.setZero();
         if (tangent != nullptr) tangent->setZero();
         Eigen::Matrix<double, modes, 24> coupling = Eigen::Matrix<double, modes, 24>::Zero();
@@ -193,8 +194,10 @@ private:
             for (int a = 0; a < 8; ++a)
                 for (int k = 0; k < 6; ++k) {
                     const auto [i, j] = voigt_pairs[core::at(k)];
-                    if (i == j) b.block<1, 3>(k, 3 * a) = g(a, i) * f.col(i).transpose();
-                    else b.block<1, 3>(k, 3 * a) = g(a, i) * f.col(j).transpose() + g(a, j) * f.col(i).transpose();
+                    if (i == j)
+                        b.block<1, 3>(k, 3 * a) = g(a, i) * f.col(i).transpose();
+                    else
+                        b.block<1, 3>(k, 3 * a) = g(a, i) * f.col(j).transpose() + g(a, j) * f.col(i).transpose();
                 }
             const Eigen::Matrix<double, 6, 24> cb = volume * work.response[core::at(p)].tangent * b;
             tangent->noalias() += b.transpose() * cb;

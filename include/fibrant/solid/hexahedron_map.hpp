@@ -48,7 +48,8 @@ inline ShapeGradient shape_derivatives(const Vec3& xi) noexcept {
 /// d x / d xi.
 inline Mat3 jacobian(const CellNodes& nodes, const Vec3& xi) noexcept { return nodes.transpose() * shape_derivatives(xi); }
 
-/// Least Jacobian at the corners and the middle over the volume of the box around the nodes [1]: <= 0 of a cell that is not valid.
+/// Least Jacobian at the corners and the middle over the volume of the box around the nodes [1]: <= 0 of a cell that is not
+/// valid.
 inline double least_jacobian(const CellNodes& nodes) noexcept {
     const Vec3 extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
     const double box = extent.prod();
@@ -58,7 +59,7 @@ inline double least_jacobian(const CellNodes& nodes) noexcept {
 }
 
 enum class MapStatus : std::uint8_t {
-    inside,      ///< on faces, edges and corners too
+    inside,  ///< on faces, edges and corners too
     outside,
     degenerate,  ///< the cell's map cannot be inverted there
 };

@@ -26,16 +26,16 @@ enum class Crossing { refuse, clip };
 /// How layers are meshed. The sheet lies across z.
 struct LayerParameters {
     std::array<double, 2> low{core::unset, core::unset}, high{core::unset, core::unset};  ///< rectangle in the plane [length]
-    std::array<Index, 2> cells{0, 0};         ///< along x and y, >= 1
-    Index through = 2;                        ///< cells through the thickness, >= 1
-    double grading = 1.0;                     ///< height of the outermost cell over that of the innermost [1], in [0.01, 100]
+    std::array<Index, 2> cells{0, 0};                                                     ///< along x and y, >= 1
+    Index through = 2;                                                                    ///< cells through the thickness, >= 1
+    double grading = 1.0;  ///< height of the outermost cell over that of the innermost [1], in [0.01, 100]
     double upper_face = core::unset, lower_face = core::unset;  ///< heights of the outer faces [length]
-    double penetration_depth = core::unset;   ///< of the inner faces below the fibres' surface [length], >= 0
-    double least_thickness = core::unset;     ///< of a layer anywhere [length], > 0
-    double clearance = core::unset;           ///< between the inner faces, where there are two [length], > 0
-    Index smoothing = 1;                      ///< passes over the inner faces, >= 0
-    Sides sides = Sides::both;  ///< which of the two layers there are
-    Crossing crossing = Crossing::clip;  ///< what to do where the inner faces would cross
+    double penetration_depth = core::unset;                     ///< of the inner faces below the fibres' surface [length], >= 0
+    double least_thickness = core::unset;                       ///< of a layer anywhere [length], > 0
+    double clearance = core::unset;                             ///< between the inner faces, where there are two [length], > 0
+    Index smoothing = 1;                                        ///< passes over the inner faces, >= 0
+    Sides sides = Sides::both;                                  ///< which of the two layers there are
+    Crossing crossing = Crossing::clip;                         ///< what to do where the inner faces would cross
     scene::ElasticMaterial material{};
 
     void validate() const {
@@ -43,7 +43,8 @@ struct LayerParameters {
         for (std::size_t k = 0; k < 2; ++k) {
             const std::string axis = k == 0 ? "x" : "y";
             core::require_finite(name + "low." + axis, low[k]);
-            core::require(std::isfinite(high[k]) && high[k] > low[k], name + "high." + axis, high[k], "finite and > low = " + core::text(low[k]));
+            core::require(std::isfinite(high[k]) && high[k] > low[k], name + "high." + axis, high[k],
+                          "finite and > low = " + core::text(low[k]));
             core::require_at_least(name + "cells." + axis, cells[k], 1);
         }
         core::require_at_least(name + "through", through, 1);
@@ -65,10 +66,10 @@ struct Layer {
     Index node(Index i, Index j, Index k) const noexcept { return (k * (cells[1] + 1) + j) * (cells[0] + 1) + i; }
 };
 struct Layers {
-    std::vector<Layer> list;   ///< upper, then lower, as far as there are such
-    Index columns = 0;         ///< of nodes
-    Index met = 0, filled = 0; ///< columns of a face that met a fibre, and of pores, both faces together
-    Index clipped = 0;         ///< columns whose inner faces would have crossed
+    std::vector<Layer> list;    ///< upper, then lower, as far as there are such
+    Index columns = 0;          ///< of nodes
+    Index met = 0, filled = 0;  ///< columns of a face that met a fibre, and of pores, both faces together
+    Index clipped = 0;          ///< columns whose inner faces would have crossed
 };
 
 namespace detail {
@@ -98,8 +99,10 @@ public:
                 each_neighbour(i, j, [&](Index a, Index b) {
                     entries.emplace_back(row, row, 1.0);
                     const int column = number[core::at(b * nx_ + a)];
-                    if (column >= 0) entries.emplace_back(row, column, -1.0);
-                    else right[row] += at(a, b);
+                    if (column >= 0)
+                        entries.emplace_back(row, column, -1.0);
+                    else
+                        right[row] += at(a, b);
                 });
             }
         SparseMatrix matrix(unknowns, unknowns);
@@ -140,8 +143,14 @@ private:
 inline Layers mesh_layers(const FibreSurface& surface, const LayerParameters& parameters) {
     parameters.validate();
     const Index nx = parameters.cells[0] + 1, ny = parameters.cells[1] + 1;
-    const auto x = [&](Index i) { return parameters.low[0] + (parameters.high[0] - parameters.low[0]) * static_cast<double>(i) / static_cast<double>(nx - 1); };
-    const auto y = [&](Index j) { return parameters.low[1] + (parameters.high[1] - parameters.low[1]) * static_cast<double>(j) / static_cast<double>(ny - 1); };
+    const auto x = [&](Index i) {
+        return parameters.low[0] +
+               (parameters.high[0] - parameters.low[0]) * static_cast<double>(i) / static_cast<double>(nx - 1);
+    };
+    const auto y = [&](Index j) {
+        return parameters.low[1] +
+               (parameters.high[1] - parameters.low[1]) * static_cast<double>(j) / static_cast<double>(ny - 1);
+    };
     Layers layers;
     layers.columns = nx * ny;
     std::vector<double> signs;
@@ -152,7 +161,8 @@ inline Layers mesh_layers(const FibreSurface& surface, const LayerParameters& pa
         detail::HeightGrid& face = faces.emplace_back(nx, ny);
         for (Index j = 0; j < ny; ++j)
             for (Index i = 0; i < nx; ++i)
-                if (const auto height = surface.height(x(i), y(j), sign)) face.set(i, j, *height - sign * parameters.penetration_depth);
+                if (const auto height = surface.height(x(i), y(j), sign))
+                    face.set(i, j, *height - sign * parameters.penetration_depth);
         const Index pores = face.unknown();
         if (pores == nx * ny) core::refuse("LayerParameters.low, high", "a rectangle without a fibre", "one over fibres");
         layers.filled += pores, layers.met += nx * ny - pores;
@@ -166,8 +176,9 @@ inline Layers mesh_layers(const FibreSurface& surface, const LayerParameters& pa
                 if (up - down >= parameters.clearance) continue;
                 if (parameters.crossing == Crossing::refuse)
                     core::refuse("LayerParameters.penetration_depth", core::text(parameters.penetration_depth),
-                                 "less: at x = " + core::text(x(i)) + ", y = " + core::text(y(j)) + " the inner faces are " + core::text(up - down) +
-                                     " apart, less than the clearance " + core::text(parameters.clearance));
+                                 "less: at x = " + core::text(x(i)) + ", y = " + core::text(y(j)) + " the inner faces are " +
+                                     core::text(up - down) + " apart, less than the clearance " +
+                                     core::text(parameters.clearance));
                 const double middle = 0.5 * (up + down);
                 up = middle + 0.5 * parameters.clearance, down = middle - 0.5 * parameters.clearance;
                 ++layers.clipped;
@@ -178,13 +189,17 @@ inline Layers mesh_layers(const FibreSurface& surface, const LayerParameters& pa
                 const auto other = surface.height(x(i), y(j), -signs[0]);
                 if (other && signs[0] * (faces[0].at(i, j) - *other) < 0.0)
                     core::refuse("LayerParameters.penetration_depth", core::text(parameters.penetration_depth),
-                                 "less: at x = " + core::text(x(i)) + ", y = " + core::text(y(j)) + " the inner face comes out of the fibres on the other side");
+                                 "less: at x = " + core::text(x(i)) + ", y = " + core::text(y(j)) +
+                                     " the inner face comes out of the fibres on the other side");
             }
     }
     // Shares of the thickness from the inner face on.
     std::vector<double> share{0.0};
     for (Index k = 0; k < parameters.through; ++k)
-        share.push_back(share.back() + (parameters.through == 1 ? 1.0 : std::pow(parameters.grading, static_cast<double>(k) / static_cast<double>(parameters.through - 1))));
+        share.push_back(share.back() + (parameters.through == 1
+                                            ? 1.0
+                                            : std::pow(parameters.grading,
+                                                       static_cast<double>(k) / static_cast<double>(parameters.through - 1))));
     for (double& s : share) s /= share.back();
     for (std::size_t side = 0; side < signs.size(); ++side) {
         const bool upper = signs[side] > 0.0;
@@ -197,19 +212,22 @@ inline Layers mesh_layers(const FibreSurface& surface, const LayerParameters& pa
             for (Index i = 0; i < nx; ++i) {
                 const double thickness = signs[side] * (outer - faces[side].at(i, j));
                 core::require(thickness >= parameters.least_thickness, name, outer,
-                              std::string(upper ? "higher" : "lower") + ": at x = " + core::text(x(i)) + ", y = " + core::text(y(j)) +
-                                  " the layer is " + core::text(thickness) + " thick, less than least_thickness = " + core::text(parameters.least_thickness));
+                              std::string(upper ? "higher" : "lower") + ": at x = " + core::text(x(i)) +
+                                  ", y = " + core::text(y(j)) + " the layer is " + core::text(thickness) +
+                                  " thick, less than least_thickness = " + core::text(parameters.least_thickness));
             }
         for (Index k = 0; k <= parameters.through; ++k) {
             const double s = upper ? share[core::at(k)] : share[core::at(parameters.through - k)];
             for (Index j = 0; j < ny; ++j)
-                for (Index i = 0; i < nx; ++i) layer.solid.nodes.push_back({x(i), y(j), faces[side].at(i, j) + s * (outer - faces[side].at(i, j))});
+                for (Index i = 0; i < nx; ++i)
+                    layer.solid.nodes.push_back({x(i), y(j), faces[side].at(i, j) + s * (outer - faces[side].at(i, j))});
         }
         for (Index k = 0; k < parameters.through; ++k)
             for (Index j = 0; j + 1 < ny; ++j)
                 for (Index i = 0; i + 1 < nx; ++i)
-                    layer.solid.cells.push_back({layer.node(i, j, k), layer.node(i + 1, j, k), layer.node(i + 1, j + 1, k), layer.node(i, j + 1, k),
-                                                 layer.node(i, j, k + 1), layer.node(i + 1, j, k + 1), layer.node(i + 1, j + 1, k + 1), layer.node(i, j + 1, k + 1)});
+                    layer.solid.cells.push_back({layer.node(i, j, k), layer.node(i + 1, j, k), layer.node(i + 1, j + 1, k),
+                                                 layer.node(i, j + 1, k), layer.node(i, j, k + 1), layer.node(i + 1, j, k + 1),
+                                                 layer.node(i + 1, j + 1, k + 1), layer.node(i, j + 1, k + 1)});
         require_valid_cells(layer.solid);
         layers.list.push_back(std::move(layer));
     }

@@ -42,9 +42,9 @@ inline Voigt strain_of(const Mat3& e) noexcept {
 
 /// At one point of a solid.
 struct SolidResponse {
-    double energy = 0.0;                          ///< a unit of rest volume [force / length^2]
-    Voigt stress = Voigt::Zero();                 ///< second Piola-Kirchhoff [force / length^2]
-    VoigtMatrix tangent = VoigtMatrix::Zero();    ///< d stress / d strain, symmetric [force / length^2]
+    double energy = 0.0;                        ///< a unit of rest volume [force / length^2]
+    Voigt stress = Voigt::Zero();               ///< second Piola-Kirchhoff [force / length^2]
+    VoigtMatrix tangent = VoigtMatrix::Zero();  ///< d stress / d strain, symmetric [force / length^2]
 };
 
 /// Elastic law of a solid.

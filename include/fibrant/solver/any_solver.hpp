@@ -17,8 +17,8 @@ namespace fibrant::solver {
 /// One of the strategies, dispatched once a call.
 class AnySolver {
 public:
-    static constexpr std::array strategies{"automatic",            "two_level_pcg",         "fibre_block_pcg",
-                                           "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"};
+    static constexpr std::array strategies{
+        "automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"};
     struct Parameters {
         std::string strategy = "two_level_pcg";  ///< one of `AnySolver::strategies`
         void validate() const {
@@ -56,7 +56,8 @@ public:
     }
 
 private:
-    using Strategy = std::variant<Confirmed<TwoLevelPcg>, AutomaticSolver, FibreBlockPcg, FloatBlockCholesky, DoubleBlockCholesky, SparseCholesky>;
+    using Strategy = std::variant<Confirmed<TwoLevelPcg>, AutomaticSolver, FibreBlockPcg, FloatBlockCholesky, DoubleBlockCholesky,
+                                  SparseCholesky>;
     static Strategy make(const std::string& name) {
         if (name == "automatic") return AutomaticSolver();
         if (name == "fibre_block_pcg") return FibreBlockPcg();

@@ -28,7 +28,8 @@ struct StrategyUse {
         };
         add("FibreBlockPcg", fibre_block_pcg), add("TwoLevelPcg", two_level_pcg), add("FloatBlockCholesky", float_block_cholesky);
         words = words.empty() ? "no solves" : "solves by " + words;
-        if (!last_fallback.empty()) words += "; " + std::to_string(fallbacks) + " after another one had failed, the last: " + last_fallback;
+        if (!last_fallback.empty())
+            words += "; " + std::to_string(fallbacks) + " after another one had failed, the last: " + last_fallback;
         return words;
     }
 };
@@ -36,7 +37,9 @@ struct StrategyUse {
 /// Number of terms that couple chains; a system that knows it says so with couplings().
 template <assembly::LinearSystem System>
 Index count_couplings(const System& system) {
-    if constexpr (requires { { system.couplings() } -> std::convertible_to<Index>; }) {
+    if constexpr (requires {
+                      { system.couplings() } -> std::convertible_to<Index>;
+                  }) {
         return system.couplings();
     } else {
         struct Count {
@@ -65,10 +68,10 @@ Index count_couplings(const System& system) {
 class AutomaticSolver {
 public:
     struct Parameters {
-        double few_couplings = 1.0;     ///< couplings over chains up to which fibre blocks come first, >= 0 [1]
-        int fibre_block_limit = 200;    ///< iterations before two levels are taken, > 0
-        int two_level_limit = 600;      ///< iterations before the whole is factored, > 0
-        double largest_fill = 2.5e8;    ///< entries of a factor that is allowed (4 bytes each), >= 0
+        double few_couplings = 1.0;   ///< couplings over chains up to which fibre blocks come first, >= 0 [1]
+        int fibre_block_limit = 200;  ///< iterations before two levels are taken, > 0
+        int two_level_limit = 600;    ///< iterations before the whole is factored, > 0
+        double largest_fill = 2.5e8;  ///< entries of a factor that is allowed (4 bytes each), >= 0
         void validate() const {
             core::require_not_negative("AutomaticSolver.few_couplings", few_couplings);
             core::require_at_least("AutomaticSolver.fibre_block_limit", fibre_block_limit, 1);
@@ -78,7 +81,8 @@ public:
     };
     AutomaticSolver() : AutomaticSolver(Parameters{}) {}
     explicit AutomaticSolver(const Parameters& parameters)
-        : parameters_{core::validated(parameters)}, fibres_{FibreBlockPcg::Parameters{.iteration_limit = parameters.fibre_block_limit}},
+        : parameters_{core::validated(parameters)},
+          fibres_{FibreBlockPcg::Parameters{.iteration_limit = parameters.fibre_block_limit}},
           levels_{two_levels(parameters)} {}
 
     template <assembly::LinearSystem System>

@@ -63,7 +63,8 @@ public:
             const int before = before_[core::at(a)];
             for (int d = before; d >= 0; --d) gather(bands, a, d, lower(a, d));
             for (int d = before; d > 0; --d) {
-                for (int e = std::min(before, d + before_[core::at(a - d)]); e > d; --e) subtract_outer(m, lower(a, e), lower(a - d, e - d), lower(a, d));
+                for (int e = std::min(before, d + before_[core::at(a - d)]); e > d; --e)
+                    subtract_outer(m, lower(a, e), lower(a - d, e - d), lower(a, d));
                 multiply_transposed_lower(m, lower(a, d), inverse(a - d), product.data());
                 std::copy(product.begin(), product.end(), lower(a, d));
                 subtract_outer_lower(m, lower(a, d), lower(a, 0));

@@ -137,7 +137,8 @@ public:
 
     /// Factor of the present matrix.
     ///
-    /// @param left_out  0: all of it; > 0: wide panels are compressed, entries up to this, over the root of the diagonal of their row,
+    /// @param left_out  0: all of it; > 0: wide panels are compressed, entries up to this, over the root of the diagonal of their
+    /// row,
     ///                  left out (CompressedPanel). Only where `analyse` knew the places of the blocks, and where no pivot turns
     ///                  negative so
     Pivots factor(Real left_out = 0) {
@@ -179,14 +180,16 @@ public:
                 gathered_.noalias() = panel.bottomRows(rows_[s]) * own;
             }
             Index row = 0;
-            for (const int k : list[s].rows) work_.segment(offset_[core::at(k)], size(k)) -= gathered_.segment(row, size(k)), row += size(k);
+            for (const int k : list[s].rows)
+                work_.segment(offset_[core::at(k)], size(k)) -= gathered_.segment(row, size(k)), row += size(k);
         }
         for (std::size_t s = list.size(); s-- > 0;) {
             const Index m = columns(static_cast<int>(s));
             auto own = work_.segment(offset_[core::at(list[s].first)], m);
             gathered_.resize(rows_[s]);
             Index row = 0;
-            for (const int k : list[s].rows) gathered_.segment(row, size(k)) = work_.segment(offset_[core::at(k)], size(k)), row += size(k);
+            for (const int k : list[s].rows)
+                gathered_.segment(row, size(k)) = work_.segment(offset_[core::at(k)], size(k)), row += size(k);
             if (!compressed_[s].empty()) {
                 compressed_[s].backward(own, gathered_);
                 continue;
@@ -197,8 +200,9 @@ public:
         }
         for (int v = 0; v < supernodes_.vertices(); ++v) {
             x.segment(input_[core::at(v)], size(supernodes_.place(v))) =
-                unit * scale_of(supernodes_.place(v)).cwiseProduct(
-                           work_.segment(offset_[core::at(supernodes_.place(v))], size(supernodes_.place(v))).template cast<double>());
+                unit * scale_of(supernodes_.place(v))
+                           .cwiseProduct(work_.segment(offset_[core::at(supernodes_.place(v))], size(supernodes_.place(v)))
+                                             .template cast<double>());
         }
     }
 
@@ -233,7 +237,9 @@ private:
                 const double* entry = value_.data() + entry_[core::at(k)];
                 const auto take = [&](int other) {
                     panel.block(local[core::at(other)], local[core::at(k)], size(other), size(k)) +=
-                        (scale_of(other).asDiagonal() * Eigen::Map<const Matrix>(entry, size(other), size(k)) * scale_of(k).asDiagonal()).template cast<Real>();
+                        (scale_of(other).asDiagonal() * Eigen::Map<const Matrix>(entry, size(other), size(k)) *
+                         scale_of(k).asDiagonal())
+                            .template cast<Real>();
                     entry += size(other) * size(k);
                 };
                 take(k);
@@ -320,14 +326,15 @@ private:
         }
     }
 
-    /// A is factored as S A S, S of powers of two, an entry for each vector, that make its diagonal numbers of order one: floats would not
-    /// hold it in all units, and no bit depends on them.
+    /// A is factored as S A S, S of powers of two, an entry for each vector, that make its diagonal numbers of order one: floats
+    /// would not hold it in all units, and no bit depends on them.
     void find_scale() {
         scale_.resize(unknowns());
         for (int k = 0; k < supernodes_.vertices(); ++k)
             for (int i = 0; i < size(k); i += 3) {
                 double largest = 0.0;
-                for (int j = i; j < i + 3; ++j) largest = std::max(largest, std::abs(value_[core::at(entry_[core::at(k)] + j * (size(k) + 1))]));
+                for (int j = i; j < i + 3; ++j)
+                    largest = std::max(largest, std::abs(value_[core::at(entry_[core::at(k)] + j * (size(k) + 1))]));
                 const double root = largest > 0.0 && std::isfinite(largest) ? std::exp2(-(std::ilogb(largest) / 2)) : 1.0;
                 scale_.segment<3>(offset_[core::at(k)] + i).setConstant(root);
             }
@@ -340,7 +347,10 @@ private:
         RealVector scale(offset_[core::at(last)] - offset_[core::at(first)]);
         Index row = 0;
         for (int k = first; k < last; ++k)
-            for (int i = 0; i < size(k); ++i) scale[row] = static_cast<Real>(std::pow(scale_[offset_[core::at(k)] + i], 2) * value_[core::at(entry_[core::at(k)] + i * (size(k) + 1))]), ++row;
+            for (int i = 0; i < size(k); ++i)
+                scale[row] = static_cast<Real>(std::pow(scale_[offset_[core::at(k)] + i], 2) *
+                                               value_[core::at(entry_[core::at(k)] + i * (size(k) + 1))]),
+                ++row;
         for (Index k = 0; k < scale.size(); k += 3) {
             const Real largest = scale.template segment<3>(k).maxCoeff();
             for (Index i = k; i < k + 3; ++i) {
@@ -351,7 +361,8 @@ private:
     }
     /// Roots of the diagonal of all rows of a front.
     RealVector row_scale(const Supernodes::Supernode& supernode) const {
-        RealVector scale(offset_[core::at(supernode.last)] - offset_[core::at(supernode.first)] + rows_[core::at(&supernode - supernodes_.list().data())]);
+        RealVector scale(offset_[core::at(supernode.last)] - offset_[core::at(supernode.first)] +
+                         rows_[core::at(&supernode - supernodes_.list().data())]);
         Index row = 0;
         const auto take = [&](int first, int last) {
             const RealVector own = pivot_scale(first, last).cwiseAbs().cwiseMax(Real(1e-30)).cwiseSqrt();
@@ -364,7 +375,8 @@ private:
     }
 
     /// Adds the update matrix of a child to the panel and the update matrix of its parent.
-    void extend(int child, const Eigen::Map<RealMatrix>& from, const std::vector<int>& local, Panel& panel, Eigen::Map<RealMatrix>& update) const {
+    void extend(int child, const Eigen::Map<RealMatrix>& from, const std::vector<int>& local, Panel& panel,
+                Eigen::Map<RealMatrix>& update) const {
         struct Run {
             Index from, to, length;
         };
@@ -401,7 +413,7 @@ private:
     std::vector<Index> entry_;   // of each place: its diagonal block in `value_`, then those below it
     std::vector<double> value_;
     std::vector<std::vector<double>> lane_;  // further sums
-    std::vector<Index> rows_;    // below the columns of each supernode
+    std::vector<Index> rows_;                // below the columns of each supernode
     std::vector<std::vector<int>> children_;
     struct Update {
         int stack = 0;
@@ -417,7 +429,7 @@ private:
     bool compressing_ = false;
     std::array<core::LargeArray<Real>, 2> stack_;
     RealVector work_, gathered_;
-    Vector scale_;  // S
+    Vector scale_;         // S
     bool uniform_ = true;  // all blocks have the same size
 };
 

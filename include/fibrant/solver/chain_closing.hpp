@@ -11,7 +11,8 @@
 
 namespace fibrant::solver {
 
-/// Of the blocks B = (B_00 B_01; B_10 B_11) of a closed chain, 0 its first node: V = B_11^-1 B_10 and S = B_00 - B_01 V, with which
+/// Of the blocks B = (B_00 B_01; B_10 B_11) of a closed chain, 0 its first node: V = B_11^-1 B_10 and S = B_00 - B_01 V, with
+/// which
 ///     z_0 = S^-1 (r_0 - V^T r_1),  z_1 = B_11^-1 r_1 - V z_0,
 /// which is positive definite whatever V has lost to rounding.
 ///
@@ -38,7 +39,8 @@ public:
 
     /// To be called once the rest is factored.
     /// @param solve  solve(values): values <- B_11^-1 values of all lanes
-    /// @returns whether all chains are positive definite but for rounding. One that floats, as a ring that turns in what holds it, is not but is
+    /// @returns whether all chains are positive definite but for rounding. One that floats, as a ring that turns in what holds
+    /// it, is not but is
     ///          held by `least` here.
     template <class Solve>
     bool finish(const Solve& solve) {
@@ -49,7 +51,8 @@ public:
         for (Index c = 0; c < m; ++c) {
             for (Index k = 0; k < rows; ++k)
                 for (Index lane = 0; lane < Kept::SizeAtCompileTime; ++lane)
-                    values[core::at(k)][lane] = static_cast<float>(sides_[core::at(lane) < sides_.size() ? core::at(lane) : 0].column(k, c));
+                    values[core::at(k)][lane] =
+                        static_cast<float>(sides_[core::at(lane) < sides_.size() ? core::at(lane) : 0].column(k, c));
             solve(values);
             for (Index k = 0; k < rows; ++k) answers_[core::at(k * m + c)] = values[core::at(k)];
         }
@@ -59,13 +62,18 @@ public:
             if (!side.first.allFinite()) return false;
             Matrix answer(rows, m);
             for (Index k = 0; k < rows; ++k)
-                for (Index c = 0; c < m; ++c) answer(k, c) = static_cast<double>(answers_[core::at(k * m + c)][static_cast<Index>(lane)]);
+                for (Index c = 0; c < m; ++c)
+                    answer(k, c) = static_cast<double>(answers_[core::at(k * m + c)][static_cast<Index>(lane)]);
             const Matrix bound = side.column.transpose() * answer;
             Vector scale = side.first.diagonal();
-            for (Index v = 0; v < m; v += 3) scale.segment<3>(v) = scale.segment<3>(v).cwiseMax(1e-9 * scale.segment<3>(v).maxCoeff()).cwiseSqrt().cwiseInverse().eval();
-            const Eigen::SelfAdjointEigenSolver<Matrix> parts(scale.asDiagonal() * (side.first - 0.5 * (bound + bound.transpose())) * scale.asDiagonal());
+            for (Index v = 0; v < m; v += 3)
+                scale.segment<3>(v) =
+                    scale.segment<3>(v).cwiseMax(1e-9 * scale.segment<3>(v).maxCoeff()).cwiseSqrt().cwiseInverse().eval();
+            const Eigen::SelfAdjointEigenSolver<Matrix> parts(
+                scale.asDiagonal() * (side.first - 0.5 * (bound + bound.transpose())) * scale.asDiagonal());
             if (!(parts.eigenvalues()[0] > -rounding)) definite = false;
-            const Matrix root = scale.asDiagonal() * parts.eigenvectors() * parts.eigenvalues().cwiseMax(least).cwiseSqrt().cwiseInverse().asDiagonal();
+            const Matrix root = scale.asDiagonal() * parts.eigenvectors() *
+                                parts.eigenvalues().cwiseMax(least).cwiseSqrt().cwiseInverse().asDiagonal();
             side.inverse = root * root.transpose();
         }
         return definite;
@@ -85,9 +93,11 @@ public:
         Vector own(static_cast<Index>(m));
         for (std::size_t lane = 0; lane < core::at(Index{Kept::SizeAtCompileTime}); ++lane) {
             const Side& side = sides_[lane < sides_.size() ? lane : 0];
-            for (std::size_t c = 0; c < m; ++c) own[static_cast<Index>(c)] = static_cast<double>(bound[c][static_cast<Index>(lane)]);
+            for (std::size_t c = 0; c < m; ++c)
+                own[static_cast<Index>(c)] = static_cast<double>(bound[c][static_cast<Index>(lane)]);
             own = (side.inverse * own).eval();
-            for (std::size_t c = 0; c < m; ++c) bound[c][static_cast<Index>(lane)] = static_cast<float>(own[static_cast<Index>(c)]);
+            for (std::size_t c = 0; c < m; ++c)
+                bound[c][static_cast<Index>(lane)] = static_cast<float>(own[static_cast<Index>(c)]);
         }
         for (std::size_t c = 0; c < m; ++c) values[c] = bound[c];
         for (std::size_t k = m; k < values.size(); ++k)
@@ -97,9 +107,9 @@ public:
     void clear() noexcept { sides_.clear(); }
 
 private:
-    static constexpr std::size_t most = 32;     // unknowns of a node
-    static constexpr double least = 1e-6;       // of the eigenvalues of S over the diagonal of B_00, as ChainFactors::least_shift
-    static constexpr double rounding = 1e-3;    // of a factor in float, which misses the root of its condition number
+    static constexpr std::size_t most = 32;   // unknowns of a node
+    static constexpr double least = 1e-6;     // of the eigenvalues of S over the diagonal of B_00, as ChainFactors::least_shift
+    static constexpr double rounding = 1e-3;  // of a factor in float, which misses the root of its condition number
     struct Side {
         Matrix first, column, inverse;  // B_00, B_10, S^-1
     };

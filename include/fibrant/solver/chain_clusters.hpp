@@ -5,7 +5,6 @@
 #include <fibrant/assembly/visited_system.hpp>
 #include <fibrant/core/symmetric_eigen.hpp>
 
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -16,8 +15,8 @@ namespace fibrant::solver {
 
 /// Chains that run side by side.
 struct ChainCluster {
-    std::vector<Index> chains;  ///< rising
-    std::vector<bool> reversed; ///< of each: it runs against the first
+    std::vector<Index> chains;   ///< rising
+    std::vector<bool> reversed;  ///< of each: it runs against the first
 };
 
 namespace detail {
@@ -60,9 +59,8 @@ void bisect(const std::vector<ChainLine>& lines, const Vec3& direction, std::vec
     // Rounded, so that sites that ought to be level are told apart by number and not by the last bit of a position.
     const double unit = 1e-9 * std::sqrt(spread.trace());
     const auto place = [&](Index c) { return unit > 0.0 ? std::round(axis.dot(across(c) - mean) / unit) : 0.0; };
-    std::sort(first, last, [&](Index a, Index b) {
-        return std::pair<double, Index>(place(a), a) < std::pair<double, Index>(place(b), b);
-    });
+    std::sort(first, last,
+              [&](Index a, Index b) { return std::pair<double, Index>(place(a), a) < std::pair<double, Index>(place(b), b); });
     bisect(lines, direction, first, middle, half, emit);
     bisect(lines, direction, middle, last, parts - half, emit);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file What point terms couple chains by, sorted for sweeps over chains: classes of chains that nothing couples, and who comes first.
+/// @file What point terms couple chains by, sorted for sweeps over chains: classes of chains that nothing couples, and who comes
+/// first.
 
 #include <fibrant/assembly/visited_system.hpp>
 #include <fibrant/solver/linear_solver.hpp>
@@ -15,8 +16,8 @@
 
 namespace fibrant::solver {
 
-/// L + L^T, the part of A between different chains that (w w^T) (x) K of two particles makes, in float and in the units of the layout;
-/// L couples a chain with those of earlier classes.
+/// L + L^T, the part of A between different chains that (w w^T) (x) K of two particles makes, in float and in the units of the
+/// layout; L couples a chain with those of earlier classes.
 ///
 /// What else couples chains, dense
 /// terms and points of more than two chains, is left out: sweeps are positive definite with any L.
@@ -28,7 +29,8 @@ public:
     struct Line {
         Real* first;
         std::size_t stride;
-        Real unit = 1;  ///< what the values are in units of the couplings: forces that are taken off them, or displacements that are kept
+        Real unit =
+            1;  ///< what the values are in units of the couplings: forces that are taken off them, or displacements that are kept
         Real& operator[](std::size_t unknown) const noexcept { return first[stride * unknown]; }
     };
 
@@ -52,18 +54,30 @@ public:
 
     /// line -= L z, line -= L^T z and both of a chain, z being what was kept of the chains that it is coupled with.
     template <class Real>
-    void subtract_earlier(Index chain, Line<Real> line) const { subtract(chain, first_[core::at(chain)], middle_[core::at(chain)], line); }
+    void subtract_earlier(Index chain, Line<Real> line) const {
+        subtract(chain, first_[core::at(chain)], middle_[core::at(chain)], line);
+    }
     template <class Real>
-    void subtract_later(Index chain, Line<Real> line) const { subtract(chain, middle_[core::at(chain)], first_[core::at(chain) + 1], line); }
+    void subtract_later(Index chain, Line<Real> line) const {
+        subtract(chain, middle_[core::at(chain)], first_[core::at(chain) + 1], line);
+    }
     template <class Real>
-    void subtract(Index chain, Line<Real> line) const { subtract(chain, first_[core::at(chain)], first_[core::at(chain) + 1], line); }
+    void subtract(Index chain, Line<Real> line) const {
+        subtract(chain, first_[core::at(chain)], first_[core::at(chain) + 1], line);
+    }
     /// Keeps of a chain's z what its later chains, its earlier ones, or all will ask for.
     template <class Real>
-    void keep_for_later(Index chain, Line<Real> line) { keep(middle_[core::at(chain)], first_[core::at(chain) + 1], line); }
+    void keep_for_later(Index chain, Line<Real> line) {
+        keep(middle_[core::at(chain)], first_[core::at(chain) + 1], line);
+    }
     template <class Real>
-    void keep_for_earlier(Index chain, Line<Real> line) { keep(first_[core::at(chain)], middle_[core::at(chain)], line); }
+    void keep_for_earlier(Index chain, Line<Real> line) {
+        keep(first_[core::at(chain)], middle_[core::at(chain)], line);
+    }
     template <class Real>
-    void keep(Index chain, Line<Real> line) { keep(first_[core::at(chain)], first_[core::at(chain) + 1], line); }
+    void keep(Index chain, Line<Real> line) {
+        keep(first_[core::at(chain)], first_[core::at(chain) + 1], line);
+    }
 
 private:
     /// Two particles of different chains; `first` is the number of the first vector in its chain.
@@ -103,7 +117,8 @@ private:
             }
             if (pair.chain[0] == pair.chain[1]) return;
             if (count == 0) count = half, stride = step;
-            for (Index k = 0; k < 9; ++k) pair.stiffness[core::at(k)] = static_cast<float>(over_stiffness * term.stiffness.data()[k]);
+            for (Index k = 0; k < 9; ++k)
+                pair.stiffness[core::at(k)] = static_cast<float>(over_stiffness * term.stiffness.data()[k]);
             part.pairs.push_back(pair);
             for (const double weight : term.weights) part.weights.push_back(static_cast<float>(weight));
         }
@@ -149,13 +164,16 @@ private:
         order_.resize(2 * pairs_.size());
         std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);
         for (std::int32_t k = 0; k < static_cast<std::int32_t>(pairs_.size()); ++k)
-            for (std::int32_t side = 0; side < 2; ++side) order_[core::at(next[core::at(pairs_[core::at(k)].chain[core::at(side)])]++)] = 2 * k + side;
+            for (std::int32_t side = 0; side < 2; ++side)
+                order_[core::at(next[core::at(pairs_[core::at(k)].chain[core::at(side)])]++)] = 2 * k + side;
     }
     std::int32_t own_chain(std::int32_t side) const noexcept { return pairs_[core::at(side / 2)].chain[core::at(side % 2)]; }
-    std::int32_t other_chain(std::int32_t side) const noexcept { return pairs_[core::at(side / 2)].chain[core::at(1 - side % 2)]; }
+    std::int32_t other_chain(std::int32_t side) const noexcept {
+        return pairs_[core::at(side / 2)].chain[core::at(1 - side % 2)];
+    }
 
-    /// Chain after chain takes the first class that none of its neighbours has; the first class, as a rule the largest, is swept last, for its
-    /// chains have nothing to solve on the way back.
+    /// Chain after chain takes the first class that none of its neighbours has; the first class, as a rule the largest, is swept
+    /// last, for its chains have nothing to solve on the way back.
     void colour() {
         const Index chains = core::count(first_) - 1;
         class_.assign(core::at(chains), -1);
@@ -178,37 +196,49 @@ private:
         const Index chains = core::count(first_) - 1;
         middle_.resize(core::at(chains));
         std::vector<std::int32_t> slot(order_.size());
-        core::parallel_for(chains, [&](Index c) {
-            const auto begin = order_.begin() + first_[core::at(c)], end = order_.begin() + first_[core::at(c) + 1];
-            const auto key = [&](std::int32_t side) {
-                return std::tuple(class_[core::at(other_chain(side))] > class_[core::at(c)], pairs_[core::at(side / 2)].first[core::at(side % 2)], side);
-            };
-            std::sort(begin, end, [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
-            const auto later = std::find_if(begin, end, [&](std::int32_t side) { return std::get<0>(key(side)); });
-            middle_[core::at(c)] = static_cast<std::int32_t>(later - order_.begin());
-            for (auto side = begin; side != end; ++side) slot[core::at(*side)] = static_cast<std::int32_t>(side - order_.begin());
-        }, core::light_items / 8);
+        core::parallel_for(
+            chains,
+            [&](Index c) {
+                const auto begin = order_.begin() + first_[core::at(c)], end = order_.begin() + first_[core::at(c) + 1];
+                const auto key = [&](std::int32_t side) {
+                    return std::tuple(class_[core::at(other_chain(side))] > class_[core::at(c)],
+                                      pairs_[core::at(side / 2)].first[core::at(side % 2)], side);
+                };
+                std::sort(begin, end, [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
+                const auto later = std::find_if(begin, end, [&](std::int32_t side) { return std::get<0>(key(side)); });
+                middle_[core::at(c)] = static_cast<std::int32_t>(later - order_.begin());
+                for (auto side = begin; side != end; ++side)
+                    slot[core::at(*side)] = static_cast<std::int32_t>(side - order_.begin());
+            },
+            core::light_items / 8);
         sides_.resize(order_.size());
         motion_.resize(order_.size());
         weights_.resize(pair_weights_.size());
-        core::parallel_for(core::count(order_), [&](Index s) {
-            const std::int32_t side = order_[core::at(s)];
-            const Pair& pair = pairs_[core::at(side / 2)];
-            Side& own = sides_[core::at(s)];
-            own.first = pair.first[core::at(side % 2)];
-            own.partner = slot[core::at(side ^ 1)];
-            for (std::size_t k = 0; k < 3; ++k) own.stiffness[k] = Value(pair.stiffness[3 * k], pair.stiffness[3 * k + 1], pair.stiffness[3 * k + 2], 0.0f);
-            std::copy_n(pair_weights_.begin() + static_cast<std::ptrdiff_t>(weights_each_) * side, weights_each_,
-                        weights_.begin() + static_cast<std::ptrdiff_t>(weights_each_) * s);
-        }, core::light_items);
+        core::parallel_for(
+            core::count(order_),
+            [&](Index s) {
+                const std::int32_t side = order_[core::at(s)];
+                const Pair& pair = pairs_[core::at(side / 2)];
+                Side& own = sides_[core::at(s)];
+                own.first = pair.first[core::at(side % 2)];
+                own.partner = slot[core::at(side ^ 1)];
+                for (std::size_t k = 0; k < 3; ++k)
+                    own.stiffness[k] = Value(pair.stiffness[3 * k], pair.stiffness[3 * k + 1], pair.stiffness[3 * k + 2], 0.0f);
+                std::copy_n(pair_weights_.begin() + static_cast<std::ptrdiff_t>(weights_each_) * side, weights_each_,
+                            weights_.begin() + static_cast<std::ptrdiff_t>(weights_each_) * s);
+            },
+            core::light_items);
     }
 
     void find_held(const scene::DofLayout& layout) {
         held_.assign(layout.chains.size(), {});
         for (const scene::HeldVector& held : layout.held) {
-            const auto chain = std::upper_bound(layout.chains.begin(), layout.chains.end(), held.vector,
-                                                [](Index vector, const scene::Chain& other) { return vector < other.first_vector; }) - 1;
-            held_[core::at(chain - layout.chains.begin())].emplace_back(held.vector - chain->first_vector, held.free.cast<float>());
+            const auto chain =
+                std::upper_bound(layout.chains.begin(), layout.chains.end(), held.vector,
+                                 [](Index vector, const scene::Chain& other) { return vector < other.first_vector; }) -
+                1;
+            held_[core::at(chain - layout.chains.begin())].emplace_back(held.vector - chain->first_vector,
+                                                                        held.free.cast<float>());
         }
     }
 
@@ -223,18 +253,22 @@ private:
                     // The other side of a pair may be anywhere.
                     core::prefetch(&motion_[core::at(sides_[core::at(std::min(s + 12, last - 1))].partner)]);
                     const Value& motion = motion_[core::at(side.partner)];
-                    const Value force = side.stiffness[0] * motion[0] + side.stiffness[1] * motion[1] + side.stiffness[2] * motion[2];
+                    const Value force =
+                        side.stiffness[0] * motion[0] + side.stiffness[1] * motion[1] + side.stiffness[2] * motion[2];
                     const float* weights = weights_.data() + fixed.count * static_cast<std::size_t>(s);
                     for (std::size_t k = 0; k < fixed.count; ++k) forces[k] += weights[k] * force;
                 }
                 for (std::size_t k = 0; k < fixed.count; ++k)
-                    for (std::size_t i = 0; i < 3; ++i) line[3 * (core::at(start) + k * fixed.stride) + i] -= line.unit * static_cast<Real>(forces[k][static_cast<Index>(i)]);
+                    for (std::size_t i = 0; i < 3; ++i)
+                        line[3 * (core::at(start) + k * fixed.stride) + i] -=
+                            line.unit * static_cast<Real>(forces[k][static_cast<Index>(i)]);
             }
         });
         if (first == last) return;
         for (const auto& [vector, free] : held_[core::at(chain)]) {
             const std::size_t v = 3 * core::at(vector);
-            const Eigen::Matrix<Real, 3, 1> value = free.template cast<Real>() * Eigen::Matrix<Real, 3, 1>(line[v], line[v + 1], line[v + 2]);
+            const Eigen::Matrix<Real, 3, 1> value =
+                free.template cast<Real>() * Eigen::Matrix<Real, 3, 1>(line[v], line[v + 1], line[v + 2]);
             for (std::size_t i = 0; i < 3; ++i) line[v + i] = value[static_cast<Index>(i)];
         }
     }
@@ -246,7 +280,8 @@ private:
                 const std::int32_t start = sides_[core::at(s)].first;
                 for (std::size_t k = 0; k < fixed.count; ++k) {
                     const std::size_t v = 3 * (core::at(start) + k * fixed.stride);
-                    values[k] = Value(static_cast<float>(over * line[v]), static_cast<float>(over * line[v + 1]), static_cast<float>(over * line[v + 2]), 0.0f);
+                    values[k] = Value(static_cast<float>(over * line[v]), static_cast<float>(over * line[v + 1]),
+                                      static_cast<float>(over * line[v + 2]), 0.0f);
                 }
                 for (; s < last && sides_[core::at(s)].first == start; ++s) {
                     const float* weights = weights_.data() + fixed.count * static_cast<std::size_t>(s);
@@ -263,7 +298,8 @@ private:
     struct Any {
         std::size_t count, stride;
     };
-    /// body(count and stride of a particle's vectors, room for as many values); with three nodes of three vectors loops are unrolled.
+    /// body(count and stride of a particle's vectors, room for as many values); with three nodes of three vectors loops are
+    /// unrolled.
     template <class Body>
     void with_particle(const Body& body) const {
         std::array<Value, Nine::count> few;
@@ -276,7 +312,7 @@ private:
     std::vector<float> pair_weights_, weights_;
     std::vector<std::int32_t> first_, middle_, order_;  // of each chain: its sides, and the first of those with a later chain
     std::vector<Side> sides_;
-    std::vector<Value> motion_;  // of the particle of each side, as it was kept
+    std::vector<Value> motion_;                                         // of the particle of each side, as it was kept
     std::vector<std::vector<std::pair<Index, Eigen::Matrix3f>>> held_;  // of each chain: number and projector
     std::vector<int> class_;
     int classes_ = 0;

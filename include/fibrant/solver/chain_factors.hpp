@@ -31,7 +31,9 @@ public:
         std::map<std::tuple<int, int, int, int, bool>, std::vector<Index>> kinds;
         for (Index c = 0; c < core::count(layout.chains); ++c) {
             const BandShape shape = shape_of(layout.chains[core::at(c)]);
-            kinds[{class_of.empty() ? 0 : class_of[core::at(c)], shape.nodes, shape.block, shape.reach, layout.chains[core::at(c)].closed}].push_back(c);
+            kinds[{class_of.empty() ? 0 : class_of[core::at(c)], shape.nodes, shape.block, shape.reach,
+                   layout.chains[core::at(c)].closed}]
+                .push_back(c);
         }
         std::vector<Pack> before = std::move(packs_);
         packs_.clear();
@@ -45,7 +47,8 @@ public:
                 packs_.push_back({std::vector<Index>(chains.begin() + static_cast<std::ptrdiff_t>(first),
                                                      chains.begin() + static_cast<std::ptrdiff_t>(first + take)),
                                   take_or_make(before, shape_of(layout.chains[core::at(chains[first])]), take > 1),
-                                  {}, {}});
+                                  {},
+                                  {}});
                 first += take;
             }
         }
@@ -59,10 +62,14 @@ public:
     template <assembly::LinearSystem System, class See>
     SolveStatus prepare(const System& system, const See& see) {
         std::vector<SolveStatus> status(packs_.size(), SolveStatus::converged);
-        core::parallel_for(core::count(packs_), [&](Index p) {
-            Pack& pack = packs_[core::at(p)];
-            status[core::at(p)] = std::visit([&](auto& band) { return prepare(system, pack.chains, band, see, pack.closing(band)); }, pack.factor);
-        }, grain(system.layout(), core::count(packs_)));
+        core::parallel_for(
+            core::count(packs_),
+            [&](Index p) {
+                Pack& pack = packs_[core::at(p)];
+                status[core::at(p)] = std::visit(
+                    [&](auto& band) { return prepare(system, pack.chains, band, see, pack.closing(band)); }, pack.factor);
+            },
+            grain(system.layout(), core::count(packs_)));
         SolveStatus worst = SolveStatus::converged;
         for (const SolveStatus s : status) {
             if (s == SolveStatus::not_finite) return s;
@@ -75,23 +82,28 @@ public:
         return prepare(system, [](Index, const Matrix&) {});
     }
 
-    /// Calls body(pack, chains, factor) for the packs of one class, from several threads at once: their number, from 0 to packs() - 1, the
-    /// chains of the first lanes, and their BlockBandCholesky.
+    /// Calls body(pack, chains, factor) for the packs of one class, from several threads at once: their number, from 0 to packs()
+    /// - 1, the chains of the first lanes, and their BlockBandCholesky.
     template <class Body>
     void for_class(const scene::DofLayout& layout, int of, const Body& body) const {
         const Index first = first_pack_[core::at(of)], last = first_pack_[core::at(of + 1)];
-        core::parallel_for(last - first, [&](Index p) {
-            const Pack& pack = packs_[core::at(first + p)];
-            std::visit([&](const auto& band) { body(first + p, pack.chains, band); }, pack.factor);
-        }, grain(layout, last - first));
+        core::parallel_for(
+            last - first,
+            [&](Index p) {
+                const Pack& pack = packs_[core::at(first + p)];
+                std::visit([&](const auto& band) { body(first + p, pack.chains, band); }, pack.factor);
+            },
+            grain(layout, last - first));
     }
     Index packs() const noexcept { return core::count(packs_); }
     /// values <- B^-1 values of the chains of a pack, by its factor.
     template <int Block, int Lanes, class Kept>
     void solve(Index pack, const BlockBandCholesky<Block, Lanes>& factor, std::vector<Kept>& values) const {
         const auto& closing = packs_[core::at(pack)].closing(factor);
-        if (closing.empty()) factor.solve(values.data());
-        else closing.apply(values, [&](std::vector<Kept>& rest) { factor.solve(rest.data()); });
+        if (closing.empty())
+            factor.solve(values.data());
+        else
+            closing.apply(values, [&](std::vector<Kept>& rest) { factor.solve(rest.data()); });
     }
 
     /// What forces and displacements are in lanes: over the layout's units, powers of two.
@@ -101,8 +113,8 @@ public:
     /// Values of the chains of a pack, a chain a lane; lanes beyond the chains repeat the first.
     /// @param unit  that they are measured by
     template <int Block, int Lanes>
-    static auto to_lanes(const scene::DofLayout& layout, const std::vector<Index>& chains, const BlockBandCholesky<Block, Lanes>& factor, const Vector& r,
-                         double unit) {
+    static auto to_lanes(const scene::DofLayout& layout, const std::vector<Index>& chains,
+                         const BlockBandCholesky<Block, Lanes>& factor, const Vector& r, double unit) {
         const double over = 1.0 / unit;
         std::vector<typename BlockBandCholesky<Block, Lanes>::Kept> values(unknowns(factor.shape()));
         std::array<Index, core::at(Lanes)> start{};
@@ -110,28 +122,36 @@ public:
             start[lane] = 3 * layout.chains[core::at(chains[lane < chains.size() ? lane : 0])].first_vector;
         }
         for (Index k = 0; k < core::count(values); ++k)
-            for (int lane = 0; lane < Lanes; ++lane) values[core::at(k)][lane] = static_cast<float>(over * r[start[core::at(lane)] + k]);
+            for (int lane = 0; lane < Lanes; ++lane)
+                values[core::at(k)][lane] = static_cast<float>(over * r[start[core::at(lane)] + k]);
         return values;
     }
     /// Displacements back to where the chains have them.
     template <class Kept>
-    static void from_lanes(const scene::DofLayout& layout, const std::vector<Index>& chains, const std::vector<Kept>& values, Vector& z) {
+    static void from_lanes(const scene::DofLayout& layout, const std::vector<Index>& chains, const std::vector<Kept>& values,
+                           Vector& z) {
         const double unit = unit_motion(layout);
         for (std::size_t lane = 0; lane < chains.size(); ++lane) {
             double* to = z.data() + 3 * layout.chains[core::at(chains[lane])].first_vector;
-            for (std::size_t k = 0; k < values.size(); ++k) to[k] = unit * static_cast<double>(values[k][static_cast<Index>(lane)]);
+            for (std::size_t k = 0; k < values.size(); ++k)
+                to[k] = unit * static_cast<double>(values[k][static_cast<Index>(lane)]);
         }
     }
     /// z = B^-1 r
     void apply(const scene::DofLayout& layout, const Vector& r, Vector& z) const {
-        core::parallel_for(core::count(packs_), [&](Index p) {
-            const Pack& pack = packs_[core::at(p)];
-            std::visit([&](const auto& band) {
-                auto values = to_lanes(layout, pack.chains, band, r, unit_force(layout));
-                solve(p, band, values);
-                from_lanes(layout, pack.chains, values, z);
-            }, pack.factor);
-        }, grain(layout, core::count(packs_)));
+        core::parallel_for(
+            core::count(packs_),
+            [&](Index p) {
+                const Pack& pack = packs_[core::at(p)];
+                std::visit(
+                    [&](const auto& band) {
+                        auto values = to_lanes(layout, pack.chains, band, r, unit_force(layout));
+                        solve(p, band, values);
+                        from_lanes(layout, pack.chains, values, z);
+                    },
+                    pack.factor);
+            },
+            grain(layout, core::count(packs_)));
     }
 
     static std::size_t unknowns(const BandShape& shape) { return core::at(static_cast<Index>(shape.nodes) * shape.block); }
@@ -157,13 +177,17 @@ private:
         ChainClosing<Eigen::Array<float, static_cast<int>(lanes), 1>> closing_several;
         template <int Block, int Lanes>
         auto& closing(const BlockBandCholesky<Block, Lanes>&) noexcept {
-            if constexpr (Lanes == 1) return closing_one;
-            else return closing_several;
+            if constexpr (Lanes == 1)
+                return closing_one;
+            else
+                return closing_several;
         }
         template <int Block, int Lanes>
         const auto& closing(const BlockBandCholesky<Block, Lanes>&) const noexcept {
-            if constexpr (Lanes == 1) return closing_one;
-            else return closing_several;
+            if constexpr (Lanes == 1)
+                return closing_one;
+            else
+                return closing_several;
         }
     };
 
@@ -172,17 +196,22 @@ private:
     }
     static Factor make(const BandShape& shape, bool several) {
         switch (shape.block) {
-            case 3: return several ? Factor(Several<3>(shape)) : Factor(One<3>(shape));
-            case 6: return several ? Factor(Several<6>(shape)) : Factor(One<6>(shape));
-            case 9: return several ? Factor(Several<9>(shape)) : Factor(One<9>(shape));
-            default: return several ? Factor(Several<0>(shape)) : Factor(One<0>(shape));
+            case 3:
+                return several ? Factor(Several<3>(shape)) : Factor(One<3>(shape));
+            case 6:
+                return several ? Factor(Several<6>(shape)) : Factor(One<6>(shape));
+            case 9:
+                return several ? Factor(Several<9>(shape)) : Factor(One<9>(shape));
+            default:
+                return several ? Factor(Several<0>(shape)) : Factor(One<0>(shape));
         }
     }
 
     /// A factor of one of the packs of before, whose memory serves again, or a new one.
     static Factor take_or_make(std::vector<Pack>& before, const BandShape& shape, bool several) {
         for (; !before.empty(); before.pop_back()) {
-            const bool same = std::visit([&](const auto& band) { return band.shape() == shape && (band.lanes > 1) == several; }, before.back().factor);
+            const bool same = std::visit([&](const auto& band) { return band.shape() == shape && (band.lanes > 1) == several; },
+                                         before.back().factor);
             if (!same) continue;
             Factor factor = std::move(before.back().factor);
             before.pop_back();
@@ -192,8 +221,8 @@ private:
     }
 
     template <class System, int Block, int Lanes, class See, class Closing>
-    static SolveStatus prepare(const System& system, const std::vector<Index>& chains,
-                               BlockBandCholesky<Block, Lanes>& factor, const See& see, Closing& closing) {
+    static SolveStatus prepare(const System& system, const std::vector<Index>& chains, BlockBandCholesky<Block, Lanes>& factor,
+                               const See& see, Closing& closing) {
         std::array<Matrix, core::at(Lanes)> bands;
         closing.clear();
         for (std::size_t lane = 0; lane < bands.size(); ++lane) {
@@ -217,13 +246,15 @@ private:
         SolveStatus status = SolveStatus::converged;
         std::array<Matrix, core::at(Lanes)> shifted;
         for (int attempt = 0;; ++attempt) {
-            const auto accepted = factor.factor(std::span<const Matrix, core::at(Lanes)>(attempt == 0 ? bands : shifted), least_pivot);
+            const auto accepted =
+                factor.factor(std::span<const Matrix, core::at(Lanes)>(attempt == 0 ? bands : shifted), least_pivot);
             if (std::find(accepted.begin(), accepted.end(), false) == accepted.end())
                 return closing.finish([&](auto& values) { factor.solve(values.data()); }) ? status : SolveStatus::indefinite;
             if (attempt == 0) shifted = bands;
             if (attempt > 0) status = SolveStatus::indefinite;  // the least shift cures what merely floats
             for (std::size_t lane = 0; lane < bands.size(); ++lane) {
-                if (!accepted[lane]) shift(system.layout(), chains[lane < chains.size() ? lane : 0], bands[lane], attempt, shifted[lane]);
+                if (!accepted[lane])
+                    shift(system.layout(), chains[lane < chains.size() ? lane : 0], bands[lane], attempt, shifted[lane]);
             }
         }
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Sweeps forth and back over the chains of a system, each solved for what those before it leave over, and a correction of all between.
+/// @file Sweeps forth and back over the chains of a system, each solved for what those before it leave over, and a correction of
+/// all between.
 
 #include <fibrant/solver/chain_couplings.hpp>
 #include <fibrant/solver/chain_factors.hpp>
@@ -10,13 +11,14 @@
 
 namespace fibrant::solver {
 
-/// M^-1 = S^-T (B + L Q L^T) S^-1, S = B + L: B the bands of the chains as ChainFactors has them, L their ChainCouplings, Q a correction that
-/// is given, symmetric and positive semidefinite as a coarse space is.
+/// M^-1 = S^-T (B + L Q L^T) S^-1, S = B + L: B the bands of the chains as ChainFactors has them, L their ChainCouplings, Q a
+/// correction that is given, symmetric and positive semidefinite as a coarse space is.
 ///
-/// This is a cycle of two levels: the sweep forth, S y = r, leaves r - (S + L^T) y = -L^T y over, which Q answers by the motion c; the sweep back
-/// from y + c is S^T (z - y) = -L^T y - L c. No product with the matrix is needed, and M is positive definite whatever L leaves out.
-/// Without Q, M = (B + L) B^-1 (B + L)^T is symmetric Gauss-Seidel (Saad, Iterative Methods for Sparse Linear Systems, 10.2).
-/// Chains of a class are solved at once. Where classes would leave most lanes of the packs empty M^-1 = B^-1 + Q.
+/// This is a cycle of two levels: the sweep forth, S y = r, leaves r - (S + L^T) y = -L^T y over, which Q answers by the motion
+/// c; the sweep back from y + c is S^T (z - y) = -L^T y - L c. No product with the matrix is needed, and M is positive definite
+/// whatever L leaves out. Without Q, M = (B + L) B^-1 (B + L)^T is symmetric Gauss-Seidel (Saad, Iterative Methods for Sparse
+/// Linear Systems, 10.2). Chains of a class are solved at once. Where classes would leave most lanes of the packs empty M^-1 =
+/// B^-1 + Q.
 class ChainSweeps {
 public:
     void analyse(const scene::DofLayout& layout) {
@@ -58,11 +60,15 @@ public:
                 values_[core::at(pack)].assign(y.front().data(), y.front().data() + y.front().size() * core::count(y));
             });
         left_.setZero(r.size()), motion_.setZero(r.size());
-        const auto of = [&](Vector& all, Index chain, double unit) { return ChainCouplings::Line<double>{all.data() + 3 * layout.chains[core::at(chain)].first_vector, 1, unit}; };
+        const auto of = [&](Vector& all, Index chain, double unit) {
+            return ChainCouplings::Line<double>{all.data() + 3 * layout.chains[core::at(chain)].first_vector, 1, unit};
+        };
         const Index chains = core::count(layout.chains);
-        core::parallel_for(chains, [&](Index chain) { couplings_.subtract_later(chain, of(left_, chain, force)); }, grain(layout, chains));
+        core::parallel_for(
+            chains, [&](Index chain) { couplings_.subtract_later(chain, of(left_, chain, force)); }, grain(layout, chains));
         correct(std::as_const(left_), motion_);
-        core::parallel_for(chains, [&](Index chain) { couplings_.keep_for_later(chain, of(motion_, chain, motion)); }, grain(layout, chains));
+        core::parallel_for(
+            chains, [&](Index chain) { couplings_.keep_for_later(chain, of(motion_, chain, motion)); }, grain(layout, chains));
         // z = y - B^-1 (L^T z + L c)
         for (int k = classes - 1; k >= 0; --k)
             factors_.for_class(layout, k, [&](Index pack, const auto& chains, const auto& factor) {
@@ -75,16 +81,19 @@ public:
                 if (product != nullptr) {  // y + c - z
                     auto opposite = ChainFactors::to_lanes(layout, chains, factor, motion_, motion);
                     for (std::size_t i = 0; i < opposite.size(); ++i) opposite[i] -= values[i];
-                    for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.keep_for_later(chains[lane], line(opposite, lane));
+                    for (std::size_t lane = 0; lane < chains.size(); ++lane)
+                        couplings_.keep_for_later(chains[lane], line(opposite, lane));
                 }
                 const std::vector<float>& y = values_[core::at(pack)];
                 for (std::size_t i = 0; i < y.size(); ++i) values.front().data()[i] += y[i];
                 ChainFactors::from_lanes(layout, chains, values, z);
-                for (std::size_t lane = 0; lane < chains.size(); ++lane) couplings_.keep_for_earlier(chains[lane], line(values, lane));
+                for (std::size_t lane = 0; lane < chains.size(); ++lane)
+                    couplings_.keep_for_earlier(chains[lane], line(values, lane));
             });
         if (product == nullptr) return false;
         *product = r;
-        core::parallel_for(chains, [&](Index chain) { couplings_.subtract_earlier(chain, of(*product, chain, force)); }, grain(layout, chains));
+        core::parallel_for(
+            chains, [&](Index chain) { couplings_.subtract_earlier(chain, of(*product, chain, force)); }, grain(layout, chains));
         return true;
     }
     /// z = B^-1 r

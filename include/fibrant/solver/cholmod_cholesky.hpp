@@ -46,7 +46,8 @@ public:
         now.analyse(system);
         if (!(now == work.terms)) analyse(system);
         work.terms.fill(system, work.a);
-        if (!Eigen::Map<const Vector>(work.a.valuePtr(), work.a.nonZeros()).allFinite()) return work.status = SolveStatus::not_finite;
+        if (!Eigen::Map<const Vector>(work.a.valuePtr(), work.a.nonZeros()).allFinite())
+            return work.status = SolveStatus::not_finite;
         work.factor.factorize(work.a);
         return work.status = work.factor.info() == Eigen::Success ? SolveStatus::converged : SolveStatus::indefinite;
     }

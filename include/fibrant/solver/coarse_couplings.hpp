@@ -16,7 +16,8 @@ struct CoarseModes {
     using Block = Eigen::Matrix<double, 6, 6>;
     using Mode = Eigen::Matrix<double, 3, 6>;
 
-    /// Two stations of the cluster and the share of each in a node's motion; the second may lie beyond the last if its share is 0.
+    /// Two stations of the cluster and the share of each in a node's motion; the second may lie beyond the last if its share is
+    /// 0.
     struct Hat {
         int station = 0;
         double second = 0.0;
@@ -36,23 +37,27 @@ struct CoarseModes {
     /// Rows of F P of one vector for a station of weight 1.
     Mode mode(const scene::DofLayout& layout, const assembly::HeldProjector& held, Index v) const {
         Mode rows = Mode::Zero();
-        if (turns(layout, v)) rows.rightCols<3>() = turn[core::at(v)];
-        else add_rotation(arm[core::at(v)], rows);
+        if (turns(layout, v))
+            rows.rightCols<3>() = turn[core::at(v)];
+        else
+            add_rotation(arm[core::at(v)], rows);
         if (layout.kind[core::at(v)] == scene::VectorKind::position) rows.leftCols<3>().setIdentity();
         if (const Mat3* free = held.free(v)) rows = (*free * rows).eval();
         return rows;
     }
 
     /// v is a rotation vector: a spin changes it by turn, whatever its arm.
-    bool turns(const scene::DofLayout& layout, Index v) const { return !turn.empty() && layout.kind[core::at(v)] == scene::VectorKind::rotation; }
+    bool turns(const scene::DofLayout& layout, Index v) const {
+        return !turn.empty() && layout.kind[core::at(v)] == scene::VectorKind::rotation;
+    }
 
     std::vector<Place> places;  ///< of each vector
     std::vector<Vec3> arm;      ///< of each vector: a direction, or a position from the middle of its cluster
     std::vector<Mat3> turn;     ///< of each rotation vector by a spin; none where no chain has any
 };
 
-/// Takes the terms of a system and calls body(station i, station j, block) for each coupling beyond the bands; both orders are meant.
-/// With `Values` false the blocks are not computed.
+/// Takes the terms of a system and calls body(station i, station j, block) for each coupling beyond the bands; both orders are
+/// meant. With `Values` false the blocks are not computed.
 ///
 /// A term is taken apart into parts that lie within the reach of one chain; what couples a part with itself is in the band.
 template <bool Values, class Body>
@@ -62,7 +67,8 @@ class CoarseCouplings {
     using Place = CoarseModes::Place;
 
 public:
-    CoarseCouplings(const CoarseModes& modes, const scene::DofLayout& layout, const assembly::HeldProjector& held, const Body& body)
+    CoarseCouplings(const CoarseModes& modes, const scene::DofLayout& layout, const assembly::HeldProjector& held,
+                    const Body& body)
         : modes_{&modes}, layout_{&layout}, held_{&held}, body_{&body} {}
 
     void point(const assembly::PointTerm& term) {
@@ -109,9 +115,9 @@ public:
 private:
     struct StationShare {
         int station = 0;
-        double translation = 0.0;       // sum of w and of w arm over vectors that are free,
+        double translation = 0.0;  // sum of w and of w arm over vectors that are free,
         Vec3 arm = Vec3::Zero();
-        Mode rows = Mode::Zero();       // and of w times the rows of those that are held
+        Mode rows = Mode::Zero();  // and of w times the rows of those that are held
     };
     struct Part {
         int chain = 0, low = 0, high = 0;
@@ -150,7 +156,8 @@ private:
         }
         Part& part = parts_[p];
         part.low = std::min(part.low, place.node), part.high = std::max(part.high, place.node);
-        const bool free = held_->free(v) == nullptr && !modes_->turns(*layout_, v), position = layout_->kind[core::at(v)] == scene::VectorKind::position;
+        const bool free = held_->free(v) == nullptr && !modes_->turns(*layout_, v),
+                   position = layout_->kind[core::at(v)] == scene::VectorKind::position;
         for (int i = 0; i < 2; ++i) {
             const double share = weight * place.hat.weight(i);
             if (place.hat.weight(i) == 0.0) continue;
@@ -164,7 +171,8 @@ private:
         }
     }
     bool in_band(const Part& a, const Part& b) const {
-        return a.chain == b.chain && std::max(a.low, b.low) - std::min(a.high, b.high) <= layout_->chains[core::at(a.chain)].reach;
+        return a.chain == b.chain &&
+               std::max(a.low, b.low) - std::min(a.high, b.high) <= layout_->chains[core::at(a.chain)].reach;
     }
     bool overlap() const {
         for (std::size_t p = 0; p < used_; ++p)

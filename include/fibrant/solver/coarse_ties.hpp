@@ -10,11 +10,13 @@
 
 namespace fibrant::solver {
 
-/// Calls body(station i, station j, block) for k P^T B^T (I - U U^T) B P over the ties of positions, as CoarseCouplings does: stations
-/// whose motion a tie blocks are held by springs k, stiffer than the chains are, and no station is cut off from its neighbours.
+/// Calls body(station i, station j, block) for k P^T B^T (I - U U^T) B P over the ties of positions, as CoarseCouplings does:
+/// stations whose motion a tie blocks are held by springs k, stiffer than the chains are, and no station is cut off from its
+/// neighbours.
 template <bool Values, class Body>
-void couple_ties(const CoarseModes& modes, const scene::DofLayout& layout, const assembly::HeldProjector& held, const Body& body) {
-    constexpr double stiffer = 1e2;  // than the support of a tie
+void couple_ties(const CoarseModes& modes, const scene::DofLayout& layout, const assembly::HeldProjector& held,
+                 const Body& body) {
+    constexpr double stiffer = 1e2;                    // than the support of a tie
     using Rows = std::vector<std::pair<int, Matrix>>;  // of stations
     const auto rows_of = [](Rows& rows, int station, Index count) -> Matrix& {
         const auto place = std::ranges::find(rows, station, &std::pair<int, Matrix>::first);
@@ -32,7 +34,8 @@ void couple_ties(const CoarseModes& modes, const scene::DofLayout& layout, const
         for (Index a = 0; a < tie.count; ++a) tie_of[core::at(tie.first + a)] = {static_cast<Index>(t), a};
         for (std::size_t k = 0; k < tie.vectors.size(); ++k) {
             const CoarseModes::Hat& hat = modes.places[core::at(tie.vectors[k])].hat;
-            const Matrix motion = tie.weights[k] * tie.axes.leftCols(tie.count).transpose() * modes.mode(layout, held, tie.vectors[k]);
+            const Matrix motion =
+                tie.weights[k] * tie.axes.leftCols(tie.count).transpose() * modes.mode(layout, held, tie.vectors[k]);
             for (int i = 0; i < 2; ++i)
                 if (hat.weight(i) != 0.0) rows_of(tied[t], hat.station + i, tie.count) += hat.weight(i) * motion;
         }
@@ -42,7 +45,8 @@ void couple_ties(const CoarseModes& modes, const scene::DofLayout& layout, const
         for (std::size_t i = 0; i < rows.size(); ++i)
             for (std::size_t j = 0; j <= i; ++j) {
                 CoarseModes::Block block = CoarseModes::Block::Zero();
-                if constexpr (Values) block = (i == j ? 0.5 : 1.0) * sign * stiffness * rows[i].second.transpose() * rows[j].second;
+                if constexpr (Values)
+                    block = (i == j ? 0.5 : 1.0) * sign * stiffness * rows[i].second.transpose() * rows[j].second;
                 body(rows[i].first, rows[j].first, block);
             }
     };

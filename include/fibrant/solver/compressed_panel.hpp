@@ -17,8 +17,8 @@ struct LowRankBlock {
     using RealMatrix = typename DenseElimination<Real>::RealMatrix;
     using RealVector = typename DenseElimination<Real>::RealVector;
 
-    RealMatrix left;     ///< U, rows x rank; the block itself if `whole`
-    RealMatrix right;    ///< V, columns x rank; nothing if `whole`, whose V is the identity
+    RealMatrix left;   ///< U, rows x rank; the block itself if `whole`
+    RealMatrix right;  ///< V, columns x rank; nothing if `whole`, whose V is the identity
     bool whole = false;
 
     Index rank() const noexcept { return left.cols(); }
@@ -63,9 +63,9 @@ struct LowRankBlock {
 };
 
 /// The columns of a supernode, cut into pieces of some two hundred unknowns as its rows are: L_IJ of two pieces that are far from
-/// each other has a rank of a few hundredths of its size, so that nearly all products of the elimination are between thin matrices
-/// (block low-rank factors: Amestoy and others, SIAM J. Sci. Comput. 37, 2015). What is left out of L is below a tolerance,
-/// over the root of the diagonal of the row: the factor of a matrix close by, for use as a preconditioner.
+/// each other has a rank of a few hundredths of its size, so that nearly all products of the elimination are between thin
+/// matrices (block low-rank factors: Amestoy and others, SIAM J. Sci. Comput. 37, 2015). What is left out of L is below a
+/// tolerance, over the root of the diagonal of the row: the factor of a matrix close by, for use as a preconditioner.
 template <class Real>
 class CompressedPanel {
 public:
@@ -125,7 +125,8 @@ public:
             Factors factors;
             for (Index j = columns_; j <= i; ++j)
                 if (gather(i, j, columns_, factors)) {
-                    update.block(piece(i).first - m, piece(j).first - m, piece(i).size, piece(j).size).noalias() -= factors.left * factors.right.transpose();
+                    update.block(piece(i).first - m, piece(j).first - m, piece(i).size, piece(j).size).noalias() -=
+                        factors.left * factors.right.transpose();
                 }
         });
     }
@@ -144,11 +145,15 @@ public:
                 if (b.rank() == 0) continue;
                 if (!b.whole) thin.noalias() = b.right.transpose() * x;
                 const auto taken = [&](const auto& v) {
-                    if (i < columns_) own.segment(piece(i).first, piece(i).size).noalias() -= b.left * v;
-                    else below.segment(piece(i).first - m, piece(i).size).noalias() += b.left * v;
+                    if (i < columns_)
+                        own.segment(piece(i).first, piece(i).size).noalias() -= b.left * v;
+                    else
+                        below.segment(piece(i).first - m, piece(i).size).noalias() += b.left * v;
                 };
-                if (b.whole) taken(x);
-                else taken(thin);
+                if (b.whole)
+                    taken(x);
+                else
+                    taken(thin);
             }
         }
     }
@@ -162,10 +167,14 @@ public:
             for (Index i = j + 1; i < all; ++i) {
                 const LowRankBlock<Real>& b = block(i, j);
                 if (b.rank() == 0) continue;
-                if (i < columns_) thin.noalias() = b.left.transpose() * own.segment(piece(i).first, piece(i).size);
-                else thin.noalias() = b.left.transpose() * below.segment(piece(i).first - m, piece(i).size);
-                if (b.whole) x -= thin;
-                else x.noalias() -= b.right * thin;
+                if (i < columns_)
+                    thin.noalias() = b.left.transpose() * own.segment(piece(i).first, piece(i).size);
+                else
+                    thin.noalias() = b.left.transpose() * below.segment(piece(i).first - m, piece(i).size);
+                if (b.whole)
+                    x -= thin;
+                else
+                    x.noalias() -= b.right * thin;
             }
             diagonal_[core::at(j)].template triangularView<Eigen::Lower>().transpose().solveInPlace(x);
         }
@@ -198,9 +207,12 @@ private:
                 left = a.left, right = b.left;
                 continue;
             }
-            if (a.whole) to.middle = b.right;
-            else if (b.whole) to.middle = a.right.transpose();
-            else to.middle.noalias() = a.right.transpose() * b.right;
+            if (a.whole)
+                to.middle = b.right;
+            else if (b.whole)
+                to.middle = a.right.transpose();
+            else
+                to.middle.noalias() = a.right.transpose() * b.right;
             if (a.rank() <= b.rank()) {
                 left = a.left;
                 right.noalias() = b.left * to.middle.transpose();
@@ -214,8 +226,8 @@ private:
 
     std::vector<Piece> pieces_;
     Index columns_ = 0;
-    std::vector<RealMatrix> diagonal_;        // of each column of pieces, factored
-    std::vector<LowRankBlock<Real>> block_;   // below the diagonal, column by column
+    std::vector<RealMatrix> diagonal_;       // of each column of pieces, factored
+    std::vector<LowRankBlock<Real>> block_;  // below the diagonal, column by column
 };
 
 }  // namespace fibrant::solver

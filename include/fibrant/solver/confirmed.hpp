@@ -9,16 +9,18 @@
 
 namespace fibrant::solver {
 
-/// Conjugate gradients say that a system is indefinite where rounding makes their preconditioner so, as that of stiff contacts between a few
-/// short fibres: no shift of the tangent helps then. A small system is then factored in double precision, and that says what it is. A larger one
-/// is from a number of such verdicts in a row on, and until the next analysis: what it does depends on what was solved since the last one.
+/// Conjugate gradients say that a system is indefinite where rounding makes their preconditioner so, as that of stiff contacts
+/// between a few short fibres: no shift of the tangent helps then. A small system is then factored in double precision, and that
+/// says what it is. A larger one is from a number of such verdicts in a row on, and until the next analysis: what it does depends
+/// on what was solved since the last one.
 template <class Iterative>
 class Confirmed {
 public:
     struct Parameters {
         typename Iterative::Parameters iterative{};
-        Index small = 6000;           ///< unknowns up to which a factorisation costs no more than the iteration, >= 0
-        int patience = 6;             ///< verdicts in a row before a larger system is factored, >= 1: Newton's shifts mend what is truly indefinite
+        Index small = 6000;  ///< unknowns up to which a factorisation costs no more than the iteration, >= 0
+        int patience =
+            6;  ///< verdicts in a row before a larger system is factored, >= 1: Newton's shifts mend what is truly indefinite
         double largest_fill = 2.5e8;  ///< entries of a factor that is allowed (8 bytes each), >= 0
         void validate() const {
             iterative.validate();
@@ -28,7 +30,8 @@ public:
         }
     };
     Confirmed() : Confirmed(Parameters{}) {}
-    explicit Confirmed(const Parameters& parameters) : parameters_{core::validated(parameters)}, iterative_{parameters.iterative} {}
+    explicit Confirmed(const Parameters& parameters)
+        : parameters_{core::validated(parameters)}, iterative_{parameters.iterative} {}
 
     template <assembly::LinearSystem System>
     void analyse(const System& system) {

@@ -50,9 +50,10 @@ struct SamePreconditioner {
 /// The held part of b is the held part of x from the start; the rest is sought among free vectors. When the recursive
 /// residual has reached the tolerance the true one is computed; should it have not, the iteration starts again from it.
 ///
-/// Where the preconditioner passes on A z, and does so to a twentieth of the tolerance at the first step, products with p are summed from
-/// those with z in the place of being formed. Its error goes down with the residual, so it may do later what it does not at first; there
-/// it is to be some ten times smaller, for what was formed exactly is to keep what it had. What products err by is seen in the true residual.
+/// Where the preconditioner passes on A z, and does so to a twentieth of the tolerance at the first step, products with p are
+/// summed from those with z in the place of being formed. Its error goes down with the residual, so it may do later what it does
+/// not at first; there it is to be some ten times smaller, for what was formed exactly is to keep what it had. What products err
+/// by is seen in the true residual.
 ///
 /// @param precondition     precondition(r, z): z = M^-1 r, symmetric positive definite
 /// @param iteration_limit  > 0
@@ -75,10 +76,10 @@ SolveReport conjugate_gradient(const System& system, const Precondition& precond
     cg.product.resize(b.size());
     cg.p.setZero(b.size());
     SolveReport report{SolveStatus::iteration_limit, 0, scaled_norm(layout, cg.r) / norm, core::unset};
-    double before = 0.0, weight = 0.0;  // r.z of the iteration before, and p.M p
-    bool given = false;                 // A z by the preconditioner, to the accuracy that is wanted
+    double before = 0.0, weight = 0.0;                         // r.z of the iteration before, and p.M p
+    bool given = false;                                        // A z by the preconditioner, to the accuracy that is wanted
     double passing = std::numeric_limits<double>::infinity();  // error of that at the last first step, over the residual
-    bool exact = true;                  // whether the residual is that of x, not the recursive one
+    bool exact = true;                                         // whether the residual is that of x, not the recursive one
     double reached = std::numeric_limits<double>::infinity();  // true residual at the last restart
     while (report.iterations < iteration_limit) {
         if (report.residual <= (given ? 0.9 : 1.0) * tolerance) {

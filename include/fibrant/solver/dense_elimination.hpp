@@ -14,8 +14,8 @@ namespace fibrant::solver {
 
 /// What a pivot that is too small, or negative, is replaced by.
 enum class SmallPivot : std::uint8_t {
-    infinite,  ///< so much that its unknown stays zero: a singular matrix is solved for the other unknowns
-    magnitude, ///< its magnitude, at least `least_pivot`: nearly an inverse, for use as a preconditioner
+    infinite,   ///< so much that its unknown stays zero: a singular matrix is solved for the other unknowns
+    magnitude,  ///< its magnitude, at least `least_pivot`: nearly an inverse, for use as a preconditioner
 };
 
 struct Pivots {
@@ -53,7 +53,8 @@ public:
             const auto own = panel.block(half, first, other, half - first);
             subtract_square(own, panel.block(half, half, other, other));
             strips(n - last, [&](Index row, Index height) {
-                panel.block(last + row, half, height, other).noalias() -= panel.block(last + row, first, height, half - first) * own.transpose();
+                panel.block(last + row, half, height, other).noalias() -=
+                    panel.block(last + row, first, height, half - first) * own.transpose();
             });
             eliminate(panel, half, last, scale, pivots);
             return;
@@ -78,8 +79,10 @@ public:
             while ((i + 1) * (i + 2) / 2 <= k) ++i;
             const Index j = k - i * (i + 1) / 2, row = i * strip, column = j * strip, height = std::min(strip, rows.rows() - row);
             const auto own = rows.middleRows(row, height);
-            if (i == j) square.block(row, row, height, height).template selfadjointView<Eigen::Lower>().rankUpdate(own, Real(-1));
-            else square.block(row, column, height, strip).noalias() -= own * rows.middleRows(column, strip).transpose();
+            if (i == j)
+                square.block(row, row, height, height).template selfadjointView<Eigen::Lower>().rankUpdate(own, Real(-1));
+            else
+                square.block(row, column, height, strip).noalias() -= own * rows.middleRows(column, strip).transpose();
         });
     }
 
@@ -88,7 +91,8 @@ private:
 
     template <class Body>
     static void strips(Index rows, const Body& body) {
-        core::parallel_for<core::Share::turns>((rows + strip - 1) / strip, [&](Index k) { body(k * strip, std::min(strip, rows - k * strip)); });
+        core::parallel_for<core::Share::turns>((rows + strip - 1) / strip,
+                                               [&](Index k) { body(k * strip, std::min(strip, rows - k * strip)); });
     }
 
     template <class Panel>
@@ -109,7 +113,8 @@ private:
             diagonal(j, j) = root;
             const Index below = width - j - 1;
             if (below > 0) {
-                diagonal.col(j).tail(below).noalias() -= diagonal.bottomLeftCorner(below, j) * diagonal.row(j).head(j).transpose();
+                diagonal.col(j).tail(below).noalias() -=
+                    diagonal.bottomLeftCorner(below, j) * diagonal.row(j).head(j).transpose();
                 diagonal.col(j).tail(below) /= root;
             }
         }

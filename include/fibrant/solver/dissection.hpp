@@ -77,8 +77,8 @@ private:
     }
 
     void sort_along(int direction, std::vector<int>& set) {
-        static const std::array<Vec3, 9> directions{Vec3(1, 0, 0),  Vec3(0, 1, 0),  Vec3(0, 0, 1),  Vec3(1, 1, 0), Vec3(1, -1, 0),
-                                                    Vec3(1, 0, 1),  Vec3(1, 0, -1), Vec3(0, 1, 1),  Vec3(0, 1, -1)};
+        static const std::array<Vec3, 9> directions{Vec3(1, 0, 0), Vec3(0, 1, 0),  Vec3(0, 0, 1), Vec3(1, 1, 0), Vec3(1, -1, 0),
+                                                    Vec3(1, 0, 1), Vec3(1, 0, -1), Vec3(0, 1, 1), Vec3(0, 1, -1)};
         along_.clear();
         for (const int v : set) along_.emplace_back(directions[core::at(direction)].dot(places_[core::at(v)]), v);
         std::sort(along_.begin(), along_.end());

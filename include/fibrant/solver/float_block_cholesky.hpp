@@ -16,8 +16,9 @@ namespace fibrant::solver {
 
 /// A is formed by blocks of nodes and factored in `Real`; a few iterations then reach any tolerance.
 ///
-/// For states too ill-conditioned for other iterations, few fibres, and as a reference. Blocks far apart in wide fronts of large factors
-/// are compressed (CompressedPanel) unless `left_out` is 0; should a pivot turn negative so, or iterations not end, A is factored as it is.
+/// For states too ill-conditioned for other iterations, few fibres, and as a reference. Blocks far apart in wide fronts of large
+/// factors are compressed (CompressedPanel) unless `left_out` is 0; should a pivot turn negative so, or iterations not end, A is
+/// factored as it is.
 template <class Real>
 class NodeBlockCholesky {
 public:
@@ -25,7 +26,8 @@ public:
         int iteration_limit = 200;  ///< with the factor of A as it is; > 0
         /// Largest entries that are left out of the factor, over the root of the diagonal of their row; 0: none. >= 0 [1]
         double left_out = sizeof(Real) == 4 ? 3e-4 : 1e-5;
-        Index least_fill = 200'000'000;  ///< entries of the factor below which nothing is left out: narrow fronts gain nothing; >= 0
+        Index least_fill =
+            200'000'000;  ///< entries of the factor below which nothing is left out: narrow fronts gain nothing; >= 0
         void validate() const {
             core::require_at_least("NodeBlockCholesky.iteration_limit", iteration_limit, 1);
             core::require_not_negative("NodeBlockCholesky.left_out", left_out);
@@ -62,7 +64,9 @@ private:
 
     void factor(Real left_out) {
         const Pivots pivots = work_->factor.factor(left_out);
-        work_->status = !pivots.finite ? SolveStatus::not_finite : pivots.negative > 0 ? SolveStatus::indefinite : SolveStatus::converged;
+        work_->status = !pivots.finite        ? SolveStatus::not_finite
+                        : pivots.negative > 0 ? SolveStatus::indefinite
+                                              : SolveStatus::converged;
     }
 
     /// Sums the matrix from the terms; false if the pattern lacks a block.
@@ -130,7 +134,8 @@ void NodeBlockCholesky<Real>::analyse(const System& system) {
             work.place[core::at(chain.first_vector + k)] = {static_cast<int>(core::count(sizes) + k / chain.vectors_per_node),
                                                             static_cast<int>(k % chain.vectors_per_node)};
         }
-        for (Index a = 0; a < chain.nodes; ++a) places.push_back(layout.value[core::at(chain.first_vector + a * chain.vectors_per_node)]);
+        for (Index a = 0; a < chain.nodes; ++a)
+            places.push_back(layout.value[core::at(chain.first_vector + a * chain.vectors_per_node)]);
         sizes.insert(sizes.end(), core::at(chain.nodes), static_cast<int>(3 * chain.vectors_per_node));
     }
     struct Graph {
@@ -185,7 +190,9 @@ SolveReport NodeBlockCholesky<Real>::solve(const System& system, const Vector& b
         z = r;
         work.factor.solve(z);
     };
-    const auto iterate = [&](int limit) { return conjugate_gradient(system, precondition, b, tolerance, limit, work.vectors, x); };
+    const auto iterate = [&](int limit) {
+        return conjugate_gradient(system, precondition, b, tolerance, limit, work.vectors, x);
+    };
     if (work.factor.left_out() != work.prepared) factor(work.prepared);  // the solution before fell back
     int before = 0;
     if (work.prepared > 0) {

@@ -39,10 +39,10 @@ struct SolveReport {
 template <class S, class T>
 concept LinearSolver = core::Policy<S> && assembly::LinearSystem<T> &&
     requires(S solver, const T& system, const Vector& b, double tolerance, Vector& x) {
-        solver.analyse(system);
-        { solver.prepare(system) } -> std::same_as<SolveStatus>;
-        { solver.solve(system, b, tolerance, x) } -> std::same_as<SolveReport>;
-    };
+    solver.analyse(system);
+    { solver.prepare(system) } -> std::same_as<SolveStatus>;
+    { solver.solve(system, b, tolerance, x) } -> std::same_as<SolveReport>;
+};
 
 /// Norm of a residual, in which forces on directions count as forces at the surface: each 3-vector is divided by its
 /// length in the layout [force].

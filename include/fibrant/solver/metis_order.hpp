@@ -33,7 +33,8 @@ inline std::vector<int> metis_order(const SparseMatrix& graph) {
     METIS_SetDefaultOptions(options.data());
     options[METIS_OPTION_SEED] = 1;
     idx_t n = vertices;
-    if (METIS_NodeND(&n, start.data(), neighbours.data(), nullptr, options.data(), order.data(), place.data()) != METIS_OK) return {};
+    if (METIS_NodeND(&n, start.data(), neighbours.data(), nullptr, options.data(), order.data(), place.data()) != METIS_OK)
+        return {};
     return {order.begin(), order.end()};
 }
 

@@ -27,38 +27,47 @@ struct AttemptReport {
     double allowed = 0.0;       ///< what that may be anywhere without harm [length]
 };
 
-/// Numbers of the nested loops that no scene has had to change. Where no source is named, they were chosen by trial on the scenes of the
-/// examples and the tests of stability.
+/// Numbers of the nested loops that no scene has had to change. Where no source is named, they were chosen by trial on the scenes
+/// of the examples and the tests of stability.
 namespace nested_numbers {
-inline constexpr double ahead = 1.1;   ///< of what is driven: else a search that reaches just so far is soon repeated [1]
-inline constexpr double both = 2.0;    ///< two fibres may each move by what is expected [1]
-inline constexpr double kept = 0.25;   ///< part of a search's reach that is moved before the next one [1]
+inline constexpr double ahead = 1.1;  ///< of what is driven: else a search that reaches just so far is soon repeated [1]
+inline constexpr double both = 2.0;   ///< two fibres may each move by what is expected [1]
+inline constexpr double kept = 0.25;  ///< part of a search's reach that is moved before the next one [1]
 inline constexpr Index most_moves = 6, most_moves_bounded = 2;  ///< searches after such motions; where displacements are bounded
 inline constexpr Index first_searches = 2;                      ///< of an increment, which no small motion makes up for
 inline constexpr double coarsest_step = 0.02;                   ///< of an iteration within a pass [radius]
 inline constexpr double finer = 0.1;                            ///< part of a tolerance that a loop inside need not go below [1]
 // Extrapolation of passes that follow one mode, as a geometric series (Aitken 1926).
-inline constexpr double least_ratio = 0.4;       ///< of two travels, from which it pays [1]
-inline constexpr double largest_ratio = 0.8;     ///< above it the sum of the series is too uncertain: it is taken as that of this ratio [1]
-inline constexpr double largest_series = 4.0;    ///< = 0.8 / (1 - 0.8)
-inline constexpr double longest_leap = 0.25;     ///< of an extrapolation [radius]
+inline constexpr double least_ratio = 0.4;  ///< of two travels, from which it pays [1]
+inline constexpr double largest_ratio =
+    0.8;  ///< above it the sum of the series is too uncertain: it is taken as that of this ratio [1]
+inline constexpr double largest_series = 4.0;  ///< = 0.8 / (1 - 0.8)
+inline constexpr double longest_leap = 0.25;   ///< of an extrapolation [radius]
 }  // namespace nested_numbers
 
 /// Solves increments; loops inside are solved to a part of the last change of the loop outside.
 template <class Equilibrium, class Contacts, class Linear, class Passage>
 class NestedLoops {
 public:
-    NestedLoops(Equilibrium& equilibrium, Contacts& contacts, Linear& linear, const Passage& passage, const IterationParameters& parameters,
-                double radius, bool contact_possible, core::StageClock& clock)
-        : equilibrium_{&equilibrium}, contacts_{&contacts}, linear_{&linear}, passage_{&passage}, parameters_{core::validated(parameters)},
-          radius_{radius}, contact_possible_{contact_possible}, clock_{&clock} {}
+    NestedLoops(Equilibrium& equilibrium, Contacts& contacts, Linear& linear, const Passage& passage,
+                const IterationParameters& parameters, double radius, bool contact_possible, core::StageClock& clock)
+        : equilibrium_{&equilibrium},
+          contacts_{&contacts},
+          linear_{&linear},
+          passage_{&passage},
+          parameters_{core::validated(parameters)},
+          radius_{radius},
+          contact_possible_{contact_possible},
+          clock_{&clock} {}
 
     /// @param state     in: last accepted state; out: the converged one
     /// @param accepted  last accepted state
     /// @param expected  displacement that the search should reach over [length]
     /// @param forced    keep forced orders
-    /// @param looseness multiplies the tolerances of normal and contact passes, >= 1: for paths that are only a means. At 1 nothing is accepted
-    ///                  beyond what is stated: a residual that passes left is solved for, and zones that are too deep become stiffer
+    /// @param looseness multiplies the tolerances of normal and contact passes, >= 1: for paths that are only a means. At 1
+    /// nothing is accepted
+    ///                  beyond what is stated: a residual that passes left is solved for, and zones that are too deep become
+    ///                  stiffer
     /// @param furthest  displacement beyond which the attempt is given up [length]
     AttemptReport solve(Vector& state, const Vector& accepted, double expected, bool forced, double looseness = 1.0,
                         double furthest = std::numeric_limits<double>::infinity()) {
@@ -69,7 +78,8 @@ public:
         Vector driven;
         equilibrium_->prescribed_step(state, driven);
         if (const double least = equilibrium_->greatest(driven); least > 0.0) expected = with::ahead * std::max(expected, least);
-        const double reach = std::clamp(with::both * expected, parameters_.margin * radius_, parameters_.largest_margin * radius_);
+        const double reach =
+            std::clamp(with::both * expected, parameters_.margin * radius_, parameters_.largest_margin * radius_);
         contacts_->parameters().detection.wanted = with::both * expected;
         const double bound = contact_possible_ ? std::max(reach, radius_) : std::numeric_limits<double>::infinity();
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
@@ -89,12 +99,15 @@ public:
             ++report.counts.contact_passes;
             // Zones are kept while nothing could have come into or out of reach unseen. Beside the time, this keeps
             // contact elements from jumping in and out at the ends of zones, which may go on for ever.
-            const bool search = searches < with::first_searches || !contact_possible_ || equilibrium_->greatest(state - searched) > with::kept * bound;
+            const bool search = searches < with::first_searches || !contact_possible_ ||
+                                equilibrium_->greatest(state - searched) > with::kept * bound;
             if (search) searched = state, ++searches;
             clock_->time(search ? core::Part::search : core::Part::contact, [&] {
                 const double far = std::isfinite(bound) ? bound : parameters_.margin * radius_;
-                if (search) contacts_->detect(state, accepted, far, forced), equilibrium_->detect(state, accepted, far);
-                else contacts_->regenerate(state, accepted);
+                if (search)
+                    contacts_->detect(state, accepted, far, forced), equilibrium_->detect(state, accepted, far);
+                else
+                    contacts_->regenerate(state, accepted);
             });
             clock_->time(core::Part::preparation, [&] {
                 contacts_->evaluate(state);
@@ -125,7 +138,8 @@ public:
             if (!contact_possible_) break;
             // Passes before were of another stiffness, and do not count.
             const auto stiffer = [&] {
-                return strict && stiffenings < most_stiffenings && contact::stiffen_deep_zones(*contacts_, contacts_->parameters().stiffness) && ++stiffenings > 0;
+                return strict && stiffenings < most_stiffenings &&
+                       contact::stiffen_deep_zones(*contacts_, contacts_->parameters().stiffness) && ++stiffenings > 0;
             };
             if (stiffer()) continue;
             if (change >= contact_tolerance) {
@@ -135,7 +149,8 @@ public:
             if (!multipliers_change()) {
                 if (!strict || report.residual <= parameters_.residual_tolerance) break;
                 // Inner loops are solved to a part of what the outer ones move: what is accepted is solved to what is stated.
-                const NewtonReport last = newton.solve(state, parameters_.step_tolerance * radius_, searched, bound, report.counts);
+                const NewtonReport last =
+                    newton.solve(state, parameters_.step_tolerance * radius_, searched, bound, report.counts);
                 if (last.status == NewtonStatus::converged) equilibrium_->close_ties(state);
                 report.residual = last.residual.relative(), report.force_scale = last.residual.scale, report.step = last.step;
                 if (last.status == NewtonStatus::moved) {
@@ -156,15 +171,15 @@ public:
                 if (!multipliers_change()) break;
             }
             if (++renewals > parameters_.multiplier_limit) {
-                report.reason = "multipliers do not settle: a contact misses its surface by " + core::text(contacts_->misfit() / radius_) + " radii";
+                report.reason = "multipliers do not settle: a contact misses its surface by " +
+                                core::text(contacts_->misfit() / radius_) + " radii";
                 return report;
             }
         }
         contact::DepthOverAllowed depth;
         if (contact_possible_) depth = contact::depth_over_allowed(*contacts_, contacts_->parameters().stiffness);
         report.use = {report.residual / parameters_.residual_tolerance, turn_ / parameters_.normal_tolerance,
-                      contact_possible_ ? change / (parameters_.contact_tolerance * radius_) : 0.0,
-                      depth.value};
+                      contact_possible_ ? change / (parameters_.contact_tolerance * radius_) : 0.0, depth.value};
         if (strict && report.use.penetration > 1.0 && contacts_->parameters().stiffness.adapts()) {
             report.reason = contact::text(depth);
             return report;
@@ -177,12 +192,13 @@ private:
     /// Of zones, within an increment: each a factor StiffnessAdaptation.largest_change, so that ten are five decades by default.
     static constexpr Index most_stiffenings = 10;
 
-    /// What is driven moves by more than a search reaches where nothing is in its way. What it passed through on the way from the last
-    /// search is met where they touch, and the next search sees it.
+    /// What is driven moves by more than a search reaches where nothing is in its way. What it passed through on the way from the
+    /// last search is met where they touch, and the next search sees it.
     void step_back(Vector& state, const Vector& searched, bool forced) {
         if constexpr (core::Active<Passage>) {
             if (!contact_possible_) return;
-            const auto passed = clock_->time(core::Part::search, [&] { return passage_->first(searched, state, *contacts_, forced, false); });
+            const auto passed =
+                clock_->time(core::Part::search, [&] { return passage_->first(searched, state, *contacts_, forced, false); });
             if (!passed) return;
             state = searched + passed->touch * (state - searched);
             equilibrium_->reset_stresses(state);
@@ -206,7 +222,9 @@ private:
         Vector travel, last_travel;  // displacement of this pass and of the one before
         for (Index pass = 0; pass < parameters_.normal_limit; ++pass) {
             if (pass > 0) {
-                const double turn = turn_ = clock_->time(core::Part::contact, [&] { return equilibrium_->refresh(state, accepted, contacts_->refresh(state, accepted)); });
+                const double turn = turn_ = clock_->time(core::Part::contact, [&] {
+                    return equilibrium_->refresh(state, accepted, contacts_->refresh(state, accepted));
+                });
                 // The contact elements will move on all the same: no need to be finer than a part of what this pass moved.
                 const bool settled = turn < looseness * parameters_.normal_tolerance && change < enough;
                 if (settled || change < std::max(with::finer * parameters_.inexact * first, with::finer * enough)) break;
@@ -241,30 +259,35 @@ private:
         return true;
     }
 
-    /// Multiple of the last travel after which a geometric series of passes would end, bounded; 0 if there is none. One that grows or
-    /// swings to and fro has its end behind it (Aitken 1926): a loop that can turn freely about its ends is pushed by each normal that
-    /// turns with it.
+    /// Multiple of the last travel after which a geometric series of passes would end, bounded; 0 if there is none. One that
+    /// grows or swings to and fro has its end behind it (Aitken 1926): a loop that can turn freely about its ends is pushed by
+    /// each normal that turns with it.
     double extrapolation(const Vector& travel, const Vector& last_travel, double change) const {
         namespace with = nested_numbers;
         if (travel.size() == 0 || last_travel.size() == 0) return 0.0;
         const double along = equilibrium_->product(travel, last_travel), last = equilibrium_->product(last_travel, last_travel);
         const double ratio = along / last;
-        if ((ratio > growing || ratio < -swinging) && along * along > same_way * same_way * last * equilibrium_->product(travel, travel))
+        if ((ratio > growing || ratio < -swinging) &&
+            along * along > same_way * same_way * last * equilibrium_->product(travel, travel))
             return std::max(ratio / (1.0 - ratio), -with::longest_leap * radius_ / change);
         if (!(ratio > with::least_ratio)) return 0.0;
         const double series = ratio < with::largest_ratio ? ratio / (1.0 - ratio) : with::largest_series;
         return std::min(series, with::longest_leap * radius_ / change);
     }
     static constexpr double same_way = 0.9;  ///< cosine of two travels that follow one mode
-    static constexpr double growing = 1.3, swinging = 0.7;  ///< ratios of two travels from which a series does not end by itself, or hardly
+    static constexpr double growing = 1.3,
+                            swinging = 0.7;  ///< ratios of two travels from which a series does not end by itself, or hardly
 
     static std::string reason(const NewtonReport& inner) {
         const std::string figures = " after " + std::to_string(inner.iterations) + " iterations, residual " +
                                     core::text(inner.residual.relative()) + ", step " + core::text(inner.step);
         switch (inner.status) {
-            case NewtonStatus::diverged: return "Newton diverged" + figures;
-            case NewtonStatus::unsolvable: return "the tangent is not positive definite" + figures;
-            default: return "Newton did not converge" + figures;
+            case NewtonStatus::diverged:
+                return "Newton diverged" + figures;
+            case NewtonStatus::unsolvable:
+                return "the tangent is not positive definite" + figures;
+            default:
+                return "Newton did not converge" + figures;
         }
     }
 

@@ -23,15 +23,15 @@ struct IterationParameters {
     double inexact = 0.3;                 ///< inner tolerance over the last change of the loop outside [1], in [0, 1]
     /// Slope of the energy at the end of a Newton step over that at its start, beyond which the step is cut [1], > 0.
     double overshoot = std::numeric_limits<double>::infinity();
-    double largest_approach = 0.5;        ///< relative motion of a contact in one Newton step [mean radius of its two fibres], > 0
-    Index newton_limit = 15;              ///< iterations of one inner loop
-    Index normal_limit = 6;               ///< normal passes of one set of contact elements
-    Index contact_limit = 8;              ///< contact passes of an increment
-    Index multiplier_limit = 20;          ///< contact passes that change nothing but multipliers, where a law has them
-    double margin = 0.2;                  ///< least reach of the search beyond touching [radius], > 0
-    double largest_margin = 2.0;          ///< greatest reach of the search beyond touching [radius]
-    bool mixed = true;                    ///< independent point stresses (falls back to the plain form)
-    double linear_tolerance = 1e-4;       ///< of the last linear solves [1], in (0, 1e-2]
+    double largest_approach = 0.5;   ///< relative motion of a contact in one Newton step [mean radius of its two fibres], > 0
+    Index newton_limit = 15;         ///< iterations of one inner loop
+    Index normal_limit = 6;          ///< normal passes of one set of contact elements
+    Index contact_limit = 8;         ///< contact passes of an increment
+    Index multiplier_limit = 20;     ///< contact passes that change nothing but multipliers, where a law has them
+    double margin = 0.2;             ///< least reach of the search beyond touching [radius], > 0
+    double largest_margin = 2.0;     ///< greatest reach of the search beyond touching [radius]
+    bool mixed = true;               ///< independent point stresses (falls back to the plain form)
+    double linear_tolerance = 1e-4;  ///< of the last linear solves [1], in (0, 1e-2]
     void validate() const {
         core::require_positive("IterationParameters.step_tolerance", step_tolerance);
         core::require_positive("IterationParameters.residual_tolerance", residual_tolerance);
@@ -75,24 +75,25 @@ enum class NewtonStatus : std::uint8_t {
 struct NewtonReport {
     NewtonStatus status = NewtonStatus::too_many;
     Index iterations = 0;
-    double step = 0.0;      ///< last one [length]
+    double step = 0.0;  ///< last one [length]
     assembly::ResidualFigures residual;
 };
 
-/// Numbers of Newton's method that no scene has had to change. Where no source is named, they were chosen by trial on the scenes of the
-/// examples and the tests of stability.
+/// Numbers of Newton's method that no scene has had to change. Where no source is named, they were chosen by trial on the scenes
+/// of the examples and the tests of stability.
 namespace newton_numbers {
-// Forcing terms of inexact Newton: eta = 0.9 (r / r_before)^2, at most 1e-2 (Eisenstat and Walker 1996, choice 2; their bound is 0.9, but
-// contact changes less along steps that are better solved).
+// Forcing terms of inexact Newton: eta = 0.9 (r / r_before)^2, at most 1e-2 (Eisenstat and Walker 1996, choice 2; their bound is
+// 0.9, but contact changes less along steps that are better solved).
 inline constexpr double forcing_factor = 0.9, loosest_forcing = 1e-2;
-inline constexpr double enough_of_residual = 0.1;    ///< what the residual may have left, times this, is as good as nothing [1]
-inline constexpr double undriven = 1e-6;             ///< square of what is prescribed over that of a step: it has one energy [1]
-inline constexpr double useful_residual = 0.3;       ///< of a linear solve that has reached its limit: its step still leads down [1]
-inline constexpr double inversion_cut = 0.25;        ///< of a step at whose end a cell is turned inside out [1]
+inline constexpr double enough_of_residual = 0.1;  ///< what the residual may have left, times this, is as good as nothing [1]
+inline constexpr double undriven = 1e-6;           ///< square of what is prescribed over that of a step: it has one energy [1]
+inline constexpr double useful_residual = 0.3;  ///< of a linear solve that has reached its limit: its step still leads down [1]
+inline constexpr double inversion_cut = 0.25;   ///< of a step at whose end a cell is turned inside out [1]
 inline constexpr int most_inversion_cuts = 6;
-inline constexpr double reach_used = 0.5;            ///< part of a search's reach after which it is repeated: both fibres may move
-inline constexpr Index settling = 3;                 ///< iterations in which residuals may rise: the mixed form starts with large ones
-inline constexpr Index growing_mixed = 2, growing_plain = 3;  ///< rises beyond the worst of those: fall back to the plain form, give up
+inline constexpr double reach_used = 0.5;  ///< part of a search's reach after which it is repeated: both fibres may move
+inline constexpr Index settling = 3;       ///< iterations in which residuals may rise: the mixed form starts with large ones
+inline constexpr Index growing_mixed = 2,
+                       growing_plain = 3;  ///< rises beyond the worst of those: fall back to the plain form, give up
 // Search along a step (regula falsi on the slope of the energy, kept away from its ends).
 inline constexpr int most_shortenings = 4;
 inline constexpr double least_shortening = 0.1, most_shortening = 0.8;
@@ -102,9 +103,13 @@ inline constexpr double least_shortening = 0.1, most_shortening = 0.8;
 template <class Equilibrium, class Contacts, class Linear>
 class Newton {
 public:
-    Newton(Equilibrium& equilibrium, Contacts& contacts, Linear& linear, const IterationParameters& parameters,
-           double radius, core::StageClock& clock)
-        : equilibrium_{&equilibrium}, contacts_{&contacts}, linear_{&linear}, parameters_{parameters}, radius_{radius},
+    Newton(Equilibrium& equilibrium, Contacts& contacts, Linear& linear, const IterationParameters& parameters, double radius,
+           core::StageClock& clock)
+        : equilibrium_{&equilibrium},
+          contacts_{&contacts},
+          linear_{&linear},
+          parameters_{parameters},
+          radius_{radius},
           clock_{&clock} {}
 
     /// @param state      iterated in place
@@ -128,7 +133,8 @@ public:
                 return report;
             }
             // A prescribed motion has a residual that is not that of one energy.
-            const bool watched = std::isfinite(parameters_.overshoot) && equilibrium.product(prescribed_, prescribed_) <= with::undriven * equilibrium.product(step_, step_);
+            const bool watched = std::isfinite(parameters_.overshoot) && equilibrium.product(prescribed_, prescribed_) <=
+                                                                             with::undriven * equilibrium.product(step_, step_);
             if (watched) equilibrium.learned().begin_step(*contacts_);
             const double slope = watched ? residual_.dot(step_) : 0.0;
             step_ += prescribed_;
@@ -140,7 +146,8 @@ public:
             state += step_;
             report.residual = arrive(state, mixed);
             // Where a cell of a solid is turned inside out there are no forces.
-            for (int cut = 0; cut < with::most_inversion_cuts && !std::isfinite(report.residual.residual) && step_.allFinite(); ++cut) {
+            for (int cut = 0; cut < with::most_inversion_cuts && !std::isfinite(report.residual.residual) && step_.allFinite();
+                 ++cut) {
                 step_ *= with::inversion_cut, scale *= with::inversion_cut;
                 state = before_ + step_;
                 report.residual = arrive(state, mixed);
@@ -156,8 +163,10 @@ public:
             if (!mixed && !iterated) equilibrium.reset_stresses(state);
             const double ratio = before.residual > 0.0 ? report.residual.residual / before.residual : 0.0;
             // A tenth of what the residual may have left is as good as nothing.
-            const double enough = with::enough_of_residual * residual_tolerance(tolerance) / std::max(report.residual.relative(), residual_tolerance(tolerance));
-            eta = std::clamp(with::forcing_factor * ratio * ratio, std::min(std::max(parameters_.linear_tolerance, enough), with::loosest_forcing),
+            const double enough = with::enough_of_residual * residual_tolerance(tolerance) /
+                                  std::max(report.residual.relative(), residual_tolerance(tolerance));
+            eta = std::clamp(with::forcing_factor * ratio * ratio,
+                             std::min(std::max(parameters_.linear_tolerance, enough), with::loosest_forcing),
                              with::loosest_forcing);
             if (scale == 1.0 && report.step <= tolerance && report.residual.relative() <= residual_tolerance(tolerance)) {
                 report.status = NewtonStatus::converged;
@@ -205,13 +214,14 @@ private:
     /// After step_ from before_. Forces of laws that bend over are those of the strains of the iteration, which come first.
     assembly::ResidualFigures arrive(const Vector& state, [[maybe_unused]] bool mixed) {
         if constexpr (iterated)
-            clock_->time(core::Part::assembly, [&] { mixed ? equilibrium_->predict_stresses(before_, step_) : equilibrium_->reset_stresses(state); });
+            clock_->time(core::Part::assembly,
+                         [&] { mixed ? equilibrium_->predict_stresses(before_, step_) : equilibrium_->reset_stresses(state); });
         return evaluate(state);
     }
 
     /// Shortens a step beyond whose end the energy rises steeply: contacts that close or let go within it, one after the other,
-    /// would send Newton's method to and fro for ever. With normals and bounds of friction that stand the energy is convex, and the
-    /// place where it rises is found between. What contacts were beyond it goes into the next tangent.
+    /// would send Newton's method to and fro for ever. With normals and bounds of friction that stand the energy is convex, and
+    /// the place where it rises is found between. What contacts were beyond it goes into the next tangent.
     /// @param slope  of the energy along the step, at its start [force * length]
     /// @returns the part of the step that is left
     double shorten(double slope, Vector& state, assembly::ResidualFigures& figures, bool mixed) {
@@ -230,10 +240,11 @@ private:
     }
 
     /// Free part of the step. An indefinite tangent is met first by leaving compression out of its geometric part, then by
-    /// a shift that grows. What the last tangent asked for, or one step less, is where the next one begins: slack fibres ask for the same
-    /// again and again.
+    /// a shift that grows. What the last tangent asked for, or one step less, is where the next one begins: slack fibres ask for
+    /// the same again and again.
     /// @param eta    of the linear solution
-    /// @param scale  of forces: what a prescribed motion does at first, to the elements at its ends alone, is far more than they are, and
+    /// @param scale  of forces: what a prescribed motion does at first, to the elements at its ends alone, is far more than they
+    /// are, and
     ///               no measure of what the solution may leave over
     bool direction(const Vector& state, double eta, double scale, IterationCounts& counts) {
         Equilibrium& equilibrium = *equilibrium_;
@@ -254,11 +265,14 @@ private:
                     if (scale > 0.0 && size > scale) tolerance = std::max(eta * scale / size, 1e-3 * eta);
                 }
             });
-            const SolveStatus prepared = clock_->time(core::Part::preparation, [&] { return linear_->prepare(assembly::seen(equilibrium.system())); });
+            const SolveStatus prepared =
+                clock_->time(core::Part::preparation, [&] { return linear_->prepare(assembly::seen(equilibrium.system())); });
             SolveReport report;
             report.status = prepared;
             if (prepared == SolveStatus::converged) {
-                report = clock_->time(core::Part::solution, [&] { return linear_->solve(assembly::seen(equilibrium.system()), right_, tolerance, step_); });
+                report = clock_->time(core::Part::solution, [&] {
+                    return linear_->solve(assembly::seen(equilibrium.system()), right_, tolerance, step_);
+                });
                 ++counts.linear_solves, counts.linear_iterations += report.iterations;
             }
             shifted_ = attempt;
@@ -293,13 +307,15 @@ private:
             const auto& element = elements[core::at(k)];
             if (contacts_->forced(element)) return 0.0;  // a forced side is prescribed
             const auto& mesh = equilibrium_->mesh();
-            const double radius = 0.5 * (mesh.fibre(element.fibre_i).section.radius() + mesh.fibre(element.fibre_j).section.radius());
+            const double radius =
+                0.5 * (mesh.fibre(element.fibre_i).section.radius() + mesh.fibre(element.fibre_j).section.radius());
             return std::abs(element.normal.dot(element.motion(step))) * (radius_ / radius);
         });
         const double bound = parameters_.largest_approach * radius_;
         double part = most > bound ? bound / most : 1.0;
         if constexpr (requires { contacts_->tools(); })
-            part = std::min(part, parameters_.largest_approach / std::max(parameters_.largest_approach, contacts_->tools().greatest_approach(step)));
+            part = std::min(part, parameters_.largest_approach /
+                                      std::max(parameters_.largest_approach, contacts_->tools().greatest_approach(step)));
         return equilibrium_->largest_part(step, bound, part);
     }
 
@@ -309,10 +325,10 @@ private:
     IterationParameters parameters_;
     double radius_;
     core::StageClock* clock_;
-    static constexpr int most_shifts = 10;        // the last one is beyond the mean stiffness
-    static constexpr double least_shift = 1e-4;   // over the mean stiffness; each one is four times the last
-    int shifted_ = 0;         // what the last tangent asked for: 0 nothing, 1 no compression, more a shift
-    double stiffness_ = 0.0;  // mean, when a shift was last begun with
+    static constexpr int most_shifts = 10;       // the last one is beyond the mean stiffness
+    static constexpr double least_shift = 1e-4;  // over the mean stiffness; each one is four times the last
+    int shifted_ = 0;                            // what the last tangent asked for: 0 nothing, 1 no compression, more a shift
+    double stiffness_ = 0.0;                     // mean, when a shift was last begun with
     Vector residual_, right_, product_, step_, prescribed_, before_;
 };
 

@@ -60,7 +60,8 @@ public:
             const scene::Chain& chain = layout.chains[core::at(c)];
             for (Index k = 0; k < chain.nodes * chain.vectors_per_node; ++k) {
                 const Index node = k / chain.vectors_per_node;
-                modes_.places[core::at(chain.first_vector + k)] = {static_cast<int>(c), static_cast<int>(node), hat(chains_[core::at(c)], node)};
+                modes_.places[core::at(chain.first_vector + k)] = {static_cast<int>(c), static_cast<int>(node),
+                                                                   hat(chains_[core::at(c)], node)};
             }
         }
         find_pattern(system);
@@ -79,13 +80,16 @@ public:
             for (std::size_t v = 0; v < modes_.turn.size(); ++v)
                 if (layout.kind[v] == scene::VectorKind::rotation) modes_.turn[v] = core::spin_matrix(layout.value[v]).inverse();
         }
-        core::parallel_for(clusters(), [&](Index k) {
-            Vec3 sum = Vec3::Zero();
-            Index positions = 0;
-            for_positions(layout, k, [&](Index v) { sum += layout.value[core::at(v)], ++positions; });
-            const Vec3 middle = sum / static_cast<double>(std::max<Index>(positions, 1));
-            for_positions(layout, k, [&](Index v) { modes_.arm[core::at(v)] -= middle; });
-        }, grain(layout, clusters()));
+        core::parallel_for(
+            clusters(),
+            [&](Index k) {
+                Vec3 sum = Vec3::Zero();
+                Index positions = 0;
+                for_positions(layout, k, [&](Index v) { sum += layout.value[core::at(v)], ++positions; });
+                const Vec3 middle = sum / static_cast<double>(std::max<Index>(positions, 1));
+                for_positions(layout, k, [&](Index v) { modes_.arm[core::at(v)] -= middle; });
+            },
+            grain(layout, clusters()));
     }
 
     /// Adds the band of chain c, as LinearSystem::chain_band gives it. For different chains from several threads at once.
@@ -97,7 +101,8 @@ public:
         std::vector<Modes> modes(core::at(chain.nodes), Modes(m, 6));
         for (Index a = 0; a < chain.nodes; ++a) {
             for (Index v = 0; v < chain.vectors_per_node; ++v) {
-                modes[core::at(a)].middleRows<3>(3 * v) = modes_.mode(layout, held, chain.first_vector + a * chain.vectors_per_node + v);
+                modes[core::at(a)].middleRows<3>(3 * v) =
+                    modes_.mode(layout, held, chain.first_vector + a * chain.vectors_per_node + v);
             }
         }
         Modes product(m, 6);
@@ -133,7 +138,8 @@ public:
         matrix_.solve(station_values_);
         prolong(layout, z);
         // The P that the matrix was made with: what others make of z would not be symmetric otherwise.
-        for (const scene::HeldVector& held : layout.held) z.segment<3>(3 * held.vector) = held.free * z.segment<3>(3 * held.vector).eval();
+        for (const scene::HeldVector& held : layout.held)
+            z.segment<3>(3 * held.vector) = held.free * z.segment<3>(3 * held.vector).eval();
     }
 
 private:
@@ -170,7 +176,8 @@ private:
         }
     }
 
-    static void add_to_chain(Chain& own, Index nodes_apart, const Hat& row, const Hat& column, const Block& block, bool diagonal) {
+    static void add_to_chain(Chain& own, Index nodes_apart, const Hat& row, const Hat& column, const Block& block,
+                             bool diagonal) {
         const Index width = own.reach(nodes_apart) + 1;
         for (int i = 0; i < 2; ++i)
             for (int j = 0; j < 2; ++j) {
@@ -221,10 +228,13 @@ private:
     /// so do the bits.
     template <class System>
     static Index lanes(const System& system) {
-        if constexpr (assembly::DivisibleCouplings<System>) return system.couplings() < 4096 ? 1 : 4;
-        else return 1;
+        if constexpr (assembly::DivisibleCouplings<System>)
+            return system.couplings() < 4096 ? 1 : 4;
+        else
+            return 1;
     }
-    /// Calls body(lane, station i, station j, block) for each coupling beyond the bands, from several threads for different lanes.
+    /// Calls body(lane, station i, station j, block) for each coupling beyond the bands, from several threads for different
+    /// lanes.
     template <bool Values, class System, class Body>
     void couple(const System& system, const Body& body) const {
         const assembly::HeldProjector held(system.layout());
@@ -256,7 +266,8 @@ private:
                 for (Index k = 0; k <= own.intervals; ++k)
                     for (Index d = 0; d <= std::min(k, width - 1); ++d) {
                         const int row = own.first_station + static_cast<int>(k);
-                        if (!matrix_.add(row, row - static_cast<int>(d), own.blocks[core::at(k * width + d)], lane)) complete[core::at(lane)] = 0;
+                        if (!matrix_.add(row, row - static_cast<int>(d), own.blocks[core::at(k * width + d)], lane))
+                            complete[core::at(lane)] = 0;
                     }
             }
         });
@@ -270,57 +281,66 @@ private:
     /// station values = P^T r
     void restrict_to_stations(const scene::DofLayout& layout, const Vector& r) {
         station_values_.setZero(6 * stations_);
-        core::parallel_for(clusters(), [&](Index cluster) {
-            for (const Index c : clusters_[core::at(cluster)].chains) {
-                const scene::Chain& chain = layout.chains[core::at(c)];
-                Motion near = Motion::Zero(), far = Motion::Zero();  // of the two stations that nodes are between
-                int station = modes_.places[core::at(chain.first_vector)].hat.station;
-                const auto store = [&] {
-                    station_values_.segment<6>(6 * station) += near;
-                    if (!far.isZero(0.0)) station_values_.segment<6>(6 * station + 6) += far;
-                };
-                for (Index a = 0; a < chain.nodes; ++a) {
-                    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-                    const Index first = chain.first_vector + a * chain.vectors_per_node;
-                    for (Index v = first; v < first + chain.vectors_per_node; ++v) {
-                        const Vec3 f = r.segment<3>(3 * v);
-                        if (layout.kind[core::at(v)] == scene::VectorKind::position) force += f;
-                        if (modes_.turns(layout, v)) moment += modes_.turn[core::at(v)].transpose() * f;
-                        else moment += modes_.arm[core::at(v)].cross(f);
+        core::parallel_for(
+            clusters(),
+            [&](Index cluster) {
+                for (const Index c : clusters_[core::at(cluster)].chains) {
+                    const scene::Chain& chain = layout.chains[core::at(c)];
+                    Motion near = Motion::Zero(), far = Motion::Zero();  // of the two stations that nodes are between
+                    int station = modes_.places[core::at(chain.first_vector)].hat.station;
+                    const auto store = [&] {
+                        station_values_.segment<6>(6 * station) += near;
+                        if (!far.isZero(0.0)) station_values_.segment<6>(6 * station + 6) += far;
+                    };
+                    for (Index a = 0; a < chain.nodes; ++a) {
+                        Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+                        const Index first = chain.first_vector + a * chain.vectors_per_node;
+                        for (Index v = first; v < first + chain.vectors_per_node; ++v) {
+                            const Vec3 f = r.segment<3>(3 * v);
+                            if (layout.kind[core::at(v)] == scene::VectorKind::position) force += f;
+                            if (modes_.turns(layout, v))
+                                moment += modes_.turn[core::at(v)].transpose() * f;
+                            else
+                                moment += modes_.arm[core::at(v)].cross(f);
+                        }
+                        const Hat& hat = modes_.places[core::at(first)].hat;
+                        if (hat.station != station) {
+                            store();
+                            near.setZero(), far.setZero();
+                            station = hat.station;
+                        }
+                        Motion both;
+                        both << force, moment;
+                        near += hat.weight(0) * both;
+                        far += hat.second * both;
                     }
-                    const Hat& hat = modes_.places[core::at(first)].hat;
-                    if (hat.station != station) {
-                        store();
-                        near.setZero(), far.setZero();
-                        station = hat.station;
-                    }
-                    Motion both;
-                    both << force, moment;
-                    near += hat.weight(0) * both;
-                    far += hat.second * both;
+                    store();
                 }
-                store();
-            }
-        }, grain(layout, clusters()));
+            },
+            grain(layout, clusters()));
     }
 
     /// z += P times the station values
     void prolong(const scene::DofLayout& layout, Vector& z) const {
-        core::parallel_for(core::count(layout.chains), [&](Index c) {
-            const scene::Chain& chain = layout.chains[core::at(c)];
-            for (Index a = 0; a < chain.nodes; ++a) {
-                const Index first = chain.first_vector + a * chain.vectors_per_node;
-                const Hat& hat = modes_.places[core::at(first)].hat;
-                Motion motion = hat.weight(0) * station_values_.segment<6>(6 * hat.station);
-                if (hat.second > 0.0) motion += hat.second * station_values_.segment<6>(6 * hat.station + 6);
-                const Vec3 translation = motion.head<3>(), rotation = motion.tail<3>();
-                for (Index v = first; v < first + chain.vectors_per_node; ++v) {
-                    Vec3 move = modes_.turns(layout, v) ? Vec3(modes_.turn[core::at(v)] * rotation) : Vec3(rotation.cross(modes_.arm[core::at(v)]));
-                    if (layout.kind[core::at(v)] == scene::VectorKind::position) move += translation;
-                    z.segment<3>(3 * v) += move;
+        core::parallel_for(
+            core::count(layout.chains),
+            [&](Index c) {
+                const scene::Chain& chain = layout.chains[core::at(c)];
+                for (Index a = 0; a < chain.nodes; ++a) {
+                    const Index first = chain.first_vector + a * chain.vectors_per_node;
+                    const Hat& hat = modes_.places[core::at(first)].hat;
+                    Motion motion = hat.weight(0) * station_values_.segment<6>(6 * hat.station);
+                    if (hat.second > 0.0) motion += hat.second * station_values_.segment<6>(6 * hat.station + 6);
+                    const Vec3 translation = motion.head<3>(), rotation = motion.tail<3>();
+                    for (Index v = first; v < first + chain.vectors_per_node; ++v) {
+                        Vec3 move = modes_.turns(layout, v) ? Vec3(modes_.turn[core::at(v)] * rotation)
+                                                            : Vec3(rotation.cross(modes_.arm[core::at(v)]));
+                        if (layout.kind[core::at(v)] == scene::VectorKind::position) move += translation;
+                        z.segment<3>(3 * v) += move;
+                    }
                 }
-            }
-        }, grain(layout, core::count(layout.chains)));
+            },
+            grain(layout, core::count(layout.chains)));
     }
 
     std::vector<ChainCluster> clusters_;

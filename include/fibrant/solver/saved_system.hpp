@@ -30,16 +30,19 @@ namespace fibrant::solver {
 class SavedSystem {
 public:
     template <assembly::LinearSystem System>
-    SavedSystem(const System& system, const Vector& right_hand_side) : layout_{system.layout()}, right_hand_side_{right_hand_side} {
+    SavedSystem(const System& system, const Vector& right_hand_side)
+        : layout_{system.layout()}, right_hand_side_{right_hand_side} {
         if (right_hand_side.size() != layout_.unknowns()) {
-            core::refuse("SavedSystem.right_hand_side", std::to_string(right_hand_side.size()) + " numbers", "as many as the system has unknowns");
+            core::refuse("SavedSystem.right_hand_side", std::to_string(right_hand_side.size()) + " numbers",
+                         "as many as the system has unknowns");
         }
         for (const scene::Chain& chain : layout_.chains) bands_.push_back(Matrix::Zero(rows(chain), columns(chain)));
         struct Terms {
             SavedSystem& saved;
             assembly::VectorPlaces places;
             void point(const assembly::PointTerm& term) {
-                saved.points_.push_back({{term.vectors.begin(), term.vectors.end()}, {term.weights.begin(), term.weights.end()}, term.stiffness});
+                saved.points_.push_back(
+                    {{term.vectors.begin(), term.vectors.end()}, {term.weights.begin(), term.weights.end()}, term.stiffness});
             }
             void dense(const assembly::DenseTerm& term) {
                 if (saved.add_to_band(places, term)) return;
@@ -94,7 +97,8 @@ public:
             for (Index a = 0; a < chain.nodes; ++a) {  // node a's row of the band, and its mirror
                 const Index before = std::min(a, chain.reach);
                 vectors.resize(core::at((before + 1) * chain.vectors_per_node));
-                for (Index k = 0; k < core::count(vectors); ++k) vectors[core::at(k)] = chain.first_vector + (a - before) * chain.vectors_per_node + k;
+                for (Index k = 0; k < core::count(vectors); ++k)
+                    vectors[core::at(k)] = chain.first_vector + (a - before) * chain.vectors_per_node + k;
                 dense.setZero((before + 1) * m, (before + 1) * m);
                 for (Index d = 0; d <= before; ++d) {
                     const Matrix block = bands_[c].block(a * m, d * m, m, m);
@@ -130,7 +134,8 @@ private:
         Index low = chain.nodes, high = 0;
         for (const Index v : term.vectors) {
             if (places.chain(v) != c) return false;
-            low = std::min(low, places.number(v) / chain.vectors_per_node), high = std::max(high, places.number(v) / chain.vectors_per_node);
+            low = std::min(low, places.number(v) / chain.vectors_per_node),
+            high = std::max(high, places.number(v) / chain.vectors_per_node);
         }
         if (high - low > chain.reach) return false;
         for (std::size_t i = 0; i < term.vectors.size(); ++i)
@@ -176,7 +181,8 @@ private:
                 std::array<char, 8> bytes{};
                 file.read(bytes.data(), 8);
                 std::uint64_t bits = 0;
-                for (std::size_t i = 0; i < 8; ++i) bits |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
+                for (std::size_t i = 0; i < 8; ++i)
+                    bits |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
                 std::memcpy(to + k, &bits, 8);
             }
             if (!file) fail();
@@ -195,7 +201,8 @@ private:
         auto& layout = self.layout_;
         file.size(layout.chains, 40);
         for (auto& chain : layout.chains)
-            for (auto* number : {&chain.first_vector, &chain.nodes, &chain.vectors_per_node, &chain.reach, &chain.group}) file.numbers(number, 1);
+            for (auto* number : {&chain.first_vector, &chain.nodes, &chain.vectors_per_node, &chain.reach, &chain.group})
+                file.numbers(number, 1);
         file.size(layout.kind, 8);
         for (auto& kind : layout.kind) {
             std::int64_t number = static_cast<std::int64_t>(kind);
@@ -224,7 +231,8 @@ private:
         for (auto& term : self.dense_) {
             file.size(term.vectors, 8);
             file.numbers(term.vectors.data(), core::count(term.vectors));
-            if constexpr (!std::is_const_v<Self>) term.stiffness.resize(3 * core::count(term.vectors), 3 * core::count(term.vectors));
+            if constexpr (!std::is_const_v<Self>)
+                term.stiffness.resize(3 * core::count(term.vectors), 3 * core::count(term.vectors));
             file.numbers(term.stiffness.data(), term.stiffness.size());
         }
         file.size(self.points_, 88);
@@ -242,17 +250,22 @@ private:
         Index next = 0;
         for (const scene::Chain& chain : layout_.chains) {
             const bool sane = chain.first_vector == next && chain.nodes > 0 && chain.vectors_per_node > 0 && chain.reach >= 0 &&
-                              chain.nodes <= layout_.vectors() && chain.vectors_per_node <= layout_.vectors() && chain.reach <= chain.nodes;
+                              chain.nodes <= layout_.vectors() && chain.vectors_per_node <= layout_.vectors() &&
+                              chain.reach <= chain.nodes;
             if (!sane) return false;
             next += chain.nodes * chain.vectors_per_node;
         }
-        if (next != layout_.vectors() || layout_.value.size() != layout_.kind.size() || layout_.length.size() != layout_.kind.size()) return false;
-        return std::all_of(layout_.held.begin(), layout_.held.end(), [&](const scene::HeldVector& h) { return h.vector >= 0 && h.vector < next; });
+        if (next != layout_.vectors() || layout_.value.size() != layout_.kind.size() ||
+            layout_.length.size() != layout_.kind.size())
+            return false;
+        return std::all_of(layout_.held.begin(), layout_.held.end(),
+                           [&](const scene::HeldVector& h) { return h.vector >= 0 && h.vector < next; });
     }
     /// Do all terms name vectors that there are?
     bool consistent() const {
         const auto known = [&](const auto& term) {
-            return !term.vectors.empty() && std::all_of(term.vectors.begin(), term.vectors.end(), [&](Index v) { return v >= 0 && v < layout_.vectors(); });
+            return !term.vectors.empty() && std::all_of(term.vectors.begin(), term.vectors.end(),
+                                                        [&](Index v) { return v >= 0 && v < layout_.vectors(); });
         };
         return std::all_of(dense_.begin(), dense_.end(), known) && std::all_of(points_.begin(), points_.end(), known);
     }
@@ -269,7 +282,8 @@ static_assert(assembly::LinearSystem<SavedSystem>);
 /// Writes a system and its right-hand side to a file, which SavedSystem reads.
 template <assembly::LinearSystem System>
 void write_system(const std::filesystem::path& path, const System& system, const Vector& right_hand_side) {
-    if (!system.layout().ties.empty()) core::refuse("write_system.ties", std::to_string(system.layout().ties.size()), "none: a file has no place for them");
+    if (!system.layout().ties.empty())
+        core::refuse("write_system.ties", std::to_string(system.layout().ties.size()), "none: a file has no place for them");
     SavedSystem(system, right_hand_side).write(path);
 }
 

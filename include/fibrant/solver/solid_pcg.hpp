@@ -98,13 +98,18 @@ public:
                 gather(system, r, work.together_motion);
                 work.together.solve(work.together_motion);
                 if (work.freed.cols() > 0)
-                    work.together_motion += work.freed * work.freed_factor.solve(work.freed_supports.transpose() * work.together_motion);
-                core::parallel_for(first, [&](Index v) {
-                    const auto* carrier = carrier_of(system, v);
-                    if (carrier == nullptr) return;
-                    const auto& cell = system.solid().cell(carrier->cell);
-                    for (int k = 0; k < 8; ++k) z.segment<3>(3 * v) += carrier->weights[k] * work.together_motion.segment<3>(3 * cell[core::at(k)]);
-                }, first < 8192 ? first : 1);
+                    work.together_motion +=
+                        work.freed * work.freed_factor.solve(work.freed_supports.transpose() * work.together_motion);
+                core::parallel_for(
+                    first,
+                    [&](Index v) {
+                        const auto* carrier = carrier_of(system, v);
+                        if (carrier == nullptr) return;
+                        const auto& cell = system.solid().cell(carrier->cell);
+                        for (int k = 0; k < 8; ++k)
+                            z.segment<3>(3 * v) += carrier->weights[k] * work.together_motion.segment<3>(3 * cell[core::at(k)]);
+                    },
+                    first < 8192 ? first : 1);
             }
             work.alone.solve(work.motion);
             z.tail(3 * nodes) = work.motion;
@@ -112,7 +117,8 @@ public:
         };
         if constexpr (UnsymmetricSystem<System>)
             if (parameters_.fibres.unsymmetric && system.unsymmetric())
-                return stabilised_biconjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.biconjugate, x);
+                return stabilised_biconjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit,
+                                                       work.biconjugate, x);
         return conjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.vectors, x);
     }
 
@@ -124,17 +130,19 @@ private:
         BlockCholesky<float> alone{SmallPivot::magnitude}, together{SmallPivot::magnitude};  // A_s and C^T A C
         std::vector<std::uint8_t> held;  // vectors of fibres that are held, and not carried
         Vector residual, correction, motion, together_motion;
-        bool summed = false;                  // C^T A C since the last analysis
-        Matrix freed, freed_supports;         // G = K^-1 W and W, of the motions that supports must not hold
-        Eigen::LDLT<Matrix> freed_factor;     // of U^T D U - W^T G
+        bool summed = false;               // C^T A C since the last analysis
+        Matrix freed, freed_supports;      // G = K^-1 W and W, of the motions that supports must not hold
+        Eigen::LDLT<Matrix> freed_factor;  // of U^T D U - W^T G
         ConjugateGradientVectors vectors;
         BiconjugateVectors biconjugate;
         SolveStatus status = SolveStatus::not_finite;
     };
 
     void judge(const BlockCholesky<float>::Pivots& pivots) {
-        if (!pivots.finite) work_->status = SolveStatus::not_finite;
-        else if (pivots.negative > 0 && work_->status == SolveStatus::converged) work_->status = SolveStatus::indefinite;
+        if (!pivots.finite)
+            work_->status = SolveStatus::not_finite;
+        else if (pivots.negative > 0 && work_->status == SolveStatus::converged)
+            work_->status = SolveStatus::indefinite;
     }
     template <class System>
     auto carrier_of(const System& system, Index v) const -> decltype(system.solid().carriers().data()) {
@@ -203,7 +211,9 @@ private:
         }
         inner -= work.freed_supports.transpose() * work.freed;
         work.freed_factor.compute(inner);
-        if (work.freed_factor.info() != Eigen::Success || !work.freed_factor.isPositive() || !(work.freed_factor.vectorD().minCoeff() > 0.0)) work.freed.resize(0, 0);
+        if (work.freed_factor.info() != Eigen::Success || !work.freed_factor.isPositive() ||
+            !(work.freed_factor.vectorD().minCoeff() > 0.0))
+            work.freed.resize(0, 0);
     }
 
     /// The cells that carry the vectors of a term, each once.
@@ -226,7 +236,8 @@ private:
     template <class System>
     static std::vector<Vec3> solid_places(const System& system) {
         std::vector<Vec3> places;
-        for (Index n = 0; n < system.solid().nodes(); ++n) places.push_back(system.layout().value[core::at(system.solid().first_vector() + n)]);
+        for (Index n = 0; n < system.solid().nodes(); ++n)
+            places.push_back(system.layout().value[core::at(system.solid().first_vector() + n)]);
         return places;
     }
     template <class System>
@@ -276,8 +287,10 @@ private:
         system.visit_solid_blocks([&](Index i, Index j, Mat3 block) {
             held.project(first + i, first + j, block);
             const auto entry = matrix.entry(static_cast<int>(i), static_cast<int>(j));
-            if (entry.value == nullptr) complete = false;
-            else entry.add(0, 0, block);
+            if (entry.value == nullptr)
+                complete = false;
+            else
+                entry.add(0, 0, block);
         });
         complete_held(system, matrix);
         return complete;
@@ -311,15 +324,18 @@ private:
                 const Index first = system.solid().first_vector();
                 held.project(first + i, first + j, block);
                 const auto entry = matrix.entry(static_cast<int>(i), static_cast<int>(j));
-                if (entry.value == nullptr) complete = false;
-                else entry.add(0, 0, block);
+                if (entry.value == nullptr)
+                    complete = false;
+                else
+                    entry.add(0, 0, block);
             }
             void point(const assembly::PointTerm& term) {
                 self.find_cells(system, term.vectors, cells);
                 weights.assign(cells.size(), solid::CellWeights::Zero());
                 for (std::size_t k = 0; k < term.vectors.size(); ++k)
                     if (const auto* carrier = self.carrier_of(system, term.vectors[k]))
-                        weights[core::at(std::find(cells.begin(), cells.end(), carrier->cell) - cells.begin())] += term.weights[k] * carrier->weights;
+                        weights[core::at(std::find(cells.begin(), cells.end(), carrier->cell) - cells.begin())] +=
+                            term.weights[k] * carrier->weights;
                 for (std::size_t a = 0; a < cells.size(); ++a)
                     for (std::size_t b = 0; b < cells.size(); ++b)
                         for (int i = 0; i < 8; ++i)
@@ -335,18 +351,21 @@ private:
                     for (Index v = 0; v < core::count(term.vectors); ++v) {
                         const auto* carrier = self.carrier_of(system, term.vectors[core::at(v)]);
                         if (carrier == nullptr || carrier->cell != b) continue;
-                        for (int j = 0; j < 8; ++j) half.middleCols<3>(3 * j) += carrier->weights[j] * term.stiffness.middleCols<3>(3 * v);
+                        for (int j = 0; j < 8; ++j)
+                            half.middleCols<3>(3 * j) += carrier->weights[j] * term.stiffness.middleCols<3>(3 * v);
                     }
                     for (const Index a : cells) {
                         whole.setZero(24, 24);
                         for (Index v = 0; v < core::count(term.vectors); ++v) {
                             const auto* carrier = self.carrier_of(system, term.vectors[core::at(v)]);
                             if (carrier == nullptr || carrier->cell != a) continue;
-                            for (int i = 0; i < 8; ++i) whole.middleRows<3>(3 * i) += carrier->weights[i] * half.middleRows<3>(3 * v);
+                            for (int i = 0; i < 8; ++i)
+                                whole.middleRows<3>(3 * i) += carrier->weights[i] * half.middleRows<3>(3 * v);
                         }
                         for (int i = 0; i < 8; ++i)
                             for (int j = 0; j < 8; ++j)
-                                add(system.solid().cell(a)[core::at(i)], system.solid().cell(b)[core::at(j)], Mat3(whole.block<3, 3>(3 * i, 3 * j)));
+                                add(system.solid().cell(a)[core::at(i)], system.solid().cell(b)[core::at(j)],
+                                    Mat3(whole.block<3, 3>(3 * i, 3 * j)));
                     }
                 }
             }

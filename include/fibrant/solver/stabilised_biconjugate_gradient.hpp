@@ -26,8 +26,8 @@ struct BiconjugateVectors {
 /// @param precondition     precondition(r, z): z = M^-1 r
 /// @param iteration_limit  > 0
 template <UnsymmetricSystem System, class Precondition>
-SolveReport stabilised_biconjugate_gradient(const System& system, const Precondition& precondition, const Vector& b, double tolerance,
-                                            int iteration_limit, BiconjugateVectors& work, Vector& x) {
+SolveReport stabilised_biconjugate_gradient(const System& system, const Precondition& precondition, const Vector& b,
+                                            double tolerance, int iteration_limit, BiconjugateVectors& work, Vector& x) {
     const scene::DofLayout& layout = system.layout();
     const assembly::HeldProjector held(layout);
     x.setZero(b.size());
@@ -67,12 +67,15 @@ SolveReport stabilised_biconjugate_gradient(const System& system, const Precondi
         report.residual = scaled_norm(layout, work.r) / norm;
         ++report.iterations;
         const double next = core::dot(work.shadow, work.r);
-        fresh = omega == 0.0 || std::abs(next) < 1e-12 * std::sqrt(core::dot(work.shadow, work.shadow) * core::dot(work.r, work.r));
+        fresh =
+            omega == 0.0 || std::abs(next) < 1e-12 * std::sqrt(core::dot(work.shadow, work.shadow) * core::dot(work.r, work.r));
         if (!fresh) work.p = work.r + next / rho * alpha / omega * (work.p - omega * work.v);
         rho = next;
     }
-    if (!std::isfinite(report.residual)) report.status = SolveStatus::not_finite;
-    else if (report.residual <= tolerance) report.status = SolveStatus::converged;
+    if (!std::isfinite(report.residual))
+        report.status = SolveStatus::not_finite;
+    else if (report.residual <= tolerance)
+        report.status = SolveStatus::converged;
     return report;
 }
 

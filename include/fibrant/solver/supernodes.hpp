@@ -102,7 +102,8 @@ private:
         const int n = vertices();
         start_.assign(core::at(n) + 1, 0);
         for (int v = 0; v < n; ++v)
-            for (SparseMatrix::InnerIterator it(graph, v); it; ++it) start_[core::at(place(v)) + 1] += place(static_cast<int>(it.row())) > place(v);
+            for (SparseMatrix::InnerIterator it(graph, v); it; ++it)
+                start_[core::at(place(v)) + 1] += place(static_cast<int>(it.row())) > place(v);
         for (int k = 0; k < n; ++k) start_[core::at(k) + 1] += start_[core::at(k)];
         later_.resize(core::at(start_.back()));
         std::vector<int> next(start_.begin(), start_.end() - 1);
@@ -205,7 +206,8 @@ private:
                 if (before.rows.empty() || before.rows.front() >= next.last || before.last != next.first) break;
                 const double c = before.last - before.first, p = next.last - next.first;
                 const double all = size(c + p, static_cast<double>(next.rows.size()));
-                const double added = own + zeros.back() + all - size(c, static_cast<double>(before.rows.size())) - size(p, static_cast<double>(next.rows.size()));
+                const double added = own + zeros.back() + all - size(c, static_cast<double>(before.rows.size())) -
+                                     size(p, static_cast<double>(next.rows.size()));
                 if (added > (c + p <= 4.0 ? 0.5 : c + p <= 16.0 ? 0.2 : 0.05) * all) break;
                 next.first = before.first;
                 own = added;
@@ -222,8 +224,8 @@ private:
         for (Supernode& s : list_) s.parent = s.rows.empty() ? -1 : supernode[core::at(s.rows.front())];
     }
 
-    /// Columns of a supernode that follow each other stand close to each other: what couples runs of them with others far away has
-    /// little rank, and rows of its children stay together in long runs.
+    /// Columns of a supernode that follow each other stand close to each other: what couples runs of them with others far away
+    /// has little rank, and rows of its children stay together in long runs.
     void sort_by_place(const SparseMatrix& graph, std::span<const Vec3> places) {
         std::vector<int> vertex(place_.size()), renamed(place_.size());
         for (int v = 0; v < vertices(); ++v) vertex[core::at(place(v))] = v;

@@ -56,21 +56,29 @@ public:
     void project(const scene::DofLayout& layout, Vector& z) const {
         Vector scalars = scene::tied_part(layout, z);
         solve(scalars);
-        core::parallel_for(core::count(chains_), [&](Index c) {
-            const Chain& chain = chains_[core::at(c)];
-            for (std::size_t k = 0; k < chain.scalars.size(); ++k)
-                z.segment(chain.first, chain.answer.rows()) -= scalars[chain.scalars[k]] * chain.answer.col(static_cast<Index>(k));
-        }, grain(layout, core::count(chains_)));
+        core::parallel_for(
+            core::count(chains_),
+            [&](Index c) {
+                const Chain& chain = chains_[core::at(c)];
+                for (std::size_t k = 0; k < chain.scalars.size(); ++k)
+                    z.segment(chain.first, chain.answer.rows()) -=
+                        scalars[chain.scalars[k]] * chain.answer.col(static_cast<Index>(k));
+            },
+            grain(layout, core::count(chains_)));
     }
     /// r <- Pi^T r
     void project_forces(const scene::DofLayout& layout, Vector& r) {
-        core::parallel_for(core::count(chains_), [&](Index c) {
-            Chain& chain = chains_[core::at(c)];
-            chain.share.noalias() = chain.answer.transpose() * r.segment(chain.first, chain.answer.rows());
-        }, grain(layout, core::count(chains_)));
+        core::parallel_for(
+            core::count(chains_),
+            [&](Index c) {
+                Chain& chain = chains_[core::at(c)];
+                chain.share.noalias() = chain.answer.transpose() * r.segment(chain.first, chain.answer.rows());
+            },
+            grain(layout, core::count(chains_)));
         Vector scalars = Vector::Zero(scalars_);
         for (const Chain& chain : chains_)
-            for (std::size_t k = 0; k < chain.scalars.size(); ++k) scalars[chain.scalars[k]] += chain.share[static_cast<Index>(k)];
+            for (std::size_t k = 0; k < chain.scalars.size(); ++k)
+                scalars[chain.scalars[k]] += chain.share[static_cast<Index>(k)];
         solve(scalars);
         scene::add_tied(layout, Vector(-scalars), r);
     }
@@ -80,7 +88,7 @@ private:
     struct Chain {
         Index first = 0, unknowns = 0;
         std::vector<Index> ties, scalars;  // rising
-        Matrix answer;               // B^-1 C^T, a column a scalar
+        Matrix answer;                     // B^-1 C^T, a column a scalar
         Vector share;
     };
     /// Chains that ties join.
@@ -120,7 +128,9 @@ private:
         for (std::size_t t = 0; t < layout.ties.size(); ++t)
             for (Index a = 0; a < layout.ties[t].count; ++a) {
                 Index colour = 0;
-                const auto taken = [&](Index c) { return std::ranges::find(free_from[core::at(c)], colour) != free_from[core::at(c)].end(); };
+                const auto taken = [&](Index c) {
+                    return std::ranges::find(free_from[core::at(c)], colour) != free_from[core::at(c)].end();
+                };
                 while (std::ranges::any_of(tied_chains_[t], taken)) ++colour;
                 if (colour == core::count(colours)) colours.emplace_back();
                 colours[core::at(colour)].emplace_back(static_cast<Index>(t), a);
@@ -131,13 +141,15 @@ private:
             right.setZero(layout.unknowns());
             for (const auto& [t, a] : colour) {
                 const scene::Tie& tie = layout.ties[core::at(t)];
-                for (std::size_t k = 0; k < tie.vectors.size(); ++k) right.segment<3>(3 * tie.vectors[k]) += tie.weights[k] * tie.axes.col(a);
+                for (std::size_t k = 0; k < tie.vectors.size(); ++k)
+                    right.segment<3>(3 * tie.vectors[k]) += tie.weights[k] * tie.axes.col(a);
             }
             inverse(right, answer);
             for (const auto& [t, a] : colour)
                 for (const Index c : tied_chains_[core::at(t)]) {
                     Chain& chain = chains_[core::at(c)];
-                    const auto place = std::lower_bound(chain.scalars.begin(), chain.scalars.end(), layout.ties[core::at(t)].first + a);
+                    const auto place =
+                        std::lower_bound(chain.scalars.begin(), chain.scalars.end(), layout.ties[core::at(t)].first + a);
                     chain.answer.col(place - chain.scalars.begin()) = answer.segment(chain.first, chain.unknowns);
                 }
         }
@@ -178,7 +190,8 @@ private:
                     if (at < chain.first || at >= last) continue;
                     for (std::size_t column = 0; column < chain.scalars.size(); ++column)
                         yield(place_[core::at(chain.scalars[row])], place_[core::at(chain.scalars[column])]) +=
-                            tie.weights[k] * tie.axes.col(a).dot(chain.answer.block<3, 1>(at - chain.first, static_cast<Index>(column)));
+                            tie.weights[k] *
+                            tie.axes.col(a).dot(chain.answer.block<3, 1>(at - chain.first, static_cast<Index>(column)));
                 }
         }
     }

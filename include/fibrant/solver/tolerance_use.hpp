@@ -6,8 +6,8 @@
 
 namespace fibrant::solver {
 
-/// What an accepted increment ended with, each over what the parameters state: at most 1 where that was kept [1]. A stage that is loose
-/// by its own word may be beyond.
+/// What an accepted increment ended with, each over what the parameters state: at most 1 where that was kept [1]. A stage that is
+/// loose by its own word may be beyond.
 struct ToleranceUse {
     double residual = 0.0;     ///< over IterationParameters.residual_tolerance
     double turn = 0.0;         ///< of normals in the last normal pass, over normal_tolerance

@@ -18,7 +18,8 @@ namespace fibrant::solver {
 /// The factors of B take the stiff modes of single fibres exactly; what they leave is the bending of neighbours that contact
 /// ties together, which the coarse space has. Forms no matrix but P^T A P. A solve that takes long goes on with a finer
 /// space: a quarter of the fibres in a cluster, or, where clusters are single chains, twice the stations. It is formed when
-/// first wanted, and kept until the next preparation; every solve begins with the coarser one, so that no solve depends on another.
+/// first wanted, and kept until the next preparation; every solve begins with the coarser one, so that no solve depends on
+/// another.
 class TwoLevelPcg {
 public:
     struct Parameters {
@@ -63,7 +64,9 @@ private:
         const scene::DofLayout* layout;
         RigidCoarseSpace<>* const* space;
         void operator()(const Vector& r, Vector& z) const { own->apply(*layout, **space, r, z); }
-        bool with_product(const Vector& r, Vector& z, Vector& product) const { return own->apply(*layout, **space, r, z, &product); }
+        bool with_product(const Vector& r, Vector& z, Vector& product) const {
+            return own->apply(*layout, **space, r, z, &product);
+        }
     };
     enum class Fine : std::uint8_t { none, ready, useless };
     struct Work {
@@ -94,16 +97,20 @@ private:
         work.fine = Fine::useless;
         const int fibres = std::max(1, parameters_.fibres_per_cluster / 4);
         work.finer.analyse(system, fibres, parameters_.elements_per_station);
-        if (work.finer.stations() == work.coarse.stations()) work.finer.analyse(system, fibres, std::max(1, parameters_.elements_per_station / 2));
+        if (work.finer.stations() == work.coarse.stations())
+            work.finer.analyse(system, fibres, std::max(1, parameters_.elements_per_station / 2));
         if (work.finer.stations() == work.coarse.stations()) return false;
         const scene::DofLayout& layout = system.layout();
         const assembly::HeldProjector held(layout);
         work.finer.begin(layout);
-        core::parallel_for(core::count(layout.chains), [&](Index chain) {
-            Matrix band;
-            system.chain_band(chain, band);
-            work.finer.add_chain(layout, held, chain, band);
-        }, grain(layout, core::count(layout.chains)));
+        core::parallel_for(
+            core::count(layout.chains),
+            [&](Index chain) {
+                Matrix band;
+                system.chain_band(chain, band);
+                work.finer.add_chain(layout, held, chain, band);
+            },
+            grain(layout, core::count(layout.chains)));
         if (work.finer.finish(system) != SolveStatus::not_finite) work.fine = Fine::ready;
         return work.fine == Fine::ready;
     }
@@ -127,7 +134,8 @@ SolveStatus TwoLevelPcg::prepare(const System& system) {
     const assembly::HeldProjector held(layout);
     work.coarse.begin(layout);
     work.fine = Fine::none;
-    work.status = work.chains.prepare(system, [&](Index chain, const Matrix& band) { work.coarse.add_chain(layout, held, chain, band); });
+    work.status =
+        work.chains.prepare(system, [&](Index chain, const Matrix& band) { work.coarse.add_chain(layout, held, chain, band); });
     if (work.status == SolveStatus::not_finite) return work.status;
     work.ties.prepare(layout, [&](const Vector& r, Vector& z) { work.chains.apply_factors(layout, r, z); });
     const SolveStatus coarse = work.coarse.finish(system);
@@ -146,7 +154,8 @@ SolveReport TwoLevelPcg::solve(const System& system, const Vector& b, double tol
     const Cycle precondition{this, &system.layout(), &space};
     if constexpr (UnsymmetricSystem<System>)
         if (parameters_.unsymmetric && system.unsymmetric())
-            return stabilised_biconjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.biconjugate, x);
+            return stabilised_biconjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit,
+                                                   work.biconjugate, x);
     const auto renewed = [&](int iterations) {
         if (iterations != parameters_.refine_after || space == &work.finer || !refine(system)) return false;
         space = &work.finer;

@@ -20,13 +20,15 @@ struct List {
 
 namespace detail {
 template <class B, class... T>
-    requires(TermFor<T, B> && ...)
+    requires(TermFor<T, B>&&...)
 void take_list(const List<T...>&);
 }  // namespace detail
 
 /// List<...> of terms that can be made for a beam.
 template <class L, class B>
-concept ListFor = requires(const L& list) { detail::take_list<B>(list); };
+concept ListFor = requires(const L& list) {
+    detail::take_list<B>(list);
+};
 
 namespace detail {
 template <class T>
@@ -74,9 +76,13 @@ public:
         });
     }
     template <class One>
-    For<One, B>& get() noexcept { return static_cast<detail::Leaf<For<One, B>>&>(*this).term; }
+    For<One, B>& get() noexcept {
+        return static_cast<detail::Leaf<For<One, B>>&>(*this).term;
+    }
     template <class One>
-    const For<One, B>& get() const noexcept { return static_cast<const detail::Leaf<For<One, B>>&>(*this).term; }
+    const For<One, B>& get() const noexcept {
+        return static_cast<const detail::Leaf<For<One, B>>&>(*this).term;
+    }
 
 private:
     template <class One, class Parameters>

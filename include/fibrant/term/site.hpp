@@ -52,9 +52,16 @@ class Site {
 public:
     /// @param layout  of all unknowns: those of fibres, and of solids behind them
     template <beam::BeamElement B>
-    Site(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const scene::Channels& channels, const scene::DofLayout& layout)
-        : assembly_{&assembly}, channels_{&channels}, layout_{&layout}, fibres_{mesh.fibres()}, rest_state_{&mesh.rest_state()},
-          vectors_{B::nodes * B::vectors_per_node}, step_{beam::Mesh<B>::vectors_per_element_step}, weights_{&weights_of<B>} {}
+    Site(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const scene::Channels& channels,
+         const scene::DofLayout& layout)
+        : assembly_{&assembly},
+          channels_{&channels},
+          layout_{&layout},
+          fibres_{mesh.fibres()},
+          rest_state_{&mesh.rest_state()},
+          vectors_{B::nodes * B::vectors_per_node},
+          step_{beam::Mesh<B>::vectors_per_element_step},
+          weights_{&weights_of<B>} {}
 
     const scene::Assembly& assembly() const noexcept { return *assembly_; }
     const scene::DofLayout& layout() const noexcept { return *layout_; }
@@ -73,15 +80,16 @@ public:
     }
     /// The same at a part of the fibre's rest length. @throws std::invalid_argument naming what is no place of a fibre
     CentrePoint point(const scene::Station& at) const {
-        if (at.fibre < 0 || at.fibre >= core::count(fibres_)) core::refuse("Station.fibre", std::to_string(at.fibre), "a fibre of this assembly");
+        if (at.fibre < 0 || at.fibre >= core::count(fibres_))
+            core::refuse("Station.fibre", std::to_string(at.fibre), "a fibre of this assembly");
         core::require_between("Station.fraction", at.fraction, 0.0, 1.0);
         const Index elements = fibres_[core::at(at.fibre)].elements;
         const double u = at.fraction * static_cast<double>(elements);
         const Index element = std::min(elements - 1, static_cast<Index>(u));
         return point(at.fibre, element, 2.0 * (u - static_cast<double>(element)) - 1.0);
     }
-    /// see(point, weight) at points of a fibre between two parts of its rest length: a sum of weight * f(point) is the integral of
-    /// f over the rest length, exact where f is of the fifth degree in xi within an element [length].
+    /// see(point, weight) at points of a fibre between two parts of its rest length: a sum of weight * f(point) is the integral
+    /// of f over the rest length, exact where f is of the fifth degree in xi within an element [length].
     template <class See>
     void each_point(Index fibre, double from, double to, const See& see) const {
         const beam::MeshFibre& one = fibres_[core::at(fibre)];
@@ -91,7 +99,8 @@ public:
             if (!(b > a)) continue;
             const std::array<std::array<double, 2>, 3> rule{{{-place, 5.0 / 18.0}, {0.0, 8.0 / 18.0}, {place, 5.0 / 18.0}}};
             for (const auto& [at, weight] : rule)
-                see(point(fibre, e, 2.0 * (0.5 * (a + b) + 0.5 * (b - a) * at - static_cast<double>(e)) - 1.0), weight * (b - a) * one.element_length);
+                see(point(fibre, e, 2.0 * (0.5 * (a + b) + 0.5 * (b - a) * at - static_cast<double>(e)) - 1.0),
+                    weight * (b - a) * one.element_length);
         }
     }
 
@@ -117,7 +126,8 @@ private:
 template <beam::BeamElement B>
 class SiteOf : public Site {
 public:
-    SiteOf(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const scene::Channels& channels, const scene::DofLayout& layout)
+    SiteOf(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const scene::Channels& channels,
+           const scene::DofLayout& layout)
         : Site(assembly, mesh, channels, layout), mesh_{&mesh}, channels_{&channels} {}
     const beam::Mesh<B>& mesh() const noexcept { return *mesh_; }
     const scene::Channels& channels() const noexcept { return *channels_; }

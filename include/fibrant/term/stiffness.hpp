@@ -8,14 +8,18 @@
 
 namespace fibrant::term {
 
-/// Stiffness within elements, which the bands of the fibres hold. What is added is minus the derivative of external forces, or the
-/// derivative of internal ones, and symmetric.
+/// Stiffness within elements, which the bands of the fibres hold. What is added is minus the derivative of external forces, or
+/// the derivative of internal ones, and symmetric.
 class Bands {
 public:
-    /// @param to  has add_diagonal(vector, stiffness) and add_element(fibre, element, first entry, column by column); outlives this
+    /// @param to  has add_diagonal(vector, stiffness) and add_element(fibre, element, first entry, column by column); outlives
+    /// this
     template <class To>
     explicit Bands(To& to) noexcept
-        : to_{&to}, diagonal_{[](void* target, Index vector, const Mat3& stiffness) { static_cast<To*>(target)->add_diagonal(vector, stiffness); }},
+        : to_{&to},
+          diagonal_{[](void* target, Index vector, const Mat3& stiffness) {
+              static_cast<To*>(target)->add_diagonal(vector, stiffness);
+          }},
           element_{[](void* target, Index fibre, Index element, const double* entries) {
               static_cast<To*>(target)->add_element(fibre, element, entries);
           }} {}

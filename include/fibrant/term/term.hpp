@@ -85,17 +85,20 @@ concept Named = requires {
 };
 /// Scaled by channels, or begun anew with each increment.
 template <class T>
-concept Driven = requires(T term, const typename T::Parameters& parameters, std::span<const double> amplitudes, const Vector& accepted) {
+concept Driven = requires(T term, const typename T::Parameters& parameters, std::span<const double> amplitudes,
+                          const Vector& accepted) {
     { T::channels(parameters) } -> std::same_as<std::vector<std::string>>;  // names that it uses
     term.begin(amplitudes, accepted);                                       // of all channels; of an attempt at an increment
 };
 /// Looks for what it acts on.
 template <class T>
 concept Searched = requires(T term, const Vector& state, const Vector& accepted, const Vector& step, double length) {
-    term.detect(state, accepted, length);                         // outer loop; how far from touching what matters is [length]
-    { term.refresh(state, accepted) } -> std::same_as<double>;    // middle loop: largest turn of a normal [radian]
-    term.evaluate(state);                                         // inner loop, before forces
-    { term.largest_part(step, length) } -> std::same_as<double>;  // of a step, in (0, 1], so that nothing approaches by more than `length`
+    term.detect(state, accepted, length);                       // outer loop; how far from touching what matters is [length]
+    { term.refresh(state, accepted) } -> std::same_as<double>;  // middle loop: largest turn of a normal [radian]
+    term.evaluate(state);                                       // inner loop, before forces
+    {
+        term.largest_part(step, length)
+        } -> std::same_as<double>;  // of a step, in (0, 1], so that nothing approaches by more than `length`
 };
 /// Pushes. An external term adds its forces; all others add internal ones, which resist.
 template <class T>
@@ -105,7 +108,9 @@ concept Pushing = requires(const T term, const Vector& state, Vector& forces, In
     { term.spring(fibre) } -> std::same_as<double>;  // on all nodal vectors of a fibre, -1: of what is no fibre [force / length]
 };
 template <class T>
-concept Coupling = requires(const T term, const Vector& state, Couplings& couplings) { term.add_couplings(state, couplings); };
+concept Coupling = requires(const T term, const Vector& state, Couplings& couplings) {
+    term.add_couplings(state, couplings);
+};
 /// Energies, of a state and of the increment since the last accepted one [force * length].
 template <class T>
 concept Storing = requires(const T term, const Vector& state) {
@@ -121,26 +126,28 @@ concept Remembering = requires(T term, const Vector& state, const SeeNumber& see
 };
 /// Adds to what observers are shown.
 template <class T>
-concept Shown = requires(const T term, const Vector& state, observe::Snapshot& shot) { term.show(state, shot); };
+concept Shown = requires(const T term, const Vector& state, observe::Snapshot& shot) {
+    term.show(state, shot);
+};
 
-/// A term that makes a model move in time. Forces of the fibres are then those that it averages over a step; it is told how long that lasts,
-/// and refuses a step that errs too much.
+/// A term that makes a model move in time. Forces of the fibres are then those that it averages over a step; it is told how long
+/// that lasts, and refuses a step that errs too much.
 template <class T>
 concept Moving = requires(T term, const T seen, const Vector& state, Vector& sum, double number) {
-    term.last(number);                       // duration of the next increments; before `begin` [time]
-    term.add_averaged(state, state, sum);    // state, forces of the fibres in it
-    { seen.share() } -> std::same_as<double>;               // of those in that average: factor on their stiffness
-    { seen.left(state) } -> std::same_as<Vector>;           // of them, what the average has not
-    { seen.rounding() } -> std::same_as<double>;            // norm of what rounding makes of its forces [force]
-    { seen.begins() } -> std::same_as<bool>;                // the motion, with this step
-    { seen.kinetic(state) } -> std::same_as<double>;        // [force length]
-    { term.refusal(state) } -> std::same_as<std::string>;   // empty: none
-    { seen.may_grow(number) } -> std::same_as<bool>;        // the next step, by a factor
+    term.last(number);                                     // duration of the next increments; before `begin` [time]
+    term.add_averaged(state, state, sum);                  // state, forces of the fibres in it
+    { seen.share() } -> std::same_as<double>;              // of those in that average: factor on their stiffness
+    { seen.left(state) } -> std::same_as<Vector>;          // of them, what the average has not
+    { seen.rounding() } -> std::same_as<double>;           // norm of what rounding makes of its forces [force]
+    { seen.begins() } -> std::same_as<bool>;               // the motion, with this step
+    { seen.kinetic(state) } -> std::same_as<double>;       // [force length]
+    { term.refusal(state) } -> std::same_as<std::string>;  // empty: none
+    { seen.may_grow(number) } -> std::same_as<bool>;       // the next step, by a factor
 };
 
 /// Something that pushes on fibres.
-/// Owed beyond the syntax, and checked by tests/term/term_contract.hpp: internal forces are the derivative of what is stored, stiffness is
-/// that of forces, `restore` gives back what was accepted, `each` has all of it, and `largest_part` is in (0, 1].
+/// Owed beyond the syntax, and checked by tests/term/term_contract.hpp: internal forces are the derivative of what is stored,
+/// stiffness is that of forces, `restore` gives back what was accepted, `each` has all of it, and `largest_part` is in (0, 1].
 template <class T>
 concept Term = Named<T> && Driven<T> && Searched<T> && Pushing<T> && Coupling<T> && Storing<T> && Remembering<T> && Shown<T>;
 
@@ -164,7 +171,7 @@ using For = typename detail::MadeFor<T, B>::Type;
 
 /// A term, or one that is made for each beam, that can be built from a site and its parameters.
 template <class T, class B>
-concept TermFor = Term<For<T, B>> &&
-                  std::constructible_from<For<T, B>, const typename detail::MadeFor<T, B>::Seen&, const typename For<T, B>::Parameters&>;
+concept TermFor = Term<For<T, B>> && std::constructible_from < For<T, B>,
+const typename detail::MadeFor<T, B>::Seen&, const typename For<T, B>::Parameters& > ;
 
 }  // namespace fibrant::term

@@ -23,7 +23,8 @@ const double r = 0.0201;
 
 knot::KnotParameters tied(double slenderness, Index elements, int crossings = 3) {
     const double R = r / slenderness;
-    return {.radius = r, .loop_radius = R, .tail = 3.0 * R, .crossings = crossings, .material = {7300.0, 0.3}, .elements = elements};
+    return {
+        .radius = r, .loop_radius = R, .tail = 3.0 * R, .crossings = crossings, .material = {7300.0, 0.3}, .elements = elements};
 }
 
 simulation::ModelParameters<Knotted> model(const knot::KnotParameters& parameters) {
@@ -43,7 +44,8 @@ simulation::Loading<Knotted> settling(const knot::KnotParameters& parameters) {
     simulation::Stage<Knotted> stage;
     stage.name = "settle";
     stage.increments = 2;
-    stage.damping = 10.0 * 0.25 * 7300.0 * std::numbers::pi * r * r * r * r / std::pow(parameters.loop_radius, 3) / static_cast<double>(parameters.elements);
+    stage.damping = 10.0 * 0.25 * 7300.0 * std::numbers::pi * r * r * r * r / std::pow(parameters.loop_radius, 3) /
+                    static_cast<double>(parameters.elements);
     stage.damping_decay = 0.5, stage.damping_share = 1e-3;
     stage.until = simulation::until_settled(0.05 * r, 0.02 * r);
     stage.most_increments = 80;
@@ -63,9 +65,12 @@ struct Knot {
         CHECK(report.contact.greatest_penetration < 0.02 * r);
         const knot::KnotState state = knot::measure(simulator, parameters);
         const double bending = 0.25 * 7300.0 * std::numbers::pi * r * r * r * r, R = state.shortening / (2.0 * std::numbers::pi);
-        std::printf("r/R %.5f: F R^2 / EI %.5f (theory %.5f), contact force %.4f (0.4923 in the limit), virial %.1e, imbalance %.1e, %td contacts, %td increments, %.1f s\n", r / R,
-                    state.force * R * R / bending, knot::loose_force(3, r / R), state.contact_force * std::sqrt(r) * std::pow(R, 1.5) / bending, state.virial, state.imbalance, report.contact.active,
-                    core::count(report.increments), report.wall_seconds);
+        std::printf(
+            "r/R %.5f: F R^2 / EI %.5f (theory %.5f), contact force %.4f (0.4923 in the limit), virial %.1e, imbalance %.1e, %td "
+            "contacts, %td increments, %.1f s\n",
+            r / R, state.force * R * R / bending, knot::loose_force(3, r / R),
+            state.contact_force * std::sqrt(r) * std::pow(R, 1.5) / bending, state.virial, state.imbalance, report.contact.active,
+            core::count(report.increments), report.wall_seconds);
         return state;
     }
 };
@@ -77,13 +82,15 @@ TEST_CASE("a rod is tied without being stretched, and nothing of it is nearer th
         const auto frames = scene::reference_frames(shape, 4001);
         double nearest = 1.0;
         for (std::size_t i = 0; i < frames.size(); i += 2)
-            for (std::size_t j = i + 60; j < frames.size(); j += 2) nearest = std::min(nearest, (frames[i].position - frames[j].position).norm());
+            for (std::size_t j = i + 60; j < frames.size(); j += 2)
+                nearest = std::min(nearest, (frames[i].position - frames[j].position).norm());
         std::printf("%d crossings: nearest %.4f r\n", crossings, nearest / r);
         CHECK(nearest > 1.9 * r);  // strands lean in the braid
         CHECK((shape(1.0) - shape(0.0)).normalized().x() == test::near(1.0, 1e-5));
     }
     knot::KnotParameters parameters = tied(0.1, 200);
-    CHECK(test::refusal([&] { parameters.validate(); }).find("KnotParameters.loop_radius = 0.201, but it must be > 20 radii") == 0);
+    CHECK(test::refusal([&] { parameters.validate(); }).find("KnotParameters.loop_radius = 0.201, but it must be > 20 radii") ==
+          0);
 }
 
 TEST_CASE("a loose overhand knot pulls and presses as the theory says, the better the thinner the rod") {
@@ -91,7 +98,8 @@ TEST_CASE("a loose overhand knot pulls and presses as the theory says, the bette
     for (const double slenderness : {0.01, 0.005}) {
         Knot tied_knot(tied(slenderness, slenderness > 0.007 ? 240 : 320));
         const knot::KnotState state = tied_knot.run(settling(tied_knot.parameters));
-        const double bending = 0.25 * 7300.0 * std::numbers::pi * r * r * r * r, R = state.shortening / (2.0 * std::numbers::pi), root = std::sqrt(r / R);
+        const double bending = 0.25 * 7300.0 * std::numbers::pi * r * r * r * r, R = state.shortening / (2.0 * std::numbers::pi),
+                     root = std::sqrt(r / R);
         // What is left is of the order of (r / R): 2.4 of it at either radius. The knot is not known any better in closed form.
         const double error = state.force * R * R / bending / knot::loose_force(3, r / R) - 1.0;
         CHECK(std::abs(error) < 3.0 * r / R);
@@ -103,7 +111,7 @@ TEST_CASE("a loose overhand knot pulls and presses as the theory says, the bette
         if (last_root > 0.0) {
             const double limit = sigma - (last_sigma - sigma) / (last_root - root) * root;
             std::printf("contact force in the limit %.4f\n", limit);
-            CHECK(std::abs(limit / 0.4923009124 - 1.0) < 0.1);  // what is of the second order in the root bends that line
+            CHECK(std::abs(limit / 0.4923009124 - 1.0) < 0.1);    // what is of the second order in the root bends that line
             CHECK(std::abs(error) < 0.6 * std::abs(last_error));  // with r / R, or faster
         }
         last_error = error, last_sigma = sigma, last_root = root;
@@ -125,9 +133,12 @@ TEST_CASE("friction adds mu times the contact force to the pull that tightens a 
     };
     // Every contact has to slide, which the loop's own give delays by about a radius; the knot hardly changes by that.
     const knot::KnotState tight = drawn(1.0 * r, 10), loosened = drawn(-1.0 * r, 16);
-    const double added = 0.5 * (tight.force - loosened.force), expected = 0.5 * mu * (tight.contact_force + loosened.contact_force);
-    std::printf("friction: pull %.6f, %.6f, %.6f; half of the difference over mu P %.4f\n", loosened.force, smooth.force, tight.force, added / expected);
-    // Strands slide along each other by what is drawn out, less what goes into the braid's turning: of the order of (r / R)^1/2 mu.
+    const double added = 0.5 * (tight.force - loosened.force),
+                 expected = 0.5 * mu * (tight.contact_force + loosened.contact_force);
+    std::printf("friction: pull %.6f, %.6f, %.6f; half of the difference over mu P %.4f\n", loosened.force, smooth.force,
+                tight.force, added / expected);
+    // Strands slide along each other by what is drawn out, less what goes into the braid's turning: of the order of (r / R)^1/2
+    // mu.
     CHECK(std::abs(added / expected - 1.0) < 0.03);
     CHECK(std::abs(0.5 * (tight.force + loosened.force) / smooth.force - 1.0) < 0.06);  // friction moves the contacts a little
 }

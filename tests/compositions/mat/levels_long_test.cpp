@@ -35,13 +35,23 @@ struct Mat {
 };
 
 mat::MatParameters dense(std::uint64_t seed) {
-    mat::MatParameters parameters{.radius = 1.0, .length = 60.0, .width = 48.0, .fibres = 50, .cut = true, .tilt_deg = 20.0, .clearance = -2.0, .material = {1.0, 0.2}, .elements = 15};
+    mat::MatParameters parameters{.radius = 1.0,
+                                  .length = 60.0,
+                                  .width = 48.0,
+                                  .fibres = 50,
+                                  .cut = true,
+                                  .tilt_deg = 20.0,
+                                  .clearance = -2.0,
+                                  .material = {1.0, 0.2},
+                                  .elements = 15};
     parameters.seed = seed;
     parameters.height = parameters.volume_fraction(1.0) / 0.15;
     return parameters;
 }
 
-TEST_CASE("dense mats of random fibres press on both plates alike, by a power of the volume fraction above van Wyk's, and each fibre touches as many as theory says") {
+TEST_CASE(
+    "dense mats of random fibres press on both plates alike, by a power of the volume fraction above van Wyk's, and each fibre "
+    "touches as many as theory says") {
     const mat::LevelParameters levels{.last = 0.33};
     double slopes = 0.0;
     const int mats = 5;
@@ -59,11 +69,17 @@ TEST_CASE("dense mats of random fibres press on both plates alike, by a power of
             const mat::LevelState& level = record.levels()[k];
             const double fraction = level.mat.volume_fraction, volume = parameters.width * parameters.width * level.mat.height;
             CHECK(fraction == test::near(0.15 * std::pow(1.17, static_cast<double>(k + 1)), 1e-9));
-            // Of a length of fibre: what long ones cross, and what the pieces of this mat meet if their ends are round, all at random.
+            // Of a length of fibre: what long ones cross, and what the pieces of this mat meet if their ends are round, all at
+            // random.
             const double crossed = level.mat.contacts_without_bulk;
-            const double met = 2.0 / whole * mat::expected_pairs(pieces, whole * parameters.length / pieces, parameters.diameter(), level.mat.sine, volume);
-            std::printf("seed %d, fraction %.4f: pressure %.3e and %.3e of the modulus, springs %.1e, contacts %.2f, between %.2f and %.2f\n", seed, fraction, level.mat.pressure,
-                        level.mat.lower_pressure, level.springs, level.mat.contacts_per_fibre, crossed, met);
+            const double met =
+                2.0 / whole *
+                mat::expected_pairs(pieces, whole * parameters.length / pieces, parameters.diameter(), level.mat.sine, volume);
+            std::printf(
+                "seed %d, fraction %.4f: pressure %.3e and %.3e of the modulus, springs %.1e, contacts %.2f, between %.2f and "
+                "%.2f\n",
+                seed, fraction, level.mat.pressure, level.mat.lower_pressure, level.springs, level.mat.contacts_per_fibre,
+                crossed, met);
             CHECK(level.springs < 0.03);
             if (k > 0) {  // at the first level there is hardly a pressure
                 CHECK(std::abs(level.mat.pressure - level.mat.lower_pressure) < 0.05 * level.mat.pressure);
@@ -79,12 +95,14 @@ TEST_CASE("dense mats of random fibres press on both plates alike, by a power of
         slopes += slope / mats;
         CHECK(slope > 3.0);  // van Wyk's, of fibres in all directions
     }
-    // A pressed mat crosses itself no less than at random: each from the third level on (above), from the second on the mean of all.
-    for (std::size_t k = 0; k < 5; ++k) std::printf("level %d: contacts over those at random, less one: %.3f\n", static_cast<int>(k), surplus[k]);
+    // A pressed mat crosses itself no less than at random: each from the third level on (above), from the second on the mean of
+    // all.
+    for (std::size_t k = 0; k < 5; ++k)
+        std::printf("level %d: contacts over those at random, less one: %.3f\n", static_cast<int>(k), surplus[k]);
     for (std::size_t k = 1; k < 5; ++k) CHECK(surplus[k] > 0.0);
     std::printf("power of the volume fraction from 0.24 to 0.33: %.2f\n", slopes);
-    // Toll has 5 for fibres in a plane, and a threshold makes it steeper. Ten mats, five of them with contacts that may soften more, gave 6.28 with
-    // a standard deviation of 0.63: the mean of those here within twice that over the root of their number.
+    // Toll has 5 for fibres in a plane, and a threshold makes it steeper. Ten mats, five of them with contacts that may soften
+    // more, gave 6.28 with a standard deviation of 0.63: the mean of those here within twice that over the root of their number.
     CHECK(std::abs(slopes - 6.28) < 2.0 * 0.63 / std::sqrt(static_cast<double>(mats)));
 }
 

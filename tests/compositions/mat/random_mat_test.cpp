@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Random fibres: as many pairs as the excluded volume says, as many as brute force finds, and none in another one where they may not be.
+// Random fibres: as many pairs as the excluded volume says, as many as brute force finds, and none in another one where they may
+// not be.
 #include <fibrant/compositions/mat/random_mat.hpp>
 #include <fibrant/proximity/brute_search.hpp>
 #include <fibrant/proximity/grid_search.hpp>
@@ -44,7 +45,8 @@ Soft soft(mat::MatParameters parameters, std::uint64_t seed, bool periodic) {
                     const Vec3 shift = w * Vec3(i, j, k);
                     for (const mat::MatFibre& fibre : fibres) {
                         const Vec3 middle = fibre.middle + shift;
-                        if (middle.minCoeff() > -margin && middle.maxCoeff() < w + margin) soft.ends.push_back({fibre(0.0) + shift, fibre(1.0) + shift});
+                        if (middle.minCoeff() > -margin && middle.maxCoeff() < w + margin)
+                            soft.ends.push_back({fibre(0.0) + shift, fibre(1.0) + shift});
                     }
                 }
     for (const auto& e : soft.ends) soft.lines.push_back({.points = e, .radius = parameters.radius});
@@ -80,16 +82,18 @@ TEST_CASE("random fibres touch as often as the excluded volume says, and the sea
         }
         // Pairs of one box scatter by about 1.5 of the root of their number.
         const double sigma = 1.5 * std::sqrt(expected / boxes);
-        std::printf("%s: %.1f pairs a box, %.1f by the excluded volume, %.2f sigma\n", planar ? "planar" : "isotropic", sum / boxes, expected, (sum / boxes - expected) / sigma);
+        std::printf("%s: %.1f pairs a box, %.1f by the excluded volume, %.2f sigma\n", planar ? "planar" : "isotropic",
+                    sum / boxes, expected, (sum / boxes - expected) / sigma);
         CHECK(std::abs(sum / boxes - expected) < 3.0 * sigma);
     }
 }
 
 TEST_CASE("directions of a mat are uniform on the sphere, or on the band of it that the tilt leaves") {
-    // Archimedes: heights on a sphere are uniform, and independent of the azimuth. Kolmogorov's distance of n uniform numbers is above 1.95 / sqrt(n)
-    // once in a thousand times.
+    // Archimedes: heights on a sphere are uniform, and independent of the azimuth. Kolmogorov's distance of n uniform numbers is
+    // above 1.95 / sqrt(n) once in a thousand times.
     for (const double tilt_deg : {90.0, 35.0}) {
-        mat::MatParameters parameters{.radius = 0.01, .length = 0.5, .width = 2.0, .height = 1.0, .fibres = 1, .tilt_deg = tilt_deg};
+        mat::MatParameters parameters{
+            .radius = 0.01, .length = 0.5, .width = 2.0, .height = 1.0, .fibres = 1, .tilt_deg = tilt_deg};
         const std::size_t n = 20000;
         const double highest = std::sin(tilt_deg * std::numbers::pi / 180.0);
         mat::Draws draw(3);
@@ -99,7 +103,8 @@ TEST_CASE("directions of a mat are uniform on the sphere, or on the band of it t
         for (std::size_t k = 0; k < n; ++k) {
             const mat::MatFibre fibre = mat::drawn_fibre(parameters, draw);
             CHECK(std::abs(fibre.along.norm() - 1.0) < 1e-14);
-            height.push_back(0.5 * (1.0 + fibre.along.z() / highest)), azimuth.push_back(0.5 + std::atan2(fibre.along.y(), fibre.along.x()) / (2.0 * std::numbers::pi));
+            height.push_back(0.5 * (1.0 + fibre.along.z() / highest)),
+                azimuth.push_back(0.5 + std::atan2(fibre.along.y(), fibre.along.x()) / (2.0 * std::numbers::pi));
             both += 12.0 * (height.back() - 0.5) * (azimuth.back() - 0.5) / std::sqrt(static_cast<double>(n));
             middle += fibre.middle / static_cast<double>(n);
         }
@@ -107,10 +112,12 @@ TEST_CASE("directions of a mat are uniform on the sphere, or on the band of it t
         for (auto* uniform : {&height, &azimuth}) {
             std::sort(uniform->begin(), uniform->end());
             double furthest = 0.0;
-            for (std::size_t k = 0; k < n; ++k) furthest = std::max(furthest, std::abs((*uniform)[k] - (static_cast<double>(k) + 0.5) / static_cast<double>(n)));
+            for (std::size_t k = 0; k < n; ++k)
+                furthest = std::max(furthest, std::abs((*uniform)[k] - (static_cast<double>(k) + 0.5) / static_cast<double>(n)));
             CHECK(furthest * std::sqrt(static_cast<double>(n)) < 1.95);
         }
-        for (int k = 0; k < 3; ++k) CHECK(std::abs(middle[k] / (k < 2 ? 2.0 : 1.0) - 0.5) < 3.3 / std::sqrt(12.0 * static_cast<double>(n)));
+        for (int k = 0; k < 3; ++k)
+            CHECK(std::abs(middle[k] / (k < 2 ? 2.0 : 1.0) - 0.5) < 3.3 / std::sqrt(12.0 * static_cast<double>(n)));
     }
 }
 
@@ -142,16 +149,27 @@ TEST_CASE("fibres of a mat are inside their box and apart from each other, the s
     }
 }
 
-TEST_CASE("a mat that is cut at its sides has as much fibre there as inside, of all directions of the plane, and the length that was asked for") {
-    // Outside of the inner square are three quarters of the area, less the rim of a radius that no axis may reach. What is shorter than a
-    // tenth of a fibre is left out at the sides: s^2 / pi of each length of side for one fibre an area, a 150th of all that there is.
+TEST_CASE(
+    "a mat that is cut at its sides has as much fibre there as inside, of all directions of the plane, and the length that was "
+    "asked for") {
+    // Outside of the inner square are three quarters of the area, less the rim of a radius that no axis may reach. What is
+    // shorter than a tenth of a fibre is left out at the sides: s^2 / pi of each length of side for one fibre an area, a 150th of
+    // all that there is.
     const double width = 1.6, shortest = 0.08, reached = (width - 0.02) * (width - 0.02), inner = 0.25 * width * width;
     const double lost = 4.0 * (width - 0.02) * shortest * shortest / std::numbers::pi / 0.8;
     const double expected = (reached - inner - lost) / (reached - lost);
     const int boxes = 40;
     double sum = 0.0, squares = 0.0, cosine = 0.0;
     for (int seed = 1; seed <= boxes; ++seed) {
-        mat::MatParameters parameters{.radius = 0.01, .length = 0.8, .width = width, .height = 0.8, .fibres = 60, .cut = true, .tilt_deg = 0.0, .clearance = -2.0, .material = {7300.0, 0.3}};
+        mat::MatParameters parameters{.radius = 0.01,
+                                      .length = 0.8,
+                                      .width = width,
+                                      .height = 0.8,
+                                      .fibres = 60,
+                                      .cut = true,
+                                      .tilt_deg = 0.0,
+                                      .clearance = -2.0,
+                                      .material = {7300.0, 0.3}};
         parameters.seed = static_cast<std::uint64_t>(seed);
         double length = 0.0, near_sides = 0.0;
         for (const mat::MatFibre& fibre : mat::random_fibres(parameters)) {
@@ -159,23 +177,34 @@ TEST_CASE("a mat that is cut at its sides has as much fibre there as inside, of 
             CHECK(fibre.length <= 0.8 * (1.0 + 1e-12));
             length += fibre.length;
             cosine += fibre.length * (2.0 * fibre.along.x() * fibre.along.x() - 1.0) / (48.0 * boxes);
-            for (const double t : {0.0, 1.0}) CHECK(std::min(fibre(t).head<2>().minCoeff(), width - fibre(t).head<2>().maxCoeff()) >= 0.01 * (1.0 - 1e-9));
+            for (const double t : {0.0, 1.0})
+                CHECK(std::min(fibre(t).head<2>().minCoeff(), width - fibre(t).head<2>().maxCoeff()) >= 0.01 * (1.0 - 1e-9));
             for (int k = 0; k < 100; ++k) {
                 const Vec3 x = fibre((k + 0.5) / 100.0);
-                if (std::max(std::abs(x.x() - 0.5 * width), std::abs(x.y() - 0.5 * width)) > 0.25 * width) near_sides += fibre.length / 100.0;
+                if (std::max(std::abs(x.x() - 0.5 * width), std::abs(x.y() - 0.5 * width)) > 0.25 * width)
+                    near_sides += fibre.length / 100.0;
             }
         }
         CHECK(length == test::near(48.0, 1e-9));
         sum += near_sides / length, squares += near_sides / length * near_sides / length;
     }
     const double share = sum / boxes, sigma = std::sqrt((squares / boxes - share * share) / (boxes - 1));
-    std::printf("cut mats: share near the sides %.4f, %.4f by the area, %.2f sigma of %.4f; mean cosine of twice the azimuth %.4f\n", share, expected, (share - expected) / sigma, sigma, cosine);
+    std::printf(
+        "cut mats: share near the sides %.4f, %.4f by the area, %.2f sigma of %.4f; mean cosine of twice the azimuth %.4f\n",
+        share, expected, (share - expected) / sigma, sigma, cosine);
     CHECK(std::abs(share - expected) < 3.0 * sigma);
     CHECK(std::abs(cosine) < 3.0 * std::sqrt(0.5 / (60.0 * boxes)));  // of as many directions as there are lengths
 }
 
 TEST_CASE("stacked fibres touch a lid and a floor, are apart from each other, and lie as close as straight ones can") {
-    mat::MatParameters parameters{.radius = 0.02, .length = 1.2, .width = 1.5, .height = 2.0, .fibres = 60, .cut = true, .tilt_deg = 0.0, .material = {7300.0, 0.3}};
+    mat::MatParameters parameters{.radius = 0.02,
+                                  .length = 1.2,
+                                  .width = 1.5,
+                                  .height = 2.0,
+                                  .fibres = 60,
+                                  .cut = true,
+                                  .tilt_deg = 0.0,
+                                  .material = {7300.0, 0.3}};
     const mat::StackedMat tight = mat::stacked_fibres(parameters, 1.0), loose = mat::stacked_fibres(parameters, 1.1);
     CHECK(loose.height == test::near(1.1 * tight.height, 1e-12));
     const double reach = 2.02 * 0.02;  // two radii and the clearance
@@ -186,12 +215,15 @@ TEST_CASE("stacked fibres touch a lid and a floor, are apart from each other, an
             lowest = std::min(lowest, fibres[i].middle.z()), highest = std::max(highest, fibres[i].middle.z());
             CHECK(fibres[i].along.z() == 0.0);
             for (std::size_t j = 0; j < i; ++j)
-                nearest = std::min(nearest, proximity::segment_distance(fibres[i](0.0), fibres[i].length * fibres[i].along, fibres[j](0.0), fibres[j].length * fibres[j].along).squared);
+                nearest = std::min(nearest, proximity::segment_distance(fibres[i](0.0), fibres[i].length * fibres[i].along,
+                                                                        fibres[j](0.0), fibres[j].length * fibres[j].along)
+                                                .squared);
         }
         CHECK(std::sqrt(nearest) >= reach * (1.0 - 1e-9));
         CHECK(lowest >= 0.02 * (1.0 - 1e-9));
         CHECK(highest <= stacked->height - 0.02 * (1.0 - 1e-9));
-        if (stacked == &tight) {  // what cannot be lower holds the lid and the floor apart: a chain of fibres each of which touches the next
+        if (stacked ==
+            &tight) {  // what cannot be lower holds the lid and the floor apart: a chain of fibres each of which touches the next
             CHECK(lowest == test::near(0.02, 1e-9));
             CHECK(highest == test::near(stacked->height - 0.02, 1e-9));
             CHECK(std::sqrt(nearest) == test::near(reach, 1e-9));
@@ -205,7 +237,8 @@ TEST_CASE("stacked fibres touch a lid and a floor, are apart from each other, an
 }
 
 TEST_CASE("a box that is full, and what is not a mat, is refused by name") {
-    mat::MatParameters parameters{.radius = 0.02, .length = 0.8, .width = 1.2, .height = 0.2, .fibres = 1000, .material = {7300.0, 0.3}};
+    mat::MatParameters parameters{
+        .radius = 0.02, .length = 0.8, .width = 1.2, .height = 0.2, .fibres = 1000, .material = {7300.0, 0.3}};
     parameters.draws = 20000;
     const std::string full = test::refusal([&] { mat::random_fibres(parameters); });
     CHECK(full.find("MatParameters.fibres = 1000, but it must be at most ") == 0);

@@ -23,7 +23,9 @@ struct Bent {
     strand::StrandParameters parameters;
     double furthest = 0.0;  ///< from its layer
 
-    double over_loose(std::size_t k) const { return states[k].moment / (strand::loose_stiffness(parameters) * states[k].angle / parameters.length); }
+    double over_loose(std::size_t k) const {
+        return states[k].moment / (strand::loose_stiffness(parameters) * states[k].angle / parameters.length);
+    }
 };
 
 /// To 90 degrees in thirty increments.
@@ -43,7 +45,9 @@ Bent bend(const strand::StrandParameters& parameters, const strand::Bending& ben
         const simulation::Simulator<Rough>& simulator;
         const strand::Bending& bending;
         Bent& bent;
-        void accepted(const observe::Snapshot&) { bent.states.push_back(strand::measure_bending(simulator, bent.parameters, bending)); }
+        void accepted(const observe::Snapshot&) {
+            bent.states.push_back(strand::measure_bending(simulator, bent.parameters, bending));
+        }
     } follow{simulator, bending, bent};
     simulation::Stage<Rough> stage;
     stage.ramps = {{strand::bend, 0.5 * std::numbers::pi}};
@@ -53,11 +57,14 @@ Bent bend(const strand::StrandParameters& parameters, const strand::Bending& ben
     bent.report = simulator.run(loading, follow);
     bent.furthest = strand::furthest_from_layer(simulator, bent.parameters) / r;
     REQUIRE_MESSAGE(bent.report.converged, bent.report.reason);
-    std::printf("%td wires, friction %.1f: moment %.4f, %.4f, %.4f of loose wires at 3, 45, 90 degrees, %.4f at the plate alone; wires %.2f r off their layers; dissipated %.3e of %.3e, energy %.1e missing; "
-                "%td increments, %td rejected, %td iterations, %.1f s\n",
-                parameters.wires(), mu, bent.over_loose(0), bent.over_loose(14), bent.over_loose(29), bent.states[29].at_plate / bent.states[29].moment * bent.over_loose(29), bent.furthest,
-                bent.report.energy.dissipated, bent.report.energy.external, bent.report.energy.error(), core::count(bent.report.increments), bent.report.rejected_increments,
-                bent.report.counts.newton, bent.report.wall_seconds);
+    std::printf(
+        "%td wires, friction %.1f: moment %.4f, %.4f, %.4f of loose wires at 3, 45, 90 degrees, %.4f at the plate alone; wires "
+        "%.2f r off their layers; dissipated %.3e of %.3e, energy %.1e missing; "
+        "%td increments, %td rejected, %td iterations, %.1f s\n",
+        parameters.wires(), mu, bent.over_loose(0), bent.over_loose(14), bent.over_loose(29),
+        bent.states[29].at_plate / bent.states[29].moment * bent.over_loose(29), bent.furthest, bent.report.energy.dissipated,
+        bent.report.energy.external, bent.report.energy.error(), core::count(bent.report.increments),
+        bent.report.rejected_increments, bent.report.counts.newton, bent.report.wall_seconds);
     return bent;
 }
 
@@ -68,7 +75,8 @@ void check(const Bent& smooth, const Bent& rough, double near_loose) {
         REQUIRE(bent->states.size() == 30);  // none was cut
         CHECK(bent->states.back().angle == test::near(0.5 * std::numbers::pi, 1e-5));
         for (std::size_t k = 0; k < 30; ++k) CHECK(bent->over_loose(k) < solid);
-        // Nothing presses wires together but bending itself: they are springs side by side, and hundredths come from where they touch.
+        // Nothing presses wires together but bending itself: they are springs side by side, and hundredths come from where they
+        // touch.
         for (std::size_t k = 0; k < 30; ++k) CHECK(std::abs(bent->over_loose(k) - 1.0) < near_loose);
         CHECK(std::abs(test::work_of(bent->states) / bent->report.energy.external - 1.0) < 2e-3);  // of thirty increments
         CHECK(bent->report.contact.greatest_penetration < 0.03);

@@ -59,7 +59,8 @@ Path bend(double friction, double strain, const std::vector<double>& angles, Ind
     Path path;
     path.report = simulator.run(loading);
     REQUIRE_MESSAGE(path.report.converged, path.report.reason);
-    for (Index wire = 1; wire < parameters.wires(); ++wire) path.wire_force += simulator.reaction(scene::last_end(wire)).z() / static_cast<double>(parameters.wires() - 1);
+    for (Index wire = 1; wire < parameters.wires(); ++wire)
+        path.wire_force += simulator.reaction(scene::last_end(wire)).z() / static_cast<double>(parameters.wires() - 1);
     struct Follow {
         const simulation::Simulator<Rough>& simulator;
         const strand::StrandParameters& parameters;
@@ -75,13 +76,15 @@ Path bend(double friction, double strain, const std::vector<double>& angles, Ind
     return path;
 }
 
-TEST_CASE("wires that nothing presses together bend like springs, with friction or without, and the moment is the work for each radian") {
+TEST_CASE(
+    "wires that nothing presses together bend like springs, with friction or without, and the moment is the work for each "
+    "radian") {
     const strand::StrandParameters parameters = one_layer();
     const double angle = 0.03, expected = strand::loose_stiffness(parameters) * angle / parameters.length;
     for (const double friction : {0.0, mu}) {
         const Path path = bend(friction, 0.0, {angle}, 12);
-        std::printf("friction %.1f: moment %.4f, expected %.4f; work %.6f, that of the moments %.6f\n", friction, path.states.back().moment, expected, path.report.energy.external,
-                    0.5 * expected * angle);
+        std::printf("friction %.1f: moment %.4f, expected %.4f; work %.6f, that of the moments %.6f\n", friction,
+                    path.states.back().moment, expected, path.report.energy.external, 0.5 * expected * angle);
         CHECK(std::abs(path.states.back().moment / expected - 1.0) < 1e-3);  // the strand is one turn long: its ends are held
         CHECK(std::abs(path.report.energy.external / test::work_of(path.states) - 1.0) < 1e-4);
     }
@@ -90,25 +93,32 @@ TEST_CASE("wires that nothing presses together bend like springs, with friction 
 TEST_CASE("a strand that is drawn and bent to and fro takes Coulomb's moment beside that of its wires") {
     const strand::StrandParameters parameters = one_layer();
     const double angle = 0.03, strain = 1e-4, lay = lay_angle_deg * std::numbers::pi / 180.0, a = parameters.helix_radius(0);
-    const Path smooth = bend(0.0, strain, {angle, 0.0}, 12), rough = bend(mu, strain, {angle, -angle, angle}, 12), half = bend(0.5 * mu, strain, {angle}, 12);
+    const Path smooth = bend(0.0, strain, {angle, 0.0}, 12), rough = bend(mu, strain, {angle, -angle, angle}, 12),
+               half = bend(0.5 * mu, strain, {angle}, 12);
     // Wires are held at both plates, one turn apart, and do not stretch: one that starts at an angle b to the bend slides by
-    // kappa a^2 cos^2 / sin (sin(b + turn) - sin b) along the core, and is pressed on it by F sin^2 / (a cos) a length if F is its part of the force along the
-    // axis. Friction times slip, over a turn, is the work for each radian.
+    // kappa a^2 cos^2 / sin (sin(b + turn) - sin b) along the core, and is pressed on it by F sin^2 / (a cos) a length if F is
+    // its part of the force along the axis. Friction times slip, over a turn, is the work for each radian.
     double expected = 0.0;
     for (Index wire = 0; wire < 6; ++wire) {
         const double start = std::asin(std::sin(std::numbers::pi / 3.0 * static_cast<double>(wire)));
-        expected += 2.0 / std::numbers::pi * (std::cos(start) + start * std::sin(start)) * mu * smooth.wire_force * a * std::sin(lay);
+        expected +=
+            2.0 / std::numbers::pi * (std::cos(start) + start * std::sin(start)) * mu * smooth.wire_force * a * std::sin(lay);
     }
     const double first = rough.states[0].moment / smooth.states[0].moment;
-    const double going = rough.states[4].moment - smooth.states[4].moment, with_half = half.states[4].moment - smooth.states[4].moment;
+    const double going = rough.states[4].moment - smooth.states[4].moment,
+                 with_half = half.states[4].moment - smooth.states[4].moment;
     const double back = -rough.states[17].moment, forth = rough.states[29].moment;  // where the strand is straight again
-    std::printf("drawn by %.4f a wire: moment %.3f of that without friction at first; then more by %.3f, %.3f with half of the friction, straight again %.3f and %.3f of Coulomb's %.4f\n",
-                smooth.wire_force, first, going / expected, with_half / expected, back / expected, forth / expected, expected);
-    std::printf("dissipated %.4f, by Coulomb's moment %.4f, energy %.1e missing\n", rough.report.energy.dissipated, 5.0 * angle * expected, rough.report.energy.error());
+    std::printf(
+        "drawn by %.4f a wire: moment %.3f of that without friction at first; then more by %.3f, %.3f with half of the friction, "
+        "straight again %.3f and %.3f of Coulomb's %.4f\n",
+        smooth.wire_force, first, going / expected, with_half / expected, back / expected, forth / expected, expected);
+    std::printf("dissipated %.4f, by Coulomb's moment %.4f, energy %.1e missing\n", rough.report.energy.dissipated,
+                5.0 * angle * expected, rough.report.energy.error());
     CHECK(std::abs(smooth.states[12 + 11].moment) < 1e-4 * expected);
     CHECK(first > 1.15);  // what sticks is stiffer
     // Wires go aside, too, and tension bends the strand less evenly: six hundredths at this one, seven at twice as much.
-    for (const double moment : {going, 2.0 * with_half, back, forth, rough.report.energy.dissipated / (5.0 * angle)}) CHECK(std::abs(moment / expected - 1.0) < 0.1);
+    for (const double moment : {going, 2.0 * with_half, back, forth, rough.report.energy.dissipated / (5.0 * angle)})
+        CHECK(std::abs(moment / expected - 1.0) < 0.1);
     CHECK(std::abs(back / forth - 1.0) < 0.01);
     // The trapezium rule misses what an increment in which bending turns has of it.
     CHECK(std::abs(rough.report.energy.error()) < 0.05 * rough.report.energy.dissipated);

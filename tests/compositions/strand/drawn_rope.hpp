@@ -36,7 +36,8 @@ inline strand::RopeParameters three_strands(double wire_lay, double rope_lay, do
     return rope;
 }
 
-/// What a rope carries more when it is drawn from one strain to another, over what wires carry that keep their distance from the axis.
+/// What a rope carries more when it is drawn from one strain to another, over what wires carry that keep their distance from the
+/// axis.
 struct Drawn {
     double force = 0.0, torque = 0.0, bound_torque = 0.0, unbalance = 0.0;
 };
@@ -61,11 +62,15 @@ inline Drawn draw(const strand::RopeParameters& rope, double mu) {
     }
     const strand::RopeStiffness bound = strand::stiffness_bound(rope, mu > 0.0);
     Drawn drawn;
-    drawn.force = (state[1].force - state[0].force) / (0.003 * bound.force_by_strain), drawn.torque = (state[1].torque - state[0].torque) / 0.003;
+    drawn.force = (state[1].force - state[0].force) / (0.003 * bound.force_by_strain),
+    drawn.torque = (state[1].torque - state[0].torque) / 0.003;
     drawn.bound_torque = bound.torque_by_strain, drawn.unbalance = report.energy.error() / report.energy.external;
-    std::printf("%td elements, mu %.1f: at 0.006 %.4f of the bound's force, %.4f of its torque; from 0.003 on %.4f and %.4f; torque %.4g; %td iterations, %.1f s, %.1e deep, balance %.1e\n", rope.elements, mu,
-                state[1].force / (0.006 * bound.force_by_strain), state[1].torque / (0.006 * bound.torque_by_strain), drawn.force, drawn.torque / bound.torque_by_strain, drawn.torque, report.counts.newton,
-                report.wall_seconds, report.contact.greatest_penetration, drawn.unbalance);
+    std::printf(
+        "%td elements, mu %.1f: at 0.006 %.4f of the bound's force, %.4f of its torque; from 0.003 on %.4f and %.4f; torque "
+        "%.4g; %td iterations, %.1f s, %.1e deep, balance %.1e\n",
+        rope.elements, mu, state[1].force / (0.006 * bound.force_by_strain), state[1].torque / (0.006 * bound.torque_by_strain),
+        drawn.force, drawn.torque / bound.torque_by_strain, drawn.torque, report.counts.newton, report.wall_seconds,
+        report.contact.greatest_penetration, drawn.unbalance);
     return drawn;
 }
 

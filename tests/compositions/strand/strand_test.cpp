@@ -37,10 +37,11 @@ struct Case {
     double k11, k12, k22;
     double force, torque;  ///< at a strain of 0.002 without rotation
 };
-const Case cases[] = {{5, 0.0215, 0.0012808799, 2.98759288626, 65.30866018, 0.1993268143, 0.006043605099, 0.13100943348, 0.00039856740643},
-                      {10, 0.0215, 0.00091974097, 1.48236252744, 62.70465544, 0.3838470411, 0.008310736385, 0.12578578517, 0.00076749851545},
-                      {15, 0.022, 0.00079252128, 0.98720992227, 59.03860839, 0.5461006516, 0.01206550296, 0.11843163927, 0.0010918674471},
-                      {20, 0.0225, 0.00037451152, 0.735399955509, 54.09721363, 0.6704171521, 0.01689073587, 0.10851900842, 0.0013403574948}};
+const Case cases[] = {
+    {5, 0.0215, 0.0012808799, 2.98759288626, 65.30866018, 0.1993268143, 0.006043605099, 0.13100943348, 0.00039856740643},
+    {10, 0.0215, 0.00091974097, 1.48236252744, 62.70465544, 0.3838470411, 0.008310736385, 0.12578578517, 0.00076749851545},
+    {15, 0.022, 0.00079252128, 0.98720992227, 59.03860839, 0.5461006516, 0.01206550296, 0.11843163927, 0.0010918674471},
+    {20, 0.0225, 0.00037451152, 0.735399955509, 54.09721363, 0.6704171521, 0.01689073587, 0.10851900842, 0.0013403574948}};
 
 strand::StrandParameters strand_of(const Case& c) {
     strand::StrandParameters parameters;
@@ -72,15 +73,19 @@ simulation::Loading<Frictionless> to(double strain, double rotation, Index incre
     return loading;
 }
 
-/// Tension over E A strain cos^2 of a wire at a lay, on points it crosses and may not sink below: a beam under its own tension, whose
-/// curvature kappa presses it on, T = E A (strain cos^2 - kappa mean sink). No helix but through kappa, no contact but the points.
-double tension_between_crossings(double length, double lay_angle_deg, double helix_radius, double r, const std::vector<double>& crossings, double strain) {
-    const double lay = lay_angle_deg * std::numbers::pi / 180.0, c = std::cos(lay), kappa = std::pow(std::sin(lay), 2) / helix_radius;
+/// Tension over E A strain cos^2 of a wire at a lay, on points it crosses and may not sink below: a beam under its own tension,
+/// whose curvature kappa presses it on, T = E A (strain cos^2 - kappa mean sink). No helix but through kappa, no contact but the
+/// points.
+double tension_between_crossings(double length, double lay_angle_deg, double helix_radius, double r,
+                                 const std::vector<double>& crossings, double strain) {
+    const double lay = lay_angle_deg * std::numbers::pi / 180.0, c = std::cos(lay),
+                 kappa = std::pow(std::sin(lay), 2) / helix_radius;
     const double EA = std::numbers::pi * r * r, EI = 0.25 * EA * r * r;  // over E
     const Index n = 120;
     const double h = length / c / static_cast<double>(n);
     Eigen::Matrix4d bending, pulling;
-    bending << 12, 6 * h, -12, 6 * h, 6 * h, 4 * h * h, -6 * h, 2 * h * h, -12, -6 * h, 12, -6 * h, 6 * h, 2 * h * h, -6 * h, 4 * h * h;
+    bending << 12, 6 * h, -12, 6 * h, 6 * h, 4 * h * h, -6 * h, 2 * h * h, -12, -6 * h, 12, -6 * h, 6 * h, 2 * h * h, -6 * h,
+        4 * h * h;
     pulling << 36, 3 * h, -36, 3 * h, 3 * h, 4 * h * h, -3 * h, -h * h, -36, -3 * h, 36, -3 * h, 3 * h, -h * h, -3 * h, 4 * h * h;
     bending *= EI / (h * h * h), pulling /= 30.0 * h;
     const Eigen::Vector4d mean = 0.5 * h * Eigen::Vector4d(1, h / 6, 1, -h / 6);
@@ -96,7 +101,8 @@ double tension_between_crossings(double length, double lay_angle_deg, double hel
         for (const double z : crossings) {
             const Index i = std::min(static_cast<Index>(z / c / h), n - 1);
             const double t = z / c / h - static_cast<double>(i);
-            const Eigen::Vector4d shape(1 - 3 * t * t + 2 * t * t * t, h * (t - 2 * t * t + t * t * t), 3 * t * t - 2 * t * t * t, h * (t * t * t - t * t));
+            const Eigen::Vector4d shape(1 - 3 * t * t + 2 * t * t * t, h * (t - 2 * t * t + t * t * t), 3 * t * t - 2 * t * t * t,
+                                        h * (t * t * t - t * t));
             stiffness.block<4, 4>(2 * i, 2 * i) += 1e4 * EI / (r * r * r) * shape * shape.transpose();
         }
         const Vector sink = stiffness.ldlt().solve(load);
@@ -135,9 +141,11 @@ TEST_CASE("a strand of one core and six wires is as stiff as the reference says"
         // The middle is not strained quite as the whole is.
         const double force = stretched.force - c.k11 * (stretched.strain - 0.002) - c.k12 * stretched.rotation;
         const double torque = stretched.torque - c.k12 * (stretched.strain - 0.002) - c.k22 * stretched.rotation;
-        std::printf("lay %2.0f: F %.8f %+.2e (%+.2e of the whole), M %.4e %+.2e, k12 %+.2e, k21 %+.2e, k22 %+.2e; middle strain %.6f, rotation %.2e, %.3f of what was imposed\n", c.lay_angle_deg,
-                    force, force / c.force - 1.0, stretched.force / c.force - 1.0, torque, torque / c.torque - 1.0, k12 / c.k12 - 1.0, k21 / c.k12 - 1.0, k22 / c.k22 - 1.0,
-                    stretched.strain, stretched.rotation, rotation / 0.004);
+        std::printf(
+            "lay %2.0f: F %.8f %+.2e (%+.2e of the whole), M %.4e %+.2e, k12 %+.2e, k21 %+.2e, k22 %+.2e; middle strain %.6f, "
+            "rotation %.2e, %.3f of what was imposed\n",
+            c.lay_angle_deg, force, force / c.force - 1.0, stretched.force / c.force - 1.0, torque, torque / c.torque - 1.0,
+            k12 / c.k12 - 1.0, k21 / c.k12 - 1.0, k22 / c.k22 - 1.0, stretched.strain, stretched.rotation, rotation / 0.004);
         CHECK(std::abs(force / c.force - 1.0) < 2e-4);
         CHECK(std::abs(stretched.force / c.force - 1.0) < 2e-4);
         CHECK(std::abs(torque / c.torque - 1.0) < 2e-3);  // k12 is a small part of what one wire has
@@ -148,13 +156,15 @@ TEST_CASE("a strand of one core and six wires is as stiff as the reference says"
 }
 
 TEST_CASE("the ends of a strand take off its stiffness what falls with its length, and every stiffness is the reference's") {
-    // Wires that the ends hold turn less there than in the middle, or more: a share of the piece, not an error of contact or of the mesh.
+    // Wires that the ends hold turn less there than in the middle, or more: a share of the piece, not an error of contact or of
+    // the mesh.
     struct Piece {
         std::size_t of;
         double pitches;
         Index elements;
     };
-    for (const auto& [of, pitches, elements] : {Piece{0, 1, 48}, Piece{1, 2, 48}, Piece{2, 3, 72}, Piece{3, 2, 48}, Piece{3, 4, 96}}) {
+    for (const auto& [of, pitches, elements] :
+         {Piece{0, 1, 48}, Piece{1, 2, 48}, Piece{2, 3, 72}, Piece{3, 2, 48}, Piece{3, 4, 96}}) {
         const Case& c = cases[of];
         strand::StrandParameters parameters = strand_of(c);
         parameters.length = pitches * c.pitch, parameters.elements = elements;
@@ -166,11 +176,15 @@ TEST_CASE("the ends of a strand take off its stiffness what falls with its lengt
         };
         const strand::StrandState still = run(0.0, 2), on = run(0.001, 1), back = run(-0.001, 1);
         const double rotation = on.rotation - back.rotation, strain = on.strain - back.strain;
-        const double k11 = (still.force - c.k12 * still.rotation) / still.strain, k21 = (still.torque - c.k22 * still.rotation) / still.strain;
+        const double k11 = (still.force - c.k12 * still.rotation) / still.strain,
+                     k21 = (still.torque - c.k22 * still.rotation) / still.strain;
         const double k12 = (on.force - back.force - c.k11 * strain) / rotation, k22 = (on.torque - back.torque) / 0.002;
-        std::printf("lay %2.0f, %.0f pitches: k11 %+.2e, k12 %+.2e, k21 %+.2e, k22 %+.2e\n", c.lay_angle_deg, pitches, k11 / c.k11 - 1.0, k12 / c.k12 - 1.0, k21 / c.k12 - 1.0, k22 / c.k22 - 1.0);
-        const double bar = of == 3 && pitches < 3 ? 1e-2 : 5e-3;  // 20 degrees: 1.1e-2 with one pitch, half of it with two, a quarter with four
-        for (const double error : {k11 / c.k11 - 1.0, k12 / c.k12 - 1.0, k21 / c.k12 - 1.0, k22 / c.k22 - 1.0}) CHECK(std::abs(error) < bar);
+        std::printf("lay %2.0f, %.0f pitches: k11 %+.2e, k12 %+.2e, k21 %+.2e, k22 %+.2e\n", c.lay_angle_deg, pitches,
+                    k11 / c.k11 - 1.0, k12 / c.k12 - 1.0, k21 / c.k12 - 1.0, k22 / c.k22 - 1.0);
+        const double bar =
+            of == 3 && pitches < 3 ? 1e-2 : 5e-3;  // 20 degrees: 1.1e-2 with one pitch, half of it with two, a quarter with four
+        for (const double error : {k11 / c.k11 - 1.0, k12 / c.k12 - 1.0, k21 / c.k12 - 1.0, k22 / c.k22 - 1.0})
+            CHECK(std::abs(error) < bar);
     }
 }
 
@@ -181,7 +195,8 @@ TEST_CASE("two layers carry E A cos^3 of each wire where they cross at short dis
         strand::StrandParameters parameters = strand::regular_strand(19, r, lay, alternate);
         parameters.core_radius *= 1.05, parameters.layers[1].clearance = 0.0;
         parameters.material = {7300.0, 0.0};
-        const double distance = std::numbers::pi / 3.0 / std::abs(parameters.turn_rate(0) - parameters.turn_rate(1));  // 6.9 and 21 radii
+        const double distance =
+            std::numbers::pi / 3.0 / std::abs(parameters.turn_rate(0) - parameters.turn_rate(1));  // 6.9 and 21 radii
         parameters.length = alternate ? 40.0 * r : 1.02 * distance, parameters.elements = 16;
         const double strain = alternate ? 0.002 : 0.001;
         simulation::Simulator<Frictionless> simulator(strand::straight_strand(parameters), model(r));
@@ -192,7 +207,8 @@ TEST_CASE("two layers carry E A cos^3 of each wire where they cross at short dis
             const std::size_t layer = wire == 0 ? 0 : wire < 7 ? 1 : 2;
             const double radius = layer == 0 ? parameters.core_radius : r;
             carried[layer] += simulator.reaction(scene::last_end(wire)).z();
-            full[layer] += 7300.0 * std::numbers::pi * radius * radius * strain * (layer == 0 ? 1.0 : std::pow(std::cos(lay * std::numbers::pi / 180.0), 3));
+            full[layer] += 7300.0 * std::numbers::pi * radius * radius * strain *
+                           (layer == 0 ? 1.0 : std::pow(std::cos(lay * std::numbers::pi / 180.0), 3));
         }
         double sinking = 0.0;
         for (const double phase : {0.0, 0.5}) {  // every other wire of the outer layer lies over one of the inner layer at z = 0
@@ -202,12 +218,16 @@ TEST_CASE("two layers carry E A cos^3 of each wire where they cross at short dis
         }
         const double whole = (carried[0] + carried[1] + carried[2]) / (full[0] + full[1] + full[2]);
         const double expected = (full[0] + full[1] + sinking * full[2]) / (full[0] + full[1] + full[2]);
-        std::printf("%s: crossings %.1f r apart; %.4f of the whole, %.4f expected; inner layer %.4f, outer %.4f, expected %.4f; %td contacts, %.1f s\n", alternate ? "alternating" : "one way",
-                    distance / r, whole, expected, carried[1] / full[1], carried[2] / full[2], sinking, report.contact.active, report.wall_seconds);
+        std::printf(
+            "%s: crossings %.1f r apart; %.4f of the whole, %.4f expected; inner layer %.4f, outer %.4f, expected %.4f; %td "
+            "contacts, %.1f s\n",
+            alternate ? "alternating" : "one way", distance / r, whole, expected, carried[1] / full[1], carried[2] / full[2],
+            sinking, report.contact.active, report.wall_seconds);
         CHECK(std::abs(carried[0] / full[0] - 1.0 - 1.5 * strain) < 1e-3);  // St Venant-Kirchhoff's law
         CHECK(std::abs(carried[1] / full[1] - 1.0) < 5e-3);
         if (alternate) CHECK(std::abs(whole / expected - 1.0) < 5e-3);
-        // Far apart they sink by thirty radii times the strain, and sections at the crossings give way by two more: five hundredths of what is carried.
+        // Far apart they sink by thirty radii times the strain, and sections at the crossings give way by two more: five
+        // hundredths of what is carried.
         if (!alternate) CHECK(std::abs(carried[2] / full[2] - sinking) < 0.05);
         if (!alternate) CHECK(carried[2] < 0.75 * full[2]);
     }
@@ -218,7 +238,8 @@ TEST_CASE("a strand that has no room for its wires, or too few of them, is refus
     parameters.length = 1.0;
     parameters.core_radius = 0.0201;
     CHECK(test::refusal([&] { parameters.validate(); }).find("StrandParameters.layers[0]: gap between neighbours = -0.00") == 0);
-    CHECK(test::refusal([] { strand::regular_strand(18, 0.02, 10.0, true); }) == "regular_strand.wires = 18, but it must be 1 + 6 + 12 + ...: 1, 7, 19, 37, 61, 91");
+    CHECK(test::refusal([] { strand::regular_strand(18, 0.02, 10.0, true); }) ==
+          "regular_strand.wires = 18, but it must be 1 + 6 + 12 + ...: 1, 7, 19, 37, 61, 91");
     for (const Index wires : {7, 19, 37, 61, 91}) {
         strand::StrandParameters regular = strand::regular_strand(wires, 0.02, 12.0, true);
         regular.material = {7300.0, 0.3}, regular.length = 1.0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Scenes of textiles: fibres along paths, orders of yarns of several fibres; audits that see what was exchanged, lost or
 // unlinked.
-#include <near.hpp>
 #include "../../refusal.hpp"
+#include <near.hpp>
 
 #include <fibrant/compositions/textile/audit.hpp>
 #include <fibrant/compositions/textile/braids.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Generators: crossings counted against closed forms, and who alternates how.
-#include <near.hpp>
 #include "../../refusal.hpp"
+#include <near.hpp>
 
 #include <fibrant/compositions/textile/braids.hpp>
 #include <fibrant/compositions/textile/knits.hpp>
@@ -95,7 +95,7 @@ TEST_CASE("orders of braids are those of their closed forms: z = h sin 2 f over 
     std::vector<Line> lines = lines_of(flat);
     for (const Crossing& crossing : flat.crossings) {
         const auto [place, along] = place_at(lines[core::at(crossing.above)], crossing.at_above);
-        CHECK((along.x() > 0.0) == (place.x() > 0.0));  // sin 2 f = 2 sin f cos f > 0
+        CHECK((along.x() > 0.0) == (place.x() > 0.0));   // sin 2 f = 2 sin f cos f > 0
         CHECK(place.z() == test::near(1.05 * r, 0.02));  // points are half a radius apart, on a slope that is level there
     }
     const Index n = 4;
@@ -263,8 +263,8 @@ TEST_CASE(
         }
         CHECK(refusal([&] { validate(knit); }).empty());
         // The first course is held by its feet between wales, the last one by its heads.
-        for (const auto& [course, guides, y] : {std::tuple{std::size_t{0}, std::size_t{2}, -8.0 * r},
-                                                {std::size_t{3}, std::size_t{3}, 3.0 * 9.0 * r + 8.0 * r}}) {
+        for (const auto& [course, guides, y] :
+             {std::tuple{std::size_t{0}, std::size_t{2}, -8.0 * r}, {std::size_t{3}, std::size_t{3}, 3.0 * 9.0 * r + 8.0 * r}}) {
             const Path& path = knit.paths[course];
             REQUIRE(path.guides.size() == guides);
             for (const auto& guide : path.guides) CHECK(std::abs(path.curve(guide.at).y() - y) < 0.05 * r);
@@ -406,8 +406,7 @@ TEST_CASE("stitched plies lie on each other, and threads are over all of them fo
     // Slanted plies: lines of 45 degrees meet the places at whole multiples of their spacing. With stitches twice as long a yarn
     // lies below all that it crosses.
     StitchedPlies slanted = two;
-    slanted.angles_deg = {45.0, -45.0}, slanted.stitch_length = 0.3 * std::sqrt(2.0),
-    slanted.row_spacing = 0.6 * std::sqrt(2.0);
+    slanted.angles_deg = {45.0, -45.0}, slanted.stitch_length = 0.3 * std::sqrt(2.0), slanted.row_spacing = 0.6 * std::sqrt(2.0);
     slanted.sideways = 0.0, slanted.width = 3.6;
     const Textile biaxial = stitched(slanted);
     CHECK(refusal([&] { require_holding(biaxial); }).empty());

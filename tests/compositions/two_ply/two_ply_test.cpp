@@ -41,11 +41,13 @@ TEST_CASE("the theory of this test is that of the table") {
         bool turns;
         double torque, line_load;
     };
-    for (const Case& c : {Case{0.02, 5, true, 0.0063064829267596, 0.0053281152918279}, Case{0.02, 10, true, 0.01273412534829, 0.039413893657012},
-                          Case{0.02, 20, true, 0.026364268863612, 0.42584245045376}, Case{0.02, 35, true, 0.049475912022965, 3.0782172531535},
-                          Case{0.02, 10, false, 0.0010460338279923, 0.12001599544318}}) {
+    for (const Case& c :
+         {Case{0.02, 5, true, 0.0063064829267596, 0.0053281152918279}, Case{0.02, 10, true, 0.01273412534829, 0.039413893657012},
+          Case{0.02, 20, true, 0.026364268863612, 0.42584245045376}, Case{0.02, 35, true, 0.049475912022965, 3.0782172531535},
+          Case{0.02, 10, false, 0.0010460338279923, 0.12001599544318}}) {
         const double angle = c.angle_deg * pi / 180.0;
-        const two_ply::HelixTheory theory(rods(c.force, 1.0, 10), angle, r, c.turns ? std::sin(angle) * std::cos(angle) / r : 0.0);
+        const two_ply::HelixTheory theory(rods(c.force, 1.0, 10), angle, r,
+                                          c.turns ? std::sin(angle) * std::cos(angle) / r : 0.0);
         CHECK(std::abs(theory.torque / c.torque - 1.0) < 1e-10);
         CHECK(std::abs(theory.line_load / c.line_load - 1.0) < 1e-10);
     }
@@ -75,10 +77,14 @@ TEST_CASE("two rods wound around each other resist with the torque of Kirchhoff'
         const two_ply::TwoPlyState state = two_ply::measure(simulator, parameters);
         const two_ply::HelixTheory theory(parameters, state.helix_angle, state.radius, state.twist);
         const two_ply::HelixTheory hard(parameters, state.helix_angle, r, state.twist);
-        std::printf("%.2f turns: angle %.4f degrees, radius %.5f r, twist %.4f of the helix's; torque %.6e %+.2e (%+.2e at r), line load %.5f %+.2e; penetration %.1e r, %td solves, %.1f s\n",
-                    turns, state.helix_angle * 180.0 / pi, state.radius / r, state.twist * state.radius / (std::sin(state.helix_angle) * std::cos(state.helix_angle)),
-                    state.torque, state.torque / theory.torque - 1.0, state.torque / hard.torque - 1.0, state.line_load, state.line_load / theory.line_load - 1.0,
-                    report.contact.greatest_penetration / r, report.counts.linear_solves, report.wall_seconds);
+        std::printf(
+            "%.2f turns: angle %.4f degrees, radius %.5f r, twist %.4f of the helix's; torque %.6e %+.2e (%+.2e at r), line load "
+            "%.5f %+.2e; penetration %.1e r, %td solves, %.1f s\n",
+            turns, state.helix_angle * 180.0 / pi, state.radius / r,
+            state.twist * state.radius / (std::sin(state.helix_angle) * std::cos(state.helix_angle)), state.torque,
+            state.torque / theory.torque - 1.0, state.torque / hard.torque - 1.0, state.line_load,
+            state.line_load / theory.line_load - 1.0, report.contact.greatest_penetration / r, report.counts.linear_solves,
+            report.wall_seconds);
         CHECK(std::abs(state.radius / r - 1.0) < 5e-3);  // sections flatten
         CHECK(std::abs(state.torque / theory.torque - 1.0) < 2e-3);
         CHECK(std::abs(state.line_load / theory.line_load - 1.0) < 0.03);
@@ -91,8 +97,7 @@ TEST_CASE("two rods wound around each other resist with the torque of Kirchhoff'
         CHECK(state.torque == test::near(two_ply::HelixTheory(parameters, state.helix_angle, r, twist).torque, 1.5e-3));
         // Rods go around each other everywhere but where their clamps bend them, over less than the bending length
         // under their pull.
-        const double bent = std::sqrt(parameters.bending_stiffness() / (0.5 * parameters.force)),
-                     around = 2.0 * pi * turns * r;
+        const double bent = std::sqrt(parameters.bending_stiffness() / (0.5 * parameters.force)), around = 2.0 * pi * turns * r;
         CHECK(std::sin(state.helix_angle) > around / parameters.length);
         CHECK(std::sin(state.helix_angle) < around / (parameters.length - bent));
     }
@@ -101,7 +106,8 @@ TEST_CASE("two rods wound around each other resist with the torque of Kirchhoff'
 TEST_CASE("a ply without a pull that is known is refused by name") {
     two_ply::TwoPlyParameters parameters = rods(0.02, 1.2, 40);
     parameters.force = core::unset;
-    CHECK(test::refusal([&] { two_ply::straight_rods(parameters); }) == "TwoPlyParameters.force = nan, but it must be finite and >= 0");
+    CHECK(test::refusal([&] { two_ply::straight_rods(parameters); }) ==
+          "TwoPlyParameters.force = nan, but it must be finite and >= 0");
 }
 
 }  // namespace two_ply_test

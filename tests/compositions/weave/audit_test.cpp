@@ -143,10 +143,9 @@ TEST_CASE("the least gap is that of the curves, not of the chords between their 
 TEST_CASE("a pair whose chords are apart but whose curves touch deepest is not passed over") {
     // First pair: straight, 0.001 deep. Second pair: the nearest chord is 0.001 clear, but the parabola hangs below it.
     observe::Snapshot snapshot;
-    snapshot.fibres = {curve({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, 0.1),
-                       curve({{0.5, -1, 0.199}, {0.5, 0, 0.199}, {0.5, 1, 0.199}}, 0.1),
-                       curve({{-1, 9, 0}, {0, 9, 0}, {1, 9, 0}}, 0.1),
-                       curve({{0.1, 8.5, 0.201}, {0.1, 9.5, 0.201}, {0.1, 10.5, 1.0}}, 0.1)};
+    snapshot.fibres = {
+        curve({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, 0.1), curve({{0.5, -1, 0.199}, {0.5, 0, 0.199}, {0.5, 1, 0.199}}, 0.1),
+        curve({{-1, 9, 0}, {0, 9, 0}, {1, 9, 0}}, 0.1), curve({{0.1, 8.5, 0.201}, {0.1, 9.5, 0.201}, {0.1, 10.5, 1.0}}, 0.1)};
     const observe::NodalCurve bulge{snapshot.fibres[3].position};
     const observe::LeastGap least = least_gap(snapshot, proximity::BruteSearch{});
     CHECK(least.fibre_i == 2);
@@ -162,8 +161,7 @@ TEST_CASE("a pair whose chords are apart but whose curves touch deepest is not p
 
 TEST_CASE("flattened sections touch later than round ones") {
     observe::Snapshot snapshot;
-    snapshot.fibres = {curve({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, 0.1),
-                       curve({{0, -1, 0.19}, {0, 0, 0.19}, {0, 1, 0.19}}, 0.1)};
+    snapshot.fibres = {curve({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, 0.1), curve({{0, -1, 0.19}, {0, 0, 0.19}, {0, 1, 0.19}}, 0.1)};
     CHECK(least_gap(snapshot, proximity::BruteSearch{}).gap == test::near(-0.01, 1e-12));
     for (auto& fibre : snapshot.fibres)
         for (Vec3& director : fibre.director_2) director *= 0.9;

@@ -35,16 +35,15 @@ TEST_CASE("the fabric of the chapter's tables is accepted, with its sizes") {
     CHECK(fabric.fibres() * fabric.nodes_per_fibre() == 39520);  // table 15.1
     CHECK(fabric.fibre_length(Family::warp) == test::near(4.4, 1e-12));
     // Table 15.2 gives the tow's area with three digits, and r with three.
-    CHECK(static_cast<double>(fabric.warp.fibres) * fabric.warp.section().area() ==
-          test::near(0.0967, 5e-3));
+    CHECK(static_cast<double>(fabric.warp.fibres) * fabric.warp.section().area() == test::near(0.0967, 5e-3));
 }
 
 TEST_CASE("macro-fibres of the two scenes stand for the same real fibres") {
     const scene::CrossSection coarse = scene::macro_fibre(380, 0.018, 19), fine = scene::macro_fibre(380, 0.018, 76);
     CHECK(19.0 * coarse.area() == test::near(76.0 * fine.area(), 1e-12));
     CHECK(19.0 * coarse.second_moment_1() == test::near(76.0 * fine.second_moment_1(), 1e-12));
-    CHECK(fine.radius() == test::near(0.0201, 2e-3));  // table 15.2, three digits
-    CHECK(fine.inertia_factor == test::near(0.20, 1e-12));            // table 15.3
+    CHECK(fine.radius() == test::near(0.0201, 2e-3));       // table 15.2, three digits
+    CHECK(fine.inertia_factor == test::near(0.20, 1e-12));  // table 15.3
 }
 
 TEST_CASE("a fibre's number and its place in the fabric say the same") {
@@ -77,14 +76,11 @@ TEST_CASE("every field that cannot be is refused by field, value and bound") {
           "FabricParameters.weft.material.young_modulus = nan, but it must be finite and > 0");
     CHECK(refused([](F& f) { f.warp.material.poisson_ratio = 0.5; }) ==
           "FabricParameters.warp.material.poisson_ratio = 0.5, but it must be > -1 and < 0.5");
-    CHECK(refused([](F& f) { f.warp.aspect = 0.5; }) ==
-          "FabricParameters.warp.aspect = 0.5, but it must be in [1, 20]");
+    CHECK(refused([](F& f) { f.warp.aspect = 0.5; }) == "FabricParameters.warp.aspect = 0.5, but it must be in [1, 20]");
     CHECK(refused([](F& f) { f.warp.packing_gap = -1e-3; }) ==
           "FabricParameters.warp.packing_gap = -0.001, but it must be in [0, 1]");
-    CHECK(refused([&](F& f) { f.warp_spacing = nan; }) ==
-          "FabricParameters.warp_spacing = nan, but it must be finite and > 0");
-    CHECK(refused([](F& f) { f.weft_spacing = 0.0; }) ==
-          "FabricParameters.weft_spacing = 0, but it must be finite and > 0");
+    CHECK(refused([&](F& f) { f.warp_spacing = nan; }) == "FabricParameters.warp_spacing = nan, but it must be finite and > 0");
+    CHECK(refused([](F& f) { f.weft_spacing = 0.0; }) == "FabricParameters.weft_spacing = 0, but it must be finite and > 0");
     CHECK(refused([&](F& f) { f.overhang = nan; }) == "FabricParameters.overhang = nan, but it must be finite and > 0");
     CHECK(refused([](F& f) { f.elements = 0; }) == "FabricParameters.elements = 0, but it must be >= 1");
 }
@@ -94,12 +90,10 @@ TEST_CASE("tows that overlap their neighbours, ends that miss a tow and elements
     // 19 fibres at aspect 2.5 lie in rows of 6, 7, 6: 7 diameters and 6 gaps wide.
     const double width = 0.08 * (7.0 + 6.0 * 1e-3);
     CHECK(refused([&](F& f) { f.warp_spacing = width + 1e-6; }).empty());
-    CHECK(refused([](F& f) {
-              f.warp_spacing = 0.56;
-          }).find("FabricParameters.warp_spacing = 0.56, but it must be >= width") == 0);
-    CHECK(refused([](F& f) {
-              f.overhang = 0.28;
-          }).find("FabricParameters.overhang = 0.28, but it must be > half the width") == 0);
+    CHECK(refused([](F& f) { f.warp_spacing = 0.56; }).find("FabricParameters.warp_spacing = 0.56, but it must be >= width") ==
+          0);
+    CHECK(refused([](F& f) { f.overhang = 0.28; }).find("FabricParameters.overhang = 0.28, but it must be > half the width") ==
+          0);
     CHECK(refused([](F& f) { f.elements = 55; }).empty());  // 4.4 / 55 = 0.08, a diameter
     CHECK(refused([](F& f) { f.elements = 56; }).find("FabricParameters.elements = 56, but it must be <= 55") == 0);
     CHECK(refused([](F& f) { f.warp_tows = 1; }).find("Pattern = plain on 1 warp and 4 weft tows") == 0);
@@ -111,7 +105,9 @@ TEST_CASE("a weft fibre may have elements of its own, and is refused by its own 
     CHECK(fabric.elements_of(Family::warp) == fabric.elements);
     CHECK(fabric.elements_of(Family::weft) == 16);
     CHECK(fabric.nodes() == fabric.fibres() / 2 * (2 * fabric.elements + 1 + 2 * 16 + 1));
-    CHECK(refused([](FabricParameters& f) { f.weft_elements = 56; }).find("FabricParameters.weft_elements = 56, but it must be <= 55") == 0);
+    CHECK(refused([](FabricParameters& f) {
+              f.weft_elements = 56;
+          }).find("FabricParameters.weft_elements = 56, but it must be <= 55") == 0);
 }
 
 TEST_CASE("single fibres jam where round ones touch their neighbours over every crossing: equal ones at 1.732 diameters") {
@@ -121,12 +117,13 @@ TEST_CASE("single fibres jam where round ones touch their neighbours over every 
     fabric.warp.fibre_radius = fabric.weft.fibre_radius = 0.05;
     fabric.warp_spacing = fabric.weft_spacing = 0.1 * std::sqrt(3.0);
     CHECK(std::abs(jamming(fabric) - 1.0) < 1e-12);  // rounding
-    REQUIRE(doubts(fabric).size() == 1);  // and those that nearly jam
+    REQUIRE(doubts(fabric).size() == 1);             // and those that nearly jam
     CHECK(doubts(fabric).front().find("from 0.181") != std::string::npos);
     fabric.warp_spacing = fabric.weft_spacing = 0.18;
     CHECK(jamming(fabric) < 1.0);
     CHECK(doubts(fabric).empty());
-    // Straight wefts, so close that they nearly touch, take as much room from the warps as these have: a spacing of the sum of both diameters.
+    // Straight wefts, so close that they nearly touch, take as much room from the warps as these have: a spacing of the sum of
+    // both diameters.
     fabric.warp_spacing = 0.2, fabric.weft_spacing = 1e-9;
     CHECK(std::abs(jamming(fabric) - 1.0) < 1e-12);
     fabric.warp_spacing = 0.19, fabric.weft_spacing = 0.11;
@@ -148,12 +145,14 @@ TEST_CASE("fibres that kink under the tension at the end are told, with the elem
     FabricParameters fabric = small_fabric(4, 19);
     SettleParameters settle;
     CHECK(doubts(fabric, settle).empty());
-    // A round fibre turns over sqrt(E I / T) = r / 2 sqrt(factor / strain): 1 / 0.08 of them on its length are as many elements as it needs.
+    // A round fibre turns over sqrt(E I / T) = r / 2 sqrt(factor / strain): 1 / 0.08 of them on its length are as many elements
+    // as it needs.
     const double length = fabric.fibre_length(Family::warp), turn = 0.041 * length / static_cast<double>(fabric.elements);
     const double strain = settle.tension_strain * settle.final_tension_factor, r = fabric.warp.fibre_radius;
     fabric.warp.inertia_factor = strain * std::pow(2.0 * turn / r, 2);
     REQUIRE(doubts(fabric, settle).size() == 1);
-    const std::string needed = std::to_string(static_cast<Index>(std::ceil(0.08 / 0.041 * static_cast<double>(fabric.elements)))) + " elements";
+    const std::string needed =
+        std::to_string(static_cast<Index>(std::ceil(0.08 / 0.041 * static_cast<double>(fabric.elements)))) + " elements";
     CHECK(doubts(fabric, settle).front().find(needed) != std::string::npos);
     settle.final_tension_factor /= 5.0;
     CHECK(doubts(fabric, settle).empty());

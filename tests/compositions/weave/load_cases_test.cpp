@@ -62,7 +62,9 @@ TEST_CASE("the picture frame keeps its sides, and the chapter's shear leaves the
     // The north-west corner goes round on a circle about the south-west one; the north side stays parallel to x.
     CHECK((north - west - load.height * Vec3(std::sin(angle), std::cos(angle), 0)).norm() < 1e-12);
     CHECK((motion.frame(load.bodies.of(Edge::north)) - Mat3::Identity()).norm() < 1e-12);
-    const auto tow = [&](Edge edge, Index t) { return motion.position(load.bodies.tow_end[static_cast<std::size_t>(edge)][core::at(t)]); };
+    const auto tow = [&](Edge edge, Index t) {
+        return motion.position(load.bodies.tow_end[static_cast<std::size_t>(edge)][core::at(t)]);
+    };
     for (Index t = 0; t < 4; ++t) {
         CHECK(std::abs((tow(Edge::east, t) - tow(Edge::west, t)).head<2>().norm() - load.width) < 1e-12);
         CHECK(std::abs((tow(Edge::north, t) - tow(Edge::south, t)).head<2>().norm() - load.height) < 1e-12);
@@ -70,7 +72,8 @@ TEST_CASE("the picture frame keeps its sides, and the chapter's shear leaves the
     const LoadCase shear = load_case("shear", snapshot, fabric);
     const connection::Channels names(shear.assembly);
     CHECK(names.names() == std::vector<std::string>{shear_channel, tension_channel});
-    CHECK(connection::BodyMotion(shear.assembly, names).free_coordinates() == 7);  // the height; of two edges both places and the turn
+    CHECK(connection::BodyMotion(shear.assembly, names).free_coordinates() ==
+          7);  // the height; of two edges both places and the turn
 }
 
 TEST_CASE("a bent sheet's edges turn against each other, and the ends of the tows across go along with the arc") {
@@ -78,7 +81,8 @@ TEST_CASE("a bent sheet's edges turn against each other, and the ends of the tow
     const LoadCase load = load_case("bending", woven_snapshot(fabric, 0.1), fabric);
     const connection::Channels channels(load.assembly);
     connection::BodyMotion motion(load.assembly, channels);
-    // The distance of the edges; of eight ends the places in the plane and the roll. Nothing says how sections that roll alone lean.
+    // The distance of the edges; of eight ends the places in the plane and the roll. Nothing says how sections that roll alone
+    // lean.
     CHECK(motion.free_coordinates() == 1 + 8 * 3);
     for (const scene::RigidBody& body : load.assembly.bodies())
         if (body.translation[0].free && body.translation[1].free) {
@@ -107,7 +111,8 @@ TEST_CASE("the woven part of a sample and its straight ends stretch one after th
     const FabricParameters fabric = small_fabric(6);
     const double woven = 0.94 * 5.0 * 0.88, ends = 2.0 * 0.88, force = 0.7, own = 0.004;
     const double strain = (own * woven + force / fabric.weft.axial_stiffness() * ends) / (woven + ends);
-    for (const Family family : {Family::warp, Family::weft}) CHECK(woven_strain(fabric, family, woven + ends, strain, force) == test::near(own, 1e-12));
+    for (const Family family : {Family::warp, Family::weft})
+        CHECK(woven_strain(fabric, family, woven + ends, strain, force) == test::near(own, 1e-12));
 }
 
 TEST_CASE("tow ends that are spread move as the fabric does: every one by the same strain along and across") {
@@ -195,7 +200,8 @@ TEST_CASE("every load case can be built, and one that is not known is refused") 
         CHECK(!load.assembly.averages().empty());
         CHECK(load.width == test::near(fabric.fibre_length(Family::warp), 1e-12));
     }
-    CHECK(load_case("compaction", snapshot, fabric).plate_distance == test::near(2.0 * 0.1 + fabric.warp.packing().thickness, 0.05));
+    CHECK(load_case("compaction", snapshot, fabric).plate_distance ==
+          test::near(2.0 * 0.1 + fabric.warp.packing().thickness, 0.05));
     CHECK(test::refusal([&] { load_case("tickle", snapshot, fabric); }) == "load_case.name = tickle, but it must be a load case");
 }
 

@@ -81,8 +81,7 @@ TEST_CASE("a curve is met by a plane where its parabolas cross it, at nodes and 
 
 TEST_CASE("curvature of a circle is one over its radius, and its length two pi times that") {
     std::vector<Vec3> nodes;
-    for (int k = 0; k <= 128; ++k)
-        nodes.emplace_back(2.0 * std::cos(pi * k / 64.0), 1.0, 2.0 * std::sin(pi * k / 64.0));
+    for (int k = 0; k <= 128; ++k) nodes.emplace_back(2.0 * std::cos(pi * k / 64.0), 1.0, 2.0 * std::sin(pi * k / 64.0));
     const observe::NodalCurve curve{nodes};
     // Middle of an element: the parabola's curvature is 8 sag / chord^2 = 1 / (R cos^2(angle / 2)), angle = pi / 64
     // here.
@@ -116,8 +115,7 @@ TEST_CASE("crimp of a drawn plain weave is that of its cosine, equal for warp an
 
 TEST_CASE("the same amplitude with longer floats gives a twill less crimp than a plain weave") {
     const FabricParameters plain = small_fabric(4, 7), twill = small_fabric(4, 7, Pattern::named("twill22"));
-    CHECK(crimp_measures(woven_snapshot(twill, 0.1), twill).warp <
-          0.8 * crimp_measures(woven_snapshot(plain, 0.1), plain).warp);
+    CHECK(crimp_measures(woven_snapshot(twill, 0.1), twill).warp < 0.8 * crimp_measures(woven_snapshot(plain, 0.1), plain).warp);
 }
 
 TEST_CASE("a fabric is as thick as its two layers of tows") {
@@ -125,8 +123,7 @@ TEST_CASE("a fabric is as thick as its two layers of tows") {
     const double amplitude = 0.12;
     const observe::Snapshot snapshot = woven_snapshot(fabric, amplitude);
     // The quadratic elements overshoot the drawn path by less than a hundredth of a radius.
-    CHECK(thickness(snapshot, fabric) ==
-          test::near(2.0 * amplitude + fabric.warp.packing().thickness, 4e-4 / 0.4));
+    CHECK(thickness(snapshot, fabric) == test::near(2.0 * amplitude + fabric.warp.packing().thickness, 4e-4 / 0.4));
     observe::Snapshot loose = snapshot;  // a free end that stands up does not count
     loose.fibres[0].position.front().z() += 1.0;
     CHECK(thickness(loose, fabric) == test::near(thickness(snapshot, fabric), 1e-12));
@@ -156,8 +153,7 @@ TEST_CASE("a tilted ellipse is found with its axes, area and second moments") {
     CHECK(section.thickness == test::near(2.0 * b, 1e-3));
     CHECK(section.aspect == test::near(3.0, 1e-3));
     CHECK(long_axis.dot(section.second_moments * long_axis) == test::near(pi * a * a * a * b / 4.0, 1e-3));
-    CHECK(short_axis.dot(section.second_moments * short_axis) ==
-          test::near(pi * a * b * b * b / 4.0, 1e-3));
+    CHECK(short_axis.dot(section.second_moments * short_axis) == test::near(pi * a * b * b * b / 4.0, 1e-3));
     CHECK(std::abs(long_axis.dot(section.second_moments * short_axis)) < 1e-12);
 }
 
@@ -172,8 +168,7 @@ TEST_CASE("the section of a tow across its own path is its packing, also where i
         for (const double t : {20.0, 32.0, 38.4}) {  // level, half way up, at a crossing
             const TowSection section = tow_section(snapshot, fabric, family, 1, t);
             CHECK(section.fibres.size() == 19);
-            CHECK(section.area ==
-                  test::near(area, 1e-2));  // planes across fibres turn a little within the tow
+            CHECK(section.area == test::near(area, 1e-2));  // planes across fibres turn a little within the tow
             CHECK(section.fibre_area == test::near(19.0 * pi * r * r, 1e-2));
         }
     }

@@ -84,12 +84,9 @@ TEST_CASE("no site that was left out lies nearer to the centre than one that was
 TEST_CASE("a packing that cannot be is refused by field, value and bound") {
     using test::refusal;
     CHECK(refusal([] { compact_packing(0, 1.0, 1.0, 0.0); }) == "compact_packing.fibres = 0, but it must be >= 1");
-    CHECK(refusal([] { compact_packing(7, -1.0, 1.0, 0.0); }) ==
-          "compact_packing.radius = -1, but it must be finite and > 0");
-    CHECK(refusal([] { compact_packing(7, 1.0, 0.5, 0.0); }) ==
-          "compact_packing.aspect = 0.5, but it must be finite and >= 1");
-    CHECK(refusal([] { compact_packing(7, 1.0, 1.0, -0.1); }) ==
-          "compact_packing.gap = -0.1, but it must be finite and >= 0");
+    CHECK(refusal([] { compact_packing(7, -1.0, 1.0, 0.0); }) == "compact_packing.radius = -1, but it must be finite and > 0");
+    CHECK(refusal([] { compact_packing(7, 1.0, 0.5, 0.0); }) == "compact_packing.aspect = 0.5, but it must be finite and >= 1");
+    CHECK(refusal([] { compact_packing(7, 1.0, 1.0, -0.1); }) == "compact_packing.gap = -0.1, but it must be finite and >= 0");
 }
 
 }  // namespace packing_test

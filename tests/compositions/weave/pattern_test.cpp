@@ -29,8 +29,8 @@ TEST_CASE("the built-in weaves are those that are drawn on point paper") {
     CHECK(drawn(Pattern::named("twill22")) == std::vector<std::string>{"1100", "1001", "0011", "0110"});
     CHECK(drawn(Pattern::named("twill31")) == std::vector<std::string>{"1110", "1101", "1011", "0111"});
     CHECK(drawn(Pattern::named("satin5")) == std::vector<std::string>{"10000", "00100", "00001", "01000", "00010"});
-    CHECK(drawn(Pattern::named("satin8")) == std::vector<std::string>{"10000000", "00010000", "00000010", "01000000",
-                                                                      "00001000", "00000001", "00100000", "00000100"});
+    CHECK(drawn(Pattern::named("satin8")) == std::vector<std::string>{"10000000", "00010000", "00000010", "01000000", "00001000",
+                                                                      "00000001", "00100000", "00000100"});
 }
 
 TEST_CASE("a satin has one crossing of each tow in a repeat, and no two of them touch") {
@@ -81,8 +81,7 @@ TEST_CASE("a matrix that is not one is refused with the row that is wrong") {
     CHECK(refusal([] {
               Pattern::from_rows({"10", "12"});
           }) == "Pattern.rows = \"12\", but it must be made of '0' and '1', or of \"over\" and \"under\"");
-    CHECK(refusal([] { Pattern::from_rows({" "}); }) ==
-          "Pattern.rows[0] = \" \", but it must be at least one crossing");
+    CHECK(refusal([] { Pattern::from_rows({" "}); }) == "Pattern.rows[0] = \" \", but it must be at least one crossing");
     CHECK(refusal([] { Pattern::named("tweed"); }) ==
           "Pattern.name = \"tweed\", but it must be plain, twill22, twill31, satin5 or satin8");
 }
@@ -102,8 +101,7 @@ TEST_CASE("every built-in weave holds on one repeat of tows, and a drawn one on 
 TEST_CASE("a tow that never changes side lifts off, so the interlacing is refused by the tow's name") {
     const std::string message = test::refusal([] { Pattern::from_rows({"010", "111", "101"}).require_holding(3, 3); });
     CHECK(message.find("warp 1 (above)") != std::string::npos);
-    CHECK(test::refusal([] { Pattern{}.require_holding(1, 4); }).find("an interlacing that holds") !=
-          std::string::npos);
+    CHECK(test::refusal([] { Pattern{}.require_holding(1, 4); }).find("an interlacing that holds") != std::string::npos);
 }
 
 TEST_CASE("two cloths that lie on each other are refused though every tow changes side") {

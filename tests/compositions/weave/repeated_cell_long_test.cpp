@@ -35,7 +35,11 @@ Mesh mesh_of(const FabricParameters& fabric) {
 
 simulation::LoadProgramme stretch(const std::vector<simulation::Ramp>& ramps, double r) {
     simulation::LoadProgramme programme;
-    programme.stages = {{.name = "stretch", .increments = 12, .ramps = ramps, .friction = SettleParameters{}.friction_coefficient, .looseness = 5.0}};
+    programme.stages = {{.name = "stretch",
+                         .increments = 12,
+                         .ramps = ramps,
+                         .friction = SettleParameters{}.friction_coefficient,
+                         .looseness = 5.0}};
     programme.reversible_displacement = 0.02 * r;
     return programme;
 }
@@ -52,13 +56,16 @@ double periodic_force(Index repeats) {
     simulation::Simulator<Cell> simulator(periodic_fabric(fabric, CellDrive::strain, 0.002), parameters(fabric));
     simulator.start_from(file);
     const observe::Snapshot shot = simulator.snapshot();
-    const double period = shot.fibres[0].position.back().x() - shot.fibres[0].position.front().x(), length = fabric.fibre_length(Family::warp);
+    const double period = shot.fibres[0].position.back().x() - shot.fibres[0].position.front().x(),
+                 length = fabric.fibre_length(Family::warp);
     const double gradient = strain * period / length;  // that of a cell counts over the fibres at rest
-    const auto report = simulator.run(simulation::loading_of<Cell>(stretch({{"strain_x", gradient}, {"strain_y", gradient}}, smallest_radius(fabric))));
+    const auto report = simulator.run(
+        simulation::loading_of<Cell>(stretch({{"strain_x", gradient}, {"strain_y", gradient}}, smallest_radius(fabric))));
     CAPTURE(report.reason);
     REQUIRE(report.converged);
     const double force = simulator.equilibrium().ties().cell_force(0)(0, 0) / length / static_cast<double>(fabric.warp_tows);
-    std::printf("periodic, %td tows: %.4f a tow; %td iterations, %.1f s\n", fabric.warp_tows, force, report.counts.newton, report.wall_seconds);
+    std::printf("periodic, %td tows: %.4f a tow; %td iterations, %.1f s\n", fabric.warp_tows, force, report.counts.newton,
+                report.wall_seconds);
     return force;
 }
 
@@ -66,7 +73,8 @@ double periodic_force(Index repeats) {
 double finite_force(Index repeats) {
     const FabricParameters fabric = repeated(cell_fabric(), repeats);
     const Mesh mesh = mesh_of(fabric);
-    const LoadCase load = load_case("equibiaxial", simulation::snapshot_of(mesh, simulation::checkpoint_state(file, mesh)), fabric, TowEnds::fibres);
+    const LoadCase load = load_case("equibiaxial", simulation::snapshot_of(mesh, simulation::checkpoint_state(file, mesh)),
+                                    fabric, TowEnds::fibres);
     simulation::Simulator<Cell> simulator(load.assembly, parameters(fabric));
     simulator.start_from(file);
     const auto report = simulator.run(simulation::loading_of<Cell>(stretch({{strain_channel, strain}}, smallest_radius(fabric))));
@@ -76,7 +84,8 @@ double finite_force(Index repeats) {
     const Index west = load.bodies.of(Edge::west), east = load.bodies.of(Edge::east);
     CHECK((ties.motion().position(east) - ties.motion().position(west)).x() == test::near((1.0 + strain) * load.width, 1e-12));
     const double force = 0.5 * (ties.wrench(east).force - ties.wrench(west).force).x() / static_cast<double>(fabric.warp_tows);
-    std::printf("finite,   %td tows: %.4f a tow; %td iterations, %.1f s\n", fabric.warp_tows, force, report.counts.newton, report.wall_seconds);
+    std::printf("finite,   %td tows: %.4f a tow; %td iterations, %.1f s\n", fabric.warp_tows, force, report.counts.newton,
+                report.wall_seconds);
     return force;
 }
 
@@ -100,9 +109,11 @@ TEST_CASE("finite samples come near to periodic ones of the same fabric, the nea
             CHECK(larger.state == stored.state);
         } else {
             // Neighbours are alike: the same length and the same rise of every cell of a fibre.
-            const observe::Snapshot small = simulation::snapshot_of(cell_mesh, stored.state), large = simulation::snapshot_of(mesh, larger.state);
+            const observe::Snapshot small = simulation::snapshot_of(cell_mesh, stored.state),
+                                    large = simulation::snapshot_of(mesh, larger.state);
             const Vec3 chord = small.fibres[0].position.back() - small.fibres[0].position.front();
-            CHECK((large.fibres[0].position.back() - large.fibres[0].position.front() - static_cast<double>(repeats) * chord).norm() < 1e-12);
+            CHECK((large.fibres[0].position.back() - large.fibres[0].position.front() - static_cast<double>(repeats) * chord)
+                      .norm() < 1e-12);
             CHECK((large.fibres[0].position[16] - large.fibres[0].position[0] - chord).norm() < 1e-12);
         }
         periodic.push_back(periodic_force(repeats));

@@ -73,8 +73,8 @@ TEST_CASE("tows that part go through the same bits on one thread and on two, and
     REQUIRE(resumed.report.converged);
     REQUIRE(resumed.states.size() + 2 == one.states.size());
     for (std::size_t k = 0; k < resumed.states.size(); ++k) CHECK(same_bits(resumed.states[k], one.states[k + 2]));
-    std::printf("%td contact elements, %td active, %td Newton iterations\n", one.report.contact.elements, one.report.contact.active,
-                one.report.counts.newton);
+    std::printf("%td contact elements, %td active, %td Newton iterations\n", one.report.contact.elements,
+                one.report.contact.active, one.report.counts.newton);
 }
 
 }  // namespace same_bits_test

@@ -26,8 +26,7 @@ namespace scene_file_test {
 using weave::read_scene;
 using weave::Scene;
 
-const std::filesystem::path scenes =
-    std::filesystem::path(__FILE__).parent_path() / ".." / ".." / ".." / "examples" / "weave";
+const std::filesystem::path scenes = std::filesystem::path(__FILE__).parent_path() / ".." / ".." / ".." / "examples" / "weave";
 
 /// What the plain scene says when it is changed, without the name of its file.
 std::string refused(const std::vector<std::string>& changes) {
@@ -51,7 +50,8 @@ TEST_CASE("the four scenes hold the chapter's tables") {
         CHECK(fabric.pattern.name() == (name.find("plain") == 0 ? "plain" : "twill22"));
         CHECK(fabric.fibres() == (fine ? 608 : 152));
         CHECK(9 * fabric.fibres() * fabric.nodes_per_fibre() == (fine ? 355680 : 88920));
-        CHECK(fabric.warp.fibre_radius == test::near(0.009 * std::sqrt(380.0 / (fine ? 76.0 : 19.0)), 2e-3));  // tables have three digits
+        CHECK(fabric.warp.fibre_radius ==
+              test::near(0.009 * std::sqrt(380.0 / (fine ? 76.0 : 19.0)), 2e-3));  // tables have three digits
         CHECK(fabric.weft.inertia_factor == test::near(fine ? 0.20 : 0.05, 1e-12));
         CHECK(fabric.warp_spacing == 0.88);
         CHECK(fabric.fibre_length(compositions::weave::Family::weft) == test::near(4.4, 1e-12));
@@ -63,9 +63,9 @@ TEST_CASE("the four scenes hold the chapter's tables") {
 
 TEST_CASE("values from the command line replace those of the file") {
     const std::string path = (scenes / "plain.toml").string();
-    const Scene scene = read_scene(
-        path, {"fabric.pattern=twill31", "warp.aspect=2", "weft.fibres=7", "fabric.elements=16", "fabric.elements=24",
-               "output.paraview=false", "material.young_modulus=73e3", "weft.young_modulus = 200000.0"});
+    const Scene scene =
+        read_scene(path, {"fabric.pattern=twill31", "warp.aspect=2", "weft.fibres=7", "fabric.elements=16", "fabric.elements=24",
+                          "output.paraview=false", "material.young_modulus=73e3", "weft.young_modulus = 200000.0"});
     CHECK(scene.fabric.pattern.name() == "twill31");
     CHECK(scene.fabric.warp.aspect == 2.0);
     CHECK(scene.fabric.weft.aspect == 2.0);  // as the warp
@@ -81,10 +81,8 @@ TEST_CASE("values from the command line replace those of the file") {
 
 TEST_CASE("a wrong scene is refused by section, key, value and bound") {
     CHECK(refused({}).empty());
-    CHECK(refused({"fabric.wrap_tows=4"})
-              .find("fabric.wrap_tows = 4, but it must be one of the keys pattern, warp_tows") == 0);
-    CHECK(refused({"fabrics.warp_tows=4"}).find("fabrics = [section], but it must be one of the sections fabric,") ==
-          0);
+    CHECK(refused({"fabric.wrap_tows=4"}).find("fabric.wrap_tows = 4, but it must be one of the keys pattern, warp_tows") == 0);
+    CHECK(refused({"fabrics.warp_tows=4"}).find("fabrics = [section], but it must be one of the sections fabric,") == 0);
     CHECK(refused({"fabric.warp_tows=four"}) == "fabric.warp_tows = 'four', but it must be a whole number >= 1 and <= 1000");
     CHECK(refused({"fabric.warp_tows=4.5"}) == "fabric.warp_tows = 4.5, but it must be a whole number >= 1 and <= 1000");
     CHECK(refused({"fabric.warp_spacing=true"}).find("fabric.warp_spacing = true, but it must be a number finite and > 0") == 0);
@@ -116,7 +114,8 @@ TEST_CASE("a wrong scene is refused by section, key, value and bound") {
 
 TEST_CASE("what is missing, and a file that is none, are told by name and place") {
     CHECK(refused_text("[fabric]\npattern = \"plain\"\n")
-              .find("fabric.warp_tows is missing, but it must be given: number of tows along x, a whole number >= 1 and <= 1000; so must "
+              .find("fabric.warp_tows is missing, but it must be given: number of tows along x, a whole number >= 1 and <= 1000; "
+                    "so must "
                     "fabric.weft_tows") != std::string::npos);
     CHECK(refused_text("[fabric]\npattern = \n").find("scene.toml:2:") != std::string::npos);
     CHECK(refused_text("threads = 4\n[fabric]\npattern = \"plain\"").find("threads, but it must be one of the sections") !=
@@ -128,8 +127,7 @@ TEST_CASE("what is missing, and a file that is none, are told by name and place"
 
 TEST_CASE("a key beside the sections is refused") {
     const std::string plain = observe::read_file(scenes / "plain.toml");
-    CHECK(refused_text("threads = 4\n" + plain).find("threads, but it must be one of the sections") !=
-          std::string::npos);
+    CHECK(refused_text("threads = 4\n" + plain).find("threads, but it must be one of the sections") != std::string::npos);
 }
 
 TEST_CASE("the summary has every key that scripts rely on, and NaN is null") {

@@ -23,20 +23,24 @@ using test::small_fabric;
 
 TEST_CASE("a settled fabric's fibres cross as the pattern says and are nowhere deeper in each other than allowed") {
     const cloth::SettleParameters settle;
-    simulation::Simulator<Model> simulator(cloth::flat_fabric(small_fabric(), settle.tension_strain), cloth::model_parameters<Model>(small_fabric(), settle));
+    simulation::Simulator<Model> simulator(cloth::flat_fabric(small_fabric(), settle.tension_strain),
+                                           cloth::model_parameters<Model>(small_fabric(), settle));
     const simulation::Report report = simulator.run(cloth::settling<Model>(small_fabric(), settle));
     CAPTURE(report.reason);
     REQUIRE(report.converged);
     const double r = cloth::smallest_radius(small_fabric());
     const cloth::Audit audit = cloth::audit(simulator.snapshot(), small_fabric(), proximity::GridSearch());
-    std::printf("%td increments, %td Newton iterations, deepest contact %.5f, least gap %.5f radii, %.1f s\n", core::count(report.increments),
-                report.counts.newton, report.contact.greatest_penetration / r, audit.least_gap.gap_over_radius, report.wall_seconds);
+    std::printf("%td increments, %td Newton iterations, deepest contact %.5f, least gap %.5f radii, %.1f s\n",
+                core::count(report.increments), report.counts.newton, report.contact.greatest_penetration / r,
+                audit.least_gap.gap_over_radius, report.wall_seconds);
     CHECK(audit.crossings == 100);  // 10 warp fibres over or under 10 weft fibres
     CHECK(audit.clean(settle.allowed_penetration_over_radius * r));
     CHECK(audit.least_gap.gap < 0.0);  // fibres touch: the bound is one that could be broken
 }
 
-TEST_CASE("a fabric is at rest once forces balance and no two fibres are deeper in each other than allowed, whatever contact points say") {
+TEST_CASE(
+    "a fabric is at rest once forces balance and no two fibres are deeper in each other than allowed, whatever contact points "
+    "say") {
     const cloth::SettleParameters settle;
     const double allowed = settle.allowed_penetration_over_radius * cloth::smallest_radius(small_fabric());
     const simulation::Loading<Model> loading = cloth::settling<Model>(small_fabric(), settle);
@@ -46,7 +50,8 @@ TEST_CASE("a fabric is at rest once forces balance and no two fibres are deeper 
     simulation::IncrementReport increment;  // moves nothing
     increment.contact.greatest_penetration = 1.5 * allowed;
     CHECK(rest.until(increment));
-    increment.displacement = 2.0 * settle.rest_motion_over_radius * cloth::smallest_radius(small_fabric()), increment.damping = 2.0 * settle.rest_share;
+    increment.displacement = 2.0 * settle.rest_motion_over_radius * cloth::smallest_radius(small_fabric()),
+    increment.damping = 2.0 * settle.rest_share;
     CHECK_FALSE(rest.until(increment));
 }
 
@@ -136,7 +141,8 @@ scene::Assembly two_layers(double radius, double spacing) {
     scene::Assembly assembly;
     for (const bool upper : {false, true})
         for (int k = -1; k <= 1; ++k) {
-            const Vec3 along = upper ? Vec3(Vec3::UnitY()) : Vec3(Vec3::UnitX()), across = upper ? Vec3(Vec3::UnitX()) : Vec3(Vec3::UnitY());
+            const Vec3 along = upper ? Vec3(Vec3::UnitY()) : Vec3(Vec3::UnitX()),
+                       across = upper ? Vec3(Vec3::UnitX()) : Vec3(Vec3::UnitY());
             const Vec3 middle = spacing * k * across + (upper ? 1.7 * radius : 0.0) * Vec3::UnitZ();
             scene::FibreSpecification fibre;
             fibre.from = middle - 1.5 * spacing * along, fibre.to = middle + 1.5 * spacing * along;
@@ -153,8 +159,9 @@ TEST_CASE("any assembly settles by numbers that it gives itself") {
     const scene::Assembly layers = two_layers(r, spacing);
     const auto scales = simulation::scales_of(layers, {}, proximity::GridSearch());
     CHECK(scales.radius == r);
-    CHECK(scales.slack == test::near(48.0 * bending / std::pow(spacing, 3), 1e-12));  // three crossings on three spacings of length
-    CHECK(scales.taut == scales.slack);                                               // nothing pulls
+    CHECK(scales.slack ==
+          test::near(48.0 * bending / std::pow(spacing, 3), 1e-12));  // three crossings on three spacings of length
+    CHECK(scales.taut == scales.slack);                               // nothing pulls
     CHECK(scales.driven);
     const auto loading = simulation::settling<Model>(layers);
     CHECK(loading.stages.front().damping == test::near(0.1 / 0.25 * scales.slack, 1e-12));
@@ -169,10 +176,14 @@ TEST_CASE("any assembly settles by numbers that it gives itself") {
 
 TEST_CASE("fibres of a tow that crosses count once, and its pull is that of its ends") {
     const cloth::FabricParameters fabric = small_fabric();
-    const double strain = 2e-3, length = fabric.fibre_length(cloth::Family::warp), span = length / static_cast<double>(fabric.weft_tows);
-    const auto scales = simulation::scales_of(cloth::flat_fabric(fabric, strain), {cloth::tension_channel, true}, proximity::GridSearch());
-    const double area = std::numbers::pi * fabric.warp.fibre_radius * fabric.warp.fibre_radius, pull = strain * fabric.warp.material.young_modulus * area;
-    const double bending = fabric.warp.material.young_modulus * fabric.warp.inertia_factor * 0.25 * area * fabric.warp.fibre_radius * fabric.warp.fibre_radius;
+    const double strain = 2e-3, length = fabric.fibre_length(cloth::Family::warp),
+                 span = length / static_cast<double>(fabric.weft_tows);
+    const auto scales =
+        simulation::scales_of(cloth::flat_fabric(fabric, strain), {cloth::tension_channel, true}, proximity::GridSearch());
+    const double area = std::numbers::pi * fabric.warp.fibre_radius * fabric.warp.fibre_radius,
+                 pull = strain * fabric.warp.material.young_modulus * area;
+    const double bending = fabric.warp.material.young_modulus * fabric.warp.inertia_factor * 0.25 * area *
+                           fabric.warp.fibre_radius * fabric.warp.fibre_radius;
     CHECK(scales.slack == test::near(48.0 * bending / std::pow(span, 3), 1e-9));
     CHECK(scales.taut - scales.slack == test::near(4.0 * pull * static_cast<double>(fabric.elements) / length, 1e-9));
     CHECK(scales.ordered);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Two tows of five fibres each way: the smallest weave in which everything of a weave happens, and the model that settles it.
+/// @file Two tows of five fibres each way: the smallest weave in which everything of a weave happens, and the model that settles
+/// it.
 
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/compositions/weave/settle.hpp>

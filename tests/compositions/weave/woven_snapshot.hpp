@@ -58,8 +58,7 @@ inline observe::Snapshot woven_snapshot(const FabricParameters& fabric, double a
         fibre.section = fabric.tow(place.family).section();
         fibre.group = warp ? place.tow : fabric.warp_tows + place.tow;
         for (Index node = 0; node < fabric.nodes_per_fibre(); ++node) {
-            const double along =
-                length * (static_cast<double>(node) / static_cast<double>(fabric.nodes_per_fibre() - 1) - 0.5);
+            const double along = length * (static_cast<double>(node) / static_cast<double>(fabric.nodes_per_fibre() - 1) - 0.5);
             const double step = 1e-6 * length;
             const double z = amplitude * path_height(fabric, place.family, place.tow, along);
             const double slope = amplitude *

@@ -19,13 +19,15 @@ inline std::vector<std::vector<solid::SectionPlace>> sections_of(const observe::
     for (const observe::FibreSnapshot& fibre : snapshot.fibres) {
         fibres.emplace_back();
         for (std::size_t k = 0; k < fibre.position.size(); ++k)
-            fibres.back().push_back({fibre.position[k], fibre.section.semi_axis_1 * fibre.director_1[k], fibre.section.semi_axis_2 * fibre.director_2[k]});
+            fibres.back().push_back({fibre.position[k], fibre.section.semi_axis_1 * fibre.director_1[k],
+                                     fibre.section.semi_axis_2 * fibre.director_2[k]});
     }
     return fibres;
 }
 
 /// Layers over the whole fabric, from the ends of its fibres to the opposite ones.
-inline solid::Layers layers_of(const observe::Snapshot& snapshot, const FabricParameters& fabric, const MatrixParameters& matrix) {
+inline solid::Layers layers_of(const observe::Snapshot& snapshot, const FabricParameters& fabric,
+                               const MatrixParameters& matrix) {
     matrix.validate();
     const double radius = std::min(fabric.warp.fibre_radius, fabric.weft.fibre_radius);
     solid::LayerParameters parameters;
@@ -35,7 +37,8 @@ inline solid::Layers layers_of(const observe::Snapshot& snapshot, const FabricPa
     for (Index f = 0; f < core::count(snapshot.fibres); ++f) {
         const observe::FibreSnapshot& fibre = snapshot.fibres[core::at(f)];
         const std::size_t axis = fabric.place(f).family == Family::warp ? 0 : 1;
-        const auto [a, b] = std::minmax(fibre.position.front()[static_cast<Index>(axis)], fibre.position.back()[static_cast<Index>(axis)]);
+        const auto [a, b] =
+            std::minmax(fibre.position.front()[static_cast<Index>(axis)], fibre.position.back()[static_cast<Index>(axis)]);
         parameters.low[axis] = std::min(parameters.low[axis], a), parameters.high[axis] = std::max(parameters.high[axis], b);
         for (std::size_t k = 0; k < fibre.position.size(); ++k) {
             const double reach = fibre.section.extent(fibre.director_1[k], fibre.director_2[k], Vec3::UnitZ());
@@ -53,15 +56,15 @@ inline solid::Layers layers_of(const observe::Snapshot& snapshot, const FabricPa
 }
 
 /// @param state  of the fabric's fibres where it has settled
-inline Composite composite_of(const FabricParameters& fabric, const Vector& state, const scene::Assembly& flat, const solid::Layers& layers,
-                              const MatrixParameters& matrix, const LoadParameters& load) {
+inline Composite composite_of(const FabricParameters& fabric, const Vector& state, const scene::Assembly& flat,
+                              const solid::Layers& layers, const MatrixParameters& matrix, const LoadParameters& load) {
     Composite composite;
     scene::Assembly& assembly = composite.assembly;
     for (const scene::Group& group : flat.groups()) assembly.add_group(group.name, group.parent);
     for (scene::FibreSpecification fibre : flat.fibres()) {
         if (matrix.lower_fibres) {
-            core::require(fibre.material.young_modulus > matrix.material.young_modulus, "MatrixParameters.material.young_modulus", matrix.material.young_modulus,
-                          "< that of the fibres, which is to be lowered by it");
+            core::require(fibre.material.young_modulus > matrix.material.young_modulus, "MatrixParameters.material.young_modulus",
+                          matrix.material.young_modulus, "< that of the fibres, which is to be lowered by it");
             fibre.material.young_modulus -= matrix.material.young_modulus;
         }
         assembly.add(fibre);
@@ -73,15 +76,18 @@ inline Composite composite_of(const FabricParameters& fabric, const Vector& stat
         assembly.add(layer.solid);
     }
     composite.length = high.x() - low.x(), composite.width = high.y() - low.y();
-    if (load.driven) drive_edges(composite, fabric, layers, load);
-    else tie_edges(composite, fabric, layers, load);
+    if (load.driven)
+        drive_edges(composite, fabric, layers, load);
+    else
+        tie_edges(composite, fabric, layers, load);
     return composite;
 }
 
 /// Two stages: the fabric comes to rest between the layers, where nothing holds the ends of its weft any more; then the load goes
 /// from 0 to 1.
 template <simulation::Model M>
-simulation::Loading<M> loading_of(const FabricParameters& fabric, const weave::SettleParameters& settle, const LoadParameters& load) {
+simulation::Loading<M> loading_of(const FabricParameters& fabric, const weave::SettleParameters& settle,
+                                  const LoadParameters& load) {
     const double r = weave::smallest_radius(fabric), node = weave::node_stiffness(fabric, settle.tension_strain);
     simulation::Loading<M> loading;
     loading.stages.resize(2);
@@ -91,7 +97,8 @@ simulation::Loading<M> loading_of(const FabricParameters& fabric, const weave::S
     rest.looseness = settle.looseness;
     rest.damping = load.rest_damping * node, rest.damping_decay = 0.5;
     rest.damping_share = load.rest_share;
-    rest.until = simulation::until_settled(settle.rest_motion_over_radius * r, 2.0 * settle.allowed_penetration_over_radius * r, load.rest_share);
+    rest.until = simulation::until_settled(settle.rest_motion_over_radius * r, 2.0 * settle.allowed_penetration_over_radius * r,
+                                           load.rest_share);
     simulation::Stage<M>& stage = loading.stages[1];
     stage.name = "load";
     stage.increments = load.increments, stage.most_increments = 50 * load.increments;

@@ -2,9 +2,9 @@
 #pragma once
 /// @file How the edges across the warp of a composite are moved: driven node by node, or tied to bodies by averages.
 
-#include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/compositions/composite/composite_parameters.hpp>
 #include <fibrant/compositions/weave/edges.hpp>
+#include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/core/rotation.hpp>
 #include <fibrant/simulation/support_wrench.hpp>
 
@@ -35,7 +35,8 @@ struct EdgeMotion {
 /// Motions of the edges at x = -length / 2 and length / 2.
 ///
 /// Bent, their centres stay on an arc of the length between them; twisted, they approach by what keeps the mean length over the
-/// width, (width angle / length)^2 / 24 of the length. So the force between them is a result, and not zero as with free edge bodies.
+/// width, (width angle / length)^2 / 24 of the length. So the force between them is a result, and not zero as with free edge
+/// bodies.
 inline std::pair<EdgeMotion, EdgeMotion> edge_motions(const LoadParameters& load, double length, double width) {
     load.validate();
     std::pair<EdgeMotion, EdgeMotion> edges;
@@ -44,8 +45,12 @@ inline std::pair<EdgeMotion, EdgeMotion> edge_motions(const LoadParameters& load
     for (const double side : {-1.0, 1.0}) {
         EdgeMotion& edge = side < 0.0 ? edges.first : edges.second;
         switch (load.load) {
-            case LoadCase::tension: edge.path = [=](double a) { return Vec3(0.5 * side * a * load.strain * length, 0, 0); }; break;
-            case LoadCase::shear: edge.path = [=](double a) { return Vec3(0, 0.5 * side * a * load.strain * length, 0); }; break;
+            case LoadCase::tension:
+                edge.path = [=](double a) { return Vec3(0.5 * side * a * load.strain * length, 0, 0); };
+                break;
+            case LoadCase::shear:
+                edge.path = [=](double a) { return Vec3(0, 0.5 * side * a * load.strain * length, 0); };
+                break;
             case LoadCase::bending:
                 edge.rotation = [=](double a) { return core::rotation(Vec3(0, 0.5 * side * a * full, 0)); };
                 edge.path = [=](double a) {
@@ -58,7 +63,9 @@ inline std::pair<EdgeMotion, EdgeMotion> edge_motions(const LoadParameters& load
                 break;
             case LoadCase::twisting:
                 edge.rotation = [=](double a) { return core::rotation(Vec3(0.5 * side * a * full, 0, 0)); };
-                edge.path = [=](double a) { return Vec3(-0.5 * side * std::pow(width * a * full / length, 2) / 24.0 * length, 0, 0); };
+                edge.path = [=](double a) {
+                    return Vec3(-0.5 * side * std::pow(width * a * full / length, 2) / 24.0 * length, 0, 0);
+                };
                 break;
         }
     }
@@ -68,15 +75,16 @@ inline std::pair<EdgeMotion, EdgeMotion> edge_motions(const LoadParameters& load
 /// The composite as a scene, and what is held where.
 struct Composite {
     scene::Assembly assembly;
-    EdgeMotion west, east;                      ///< of edges that are driven
+    EdgeMotion west, east;  ///< of edges that are driven
     double length = 0.0, width = 0.0;
-    std::vector<scene::Station> east_ends;      ///< of fibres that are driven
-    std::vector<Index> east_nodes;              ///< of the solids, numbered through all, that are driven
-    Index west_body = -1, east_body = -1;       ///< -1: edges are driven
+    std::vector<scene::Station> east_ends;  ///< of fibres that are driven
+    std::vector<Index> east_nodes;          ///< of the solids, numbered through all, that are driven
+    Index west_body = -1, east_body = -1;   ///< -1: edges are driven
 };
 
 /// Ends of the warp's fibres and faces of the layers follow two rigid motions; of fibres' sections one spin each is held.
-inline void drive_edges(Composite& composite, const FabricParameters& fabric, const solid::Layers& layers, const LoadParameters& load) {
+inline void drive_edges(Composite& composite, const FabricParameters& fabric, const solid::Layers& layers,
+                        const LoadParameters& load) {
     scene::Assembly& assembly = composite.assembly;
     std::tie(composite.west, composite.east) = edge_motions(load, composite.length, composite.width);
     const auto hold_fibre = [&](const scene::Station& at, const EdgeMotion& edge) {
@@ -122,14 +130,16 @@ inline std::vector<std::vector<scene::SolidNode>> face_patches(const solid::Laye
     std::vector<std::vector<scene::SolidNode>> patches(core::at(2 * wide));
     for (Index k = 0; k < rows; ++k)
         for (Index j = 0; j < columns; ++j)
-            patches[core::at(2 * (j * wide / columns) + (2 * k < rows ? 0 : 1))].push_back({number, layer.node(east ? layer.cells[0] : 0, j, k)});
+            patches[core::at(2 * (j * wide / columns) + (2 * k < rows ? 0 : 1))].push_back(
+                {number, layer.node(east ? layer.cells[0] : 0, j, k)});
     return patches;
 }
 
-/// Two bodies (Durville, sections 15.3.4 and 15.4.3): each takes along the mean of the fibre ends of every warp tow, or every end, and
-/// the mean of the nodes of every patch of the layers' faces; single ends and nodes move as they like. The load prescribes one coordinate of
-/// both; the east body's other displacements are free, and all other turns are held.
-inline void tie_edges(Composite& composite, const FabricParameters& fabric, const solid::Layers& layers, const LoadParameters& load) {
+/// Two bodies (Durville, sections 15.3.4 and 15.4.3): each takes along the mean of the fibre ends of every warp tow, or every
+/// end, and the mean of the nodes of every patch of the layers' faces; single ends and nodes move as they like. The load
+/// prescribes one coordinate of both; the east body's other displacements are free, and all other turns are held.
+inline void tie_edges(Composite& composite, const FabricParameters& fabric, const solid::Layers& layers,
+                      const LoadParameters& load) {
     using scene::Coordinate;
     load.validate();
     const double full = load.angle_deg * std::numbers::pi / 180.0;
@@ -141,10 +151,18 @@ inline void tie_edges(Composite& composite, const FabricParameters& fabric, cons
         body.position = Vec3(half * composite.length, 0, 0);
         if (is_east) body.translation.fill(Coordinate::loose());
         switch (load.load) {
-            case LoadCase::tension: body.translation[0] = Coordinate::held_at(half * load.strain * composite.length, load_channel); break;
-            case LoadCase::shear: body.translation[1] = Coordinate::held_at(half * load.strain * composite.length, load_channel); break;
-            case LoadCase::bending: body.rotation[1] = Coordinate::held_at(half * full, load_channel); break;
-            case LoadCase::twisting: body.rotation[0] = Coordinate::held_at(half * full, load_channel); break;
+            case LoadCase::tension:
+                body.translation[0] = Coordinate::held_at(half * load.strain * composite.length, load_channel);
+                break;
+            case LoadCase::shear:
+                body.translation[1] = Coordinate::held_at(half * load.strain * composite.length, load_channel);
+                break;
+            case LoadCase::bending:
+                body.rotation[1] = Coordinate::held_at(half * full, load_channel);
+                break;
+            case LoadCase::twisting:
+                body.rotation[0] = Coordinate::held_at(half * full, load_channel);
+                break;
         }
         const Index number = composite.assembly.add(body);
         (is_east ? composite.east_body : composite.west_body) = number;

@@ -29,7 +29,8 @@ struct KnotParameters {
         core::require_positive("KnotParameters.radius", radius);
         core::require(loop_radius > 20.0 * radius, "KnotParameters.loop_radius", loop_radius, "> 20 radii");
         core::require_positive("KnotParameters.tail", tail);
-        if (crossings < 3 || crossings % 2 == 0) core::refuse("KnotParameters.crossings", std::to_string(crossings), "3, 5, 7, ...");
+        if (crossings < 3 || crossings % 2 == 0)
+            core::refuse("KnotParameters.crossings", std::to_string(crossings), "3, 5, 7, ...");
         core::require_at_least("KnotParameters.elements", elements, 16);
         material.validate();
     }
@@ -56,14 +57,18 @@ public:
         while (piece < 4 && s > start_[piece + 1]) ++piece;
         const double share = (s - start_[piece]) / (start_[piece + 1] - start_[piece]);
         switch (piece) {
-            case 0: return {-reach_ - (1.0 - share) * p_.tail, 0.0, 0.0};
-            case 1: return strand(-reach_ + 2.0 * share * reach_, 0.5);
+            case 0:
+                return {-reach_ - (1.0 - share) * p_.tail, 0.0, 0.0};
+            case 1:
+                return strand(-reach_ + 2.0 * share * reach_, 0.5);
             case 2: {
                 const double angle = angle_ + share * 2.0 * (std::numbers::pi - angle_);
                 return {R * std::sin(angle), R * (1.0 - std::cos(angle)), 0.0};
             }
-            case 3: return strand(-reach_ + 2.0 * share * reach_, -0.5);
-            default: return {reach_ + share * p_.tail, 0.0, 0.0};
+            case 3:
+                return strand(-reach_ + 2.0 * share * reach_, -0.5);
+            default:
+                return {reach_ + share * p_.tail, 0.0, 0.0};
         }
     }
 
@@ -96,8 +101,13 @@ inline scene::Assembly tied_rod(const KnotParameters& parameters) {
         length += chord * (1.0 + turn * turn / 24.0);
     }
     scene::Assembly assembly;
-    scene::FibreSpecification rod{.from = shape(0.0), .to = shape(0.0) + Vec3(length, 0, 0), .start = shape, .section = scene::circular(parameters.radius),
-                                  .material = parameters.material, .elements = parameters.elements, .director = Vec3::UnitZ()};
+    scene::FibreSpecification rod{.from = shape(0.0),
+                                  .to = shape(0.0) + Vec3(length, 0, 0),
+                                  .start = shape,
+                                  .section = scene::circular(parameters.radius),
+                                  .material = parameters.material,
+                                  .elements = parameters.elements,
+                                  .director = Vec3::UnitZ()};
     const Index fibre = assembly.add(rod);
     assembly.hold_position(scene::first_end(fibre));
     assembly.hold_axial_rotation(scene::first_end(fibre));
@@ -107,20 +117,23 @@ inline scene::Assembly tied_rod(const KnotParameters& parameters) {
     return assembly;
 }
 
-/// Penalty to start with, over that of a section: at which the contact force of the theory, half E I / (r^1/2 R^3/2), sinks by 2 % of
-/// a radius. A softer one lets the strands of the braid through each other before it has adapted.
+/// Penalty to start with, over that of a section: at which the contact force of the theory, half E I / (r^1/2 R^3/2), sinks by 2
+/// % of a radius. A softer one lets the strands of the braid through each other before it has adapted.
 inline double initial_stiffness_fraction(const KnotParameters& parameters) {
     const double r = parameters.radius, E = parameters.material.young_modulus;
-    const double force = 0.5 * 0.25 * E * std::numbers::pi * r * r * r * r / (std::sqrt(r) * std::pow(parameters.loop_radius, 1.5));
-    const double element = (2.0 * std::numbers::pi * parameters.loop_radius + 2.0 * parameters.tail) / static_cast<double>(parameters.elements);
+    const double force =
+        0.5 * 0.25 * E * std::numbers::pi * r * r * r * r / (std::sqrt(r) * std::pow(parameters.loop_radius, 1.5));
+    const double element =
+        (2.0 * std::numbers::pi * parameters.loop_radius + 2.0 * parameters.tail) / static_cast<double>(parameters.elements);
     return force / (0.02 * r) / contact::section_stiffness(parameters.material, 0.5 * element);
 }
 
-/// F R^2 / (E I) of a loose knot, R its shortening over 2 pi: (1/2) + (3 sigma / pi) (r / R)^1/2, within terms of the order of r / R.
+/// F R^2 / (E I) of a loose knot, R its shortening over 2 pi: (1/2) + (3 sigma / pi) (r / R)^1/2, within terms of the order of r
+/// / R.
 ///
-/// The first term is the circle's (Audoly, Clauvelin, Neukirch 2007), whose contact forces add up to sigma E I / (r^1/2 R^3/2). The second
-/// follows from them: contacts are 2 r apart, so the energy W(e, r) of a knot without friction grows by 2 P with r, P the sum of the
-/// contact forces; hence W = pi E I / R + 4 sigma E I r^1/2 / R^3/2, and F = -dW/de at e = 2 pi R.
+/// The first term is the circle's (Audoly, Clauvelin, Neukirch 2007), whose contact forces add up to sigma E I / (r^1/2 R^3/2).
+/// The second follows from them: contacts are 2 r apart, so the energy W(e, r) of a knot without friction grows by 2 P with r, P
+/// the sum of the contact forces; hence W = pi E I / R + 4 sigma E I r^1/2 / R^3/2, and F = -dW/de at e = 2 pi R.
 /// @param crossings  3 or 5, for which sigma is known
 inline double loose_force(int crossings, double r_over_R) {
     if (crossings != 3 && crossings != 5) core::refuse("loose_force.crossings", std::to_string(crossings), "3 or 5");
@@ -134,11 +147,11 @@ struct KnotState {
     double shortening = 0.0;     ///< length that the knot takes up, 2 pi times the radius of a loose loop [length]
     double contact_force = 0.0;  ///< P, sum over all contacts [force]
     double energy = 0.0;         ///< W of the rod [force * length]
-    /// (W + 2 r P) / (F e) - 1, e the shortening: 0 for any inextensible rod without friction, loose or tight, since W(e, r) is E I / e
-    /// times a function of r / e [1].
+    /// (W + 2 r P) / (F e) - 1, e the shortening: 0 for any inextensible rod without friction, loose or tight, since W(e, r) is E
+    /// I / e times a function of r / e [1].
     double virial = 0.0;
-    /// How far the upper part of the loop, two fifths of it, is from (force along the rod) + E I curvature^2 / 2 = force in the tails, which holds
-    /// exactly for an inextensible rod without friction, over that force [1].
+    /// How far the upper part of the loop, two fifths of it, is from (force along the rod) + E I curvature^2 / 2 = force in the
+    /// tails, which holds exactly for an inextensible rod without friction, over that force [1].
     double imbalance = 0.0;
 };
 
@@ -155,20 +168,24 @@ KnotState measure(const simulation::Simulator<M>& simulator, const KnotParameter
     // The top of the loop is half way along the rod.
     const double h = mesh.fibre(0).element_length, middle = 0.5 * static_cast<double>(parameters.elements);
     const double reach = 0.2 * state.shortening / h;
-    const double area = mesh.fibre(0).section.area(), E = parameters.material.young_modulus, bending = 0.25 * E * area * parameters.radius * parameters.radius;
+    const double area = mesh.fibre(0).section.area(), E = parameters.material.young_modulus,
+                 bending = 0.25 * E * area * parameters.radius * parameters.radius;
     for (Index e = static_cast<Index>(std::ceil(middle - reach)); static_cast<double>(e) < middle + reach - 1.0; ++e) {
         double along = 0.0;
         for (const double side : {-1.0, 1.0}) {  // at the element's stress points
-            const double square = mesh.derivative(now, 0, static_cast<double>(e) + 0.5 + 0.5 * side / std::sqrt(3.0)).squaredNorm() / (h * h);
+            const double square =
+                mesh.derivative(now, 0, static_cast<double>(e) + 0.5 + 0.5 * side / std::sqrt(3.0)).squaredNorm() / (h * h);
             along += 0.5 * E * area * 0.5 * (square - 1.0) * std::sqrt(square);
         }
         // Curvature by the tangents at the middles of the two neighbours: those of one element have kinks at its ends.
-        const Vec3 before = mesh.derivative(now, 0, static_cast<double>(e) - 0.5), after = mesh.derivative(now, 0, static_cast<double>(e) + 1.5);
+        const Vec3 before = mesh.derivative(now, 0, static_cast<double>(e) - 0.5),
+                   after = mesh.derivative(now, 0, static_cast<double>(e) + 1.5);
         const double curvature = std::atan2(before.cross(after).norm(), before.dot(after)) / (2.0 * h);
         // Bending strains are a . g', so bending pulls along the rod with E I curvature^2 beside what the stretch does; it also
         // presses the section, A S_11 = -E I curvature^2, which takes nu times that off again.
         along += (1.0 - parameters.material.poisson_ratio) * bending * curvature * curvature;
-        state.imbalance = std::max(state.imbalance, std::abs((along + 0.5 * bending * curvature * curvature) / state.force - 1.0));
+        state.imbalance =
+            std::max(state.imbalance, std::abs((along + 0.5 * bending * curvature * curvature) / state.force - 1.0));
     }
     return state;
 }

@@ -26,8 +26,12 @@ inline scene::Assembly boxed_mat(const MatParameters& parameters, const std::vec
     scene::Assembly assembly;
     const Index group = assembly.add_group("mat");
     for (const MatFibre& fibre : fibres) {
-        scene::FibreSpecification specification{.from = fibre(0.0), .to = fibre(1.0), .section = scene::circular(parameters.radius), .material = parameters.material,
-                                                .elements = parameters.elements_of(fibre.length), .group = group};
+        scene::FibreSpecification specification{.from = fibre(0.0),
+                                                .to = fibre(1.0),
+                                                .section = scene::circular(parameters.radius),
+                                                .material = parameters.material,
+                                                .elements = parameters.elements_of(fibre.length),
+                                                .group = group};
         if (fibre.turn > 1e-9) specification.curve = fibre;
         assembly.add(specification);
     }
@@ -55,10 +59,11 @@ struct MatState {
     double lower_pressure = 0.0;   ///< on the lower plate [force / length^2]
     Index contacts = 0;            ///< places where two fibres press on each other
     double contacts_per_fibre = 0.0;
-    double sine = 0.0;             ///< mean |sin| of the angle of two fibres, end to end: pi / 4 if all directions are alike, 2 / pi in a plane
+    double sine =
+        0.0;  ///< mean |sin| of the angle of two fibres, end to end: pi / 4 if all directions are alike, 2 / pi in a plane
     /// Contacts per fibre if fibres, as they lie, passed through each other: 8 / pi phi L / d sine (Komori and Makishima, Toll).
     double contacts_without_bulk = 0.0;
-    double elastic_energy = 0.0;   ///< of the fibres [force * length]
+    double elastic_energy = 0.0;  ///< of the fibres [force * length]
 };
 
 /// Mean |sin| of the angle between each fibre and the 64 after it, which stand for all others: they were drawn one by one.
@@ -67,7 +72,9 @@ double mean_sine(const simulation::Simulator<M>& simulator) {
     const Index n = simulator.mesh().fibre_count(), others = std::min<Index>(64, n - 1);
     std::vector<Vec3> along;
     for (Index f = 0; f < n; ++f)
-        along.push_back((simulator.value(scene::last_end(f), scene::NodeVector::position) - simulator.value(scene::first_end(f), scene::NodeVector::position)).normalized());
+        along.push_back((simulator.value(scene::last_end(f), scene::NodeVector::position) -
+                         simulator.value(scene::first_end(f), scene::NodeVector::position))
+                            .normalized());
     double sum = 0.0;
     for (Index f = 0; f < n; ++f)
         for (Index k = 1; k <= others; ++k) sum += along[core::at(f)].cross(along[core::at((f + k) % n)]).norm();
@@ -91,24 +98,26 @@ MatState measure(const simulation::Simulator<M>& simulator, const MatParameters&
     }
     state.contacts_per_fibre = 2.0 * static_cast<double>(state.contacts) / static_cast<double>(parameters.fibres);
     state.sine = mean_sine(simulator);
-    state.contacts_without_bulk = 8.0 / std::numbers::pi * state.volume_fraction * parameters.length / parameters.diameter() * state.sine;
+    state.contacts_without_bulk =
+        8.0 / std::numbers::pi * state.volume_fraction * parameters.length / parameters.diameter() * state.sine;
     state.elastic_energy = simulator.equilibrium().elastic_energy(simulator.state());
     return state;
 }
 
 /// How a mat is pressed.
 struct PressParameters {
-    double height = core::unset;         ///< between the plates at the end [length], > 0 and below the mat's
-    Index increments = 60;               ///< >= 1
-    double friction_coefficient = 0.2;   ///< of fibres on each other [1], >= 0
-    double allowed_penetration = 2e-2;   ///< [radius], > 0
+    double height = core::unset;        ///< between the plates at the end [length], > 0 and below the mat's
+    Index increments = 60;              ///< >= 1
+    double friction_coefficient = 0.2;  ///< of fibres on each other [1], >= 0
+    double allowed_penetration = 2e-2;  ///< [radius], > 0
     /// Spring from every centre to its last place, without which fibres that nothing holds yet have no place: over what bends a
     /// fibre between supports that are a tenth of its length apart [1], > 0.
     double damping = 1e-5;
-    double looseness = 20.0;             ///< on the tolerances of contact and normal passes [1], in [1, 1000]
-    double overshoot = 0.5;              ///< `IterationParameters::overshoot` [1]
+    double looseness = 20.0;  ///< on the tolerances of contact and normal passes [1], in [1, 1000]
+    double overshoot = 0.5;   ///< `IterationParameters::overshoot` [1]
     void validate(const MatParameters& mat) const {
-        core::require(height > 0.0 && height < mat.height, "PressParameters.height", height, "> 0 and below the mat's own, " + core::text(mat.height));
+        core::require(height > 0.0 && height < mat.height, "PressParameters.height", height,
+                      "> 0 and below the mat's own, " + core::text(mat.height));
         core::require_at_least("PressParameters.increments", increments, 1);
         core::require_not_negative("PressParameters.friction_coefficient", friction_coefficient);
         core::require_positive("PressParameters.allowed_penetration", allowed_penetration);
@@ -124,7 +133,8 @@ simulation::ModelParameters<M> model_parameters(const MatParameters& parameters,
     const double r = parameters.radius;
     simulation::ModelParameters<M> model;
     model.normal.regularisation_depth = 0.25 * press.allowed_penetration * r;
-    if constexpr (core::Active<typename M::Friction>) model.friction = {.friction_coefficient = press.friction_coefficient, .reversible_displacement = 0.05 * r};
+    if constexpr (core::Active<typename M::Friction>)
+        model.friction = {.friction_coefficient = press.friction_coefficient, .reversible_displacement = 0.05 * r};
     model.contact.stiffness.allowed_penetration = press.allowed_penetration * r;
     // Fibres bend long before their sections give way.
     model.contact.stiffness.initial_fraction = 1e-3, model.contact.stiffness.floor_fraction = 1e-6;

@@ -38,23 +38,24 @@ private:
     std::uint64_t state_;
 };
 
-/// Fibres in a box of width x width x height whose corner is the origin; all of each fibre is inside, or what the box's sides leave of it.
+/// Fibres in a box of width x width x height whose corner is the origin; all of each fibre is inside, or what the box's sides
+/// leave of it.
 struct MatParameters {
     double radius = core::unset;  ///< of a fibre [length], > 0
     double length = core::unset;  ///< of a fibre [length], > 0
     double width = core::unset;   ///< of the box along x and y [length], > 0
     double height = core::unset;  ///< of the box along z [length], > 0
     Index fibres = 0;             ///< >= 1; of those that are cut, as many as have their length together
-    /// A sample punched out of a wider mat: fibres reach through the sides of the box and are cut there, so that places and directions
-    /// are as many at the sides as inside. What is shorter than a tenth of a fibre is left out. Straight fibres only.
+    /// A sample punched out of a wider mat: fibres reach through the sides of the box and are cut there, so that places and
+    /// directions are as many at the sides as inside. What is shorter than a tenth of a fibre is left out. Straight fibres only.
     bool cut = false;
-    double bend_deg = 0.0;        ///< by which each fibre turns from one end to the other, a circle's arc at rest [degree], in [0, 180]
-    double tilt_deg = 90.0;       ///< greatest angle to the plane of x and y; 90: all directions alike [degree], in [0, 90]
-    double clearance = 0.02;      ///< least gap between two fibres [radius]; -2 or less: they may lie in each other
+    double bend_deg = 0.0;  ///< by which each fibre turns from one end to the other, a circle's arc at rest [degree], in [0, 180]
+    double tilt_deg = 90.0;   ///< greatest angle to the plane of x and y; 90: all directions alike [degree], in [0, 90]
+    double clearance = 0.02;  ///< least gap between two fibres [radius]; -2 or less: they may lie in each other
     scene::ElasticMaterial material{};
-    Index elements = 8;           ///< along each fibre
-    std::uint64_t seed = 1;  ///< of the random numbers; the same gives the same mat
-    Index draws = 2'000'000;      ///< of fibres in all, after which a box counts as full, >= fibres
+    Index elements = 8;       ///< along each fibre
+    std::uint64_t seed = 1;   ///< of the random numbers; the same gives the same mat
+    Index draws = 2'000'000;  ///< of fibres in all, after which a box counts as full, >= fibres
 
     double diameter() const noexcept { return 2.0 * radius; }
     /// Part of the box that is fibre, at a height [1].
@@ -72,7 +73,8 @@ struct MatParameters {
         core::require_finite("MatParameters.clearance", clearance);
         core::require_at_least("MatParameters.elements", elements, 1);
         core::require_at_least("MatParameters.draws", draws, fibres);
-        core::require(2.0 * radius < height && 2.0 * radius < width, "MatParameters.radius", radius, "< half of height and width");
+        core::require(2.0 * radius < height && 2.0 * radius < width, "MatParameters.radius", radius,
+                      "< half of height and width");
         core::require(!cut || bend_deg == 0.0, "MatParameters.bend_deg", bend_deg, "0 where fibres are cut");
         material.validate();
     }
@@ -100,9 +102,11 @@ struct MatFibre {
 inline MatFibre drawn_fibre(const MatParameters& parameters, Draws& draw) {
     MatFibre fibre;
     const double beyond = parameters.cut ? 0.5 * parameters.length : 0.0;
-    const double x = draw(-beyond, parameters.width + beyond), y = draw(-beyond, parameters.width + beyond), z = draw(0.0, parameters.height);
+    const double x = draw(-beyond, parameters.width + beyond), y = draw(-beyond, parameters.width + beyond),
+                 z = draw(0.0, parameters.height);
     fibre.middle = {x, y, z};
-    const double up = std::sin(parameters.tilt_deg * std::numbers::pi / 180.0), sine = draw(-up, up), azimuth = draw(0.0, 2.0 * std::numbers::pi);
+    const double up = std::sin(parameters.tilt_deg * std::numbers::pi / 180.0), sine = draw(-up, up),
+                 azimuth = draw(0.0, 2.0 * std::numbers::pi);
     const double cosine = std::sqrt(std::max(0.0, 1.0 - sine * sine));
     fibre.along = {cosine * std::cos(azimuth), cosine * std::sin(azimuth), sine};
     // Bends as little out of the plane as its direction does.
@@ -119,7 +123,8 @@ namespace detail {
 /// Pieces of fibres by the cells of a grid that their middles are in.
 class PieceGrid {
 public:
-    PieceGrid(const MatParameters& p, double reach) : reach_{reach}, piece_{std::min(p.length, std::max(4.0 * p.radius, p.length / 64.0))} {
+    PieceGrid(const MatParameters& p, double reach)
+        : reach_{reach}, piece_{std::min(p.length, std::max(4.0 * p.radius, p.length / 64.0))} {
         cell_ = reach_ + piece_;
         across_ = static_cast<Index>(p.width / cell_) + 1, up_ = static_cast<Index>(p.height / cell_) + 1;
         cells_.resize(core::at(across_ * across_ * up_));
@@ -138,14 +143,18 @@ public:
                 for (Index j = std::max<Index>(b - 1, 0); j <= std::min(b + 1, across_ - 1); ++j)
                     for (Index l = std::max<Index>(c - 1, 0); l <= std::min(c + 1, up_ - 1); ++l)
                         for (const Piece& piece : cells_[core::at((l * across_ + j) * across_ + i)])
-                            if (proximity::segment_distance(points[k - 1], points[k] - points[k - 1], piece.from, piece.to - piece.from).squared < reach_ * reach_) return false;
+                            if (proximity::segment_distance(points[k - 1], points[k] - points[k - 1], piece.from,
+                                                            piece.to - piece.from)
+                                    .squared < reach_ * reach_)
+                                return false;
         }
         return true;
     }
     void add(const std::vector<Vec3>& points) {
         for (std::size_t k = 1; k < points.size(); ++k) {
             const Vec3 middle = 0.5 * (points[k - 1] + points[k]);
-            const Index cell = (index(middle.z(), up_) * across_ + index(middle.y(), across_)) * across_ + index(middle.x(), across_);
+            const Index cell =
+                (index(middle.z(), up_) * across_ + index(middle.y(), across_)) * across_ + index(middle.x(), across_);
             cells_[core::at(cell)].push_back({points[k - 1], points[k]});
         }
     }
@@ -195,18 +204,23 @@ inline std::vector<MatFibre> random_fibres(const MatParameters& parameters) {
     const auto full = [&] { return parameters.cut ? !(missing > 0.0) : core::count(fibres) >= parameters.fibres; };
     for (Index tries = 0; !full(); ++tries) {
         if (tries >= parameters.draws)
-            core::refuse("MatParameters.fibres", std::to_string(parameters.fibres), "at most " + std::to_string(fibres.size()) + ", which are all that " + std::to_string(tries) + " draws found a place for");
+            core::refuse("MatParameters.fibres", std::to_string(parameters.fibres),
+                         "at most " + std::to_string(fibres.size()) + ", which are all that " + std::to_string(tries) +
+                             " draws found a place for");
         MatFibre fibre = drawn_fibre(parameters, draw);
         if (parameters.cut) {
             fibre = cut_at_sides(parameters, fibre);
-            if (fibre.length >= missing) fibre.length = missing;
-            else if (fibre.length > missing - shortest) fibre.length = missing - shortest;
+            if (fibre.length >= missing)
+                fibre.length = missing;
+            else if (fibre.length > missing - shortest)
+                fibre.length = missing - shortest;
             if (fibre.length < (1.0 - 1e-9) * shortest) continue;
         }
         const std::vector<Vec3> points = grid.pieces(fibre);
         const bool inside = std::all_of(points.begin(), points.end(), [&](const Vec3& x) {
             // Ends that were cut lie at the sides to the last bit, which is no reason to draw them anew.
-            const bool between = parameters.cut || (x.head<2>().minCoeff() >= r && x.head<2>().maxCoeff() <= parameters.width - r);
+            const bool between =
+                parameters.cut || (x.head<2>().minCoeff() >= r && x.head<2>().maxCoeff() <= parameters.width - r);
             return between && x.z() >= r && x.z() <= parameters.height - r;
         });
         if (!inside || (reach > 0.0 && !grid.free(points))) continue;
@@ -223,9 +237,9 @@ struct StackedMat {
     double height = 0.0;  ///< of the box that they fill [length]
 };
 
-/// Horizontal fibres of random places and directions, laid one by one in the lowest gap that takes them as they are. All are then let
-/// down as far as straight fibres go, and lifted as far as they go below a lid that leaves `slack` times the height that they need; each
-/// lies half way. As what keeps two fibres apart is linear in their heights, half way is apart too.
+/// Horizontal fibres of random places and directions, laid one by one in the lowest gap that takes them as they are. All are then
+/// let down as far as straight fibres go, and lifted as far as they go below a lid that leaves `slack` times the height that they
+/// need; each lies half way. As what keeps two fibres apart is linear in their heights, half way is apart too.
 /// @param slack  >= 1
 inline StackedMat stacked_fibres(const MatParameters& parameters, double slack) {
     core::require(slack >= 1.0, "stacked_fibres.slack", slack, ">= 1");
@@ -252,7 +266,9 @@ inline StackedMat stacked_fibres(const MatParameters& parameters, double slack) 
     std::vector<Crossing> crossings;
     for (const auto& [i, j] : proximity::GridSearch().pairs(lines, 0.0)) {  // of lines of one segment each
         const std::size_t first = core::at(i), second = core::at(j);
-        const double squared = proximity::segment_distance(plan[first][0], plan[first][1] - plan[first][0], plan[second][0], plan[second][1] - plan[second][0]).squared;
+        const double squared = proximity::segment_distance(plan[first][0], plan[first][1] - plan[first][0], plan[second][0],
+                                                           plan[second][1] - plan[second][0])
+                                   .squared;
         if (squared < reach * reach) crossings.push_back({first, second, std::sqrt(reach * reach - squared)});
     }
     const auto by_above = [](const Crossing& x, const Crossing& y) { return x.above < y.above; };
@@ -274,7 +290,8 @@ inline StackedMat stacked_fibres(const MatParameters& parameters, double slack) 
     // From below, each fibre's rank in height in the place of its number.
     std::vector<std::size_t> order(fibres.size()), rank(fibres.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return fibres[x].middle.z() < fibres[y].middle.z(); });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t x, std::size_t y) { return fibres[x].middle.z() < fibres[y].middle.z(); });
     std::vector<MatFibre> sorted;
     for (const std::size_t k : order) rank[k] = sorted.size(), sorted.push_back(fibres[k]);
     fibres.swap(sorted);

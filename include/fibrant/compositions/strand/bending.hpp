@@ -12,7 +12,8 @@ namespace fibrant::compositions::strand {
 /// Channel of the bending; its amplitude is the angle between the two plates [radian].
 inline const std::string bend = "bend";
 
-/// Place of a point of an arc, from where its middle is, at a part of its length in [-1/2, 1/2]; straight it lies along z [length].
+/// Place of a point of an arc, from where its middle is, at a part of its length in [-1/2, 1/2]; straight it lies along z
+/// [length].
 inline Vec3 arc_point(double length, double angle, double part) {
     const double turn = part * angle, small = turn * turn;
     if (std::abs(turn) < 1e-4) return part * length * Vec3(0.5 * turn, 0.0, 1.0 - small / 6.0);
@@ -27,7 +28,8 @@ inline Vec3 arc_velocity(double length, double angle, double part) {
     return part * part * length / turn * Vec3(sine - (1.0 - cosine) / turn, 0.0, cosine - sine / turn);
 }
 
-/// Where the wires of the layers are held along the strand; elsewhere they may slide through the plates. The core is held at both.
+/// Where the wires of the layers are held along the strand; elsewhere they may slide through the plates. The core is held at
+/// both.
 enum class Anchor {
     near_plate,   ///< all sliding is at the far plate
     both_plates,  ///< none: ends of a socketed strand
@@ -39,8 +41,9 @@ struct Bending {
     double strain = 0.0;  ///< the arc between the plates is longer than the strand by this, from the first increment on [1], > -1
 };
 
-/// Wires are held in the planes of both plates, and their sections turn with them: one by half of the angle about y, the other back, and
-/// their centres go where the ends of an arc do whose middle stays. So nothing moves far, which keeps the contact search short.
+/// Wires are held in the planes of both plates, and their sections turn with them: one by half of the angle about y, the other
+/// back, and their centres go where the ends of an arc do whose middle stays. So nothing moves far, which keeps the contact
+/// search short.
 inline scene::Assembly bent_strand(const StrandParameters& parameters, const Bending& bending = {}) {
     scene::Assembly assembly = wires_of(parameters);
     core::require(bending.strain > -1.0, "Bending.strain", bending.strain, "> -1");
@@ -70,14 +73,16 @@ inline scene::Assembly bent_strand(const StrandParameters& parameters, const Ben
 
 /// What bending takes.
 struct BendingState {
-    double angle = 0.0;    ///< between the plates [radian]
-    double moment = 0.0;   ///< work for each radian: half of what both plates exert about y, and what the forces on them do as their centres move [force * length]
-    double at_plate = 0.0; ///< about y, at the far plate's centre alone [force * length]
-    double tension = 0.0;  ///< of the core and all wires along the far plate's normal [force]
+    double angle = 0.0;     ///< between the plates [radian]
+    double moment = 0.0;    ///< work for each radian: half of what both plates exert about y, and what the forces on them do as
+                            ///< their centres move [force * length]
+    double at_plate = 0.0;  ///< about y, at the far plate's centre alone [force * length]
+    double tension = 0.0;   ///< of the core and all wires along the far plate's normal [force]
 };
 
 template <simulation::Model M>
-BendingState measure_bending(const simulation::Simulator<M>& simulator, const StrandParameters& parameters, const Bending& bending = {}) {
+BendingState measure_bending(const simulation::Simulator<M>& simulator, const StrandParameters& parameters,
+                             const Bending& bending = {}) {
     const double arc = (1.0 + bending.strain) * parameters.length;
     const Vec3 middle(0.0, 0.0, 0.5 * parameters.length);
     BendingState state;
@@ -86,7 +91,8 @@ BendingState measure_bending(const simulation::Simulator<M>& simulator, const St
         std::vector<scene::Station> sections;
         for (Index fibre = 0; fibre < parameters.wires(); ++fibre) sections.push_back({fibre, end});
         const double part = end - 0.5;
-        const simulation::Wrench wrench = simulation::support_wrench(simulator, sections, middle + arc_point(arc, state.angle, part));
+        const simulation::Wrench wrench =
+            simulation::support_wrench(simulator, sections, middle + arc_point(arc, state.angle, part));
         state.moment += part * wrench.moment.y() + wrench.force.dot(arc_velocity(arc, state.angle, part));
         state.at_plate = wrench.moment.y();
         state.tension = wrench.force.dot(Vec3(std::sin(part * state.angle), 0.0, std::cos(part * state.angle)));
@@ -94,12 +100,14 @@ BendingState measure_bending(const simulation::Simulator<M>& simulator, const St
     return state;
 }
 
-/// How far a wire has gone outwards from the layer it belongs to, at most: its distance from the core's line, which goes straight on beyond
-/// the plates, over the radius of its helix [length].
+/// How far a wire has gone outwards from the layer it belongs to, at most: its distance from the core's line, which goes straight
+/// on beyond the plates, over the radius of its helix [length].
 template <simulation::Model M>
 double furthest_from_layer(const simulation::Simulator<M>& simulator, const StrandParameters& parameters) {
     const auto& mesh = simulator.mesh();
-    const auto place = [&](Index fibre, Index node) { return simulator.value({fibre, static_cast<double>(node) / static_cast<double>(mesh.node_count(fibre) - 1)}); };
+    const auto place = [&](Index fibre, Index node) {
+        return simulator.value({fibre, static_cast<double>(node) / static_cast<double>(mesh.node_count(fibre) - 1)});
+    };
     const Index nodes = mesh.node_count(0);
     double most = 0.0;
     Index fibre = 1;
@@ -120,8 +128,9 @@ double furthest_from_layer(const simulation::Simulator<M>& simulator, const Stra
     return most;
 }
 
-/// Of wires that bend each by itself, as helical springs: over a turn, sin^2 / 2 of the moment twists a wire and the rest bends it, and there
-/// is 1 / cos of wire on a length of axis. So E I cos / (1 + nu sin^2 / 2) of the lay angle (Costello) [force * length^2].
+/// Of wires that bend each by itself, as helical springs: over a turn, sin^2 / 2 of the moment twists a wire and the rest bends
+/// it, and there is 1 / cos of wire on a length of axis. So E I cos / (1 + nu sin^2 / 2) of the lay angle (Costello) [force *
+/// length^2].
 inline double loose_stiffness(const StrandParameters& parameters) {
     double sum = parameters.material.young_modulus * std::pow(parameters.core_radius, 4);
     for (const Layer& layer : parameters.layers) {

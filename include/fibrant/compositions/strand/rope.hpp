@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file The scene of a rope. What holds its ends, what draws and turns it and what is measured on it are those of a strand (strand.hpp).
+/// @file The scene of a rope. What holds its ends, what draws and turns it and what is measured on it are those of a strand
+/// (strand.hpp).
 
 #include <fibrant/compositions/strand/rope_parameters.hpp>
 #include <fibrant/compositions/strand/strand.hpp>
@@ -15,7 +16,8 @@ inline scene::Assembly wires_of(const RopeParameters& parameters) {
         const Index group = assembly.add_group("strand " + std::to_string(strand));
         for (const WireLine& line : parameters.lines(strand)) {
             scene::FibreSpecification fibre;
-            fibre.section = scene::circular(line.radius), fibre.material = parameters.material, fibre.elements = parameters.elements, fibre.group = group;
+            fibre.section = scene::circular(line.radius), fibre.material = parameters.material,
+            fibre.elements = parameters.elements, fibre.group = group;
             const double first = line.at_height(0.0), last = line.at_height(parameters.length);
             const Vec3 aside = line.place(first) - Vec3(0, 0, line.place(first).z());
             fibre.director = aside.norm() > 0.0 ? aside : Vec3(Vec3::UnitX());

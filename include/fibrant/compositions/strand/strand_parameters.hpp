@@ -22,7 +22,7 @@ struct Layer {
     double radius = core::unset;  ///< of a wire [length], > 0
     /// Angle of the wires to the axis [degree], in (-80, 80): positive is a right-handed helix; 0: straight wires.
     double lay_angle_deg = core::unset;
-    double clearance = 0.0;       ///< from the layer inside [length], >= 0
+    double clearance = 0.0;                            ///< from the layer inside [length], >= 0
     std::optional<scene::ElasticMaterial> material{};  ///< of its wires; none: that of the strand
 
     void validate() const {
@@ -55,7 +55,8 @@ struct StrandSection {
     double neighbour_gap(std::size_t layer) const {
         const Layer& own = layers[layer];
         if (own.wires < 2) return std::numeric_limits<double>::infinity();
-        const double a = helix_radius(layer), rate = turn_rate(layer), step = 2.0 * std::numbers::pi / static_cast<double>(own.wires);
+        const double a = helix_radius(layer), rate = turn_rate(layer),
+                     step = 2.0 * std::numbers::pi / static_cast<double>(own.wires);
         // From the point at z = 0 to the one at z of the neighbour, whose angle is step + rate z: least along z, by bisection of
         // the slope, which rises with z (a^2 rate sin + z) on each side of the minimum next to z = 0.
         const auto slope = [&](double z) { return a * a * rate * std::sin(step + rate * z) + z; };
@@ -86,7 +87,9 @@ struct StrandParameters : StrandSection {
     double length = core::unset;  ///< along the axis [length], > 0
     Index elements = 40;          ///< along each wire, >= 2
 
-    const scene::ElasticMaterial& material_of(const Layer& layer) const noexcept { return layer.material ? *layer.material : material; }
+    const scene::ElasticMaterial& material_of(const Layer& layer) const noexcept {
+        return layer.material ? *layer.material : material;
+    }
     /// Sum of E A of all wires [force].
     double metal_stiffness() const noexcept {
         double sum = material.young_modulus * core_radius * core_radius;
@@ -103,7 +106,8 @@ struct StrandParameters : StrandSection {
         for (std::size_t k = 0; k < layers.size(); ++k) {
             layers[k].validate();
             const double gap = neighbour_gap(k);
-            core::require(gap > -1e-9 * layers[k].radius, "StrandParameters.layers[" + std::to_string(k) + "]: gap between neighbours", gap, ">= 0");
+            core::require(gap > -1e-9 * layers[k].radius,
+                          "StrandParameters.layers[" + std::to_string(k) + "]: gap between neighbours", gap, ">= 0");
         }
     }
 };
@@ -119,11 +123,13 @@ enum class Lay {
 /// @param radius         of the outer wires; the core is thicker, so that each layer has room
 /// @param lay_angle_deg  of the outermost layer, with the hand of the innermost
 /// @param alternate      every second layer has the other hand
-inline StrandParameters regular_strand(Index wires, double radius, double lay_angle_deg, bool alternate, Lay lay = Lay::equal_angle) {
+inline StrandParameters regular_strand(Index wires, double radius, double lay_angle_deg, bool alternate,
+                                       Lay lay = Lay::equal_angle) {
     core::require_positive("regular_strand.radius", radius);
     Index layers = 0;
     for (Index sum = 1; sum < wires; sum += 6 * layers) ++layers;
-    if (wires != 1 + 3 * layers * (layers + 1)) core::refuse("regular_strand.wires", std::to_string(wires), "1 + 6 + 12 + ...: 1, 7, 19, 37, 61, 91");
+    if (wires != 1 + 3 * layers * (layers + 1))
+        core::refuse("regular_strand.wires", std::to_string(wires), "1 + 6 + 12 + ...: 1, 7, 19, 37, 61, 91");
     const double tangent = std::tan(lay_angle_deg * std::numbers::pi / 180.0);
     StrandParameters parameters;
     // Room for the wires of the first layer comes from the core, for those of the others from a clearance below them.
@@ -133,7 +139,10 @@ inline StrandParameters regular_strand(Index wires, double radius, double lay_an
             parameters.layers.push_back({.wires = 6 * (k + 1), .radius = radius, .lay_angle_deg = lay_angle_deg});
             const auto room = [&](double more) {
                 (k == 0 ? parameters.core_radius : parameters.layers.back().clearance) = (k == 0 ? radius : 0.0) + more;
-                const double angle = lay == Lay::equal_angle ? lay_angle_deg : std::atan(2.0 * std::numbers::pi * parameters.helix_radius(core::at(k)) / pitch) * 180.0 / std::numbers::pi;
+                const double angle = lay == Lay::equal_angle
+                                         ? lay_angle_deg
+                                         : std::atan(2.0 * std::numbers::pi * parameters.helix_radius(core::at(k)) / pitch) *
+                                               180.0 / std::numbers::pi;
                 parameters.layers.back().lay_angle_deg = alternate && k % 2 == 1 ? -angle : angle;
                 return parameters.neighbour_gap(core::at(k));
             };

@@ -13,8 +13,9 @@
 namespace fibrant::compositions::strand {
 
 /// A wire at a distance from its strand's core, which goes round the z axis at another. By the length s of the core's line: the
-/// directions out of the axis, b along the cylinder and across the core, and the core's tangent are right-handed and turn with the curvature kappa and the torsion
-/// tau of a helix. The wire turns at `rate` against sections that do not turn about the core, so at rate - tau against these.
+/// directions out of the axis, b along the cylinder and across the core, and the core's tangent are right-handed and turn with
+/// the curvature kappa and the torsion tau of a helix. The wire turns at `rate` against sections that do not turn about the core,
+/// so at rate - tau against these.
 struct WireLine {
     double helix_radius = 0.0;  ///< of the core's line; 0: the axis itself [length]
     double lay = 0.0;           ///< of the core to the axis, positive is right-handed [radian]
@@ -32,10 +33,12 @@ struct WireLine {
         Vec3 place, derivative;
     };
     Point at(double s) const {
-        const double about = start + (helix_radius > 0.0 ? s * std::sin(lay) / helix_radius : 0.0), angle = phase + (rate - torsion()) * s;
+        const double about = start + (helix_radius > 0.0 ? s * std::sin(lay) / helix_radius : 0.0),
+                     angle = phase + (rate - torsion()) * s;
         const double sine = std::sin(angle), cosine = std::cos(angle);
         const Vec3 out(std::cos(about), std::sin(about), 0.0), around(-out.y(), out.x(), 0.0);
-        const Vec3 across = std::cos(lay) * around - std::sin(lay) * Vec3::UnitZ(), along = std::sin(lay) * around + std::cos(lay) * Vec3::UnitZ();
+        const Vec3 across = std::cos(lay) * around - std::sin(lay) * Vec3::UnitZ(),
+                   along = std::sin(lay) * around + std::cos(lay) * Vec3::UnitZ();
         return {helix_radius * out + Vec3(0, 0, s * std::cos(lay)) + distance * (cosine * out + sine * across),
                 (1.0 + distance * curvature() * cosine) * along + distance * rate * (cosine * across - sine * out)};
     }
@@ -52,8 +55,10 @@ struct WireLine {
     }
 };
 
-/// The wires of a strand, the core first, then each layer in the order of angles, for a strand whose core follows a helix or the axis.
-inline std::vector<WireLine> lines_of(const StrandSection& section, double helix_radius = 0.0, double lay = 0.0, double start = 0.0) {
+/// The wires of a strand, the core first, then each layer in the order of angles, for a strand whose core follows a helix or the
+/// axis.
+inline std::vector<WireLine> lines_of(const StrandSection& section, double helix_radius = 0.0, double lay = 0.0,
+                                      double start = 0.0) {
     std::vector<WireLine> lines{{.helix_radius = helix_radius, .lay = lay, .start = start, .radius = section.core_radius}};
     for (std::size_t k = 0; k < section.layers.size(); ++k)
         for (Index wire = 0; wire < section.layers[k].wires; ++wire) {
@@ -65,20 +70,25 @@ inline std::vector<WireLine> lines_of(const StrandSection& section, double helix
     return lines;
 }
 
-/// Least distance between the surfaces of two wires between the planes z = 0 and z = length, < 0 if they overlap; `known` if it is not less [length].
+/// Least distance between the surfaces of two wires between the planes z = 0 and z = length, < 0 if they overlap; `known` if it
+/// is not less [length].
 ///
-/// Goes along the one and drops its points on the other. A distance changes by no more than the way, so where wires are far from each other long steps miss nothing;
-/// a golden section finds what is between three points the middle one of which is the nearest.
-inline double least_gap(const WireLine& one, const WireLine& other, double length, double known = std::numeric_limits<double>::infinity()) {
-    const double first = one.at_height(0.0), last = one.at_height(length), low = other.at_height(0.0), high = other.at_height(length);
+/// Goes along the one and drops its points on the other. A distance changes by no more than the way, so where wires are far from
+/// each other long steps miss nothing; a golden section finds what is between three points the middle one of which is the
+/// nearest.
+inline double least_gap(const WireLine& one, const WireLine& other, double length,
+                        double known = std::numeric_limits<double>::infinity()) {
+    const double first = one.at_height(0.0), last = one.at_height(length), low = other.at_height(0.0),
+                 high = other.at_height(length);
     const double touching = one.radius + other.radius, fine = 0.5 * std::min(one.radius, other.radius);
     const double speed = 1.0 + one.distance * (one.curvature() + std::abs(one.rate));  // at most
-    double foot = low;  // of the last point on the other wire
+    double foot = low;                                                                 // of the last point on the other wire
     const auto gap = [&](double s) {
         const Vec3 from = one.place(s);
         for (int n = 0; n < 20; ++n) {
             const WireLine::Point to = other.at(foot);
-            const double next = std::clamp(foot + to.derivative.dot(from - to.place) / to.derivative.squaredNorm(), low, high), step = std::abs(next - foot);
+            const double next = std::clamp(foot + to.derivative.dot(from - to.place) / to.derivative.squaredNorm(), low, high),
+                         step = std::abs(next - foot);
             foot = next;
             if (step < 1e-7 * other.radius) break;
         }

@@ -12,12 +12,12 @@ namespace fibrant::compositions::textile {
 
 /// A flat braid: yarns that go to and fro between two edges.
 struct FlatBraid {
-    Index yarns = 3;                  ///< >= 3
-    double half_width = core::unset;  ///< from the middle to an edge [length], > 0
-    double period = core::unset;      ///< of a yarn, to and fro [length], > 0
-    double periods = 2.0;             ///< in all [1], > 0
-    Index over = 1;                   ///< yarns in turn that one passes above, then below: 1 or 2
-    YarnType type{};  ///< of all yarns
+    Index yarns = 3;                   ///< >= 3
+    double half_width = core::unset;   ///< from the middle to an edge [length], > 0
+    double period = core::unset;       ///< of a yarn, to and fro [length], > 0
+    double periods = 2.0;              ///< in all [1], > 0
+    Index over = 1;                    ///< yarns in turn that one passes above, then below: 1 or 2
+    YarnType type{};                   ///< of all yarns
     double height_over_radius = 1.05;  ///< of a yarn at a crossing out of the middle plane [1], > 0
 
     void validate() const {
@@ -77,13 +77,13 @@ inline Textile flat_braid(const FlatBraid& braid) {
 
 /// A tubular braid: as many carriers one way round as the other, and straight axial yarns if wanted.
 struct TubularBraid {
-    Index carriers = 8;           ///< each way, >= 2
-    double radius = core::unset;  ///< of the middle surface [length], > 0
-    double pitch = core::unset;   ///< length of a full turn along the axis [length], > 0
-    double turns = 0.5;           ///< > 0
-    Index over = 1;               ///< 1: 1x1; 2: 2x2; divides the carriers
-    bool axials = false;          ///< an axial yarn at every other line of meetings, with 1x1 only
-    YarnType type{};  ///< of all yarns
+    Index carriers = 8;                ///< each way, >= 2
+    double radius = core::unset;       ///< of the middle surface [length], > 0
+    double pitch = core::unset;        ///< length of a full turn along the axis [length], > 0
+    double turns = 0.5;                ///< > 0
+    Index over = 1;                    ///< 1: 1x1; 2: 2x2; divides the carriers
+    bool axials = false;               ///< an axial yarn at every other line of meetings, with 1x1 only
+    YarnType type{};                   ///< of all yarns
     double height_over_radius = 1.05;  ///< of a yarn at a crossing out of the middle of the tube [1], > 0
 
     void validate() const {

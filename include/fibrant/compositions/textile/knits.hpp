@@ -25,7 +25,7 @@ struct WeftKnit {
     double loop_height = core::unset;        ///< H, half of a loop's height in the plane [length], > C / 2
     double bulge = core::unset;              ///< a [length]; unset: W / 5
     double height_over_radius = 1.05;        ///< of yarns at crossings out of the middle plane [1], > 0
-    YarnType type{};  ///< of all yarns
+    YarnType type{};                         ///< of all yarns
 
     bool face(Index course, Index wale) const {
         const std::string& row = stitches[core::at(course % core::count(stitches))];
@@ -115,8 +115,8 @@ struct Tricot {
     double needle_spacing = core::unset;  ///< W [length], > 0
     double course_spacing = core::unset;  ///< C [length], > 0
     double loop_height = core::unset;     ///< of a loop above its feet [length], > C
-    double height_over_radius = 1.05;  ///< of yarns at crossings out of the middle plane [1], > 0
-    YarnType type{};  ///< of all yarns
+    double height_over_radius = 1.05;     ///< of yarns at crossings out of the middle plane [1], > 0
+    YarnType type{};                      ///< of all yarns
 
     void validate() const {
         core::require_at_least("Tricot.needles", needles, 2);

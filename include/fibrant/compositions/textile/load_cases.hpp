@@ -159,8 +159,7 @@ inline LoadCase load_case(const Textile& textile, const Assembled& assembled, co
         if (parameters.name == "bending") {
             // About the third axis; the sense is that in which the middle rises along `across` where the amount is positive.
             const double sense = a.cross(b)[other] > 0.0 ? -1.0 : 1.0;
-            body.rotation[static_cast<std::size_t>(other)] =
-                Coordinate::held_at(sense * half * parameters.amount, load_channel);
+            body.rotation[static_cast<std::size_t>(other)] = Coordinate::held_at(sense * half * parameters.amount, load_channel);
         }
         if (upper && parameters.name != "tension") body.translation[along] = Coordinate::loose();
         load.bodies[upper ? 1 : 0] = assembly.add(body);

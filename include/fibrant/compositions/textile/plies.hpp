@@ -27,7 +27,7 @@ struct StitchedPlies {
     double width = core::unset;          ///< and along y [length], > 0
     double stitch_length = core::unset;  ///< from one place where a thread goes through to the next [length], > 0
     double row_spacing = core::unset;    ///< of neighbouring threads [length], > 0
-    double sideways = 0.0;               ///< by which threads go to and fro across from stitch to stitch [length], in [0, row_spacing]
+    double sideways = 0.0;      ///< by which threads go to and fro across from stitch to stitch [length], in [0, row_spacing]
     YarnType yarn{}, thread{};  ///< of the plies, and that stitches them
 
     void validate() const {

@@ -21,7 +21,7 @@ struct Plied {
     double strand_pitch = core::unset;  ///< of the strands, against the hand of the plies [length], > 0
     double length = core::unset;        ///< along the axis [length], > 0
     double slack = 0.05;                ///< distance of neighbours over their thickness [1], >= 0
-    YarnType type{};  ///< of all yarns
+    YarnType type{};                    ///< of all yarns
 
     void validate() const {
         core::require_at_least("Plied.plies", plies, 2);
@@ -88,7 +88,7 @@ struct ChainMail {
     double pitch = core::unset;        ///< of rings in a row [length]; unset: 2.6 ring radii
     double row_pitch = core::unset;    ///< unset: 0.9 ring radii
     double tilt_deg = 35.0;            ///< of rings about the direction of the rows [degree], in (0, 80]
-    YarnType type{};  ///< of all yarns
+    YarnType type{};                   ///< of all yarns
 
     double along() const noexcept { return std::isnan(pitch) ? 2.6 * ring_radius : pitch; }
     double across() const noexcept { return std::isnan(row_pitch) ? 0.9 * ring_radius : row_pitch; }
@@ -143,12 +143,12 @@ inline Textile chain_mail(const ChainMail& mail) {
 
 /// A net of clasped yarns: each goes to and fro, and hooks into its neighbours at its turns, as in chain link fences and sprang.
 struct Net {
-    Index yarns = 4;               ///< >= 2
-    double spacing = core::unset;  ///< of yarns [length], > 0
-    double period = core::unset;   ///< of a yarn [length], > 0
-    double periods = 2.0;          ///< > 0
-    double overlap = 0.0;          ///< by which a yarn reaches beyond its neighbour's turns [length]; 0: four half widths
-    YarnType type{};  ///< of all yarns
+    Index yarns = 4;                   ///< >= 2
+    double spacing = core::unset;      ///< of yarns [length], > 0
+    double period = core::unset;       ///< of a yarn [length], > 0
+    double periods = 2.0;              ///< > 0
+    double overlap = 0.0;              ///< by which a yarn reaches beyond its neighbour's turns [length]; 0: four half widths
+    YarnType type{};                   ///< of all yarns
     double height_over_radius = 1.05;  ///< of yarns at crossings out of the middle plane [1], > 0
 
     void validate() const {

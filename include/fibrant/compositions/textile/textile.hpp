@@ -20,7 +20,7 @@ namespace fibrant::compositions::textile {
 
 /// What is laid along a path: one fibre, or a packing of several that may be twisted about it.
 struct YarnType {
-    std::string name = "yarn";  ///< in tables and messages
+    std::string name = "yarn";    ///< in tables and messages
     Index fibres = 1;             ///< >= 1
     double radius = core::unset;  ///< of a fibre [length], > 0
     double inertia_factor = 1.0;  ///< on second moments, for a fibre that stands for several [1], > 0

@@ -25,9 +25,9 @@ struct LevelPlan {
     double warp_spacing = core::unset;         ///< between neighbouring warps, > 0
     double layer_spacing = 0.0;                ///< between wefts of one column [length]; 0: of yarns that just do not touch
     double overhang = 0.0;                     ///< beyond the outermost crossings [length]; 0: as far as they are apart
-    YarnType warp{}, weft{};  ///< of warps and of wefts
-    std::vector<Index> warp_types{};  ///< 0 the warp type, 1 the binder's, by row; empty: all 0
-    YarnType binder{};                ///< of rows of that type
+    YarnType warp{}, weft{};                   ///< of warps and of wefts
+    std::vector<Index> warp_types{};           ///< 0 the warp type, 1 the binder's, by row; empty: all 0
+    YarnType binder{};                         ///< of rows of that type
 
     Index warps() const noexcept { return core::count(levels); }
     Index column_count() const noexcept { return columns > 0 ? columns : levels.empty() ? 0 : core::count(levels.front()); }
@@ -165,7 +165,7 @@ struct LenoWeave {
     double pick_spacing = core::unset;  ///< [length], > 0
     double pair_spacing = core::unset;  ///< [length], > 0
     double aside = core::unset;         ///< of the doup from its ground end at a pick [length], > 0
-    YarnType type{};  ///< of all yarns
+    YarnType type{};                    ///< of all yarns
 
     void validate() const {
         core::require_at_least("LenoWeave.pairs", pairs, 1);
@@ -220,9 +220,9 @@ inline Textile leno(const LenoWeave& weave) {
 
 /// Three families of straight yarns at 0, 60 and -60 degrees within a circle, no three of which meet at a point.
 struct TriaxialWeave {
-    double spacing = core::unset;  ///< of a family, across it [length], > 0
-    double radius = core::unset;   ///< of the circle within which yarns cross [length], > spacing
-    YarnType type{};  ///< of all yarns
+    double spacing = core::unset;      ///< of a family, across it [length], > 0
+    double radius = core::unset;       ///< of the circle within which yarns cross [length], > spacing
+    YarnType type{};                   ///< of all yarns
     double height_over_radius = 1.05;  ///< of yarns at crossings out of the middle plane [1], > 0
 
     void validate() const {

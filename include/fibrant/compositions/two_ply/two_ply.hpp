@@ -25,12 +25,15 @@ struct TwoPlyParameters {
     double radius = core::unset;  ///< of a rod [length], > 0
     double length = core::unset;  ///< [length], > 0
     scene::ElasticMaterial material;
-    Index elements = 40;          ///< along each rod
-    double force = core::unset;   ///< that pulls both together, shared equally [force], >= 0
-    /// Places along the ply where the middle between the rods is kept on the axis, for models that have a part `Connections`; >= 0. Without, a
-    /// ply of length L buckles like any rod once its torque M has M^2 > 4 B F + (9 B / L)^2, B = 2 E I (Greenhill's limit).
+    Index elements = 40;         ///< along each rod
+    double force = core::unset;  ///< that pulls both together, shared equally [force], >= 0
+    /// Places along the ply where the middle between the rods is kept on the axis, for models that have a part `Connections`; >=
+    /// 0. Without, a ply of length L buckles like any rod once its torque M has M^2 > 4 B F + (9 B / L)^2, B = 2 E I (Greenhill's
+    /// limit).
     Index guides = 0;
-    double bending_stiffness() const noexcept { return 0.25 * material.young_modulus * std::numbers::pi * radius * radius * radius * radius; }
+    double bending_stiffness() const noexcept {
+        return 0.25 * material.young_modulus * std::numbers::pi * radius * radius * radius * radius;
+    }
     double torsion_stiffness() const noexcept { return bending_stiffness() / (1.0 + material.poisson_ratio); }
     void validate() const {
         core::require_positive("TwoPlyParameters.radius", radius);
@@ -49,13 +52,19 @@ inline scene::Assembly straight_rods(const TwoPlyParameters& parameters) {
     scene::Assembly assembly;
     for (const double side : {1.0, -1.0}) {
         const Vec3 foot(side * parameters.radius, 0.0, 0.0);
-        scene::FibreSpecification rod{.from = foot, .to = foot + Vec3(0, 0, parameters.length), .section = scene::circular(parameters.radius),
-                                      .material = parameters.material, .elements = parameters.elements, .director = Vec3::UnitX()};
+        scene::FibreSpecification rod{.from = foot,
+                                      .to = foot + Vec3(0, 0, parameters.length),
+                                      .section = scene::circular(parameters.radius),
+                                      .material = parameters.material,
+                                      .elements = parameters.elements,
+                                      .director = Vec3::UnitX()};
         const Index fibre = assembly.add(rod);
         for (const double end : {0.0, 1.0}) {
             scene::Hold hold;
             hold.at = {fibre, end}, hold.channel = turn;
-            hold.rotation = [end](double turns) { return Mat3(Eigen::AngleAxisd(2.0 * std::numbers::pi * (end - 0.5) * turns, Vec3::UnitZ())); };
+            hold.rotation = [end](double turns) {
+                return Mat3(Eigen::AngleAxisd(2.0 * std::numbers::pi * (end - 0.5) * turns, Vec3::UnitZ()));
+            };
             if (end > 0.0) hold.directions = Vec3(1, 1, 0).asDiagonal();
             assembly.hold(hold);
             hold.axes = scene::Axes::section;
@@ -64,7 +73,8 @@ inline scene::Assembly straight_rods(const TwoPlyParameters& parameters) {
             hold.vector = scene::NodeVector::director_2, hold.directions = Vec3(1, 0, 1).asDiagonal();
             assembly.hold(hold);
         }
-        assembly.apply(scene::DeadForce{scene::last_end(fibre), scene::NodeVector::position, Vec3(0, 0, 0.5 * parameters.force), pull});
+        assembly.apply(
+            scene::DeadForce{scene::last_end(fibre), scene::NodeVector::position, Vec3(0, 0, 0.5 * parameters.force), pull});
     }
     if (parameters.guides > 0) {
         const Index axis = assembly.add(scene::RigidBody{.name = "axis"});
@@ -78,11 +88,12 @@ inline scene::Assembly straight_rods(const TwoPlyParameters& parameters) {
 
 /// The ply at mid-length, and what its ends carry.
 struct TwoPlyState {
-    double torque = 0.0;        ///< of the pair about the axis [force * length]
-    double helix_angle = 0.0;   ///< of the rods to the axis [radian]
-    double radius = 0.0;        ///< of the helix [length]
-    double twist = 0.0;         ///< that sections turn by about their line, torsion of the line included, a length at rest [radian / length]
-    double line_load = 0.0;     ///< between the rods over the middle fifth, a length at rest [force / length]
+    double torque = 0.0;       ///< of the pair about the axis [force * length]
+    double helix_angle = 0.0;  ///< of the rods to the axis [radian]
+    double radius = 0.0;       ///< of the helix [length]
+    double twist =
+        0.0;  ///< that sections turn by about their line, torsion of the line included, a length at rest [radian / length]
+    double line_load = 0.0;  ///< between the rods over the middle fifth, a length at rest [force / length]
 };
 
 /// Turn of a section, whatever its strain. @param mesh  of any beam

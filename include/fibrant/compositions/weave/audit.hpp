@@ -17,7 +17,7 @@ struct AuditedCrossing {
     Index warp_fibre = -1, weft_fibre = -1;  ///< numbers in the fabric
     Index warp_tow = -1, weft_tow = -1;
     Vec3 position = Vec3::Zero();  ///< half way between the two axes [length]
-    double height = 0;  ///< of the axis that should be above over the other, < 0 where the order is wrong [length]
+    double height = 0;             ///< of the axis that should be above over the other, < 0 where the order is wrong [length]
 };
 
 struct Audit {

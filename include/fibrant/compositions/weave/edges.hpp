@@ -25,20 +25,20 @@ constexpr bool at_last_end(Edge edge) noexcept { return edge == Edge::east || ed
 
 /// How the body of an edge moves, and how tow ends hang on it (Durville, section 15.3.4).
 struct EdgeParameters {
-    bool held = true;                   ///< has a body at all; else its tow ends are free
-    std::optional<Vec3> pivot{};        ///< where its body is [length]; the middle of its tow ends if not said
-    std::optional<Edge> parent{};       ///< an edge that comes before it, on which its body hangs
+    bool held = true;              ///< has a body at all; else its tow ends are free
+    std::optional<Vec3> pivot{};   ///< where its body is [length]; the middle of its tow ends if not said
+    std::optional<Edge> parent{};  ///< an edge that comes before it, on which its body hangs
     std::array<scene::Coordinate, 3> translation{}, rotation{};
     std::array<scene::Coordinate, 3> tow_translation{};  ///< of a tow end from its place at the edge, along x, y and z
-    std::string spread_channel{};                        ///< of the strain along the edge by which tow ends move apart; empty: they do not
-    scene::Coordinate tow_roll{};                        ///< of a tow end about its own axis
-    bool turning = false;                                ///< sections of fibre ends turn with their tow end: it bends them
-    bool one_by_one = false;                             ///< each fibre end keeps its place at its tow end; else their mean does
-    /// No body for the edge: each tow end has one of its own that is free to move, to roll and, if its sections turn with it, to lean,
-    /// under this pull outwards at amplitude 1 of the tension channel [force].
+    std::string spread_channel{};  ///< of the strain along the edge by which tow ends move apart; empty: they do not
+    scene::Coordinate tow_roll{};  ///< of a tow end about its own axis
+    bool turning = false;          ///< sections of fibre ends turn with their tow end: it bends them
+    bool one_by_one = false;       ///< each fibre end keeps its place at its tow end; else their mean does
+    /// No body for the edge: each tow end has one of its own that is free to move, to roll and, if its sections turn with it, to
+    /// lean, under this pull outwards at amplitude 1 of the tension channel [force].
     std::optional<double> loose{};
-    std::vector<scene::Coordinate> loose_height{};       ///< along z of each loose tow end; none: free
-    std::vector<Index> left_out{};                       ///< tows that are not connected
+    std::vector<scene::Coordinate> loose_height{};  ///< along z of each loose tow end; none: free
+    std::vector<Index> left_out{};                  ///< tows that are not connected
 };
 
 /// Bodies of a sample, by edge and tow; -1 where there is none.
@@ -69,7 +69,8 @@ struct SectionTies {
 };
 
 /// Ties the mean position of a tow's fibre ends, or each of them, to a body, and their sections one by one as asked for.
-inline void connect_tow_end(scene::Assembly& assembly, const FabricParameters& fabric, Edge edge, Index tow, Index body, const SectionTies& ties, bool one_by_one = false) {
+inline void connect_tow_end(scene::Assembly& assembly, const FabricParameters& fabric, Edge edge, Index tow, Index body,
+                            const SectionTies& ties, bool one_by_one = false) {
     const std::vector<scene::Station> ends = tow_ends(fabric, edge, tow);
     if (one_by_one)
         for (const scene::Station& end : ends) assembly.connect({.ends = {end}, .body = body});
@@ -80,8 +81,16 @@ inline void connect_tow_end(scene::Assembly& assembly, const FabricParameters& f
     const Vec3 along = family_of(edge) == Family::warp ? Vec3::UnitX() : Vec3::UnitY();
     section.col(0) = Vec3::UnitZ(), section.col(1) = along.cross(Vec3::UnitZ()), section.col(2) = along;
     for (const scene::Station& end : ends) {
-        assembly.connect({.ends = {end}, .vector = scene::NodeVector::director_1, .body = body, .directions = section, .tied = {false, ties.spin, ties.turning}});
-        assembly.connect({.ends = {end}, .vector = scene::NodeVector::director_2, .body = body, .directions = section, .tied = {ties.spin, false, ties.turning}});
+        assembly.connect({.ends = {end},
+                          .vector = scene::NodeVector::director_1,
+                          .body = body,
+                          .directions = section,
+                          .tied = {false, ties.spin, ties.turning}});
+        assembly.connect({.ends = {end},
+                          .vector = scene::NodeVector::director_2,
+                          .body = body,
+                          .directions = section,
+                          .tied = {ties.spin, false, ties.turning}});
     }
 }
 
@@ -110,7 +119,8 @@ inline EdgeBodies add_edges(scene::Assembly& assembly, const observe::Snapshot& 
                 // Sections that do not turn with the body say nothing of how it leans: left loose, it would lean by any angle.
                 for (std::size_t k = 0; k < 3; ++k)
                     if (ties.turning || k == axis) end.rotation[k] = scene::Coordinate::loose();
-                end.translation[axis] = scene::Coordinate::under(at_last_end(edge) ? *parameters.loose : -*parameters.loose, tension_channel);
+                end.translation[axis] =
+                    scene::Coordinate::under(at_last_end(edge) ? *parameters.loose : -*parameters.loose, tension_channel);
                 bodies.tow_end[e][core::at(tow)] = assembly.add(end);
                 connect_tow_end(assembly, fabric, edge, tow, bodies.tow_end[e][core::at(tow)], ties, parameters.one_by_one);
             }
@@ -132,7 +142,8 @@ inline EdgeBodies add_edges(scene::Assembly& assembly, const observe::Snapshot& 
             end.translation = parameters.tow_translation;
             if (!parameters.spread_channel.empty()) {
                 const auto across = static_cast<std::size_t>(axis_of(other(family_of(edge))));
-                end.translation[across] = scene::Coordinate::held_at((end.position - body.position)[static_cast<Index>(across)], parameters.spread_channel);
+                end.translation[across] = scene::Coordinate::held_at((end.position - body.position)[static_cast<Index>(across)],
+                                                                     parameters.spread_channel);
             }
             end.rotation[static_cast<std::size_t>(axis_of(family_of(edge)))] = parameters.tow_roll;
             bodies.tow_end[e][core::at(tow)] = assembly.add(end);

@@ -74,7 +74,8 @@ inline std::array<std::vector<Index>, 2> add_flat_fibres(scene::Assembly& assemb
 }
 
 /// The order that the pattern asks of crossing tows.
-inline void force_pattern(scene::Assembly& assembly, const FabricParameters& fabric, const std::array<std::vector<Index>, 2>& groups) {
+inline void force_pattern(scene::Assembly& assembly, const FabricParameters& fabric,
+                          const std::array<std::vector<Index>, 2>& groups) {
     for (Index i = 0; i < fabric.warp_tows; ++i)
         for (Index j = 0; j < fabric.weft_tows; ++j) {
             const Index warp = groups[0][core::at(i)], weft = groups[1][core::at(j)];
@@ -102,7 +103,8 @@ inline scene::Assembly flat_fabric(const FabricParameters& fabric, double tensio
         const Mat3 axial = along * along.transpose();
         for (const scene::Station& end : {scene::first_end(f), scene::last_end(f)}) {
             assembly.hold_position(end, Mat3::Identity() - axial);
-            assembly.apply(scene::DeadForce{end, scene::NodeVector::position, (end.fraction > 0.5 ? pull : -pull) * along, tension_channel});
+            assembly.apply(
+                scene::DeadForce{end, scene::NodeVector::position, (end.fraction > 0.5 ? pull : -pull) * along, tension_channel});
         }
         assembly.hold_axial_rotation(scene::first_end(f));
         assembly.hold_position({f, 0.5}, axial);

@@ -66,9 +66,13 @@ struct FabricParameters {
     const TowParameters& tow(Family family) const noexcept { return family == Family::warp ? warp : weft; }
     Index tows(Family family) const noexcept { return family == Family::warp ? warp_tows : weft_tows; }
     Index fibres() const noexcept { return warp_tows * warp.fibres + weft_tows * weft.fibres; }
-    Index elements_of(Family family) const noexcept { return family == Family::weft && weft_elements > 0 ? weft_elements : elements; }
+    Index elements_of(Family family) const noexcept {
+        return family == Family::weft && weft_elements > 0 ? weft_elements : elements;
+    }
     Index nodes_per_fibre(Family family = Family::warp) const noexcept { return 2 * elements_of(family) + 1; }
-    Index nodes() const noexcept { return warp_tows * warp.fibres * nodes_per_fibre(Family::warp) + weft_tows * weft.fibres * nodes_per_fibre(Family::weft); }
+    Index nodes() const noexcept {
+        return warp_tows * warp.fibres * nodes_per_fibre(Family::warp) + weft_tows * weft.fibres * nodes_per_fibre(Family::weft);
+    }
 
     /// Number of a fibre in the fabric.
     Index fibre(Family family, Index tow, Index fibre) const noexcept {
@@ -108,19 +112,19 @@ struct FabricParameters {
             const Packing packing = tow(family).packing();
             const double spacing = family == Family::warp ? warp_spacing : weft_spacing;
             if (tows(family) > 1)
-                core::require(
-                    packing.width <= spacing, "FabricParameters." + name + "_spacing", spacing,
-                    ">= width of a " + name + " tow = " + core::text(packing.width) + ", or neighbouring tows overlap");
+                core::require(packing.width <= spacing, "FabricParameters." + name + "_spacing", spacing,
+                              ">= width of a " + name + " tow = " + core::text(packing.width) + ", or neighbouring tows overlap");
             // The fibres of the other family must reach beyond the outermost tow of this one.
             core::require(overhang > 0.5 * packing.width, "FabricParameters.overhang", overhang,
                           "> half the width of a " + name + " tow = " + core::text(0.5 * packing.width));
             const double element = fibre_length(family) / static_cast<double>(elements_of(family));
             const double diameter = 2.0 * tow(family).fibre_radius;
-            core::require(element >= diameter, family == Family::weft && weft_elements > 0 ? "FabricParameters.weft_elements" : "FabricParameters.elements",
-                          static_cast<double>(elements_of(family)),
-                          "<= " + core::text(std::floor(fibre_length(family) / diameter)) + ", for an element of a " +
-                              name + " fibre (" + core::text(element) + ") is shorter than a diameter (" +
-                              core::text(diameter) + ")");
+            core::require(
+                element >= diameter,
+                family == Family::weft && weft_elements > 0 ? "FabricParameters.weft_elements" : "FabricParameters.elements",
+                static_cast<double>(elements_of(family)),
+                "<= " + core::text(std::floor(fibre_length(family) / diameter)) + ", for an element of a " + name + " fibre (" +
+                    core::text(element) + ") is shorter than a diameter (" + core::text(diameter) + ")");
         }
     }
 };

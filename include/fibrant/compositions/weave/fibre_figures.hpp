@@ -37,7 +37,8 @@ inline ElementFigures element_figures(const observe::Snapshot& snapshot) {
 /// Means over the tows of a family, at their crossings [length, 1].
 struct TowFigures {
     double width = 0.0, thickness = 0.0, fibre_volume_fraction = 0.0;
-    double gap = std::numeric_limits<double>::quiet_NaN();  ///< least free distance in plan between neighbouring tows; < 0: they overlap
+    double gap =
+        std::numeric_limits<double>::quiet_NaN();  ///< least free distance in plan between neighbouring tows; < 0: they overlap
 };
 
 /// Sections lie across the tow's centre line, so widths of a sheared fabric are those of its tows. The gap is taken half way
@@ -49,7 +50,8 @@ inline TowFigures tow_figures(const observe::Snapshot& snapshot, const FabricPar
         for (const double t : crossing_parameters(snapshot, fabric, family, tow)) {
             if (!std::isfinite(t)) continue;
             const TowSection section = tow_section(snapshot, fabric, family, tow, t);
-            figures.width += section.width, figures.thickness += section.thickness, figures.fibre_volume_fraction += section.fibre_volume_fraction;
+            figures.width += section.width, figures.thickness += section.thickness,
+                figures.fibre_volume_fraction += section.fibre_volume_fraction;
             count += 1.0;
         }
     if (count > 0.0) figures.width /= count, figures.thickness /= count, figures.fibre_volume_fraction /= count;
@@ -70,9 +72,12 @@ inline TowFigures tow_figures(const observe::Snapshot& snapshot, const FabricPar
                     const observe::NodalCurve curve{fibre.position};
                     const auto at = curve.meets(along, along.dot(origin));
                     if (!at) continue;
-                    const double place = across.dot(curve.position(*at) - origin), extent = section_extent(fibre, curve, *at, across);
-                    if (which == tow) most = std::max(most, place + extent);
-                    else least = std::min(least, place - extent);
+                    const double place = across.dot(curve.position(*at) - origin),
+                                 extent = section_extent(fibre, curve, *at, across);
+                    if (which == tow)
+                        most = std::max(most, place + extent);
+                    else
+                        least = std::min(least, place - extent);
                 }
             const double gap = least - most;
             if (std::isfinite(gap) && !(figures.gap <= gap)) figures.gap = gap;

@@ -39,8 +39,8 @@ struct Outline {
 
 /// Parameters on a tow's centre line of its crossings in plan with the tows of the other family, in their order; NaN
 /// where they do not cross.
-inline std::vector<double> crossing_parameters(const observe::Snapshot& snapshot, const FabricParameters& fabric,
-                                               Family family, Index tow) {
+inline std::vector<double> crossing_parameters(const observe::Snapshot& snapshot, const FabricParameters& fabric, Family family,
+                                               Index tow) {
     const std::vector<Vec3> own = tow_centreline(snapshot, fabric, family, tow);
     std::vector<double> answer;
     for (Index k = 0; k < fabric.tows(other(family)); ++k) {
@@ -136,8 +136,8 @@ inline CurvatureStatistics curvature_statistics(const observe::Snapshot& snapsho
 }
 
 /// Of all fibres of a tow.
-inline CurvatureStatistics curvature_statistics(const observe::Snapshot& snapshot, const FabricParameters& fabric,
-                                                Family family, Index tow) {
+inline CurvatureStatistics curvature_statistics(const observe::Snapshot& snapshot, const FabricParameters& fabric, Family family,
+                                                Index tow) {
     std::vector<Index> fibres(core::at(fabric.tow(family).fibres));
     std::iota(fibres.begin(), fibres.end(), fabric.fibre(family, tow, 0));
     return curvature_statistics(snapshot, fibres);

@@ -63,15 +63,14 @@ public:
         core::require_at_least("Pattern.warp_tows", warp_tows, 1);
         core::require_at_least("Pattern.weft_tows", weft_tows, 1);
         if (!built_in() && (warp_tows % rows_ != 0 || weft_tows % columns_ != 0))
-            core::refuse("Pattern.size", std::to_string(rows_) + " x " + std::to_string(columns_),
-                         "a divisor of the tow counts, " + std::to_string(warp_tows) + " warp x " +
-                             std::to_string(weft_tows) + " weft");
+            core::refuse(
+                "Pattern.size", std::to_string(rows_) + " x " + std::to_string(columns_),
+                "a divisor of the tow counts, " + std::to_string(warp_tows) + " warp x " + std::to_string(weft_tows) + " weft");
         const std::string loose = loose_tows(warp_tows, weft_tows);
         if (!loose.empty())
-            core::refuse(
-                "Pattern",
-                name_ + " on " + std::to_string(warp_tows) + " warp and " + std::to_string(weft_tows) + " weft tows",
-                "an interlacing that holds, where no tows lie on one side of all others as " + loose + " do");
+            core::refuse("Pattern",
+                         name_ + " on " + std::to_string(warp_tows) + " warp and " + std::to_string(weft_tows) + " weft tows",
+                         "an interlacing that holds, where no tows lie on one side of all others as " + loose + " do");
     }
 
     /// A set of tows that lie above or below all others, as text; empty if the fabric holds together.

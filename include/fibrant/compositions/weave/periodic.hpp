@@ -28,7 +28,8 @@ inline scene::Assembly periodic_fabric(const FabricParameters& fabric, CellDrive
     fabric.validate();
     core::require_positive("periodic_fabric.tension_strain", tension_strain);
     for (const double spacing : {fabric.warp_spacing, fabric.weft_spacing})
-        core::require(std::abs(fabric.overhang - 0.5 * spacing) < 1e-9 * spacing, "FabricParameters.overhang", fabric.overhang, "half the spacing of the tows, in a periodic cell");
+        core::require(std::abs(fabric.overhang - 0.5 * spacing) < 1e-9 * spacing, "FabricParameters.overhang", fabric.overhang,
+                      "half the spacing of the tows, in a periodic cell");
     scene::Assembly assembly;
     const std::array<std::vector<Index>, 2> groups = add_flat_fibres(assembly, fabric);
     scene::PeriodicCell cell;
@@ -36,25 +37,28 @@ inline scene::Assembly periodic_fabric(const FabricParameters& fabric, CellDrive
     for (const Family family : {Family::warp, Family::weft}) {
         const int axis = family == Family::warp ? 0 : 1;
         const double force = tension_strain * static_cast<double>(fabric.tows(family)) * fabric.tow(family).axial_stiffness();
-        cell.component(axis, axis) = drive == CellDrive::tension ? scene::Coordinate::under(force * fabric.fibre_length(family), tension_channel)
-                                                                 : scene::Coordinate::held_at(1.0, cell_strain_channels[static_cast<std::size_t>(axis)]);
+        cell.component(axis, axis) = drive == CellDrive::tension
+                                         ? scene::Coordinate::under(force * fabric.fibre_length(family), tension_channel)
+                                         : scene::Coordinate::held_at(1.0, cell_strain_channels[static_cast<std::size_t>(axis)]);
     }
     const Index of = assembly.add(cell), ground = assembly.add(scene::RigidBody{});
     scene::AverageConnection height{.ends = {}, .body = ground, .tied = {false, false, true}};
     for (Index f = 0; f < fabric.fibres(); ++f) {
         const FibrePlace place = fabric.place(f);
         const Vec3 along = place.family == Family::warp ? Vec3::UnitX() : Vec3::UnitY();
-        assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), fabric.fibre_length(place.family) * along, of});
+        assembly.connect(
+            scene::PeriodicPair{scene::first_end(f), scene::last_end(f), fabric.fibre_length(place.family) * along, of});
         assembly.hold_axial_rotation({f, 0.5});
         height.ends.push_back({f, 0.25});
     }
     assembly.connect(height);
-    // Tows that have not met yet would drift along themselves. In a cell that is loaded their crimp holds them, and all of them together
-    // are held by a force that is nothing.
+    // Tows that have not met yet would drift along themselves. In a cell that is loaded their crimp holds them, and all of them
+    // together are held by a force that is nothing.
     scene::AverageConnection all{.ends = {}, .body = ground, .tied = {true, true, false}};
     for (const Family family : {Family::warp, Family::weft})
         for (Index tow = 0; tow < fabric.tows(family); ++tow) {
-            scene::AverageConnection middle{.ends = {}, .body = ground, .tied = {family == Family::warp, family == Family::weft, false}};
+            scene::AverageConnection middle{
+                .ends = {}, .body = ground, .tied = {family == Family::warp, family == Family::weft, false}};
             for (Index k = 0; k < fabric.tow(family).fibres; ++k) middle.ends.push_back({fabric.fibre(family, tow, k), 0.5});
             if (drive == CellDrive::tension) assembly.connect(middle);
             all.ends.insert(all.ends.end(), middle.ends.begin(), middle.ends.end());
@@ -80,7 +84,8 @@ Mat3 virial(const Simulator& simulator) {
     };
     for (Index f = 0; f < mesh.fibre_count(); ++f)
         for (Index e = 0; e < mesh.fibre(f).elements; ++e)
-            add(Vector(simulator.beam().internal_force(mesh.rest(f, e), mesh.element(simulator.state(), f, e))), mesh.first_unknown(f, e), Mesh::element_unknowns / 3);
+            add(Vector(simulator.beam().internal_force(mesh.rest(f, e), mesh.element(simulator.state(), f, e))),
+                mesh.first_unknown(f, e), Mesh::element_unknowns / 3);
     Vector forces = Vector::Zero(simulator.state().size());
     simulator.contacts().add_forces(forces);
     add(forces, 0, forces.size() / 3);

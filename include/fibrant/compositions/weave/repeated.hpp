@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Larger pieces of a fabric out of the state of its repeating cell: a cell of several, or a finite sample with the same inside.
+/// @file Larger pieces of a fabric out of the state of its repeating cell: a cell of several, or a finite sample with the same
+/// inside.
 
 #include <fibrant/compositions/weave/periodic.hpp>
 #include <fibrant/compositions/weave/tow_geometry.hpp>
@@ -23,11 +24,12 @@ inline FabricParameters repeated(const FabricParameters& cell, Index repeats) {
     return fabric;
 }
 
-/// The state of the cell, `repeats` times side by side and end to end, with the middle of all where that of the cell was; contacts
-/// remember what they did in the cell.
+/// The state of the cell, `repeats` times side by side and end to end, with the middle of all where that of the cell was;
+/// contacts remember what they did in the cell.
 template <simulation::Model M>
-simulation::StoredState<M> repeated(const simulation::StoredState<M>& stored, const FabricParameters& cell, const beam::Mesh<typename M::Beam>& cell_mesh,
-                                    const beam::Mesh<typename M::Beam>& mesh, Index repeats) {
+simulation::StoredState<M> repeated(const simulation::StoredState<M>& stored, const FabricParameters& cell,
+                                    const beam::Mesh<typename M::Beam>& cell_mesh, const beam::Mesh<typename M::Beam>& mesh,
+                                    Index repeats) {
     const FabricParameters fabric = repeated(cell, repeats);
     const auto last_node = [&](Index fibre) { return cell.nodes_per_fibre(cell.place(fibre).family) - 1; };
     const auto along = [&](Index fibre) { return core::at(axis_of(cell.place(fibre).family)); };
@@ -38,7 +40,8 @@ simulation::StoredState<M> repeated(const simulation::StoredState<M>& stored, co
     };
     std::array<Vec3, 2> period{Vec3::Zero(), Vec3::Zero()};
     for (Index f = 0; f < cell.fibres(); ++f)
-        period[along(f)] += (stored.state.template segment<3>(3 * cell_mesh.node_vector(f, last_node(f))) - stored.state.template segment<3>(3 * cell_mesh.node_vector(f, 0))) /
+        period[along(f)] += (stored.state.template segment<3>(3 * cell_mesh.node_vector(f, last_node(f))) -
+                             stored.state.template segment<3>(3 * cell_mesh.node_vector(f, 0))) /
                             static_cast<double>(cell.tows(cell.place(f).family) * cell.tow(cell.place(f).family).fibres);
     const Vec3 middle = 0.5 * static_cast<double>(repeats - 1) * (period[0] + period[1]);
     simulation::StoredState<M> answer;
@@ -52,12 +55,16 @@ simulation::StoredState<M> repeated(const simulation::StoredState<M>& stored, co
                 for (Index node = 0; node <= last; ++node)
                     for (Index k = 0; k < M::Beam::vectors_per_node; ++k)
                         answer.state.template segment<3>(3 * mesh.node_vector(image(f, at), first + node, k)) =
-                            stored.state.template segment<3>(3 * cell_mesh.node_vector(f, node, k)) + (k == 0 ? shift : Vec3(Vec3::Zero()));
+                            stored.state.template segment<3>(3 * cell_mesh.node_vector(f, node, k)) +
+                            (k == 0 ? shift : Vec3(Vec3::Zero()));
             }
-            const auto on = [&](Index fibre, double place) { return place + static_cast<double>(at[along(fibre)] * cell.elements_of(cell.place(fibre).family)); };
+            const auto on = [&](Index fibre, double place) {
+                return place + static_cast<double>(at[along(fibre)] * cell.elements_of(cell.place(fibre).family));
+            };
             for (auto record : stored.records) {
                 record.u_i = on(record.fibre_i, record.u_i), record.u_j = on(record.fibre_j, record.u_j);
-                record.fibre_i = static_cast<std::int32_t>(image(record.fibre_i, at)), record.fibre_j = static_cast<std::int32_t>(image(record.fibre_j, at));
+                record.fibre_i = static_cast<std::int32_t>(image(record.fibre_i, at)),
+                record.fibre_j = static_cast<std::int32_t>(image(record.fibre_j, at));
                 answer.records.push_back(record);
             }
             for (contact::Zone zone : stored.zones) {
@@ -71,7 +78,8 @@ simulation::StoredState<M> repeated(const simulation::StoredState<M>& stored, co
         }
     std::stable_sort(answer.records.begin(), answer.records.end());
     std::stable_sort(answer.zones.begin(), answer.zones.end(), [](const contact::Zone& a, const contact::Zone& b) {
-        return std::tie(a.span.fibre_i, a.span.fibre_j, a.span.a_i, a.span.a_j) < std::tie(b.span.fibre_i, b.span.fibre_j, b.span.a_i, b.span.a_j);
+        return std::tie(a.span.fibre_i, a.span.fibre_j, a.span.a_i, a.span.a_j) <
+               std::tie(b.span.fibre_i, b.span.fibre_j, b.span.a_i, b.span.a_j);
     });
     return answer;
 }

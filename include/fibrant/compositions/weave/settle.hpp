@@ -30,7 +30,8 @@ inline simulation::SettledFibre settled_fibre(const FabricParameters& fabric, Fa
 /// The lesser of what is measured on a fibre of each family.
 template <class Measure>
 double least_of_families(const FabricParameters& fabric, double tension_strain, const Measure& measure) {
-    return std::min(measure(settled_fibre(fabric, Family::warp, tension_strain)), measure(settled_fibre(fabric, Family::weft, tension_strain)));
+    return std::min(measure(settled_fibre(fabric, Family::warp, tension_strain)),
+                    measure(settled_fibre(fabric, Family::weft, tension_strain)));
 }
 
 /// Stiffness of a node of the softer family against moving aside alone [force / length].

@@ -19,9 +19,10 @@ inline void require_snapshot_of(const observe::Snapshot& snapshot, const FabricP
         core::refuse("Snapshot.fibres", std::to_string(snapshot.fibres.size()),
                      "those of the fabric, " + std::to_string(fabric.fibres()));
     for (std::size_t k = 0; k < snapshot.fibres.size(); ++k)
-        if (const Index nodes = fabric.nodes_per_fibre(fabric.place(static_cast<Index>(k)).family); core::count(snapshot.fibres[k].position) != nodes)
-            core::refuse("Snapshot.fibres[" + std::to_string(k) + "].position", std::to_string(snapshot.fibres[k].position.size()) + " nodes",
-                         "of " + std::to_string(nodes) + " nodes");
+        if (const Index nodes = fabric.nodes_per_fibre(fabric.place(static_cast<Index>(k)).family);
+            core::count(snapshot.fibres[k].position) != nodes)
+            core::refuse("Snapshot.fibres[" + std::to_string(k) + "].position",
+                         std::to_string(snapshot.fibres[k].position.size()) + " nodes", "of " + std::to_string(nodes) + " nodes");
 }
 
 /// Coordinate along the fibres of a family: 0 for warp, 1 for weft.
@@ -30,8 +31,8 @@ constexpr Index axis_of(Family family) noexcept { return family == Family::warp 
 constexpr Family other(Family family) noexcept { return family == Family::warp ? Family::weft : Family::warp; }
 
 /// Nodes of a tow's centre line: the mean of its fibres, node by node [length].
-inline std::vector<Vec3> tow_centreline(const observe::Snapshot& snapshot, const FabricParameters& fabric,
-                                        Family family, Index tow) {
+inline std::vector<Vec3> tow_centreline(const observe::Snapshot& snapshot, const FabricParameters& fabric, Family family,
+                                        Index tow) {
     const Index fibres = fabric.tow(family).fibres;
     std::vector<Vec3> mean(core::at(fabric.nodes_per_fibre(family)), Vec3::Zero());
     for (Index k = 0; k < fibres; ++k) {
@@ -92,8 +93,7 @@ Index for_each_plan_crossing(const observe::NodalCurve& warp, const observe::Nod
     for (Index node = 1; node < core::count(warp.nodes()); ++node) {
         const double now = beside(static_cast<double>(node));
         if ((before < 0.0) != (now < 0.0)) {
-            double low = static_cast<double>(node - 1), high = static_cast<double>(node), at_low = before,
-                   at_high = now;
+            double low = static_cast<double>(node - 1), high = static_cast<double>(node), at_low = before, at_high = now;
             double t = high, value = now;
             int kept = 0;  // the end that the last step kept
             for (int iteration = 0; iteration < 100 && high - low > 1e-13 && value != 0.0; ++iteration) {

@@ -12,15 +12,15 @@
 namespace fibrant::compositions::weave {
 
 using observe::convex_hull;
-using observe::SectionEllipse;
 using observe::section_of;
+using observe::SectionEllipse;
 using TowSection = observe::YarnSection;
 using Vec2 = observe::Vec2;
 
 /// Section of a tow in the plane orthogonal to its centre line at parameter t, in [0, nodes - 1]. Fibres' sections are
 /// projected on the plane; fibres that do not reach the plane are left out.
-inline TowSection tow_section(const observe::Snapshot& snapshot, const FabricParameters& fabric, Family family,
-                              Index tow, double t) {
+inline TowSection tow_section(const observe::Snapshot& snapshot, const FabricParameters& fabric, Family family, Index tow,
+                              double t) {
     require_snapshot_of(snapshot, fabric);
     const std::vector<Vec3> centre = tow_centreline(snapshot, fabric, family, tow);
     const observe::NodalCurve line{centre};
@@ -33,10 +33,9 @@ inline TowSection tow_section(const observe::Snapshot& snapshot, const FabricPar
         const observe::NodalCurve curve{fibre.position};
         const auto at = curve.meets(normal, normal.dot(origin));
         if (!at) continue;
-        ellipses.push_back(
-            {flat(curve.position(*at) - origin),
-             flat(fibre.section.semi_axis_1 * curve.interpolate(std::span<const Vec3>{fibre.director_1}, *at)),
-             flat(fibre.section.semi_axis_2 * curve.interpolate(std::span<const Vec3>{fibre.director_2}, *at))});
+        ellipses.push_back({flat(curve.position(*at) - origin),
+                            flat(fibre.section.semi_axis_1 * curve.interpolate(std::span<const Vec3>{fibre.director_1}, *at)),
+                            flat(fibre.section.semi_axis_2 * curve.interpolate(std::span<const Vec3>{fibre.director_2}, *at))});
     }
     return section_of(std::move(ellipses));
 }
