@@ -45,6 +45,23 @@ struct SeenSection {
     Vec3 slope() const noexcept { return lengthened * furthest + leaning() * out; }  ///< of the extent by the normal [length]
 };
 
+/// Adds a form of n numbers, factor (a b^T + b a^T) / 2. By loops: unrolled, sums of this size cost the compiler more than all
+/// else.
+template <int n>
+void add_product(Eigen::Matrix<double, n, n>& sum, double factor, const Eigen::Matrix<double, n, 1>& a,
+                 const Eigen::Matrix<double, n, 1>& b) noexcept {
+    for (Index r = 0; r < n; ++r)
+        for (Index c = 0; c < n; ++c) sum(r, c) += 0.5 * factor * (a[r] * b[c] + b[r] * a[c]);
+}
+/// Adds by^T form by.
+template <int n>
+void add_form(Eigen::Matrix<double, n, n>& sum, const Eigen::Matrix2d& form, const Eigen::Matrix<double, 2, n>& by) noexcept {
+    for (Index c = 0; c < n; ++c) {
+        const double one = form(0, 0) * by(0, c) + form(0, 1) * by(1, c), two = form(1, 0) * by(0, c) + form(1, 1) * by(1, c);
+        for (Index r = 0; r < n; ++r) sum(r, c) += by(0, r) * one + by(1, r) * two;
+    }
+}
+
 /// Second derivative of a section's extent by eight numbers: normal along two directions e and f across it, motion of the
 /// furthest particle along e, f and the normal, turn of the section's components of the normal in its plane, and motion of its
 /// material out of it, by both directors (2). What the section's normal turns of second order is left out, of a normal that
@@ -62,9 +79,10 @@ inline ExtentBending extent_bending(const SeenSection& seen, const Vec3& e, cons
     const double one = seen.lengthened, cube = one * one * one, fifth = cube * one * one, tau = seen.tilt;
     Form turning = along(seen.turning), tilting = along(seen.out), size = along(seen.furthest);
     turning[turn] += 1.0, tilting[out_1] -= seen.line[0], tilting[out_2] -= seen.line[1], size[press_n] += 1.0;
-    ExtentBending sum = one * seen.bend * turning * turning.transpose();
-    sum += tau * cube * (size * tilting.transpose() + tilting * size.transpose()) +
-           seen.size * (cube + 3.0 * tau * tau * fifth) * tilting * tilting.transpose();
+    ExtentBending sum = ExtentBending::Zero();
+    add_product(sum, one * seen.bend, turning, turning);
+    add_product(sum, 2.0 * tau * cube, size, tilting);
+    add_product(sum, seen.size * (cube + 3.0 * tau * tau * fifth), tilting, tilting);
     for (const auto& [normal, press] : {std::pair<Index, Index>{by_e, press_e}, {by_f, press_f}}) {
         sum(normal, press) += one, sum(press, normal) += one;
         sum(normal, normal) -= one * seen.size + seen.size * tau * tau * cube;
@@ -72,7 +90,7 @@ inline ExtentBending extent_bending(const SeenSection& seen, const Vec3& e, cons
     const double leaning = seen.leaning();
     for (const auto& [at, reciprocal] : {std::pair<Index, Vec3>{out_1, seen.reciprocal[0]}, {out_2, seen.reciprocal[1]}}) {
         const Form back = along(reciprocal);
-        sum.row(at) -= leaning * back.transpose(), sum.col(at) -= leaning * back;
+        for (Index k = 0; k < 8; ++k) sum(at, k) -= leaning * back[k], sum(k, at) -= leaning * back[k];
     }
     return sum;
 }
@@ -195,16 +213,18 @@ SlidingPlace<B> oval_place(const beam::Mesh<B>& mesh, const Vector& state, Index
     by_normal(0, 0) = by_normal(1, 1) = 1.0;
     by_arc(0, 2) = -1.0, by_arc(1, 3) = 1.0;
     for (const auto& [first, bending] : {std::pair<Index, const ExtentBending*>{4, &gap.bending_i}, {10, &gap.bending_j}}) {
-        by_normal.template block<2, 6>(0, first) = -bending->template topRightCorner<2, 6>();
-        place.bending.template block<6, 6>(first, first) = -bending->template bottomRightCorner<6, 6>();
+        for (Index c = 0; c < 6; ++c) {
+            for (Index r = 0; r < 2; ++r) by_normal(r, first + c) = -(*bending)(r, 2 + c);
+            for (Index r = 0; r < 6; ++r) place.bending(first + r, first + c) = -(*bending)(2 + r, 2 + c);
+        }
     }
-    const Eigen::Matrix2d flatter = gap.flat.inverse();
-    by_arc += gap.mixed.transpose() * flatter * by_normal;
-    place.bending += by_normal.transpose() * flatter * by_normal;
+    const Eigen::Matrix2d flatter = gap.flat.inverse(), sliding = gap.mixed.transpose() * flatter;
+    for (Index k = 0; k < 16; ++k) by_arc.col(k) += sliding * by_normal.col(k);
+    add_form(place.bending, flatter, by_normal);
     const bool held_i = u_i <= mesh.bounds(i).first || u_i >= mesh.bounds(i).second;  // at an end
     const bool held_j = u_j <= mesh.bounds(j).first || u_j >= mesh.bounds(j).second;
     if (!held_i && !held_j)
-        place.bending -= gap.distance * by_arc.transpose() * slide.slack(pair, gap.closeness, least_closeness) * by_arc;
+        add_form<16>(place.bending, -gap.distance * slide.slack(pair, gap.closeness, least_closeness), by_arc);
     return place;
 }
 

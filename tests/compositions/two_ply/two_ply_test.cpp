@@ -91,9 +91,9 @@ TEST_CASE("two rods wound around each other resist with the torque of Kirchhoff'
         CHECK(report.contact.greatest_penetration < 1e-4 * r);
         // The same without what is measured: nothing turns a smooth round rod about its line, so its twist is the same
         // all along, and what the carriers turn it by less its writhe, 1 - cos(angle) a turn of a helix (Fuller 1971).
-        // Near its ends the angle is less: a thirtieth of a writhe that is 1.4e-2 at most.
+        // Near its ends the angle is less, over a tenth of the length: a tenth of a writhe that is 1.4e-2 at most.
         const double twist = 2.0 * pi * turns * std::cos(state.helix_angle) / parameters.length;
-        CHECK(state.twist == test::near(twist, 1e-3));
+        CHECK(state.twist == test::near(twist, 1.5e-3));
         CHECK(state.torque == test::near(two_ply::HelixTheory(parameters, state.helix_angle, r, twist).torque, 1.5e-3));
         // Rods go around each other everywhere but where their clamps bend them, over less than the bending length
         // under their pull.

@@ -84,7 +84,8 @@ TEST_CASE("a wrong scene is refused by section, key, value and bound") {
     CHECK(refused({"fabric.wrap_tows=4"}).find("fabric.wrap_tows = 4, but it must be one of the keys pattern, warp_tows") == 0);
     CHECK(refused({"fabrics.warp_tows=4"}).find("fabrics = [section], but it must be one of the sections fabric,") == 0);
     CHECK(refused({"fabric.warp_tows=four"}) == "fabric.warp_tows = 'four', but it must be a whole number >= 1 and <= 1000");
-    CHECK(refused({"fabric.warp_tows=4.5"}) == "fabric.warp_tows = 4.5, but it must be a whole number >= 1 and <= 1000");
+    CHECK(refused({"fabric.warp_tows=4.5"}) ==
+          "fabric.warp_tows = 4.5, but it must be a whole number >= 1 and <= 1000, without a point or an exponent");
     CHECK(refused({"fabric.warp_spacing=true"}).find("fabric.warp_spacing = true, but it must be a number finite and > 0") == 0);
     CHECK(refused({"output.pictures=1"}) == "output.pictures = 1, but it must be true or false");
     CHECK(refused({"fabric.pattern=3"}) == "fabric.pattern = 3, but it must be a text");
