@@ -95,6 +95,8 @@ inline Scene read_scene(example::SceneReader& file) {
                 : kind == "bending" ? LoadCase::bending
                                     : LoadCase::twisting;
     const auto& fabric = scene.weave.fabric;
+    for (const char* law : {"material.law", "warp.law", "weft.law"})
+        file.check(!scene.weave.transverse() || !file.given(law, "kind"), law, "kind", "isotropic in a composite");
     const double stiffest = std::min(fabric.warp.material.young_modulus, fabric.weft.material.young_modulus),
                  thickest = std::max(fabric.warp.fibre_radius, fabric.weft.fibre_radius);
     if (matrix.lower_fibres)
