@@ -12,6 +12,8 @@
 
 namespace fibrant::contact {
 
+// What computes here is a template throughout: a program whose model is in the compiled library does not pay for it.
+
 /// A section that stands while a place slides, as the normal of a pair sees it. With c the components of the normal along the
 /// directors its half extent is h = |A c| / s, s the part of the normal that lies in the section: the surface of a fibre knows
 /// nothing of a normal that leans along it.
@@ -25,7 +27,9 @@ struct SeenSection {
     double size = 0.0, bend = 0.0;        ///< |A c|, a^2 b^2 / |A c|^3 [length]
     double tilt = 0.0, lengthened = 1.0;  ///< cosine of `out` and the normal; 1 / s [1]
 
-    SeenSection(const std::array<Vec3, 2>& directors, const scene::CrossSection& section, const Vec3& normal) noexcept {
+    /// @param directors  two of them
+    template <class Directors>
+    SeenSection(const Directors& directors, const scene::CrossSection& section, const Vec3& normal) noexcept {
         const double a = section.semi_axis_1, b = section.semi_axis_2;
         const Vec3 &g_1 = directors[0], &g_2 = directors[1];
         c = {g_1.dot(normal), g_2.dot(normal)};
@@ -67,7 +71,8 @@ void add_form(Eigen::Matrix<double, n, n>& sum, const Eigen::Matrix2d& form, con
 /// material out of it, by both directors (2). What the section's normal turns of second order is left out, of a normal that
 /// leans only.
 using ExtentBending = Eigen::Matrix<double, 8, 8>;
-inline ExtentBending extent_bending(const SeenSection& seen, const Vec3& e, const Vec3& f) noexcept {
+template <class Seen>
+ExtentBending extent_bending(const Seen& seen, const Vec3& e, const Vec3& f) noexcept {
     using Form = Eigen::Matrix<double, 8, 1>;
     enum : Index { by_e, by_f, press_e, press_f, press_n, turn, out_1, out_2 };
     const Form none = Form::Zero();
@@ -108,7 +113,8 @@ struct OvalGap {
     Eigen::Matrix2d mixed;      ///< by the normal, and by both arc lengths [1]
     Eigen::Matrix2d closeness;  ///< second derivatives by both arc lengths with the normal turning, times the distance [1]
 
-    OvalGap(const PairGeometry& pair, const SeenSection& of_i, const SeenSection& of_j, const Vec3& n) noexcept
+    template <class Pair>
+    OvalGap(const Pair& pair, const SeenSection& of_i, const SeenSection& of_j, const Vec3& n) noexcept
         : normal{n},
           e{n.unitOrthogonal()},
           f{n.cross(e)},
