@@ -118,7 +118,7 @@ public:
             if (a == b || position || (!item.hold.rotation && !(led && !turning))) continue;
             double sum = 0.0;
             Mat3 turn_before;
-            Vec3 vector_before;
+            Vec3 vector_before = Vec3::Zero();
             for (int k = 0; k <= looks; ++k) {
                 const double amplitude = a + (b - a) * k / looks;
                 const Mat3 turn = item.hold.rotation ? item.hold.rotation(amplitude) : Mat3(Mat3::Identity());

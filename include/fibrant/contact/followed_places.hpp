@@ -305,7 +305,7 @@ private:
                 const auto across = static_cast<std::int8_t>(across_valley + static_cast<int>(place));
                 zone.valleys[place] = std::atan2(way[1], way[0]);
                 line(way, across);
-                middle.slide = parts.values()[0] < stuck ? across : free;
+                middle.slide = parts.values()[0] < stuck ? across : static_cast<std::int8_t>(free);
             }
         }
         pairs.push_back(middle);

@@ -101,7 +101,7 @@ private:
 template <class B, class... T>
 std::vector<std::string> channels_of(const List<T...>&, const typename List<T...>::Parameters& parameters) {
     std::vector<std::string> names;
-    const auto add = [&]<class One>(std::type_identity<One>) {
+    [[maybe_unused]] const auto add = [&]<class One>(std::type_identity<One>) {
         const auto& [own] = static_cast<const typename One::Slot&>(parameters);
         for (std::string& name : One::channels(own)) names.push_back(std::move(name));
     };
