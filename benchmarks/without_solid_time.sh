@@ -15,7 +15,7 @@ sh "$here/cut_solid.sh" "$folder/without_include"
 ln -s "$source/include" "$folder/with_include"
 for kind in with without; do
   "$compiler" -std=c++20 -O3 -march=native -DNDEBUG -fopenmp -w -I"$folder/${kind}_include" -isystem /usr/include/eigen3 -DFIBRANT_WITH_METIS \
-    "$source"/examples/weave/*.cpp "$source/examples/support/run.cpp" -o "$folder/$kind" -ltomlplusplus -lmetis
+    -DFIBRANT_PROGRAM=weave_program "$source/examples/weave/weave.cpp" "$source"/examples/support/*.cpp -o "$folder/$kind" -ltomlplusplus -lmetis
 done
 seconds() { sed -n 's/.*"cpu_seconds": \([0-9.]*\).*/\1/p' "$folder/out/summary.json"; }
 echo "headers,processor seconds"

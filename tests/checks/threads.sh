@@ -41,7 +41,7 @@ for race in "" -DRACE; do
 done
 
 "$compiler" "$@" -O1 -g1 -DNDEBUG -fopenmp -fsanitize=thread -I"$source/include" -I"$source/examples" \
-  "$source"/examples/weave/*.cpp "$source/examples/support/run.cpp" -o "$scratch/weave"
+  -DFIBRANT_PROGRAM=weave_program "$source/examples/weave/weave.cpp" "$source"/examples/support/*.cpp -o "$scratch/weave"
 rm -rf "$scratch/out"
 status=0
 "$scratch/weave" "$source/examples/weave/plain.toml" --output "$scratch/out" --quiet --set warp.fibres=7 --set warp.real_fibres=140 \
