@@ -37,7 +37,7 @@ double let_last([[maybe_unused]] Contacts& contacts, [[maybe_unused]] Equilibriu
 template <class Equilibrium>
 bool may_grow(const Equilibrium& equilibrium, double factor) {
     bool all = true;
-    equilibrium.terms().moving([&](const auto& term) { all = term.may_grow(factor); });
+    equilibrium.terms().moving([&](const auto& term) { all = all && term.may_grow(factor); });
     return all;
 }
 
