@@ -41,7 +41,8 @@ assert line.shape == (33, 3) and np.shares_memory(line, fibre.centreline) and no
 assert fibre.semi_axes == (radius, radius) and not fibre.closed
 # Sections stay of the size of those at rest.
 near(np.linalg.norm(fibre.director_1, axis=1).max(), 1.0, 0.05)
-# Crimp between the outermost crossings, by chords between nodes: shorter than the curve by (h kappa)^2 / 24 for chords of length h.
+# Crimp between the outermost crossings, by chords between nodes: shorter than the curve by (h kappa)^2 / 24 for chords
+# of length h.
 for number, (one, crimp) in enumerate(zip(run.fibres, run.tables["fibres"]["crimp"])):
     others = run.fibres[3:] if number < 3 else run.fibres[:3]
     axis = np.argmax(np.ptp(one.centreline, axis=0))
