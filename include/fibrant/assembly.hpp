@@ -7,8 +7,10 @@
 #include <fibrant/assembly/equilibrium.hpp>
 #include <fibrant/assembly/linear_system.hpp>
 #include <fibrant/assembly/point_product.hpp>
+#include <fibrant/assembly/residual_figures.hpp>
 #include <fibrant/assembly/slide_products.hpp>
 #include <fibrant/assembly/solid_system.hpp>
+#include <fibrant/assembly/stiffness_sink.hpp>
 #include <fibrant/assembly/system_view.hpp>
 #include <fibrant/assembly/term_assembly.hpp>
 #include <fibrant/assembly/terms.hpp>

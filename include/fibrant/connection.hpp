@@ -8,6 +8,7 @@
 #include <fibrant/connection/carriers.hpp>
 #include <fibrant/connection/channels.hpp>
 #include <fibrant/connection/connections.hpp>
+#include <fibrant/connection/coordinate_groups.hpp>
 #include <fibrant/connection/fibre_bonds.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>

@@ -13,7 +13,7 @@ for header in $(find fibrant -name '*.hpp' | sort); do
   [ "$(head -n 1 "$header")" = '// SPDX-License-Identifier: MIT' ] || complain "$header: the first line is not the SPDX licence tag"
   [ "$(sed -n 2p "$header")" = '#pragma once' ] || complain "$header: the second line is not #pragma once"
   grep -q '^/// @file ' "$header" || complain "$header: no /// @file sentence"
-  size=$(sed 's/^ *//' "$header" | wc -c)  # without indentation, which nobody reads
+  size=$(wc -c < "$header")
   [ "$size" -le 24000 ] || complain "$header: $size bytes, but at most 24000"
   case $header in fibrant/observe/*) continue ;; esac
   found=$(grep -nE 'std::(cout|cerr|clog)|printf *\(|\bputs *\(' "$header") && complain "$header prints: $found"

@@ -2,7 +2,9 @@
 #pragma once
 /// @file Equilibrium of a mesh with its contacts, terms and prescribed motion: residual, tangent, energies.
 
+#include <fibrant/assembly/residual_figures.hpp>
 #include <fibrant/assembly/solid_system.hpp>
+#include <fibrant/assembly/stiffness_sink.hpp>
 #include <fibrant/assembly/vector_measures.hpp>
 #include <fibrant/connection/connections.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
@@ -20,16 +22,6 @@
 #include <vector>
 
 namespace fibrant::assembly {
-
-/// Residual R = internal - external forces, and what its size is measured by. Norms divide forces on directors by the
-/// radius (layout length), so they are forces throughout.
-struct ResidualFigures {
-    double residual = 0.0;  ///< norm of the free part [force]
-    double scale = 0.0;     ///< norm of loads, reactions and contact forces [force]
-    double rounding = 0.0;  ///< norm below which a residual is nothing but rounding [force]
-    /// 0 where only rounding is left: a fibre that moves freely has no force to compare with.
-    double relative() const noexcept { return residual <= rounding ? 0.0 : residual / scale; }
-};
 
 /// The mechanical problem of one increment.
 /// @tparam Connections  of ends of fibres to rigid bodies
@@ -66,17 +58,10 @@ public:
           system_{system(mesh, solid_)},
           terms_{term::SiteOf<B>(assembly, mesh, channels, std::as_const(system_).layout()), terms},
           stresses_(core::at(mesh.element_count())) {
-        // Strains keep the digits of coordinates over an element's length, and E A of them is a force at each node.
         const double extent = scene::extent_of(mesh.layout(), mesh.rest_state());
-        double sum = 0.0;
-        for (Index f = 0; f < mesh.fibre_count(); ++f) {
-            const beam::MeshFibre& fibre = mesh.fibre(f);
-            const double digits = extent / fibre.element_length + fibre.element_length / fibre.section.radius();
-            const double force = fibre.material.young_modulus * fibre.section.area() * digits;
-            sum += static_cast<double>(mesh.node_count(f)) * force * force;
-        }
-        if constexpr (has_solid) sum += std::pow(solid_.rounding_scale(extent), 2);
-        rounding_ = 8.0 * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
+        double solid_scale = 0.0;
+        if constexpr (has_solid) solid_scale = solid_.rounding_scale(extent);
+        rounding_ = rounding_of(mesh, extent, solid_scale);
     }
 
     Equilibrium(const Equilibrium&) = delete;  // its terms look at its layout
@@ -297,7 +282,7 @@ public:
                     });
             },
             mesh_->grain());
-        Sink sink{this, state};
+        StiffnessSink<System, B, moves> sink{system_, *mesh_, state};
         term::Bands bands(sink);
         terms_.each([&]<class One>(const One& term) {
             if constexpr (moves) sink.factor = One::role == term::Role::external ? share : 1.0;
@@ -405,7 +390,7 @@ private:
             if (!column.isZero(0.0))
                 system_.skews().push_back({static_cast<std::int32_t>(points.size() - 1), column, element.normal});
         }
-        Sink sink{this, state};
+        StiffnessSink<System, B, moves> sink{system_, *mesh_, state};
         term::Couplings couplings(sink);
         terms_.each([&](const auto& term) { term.add_couplings(state, couplings); });
     }
@@ -417,39 +402,6 @@ private:
             if (contacts_->slides(k) && contacts_->responses()[core::at(k)].slope != 0.0)
                 system_.slides().push_back(contacts_->sliding(k, positive));
     }
-    /// What a term's stiffness goes into.
-    struct Sink {
-        Equilibrium* to;
-        const Vector& state;
-        [[no_unique_address]] std::conditional_t<moves, double, core::Inactive> factor{};  ///< on what is added to bands
-        void add_diagonal(Index vector, const Mat3& stiffness) {
-            if constexpr (moves)
-                to->system_.add_diagonal(vector, Mat3(factor * stiffness));
-            else
-                to->system_.add_diagonal(vector, stiffness);
-        }
-        void add_element(Index f, Index e, const double* entries) {
-            const Eigen::Map<const beam::ElementMatrix<B>> stiffness(entries);
-            if constexpr (moves)
-                to->system_.add(f, e, beam::ElementMatrix<B>(factor * stiffness));
-            else
-                to->system_.add(f, e, stiffness);
-        }
-        void add_coupling(const term::CentrePoint& i, const term::CentrePoint& j, const Mat3& stiffness) {
-            to->system_.points().push_back({static_cast<std::int32_t>(3 * i.first_vector),
-                                            static_cast<std::int32_t>(3 * j.first_vector), static_cast<std::int32_t>(i.fibre),
-                                            static_cast<std::int32_t>(j.fibre), particle(i), particle(j), stiffness});
-        }
-        beam::Particle<B> particle(const term::CentrePoint& at) const {
-            if constexpr (beam::TouchedOnCentreline<B>) {
-                return B::centre_weights(at.xi);
-            } else {
-                beam::Particle<B> one = B::particle_weights(at.xi, 0.0, 0.0);
-                if constexpr (beam::TurningSections<B>) one.follow(to->mesh_->element(state, at.fibre, at.element));
-                return one;
-            }
-        }
-    };
     /// Springs on all vectors of a fibre, -1: on those of what is none, beside a shift [force / length].
     double spring(Index f, double shift) const {
         terms_.each([&](const auto& term) { shift += term.spring(f); });

@@ -4,6 +4,7 @@
 
 #include <fibrant/connection/body_motion.hpp>
 #include <fibrant/connection/connections.hpp>
+#include <fibrant/connection/coordinate_groups.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/connection/solid_places.hpp>
 #include <fibrant/scene/tied_vectors.hpp>
@@ -97,7 +98,11 @@ public:
                 finish(tie, condition, fibre_support(pair.first.fibre));
             }
         sort_ties();
-        find_groups();
+        groups_ = coordinate_groups(motion_.free_coordinates(), core::count(conditions_),
+                                    [&](Index c, Index coordinate) { return depends(conditions_[core::at(c)], coordinate); });
+        for (Group& group : groups_)
+            for (const Index c : group.conditions)
+                for (Index a = 0; a < ties_[core::at(c)].count; ++a) group.scalars.push_back(ties_[core::at(c)].first + a);
         anchor(solids.state);
     }
 
@@ -283,11 +288,7 @@ private:
         Vec3 offset = Vec3::Zero();          // in the body's frame, times the root
         Vec3 displacement = Vec3::Zero(), period = Vec3::Zero();
     };
-    /// Free coordinates that share conditions, and these.
-    struct Group {
-        std::vector<Index> coordinates, conditions, scalars;
-        Matrix modes, pull;  // change of coordinates = pull modes^T change of scalars
-    };
+    using Group = CoordinateGroup;
 
     static Vec3 combination(const scene::Tie& tie, const Vector& state) noexcept {
         Vec3 sum = Vec3::Zero();
@@ -403,41 +404,6 @@ private:
             ties.back().first = scalars_, scalars_ += ties.back().count;
         }
         ties_ = std::move(ties), conditions_ = std::move(conditions);
-    }
-
-    void find_groups() {
-        std::vector<Index> root(core::at(motion_.free_coordinates()));
-        std::iota(root.begin(), root.end(), Index{0});
-        const auto find = [&](Index k) {
-            while (root[core::at(k)] != k) k = root[core::at(k)];
-            return k;
-        };
-        const auto first_of = [&](const Condition& condition) {
-            Index first = -1;
-            for (Index k = 0; k < motion_.free_coordinates(); ++k) {
-                if (!depends(condition, k)) continue;
-                if (first < 0)
-                    first = find(k);
-                else
-                    root[core::at(std::max(first, find(k)))] = std::min(first, find(k)), first = std::min(first, find(k));
-            }
-            return first;
-        };
-        for (const Condition& condition : conditions_) first_of(condition);
-        std::vector<Index> number(root.size(), -1);
-        for (std::size_t c = 0; c < conditions_.size(); ++c) {
-            const Index first = first_of(conditions_[c]);
-            if (first < 0) continue;
-            Index& group = number[core::at(first)];
-            if (group < 0) {
-                group = core::count(groups_);
-                groups_.emplace_back();
-                for (Index k = 0; k < motion_.free_coordinates(); ++k)
-                    if (find(k) == first) groups_.back().coordinates.push_back(k);
-            }
-            groups_[core::at(group)].conditions.push_back(static_cast<Index>(c));
-            for (Index a = 0; a < ties_[c].count; ++a) groups_[core::at(group)].scalars.push_back(ties_[c].first + a);
-        }
     }
 
     const beam::Mesh<B>* mesh_;

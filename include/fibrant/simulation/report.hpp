@@ -81,6 +81,13 @@ struct Report {
     std::string solver;  ///< what a linear solver that chooses has used and why, in this process; empty for others
     std::array<double, core::part_count> seconds{};  ///< by core::Part
     double wall_seconds = 0;
+
+    /// Takes what increments tell of the end, and the most of all.
+    void sum_up() {
+        if (!increments.empty()) contact = increments.back().contact, residual = increments.back().residual;
+        if (!increments.empty()) use = increments.back().use;
+        for (const IncrementReport& increment : increments) most_use.add(increment.use);
+    }
 };
 
 }  // namespace fibrant::simulation

@@ -14,6 +14,20 @@
 
 namespace fibrant::simulation {
 
+/// Throws std::invalid_argument where a scene has what the model has no part for, or no fibre.
+template <Model M>
+void require_parts(const scene::Assembly& assembly) {
+    const auto refuse_if = [](std::size_t present, const char* field, const char* bound) {
+        if (present > 0) core::refuse(field, std::to_string(present), bound);
+    };
+    if (assembly.fibres().empty()) core::refuse("assembly.fibres", "none", "at least one fibre");
+    if (!HasTools<M>) refuse_if(assembly.tools().size(), "assembly.tools", "none, for a model without a part Tools");
+    if (!HasConnections<M>)
+        refuse_if(assembly.bodies().size() + assembly.cells().size(), "assembly.bodies",
+                  "none, for a model without a part Connections");
+    if (!HasSolid<M>) refuse_if(assembly.solids().size(), "assembly.solids", "none, for a model without a part Solid");
+}
+
 /// Throws std::invalid_argument where holds of a nodal vector contradict each other, at rest or as one channel goes to 1.
 template <beam::BeamElement B>
 void require_agreement(const connection::PrescribedMotion<B>& motion, const beam::Mesh<B>& mesh,

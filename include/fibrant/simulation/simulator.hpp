@@ -257,12 +257,7 @@ private:
     }
 
     void finish(Report& report, std::chrono::steady_clock::time_point start) {
-        if (!report.increments.empty()) {
-            report.contact = report.increments.back().contact;
-            report.residual = report.increments.back().residual;
-            report.use = report.increments.back().use;
-        }
-        for (const IncrementReport& increment : report.increments) report.most_use.add(increment.use);
+        report.sum_up();
         report.energy = energy_.balance();
         if constexpr (requires {
                           { linear_.account() } -> std::convertible_to<std::string>;
@@ -334,19 +329,12 @@ Simulator<M>::Simulator(const scene::Assembly& assembly, const ModelParameters<M
       laws_{assembly, mesh_, beam_, channels_},
       state_{mesh_.start_state()},
       amplitudes_(channels_.names().size(), 0.0) {
-    if (mesh_.fibre_count() == 0) core::refuse("assembly.fibres", "none", "at least one fibre");
+    require_parts<M>(assembly);
     if constexpr (HasTools<M>) {
         for (const scene::Tool& tool : assembly.tools()) tool_channels_.push_back(channels_.find(tool.channel));
         move_tools(amplitudes_);
-    } else if (!assembly.tools().empty()) {
-        core::refuse("assembly.tools", std::to_string(assembly.tools().size()), "none, for a model without a part Tools");
     }
-    if (const auto bodies = assembly.bodies().size() + assembly.cells().size(); !HasConnections<M> && bodies > 0)
-        core::refuse("assembly.bodies", std::to_string(bodies), "none, for a model without a part Connections");
-    if constexpr (HasSolid<M>)
-        state_ = equilibrium_.solid().with_rest(state_);
-    else if (!assembly.solids().empty())
-        core::refuse("assembly.solids", std::to_string(assembly.solids().size()), "none, for a model without a part Solid");
+    if constexpr (HasSolid<M>) state_ = equilibrium_.solid().with_rest(state_);
     require_agreement(equilibrium_.motion(), mesh_, channels_);
     if constexpr (!Equilibrium::moves) loose_ = loose_direction(assembly, mesh_);
     radius_ = mesh_.fibre(0).section.radius();
