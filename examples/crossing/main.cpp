@@ -18,7 +18,7 @@ using namespace fibrant;
 using Crossing = compiled::RoughFibres;
 #else
 struct Crossing {
-    using Beam = beam::DirectorBeam<3>;
+    using Beam = beam::RoundDirectorBeam<3>;  // nothing of oval sections is compiled
     using Proximity = proximity::GridSearch;
     using Normal = law::RegularisedPenalty;
     using Friction = law::RegularisedCoulomb;

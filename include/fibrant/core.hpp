@@ -4,6 +4,7 @@
 
 #include <fibrant/core/config.hpp>
 #include <fibrant/core/large_array.hpp>
+#include <fibrant/core/ordering.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/rotation.hpp>
@@ -12,3 +13,4 @@
 #include <fibrant/core/symmetric_eigen.hpp>
 #include <fibrant/core/types.hpp>
 #include <fibrant/core/vector_units.hpp>
+#include <fibrant/core/vectors.hpp>

@@ -67,15 +67,17 @@ public:
         std::array<Padded, weighted> values;
         for (Index s = range.first; s < range.second;) {
             const std::int32_t start = sides_[core::at(s)].first;
-            for (std::size_t a = 0; a < values.size(); ++a)
-                values[a] << x.segment<3>(start + 3 * stride * static_cast<Index>(a)).array(), 0.0;
+            for (std::size_t a = 0; a < values.size(); ++a) {
+                const double* of = x.data() + start + 3 * stride * static_cast<Index>(a);
+                values[a] = Padded(of[0], of[1], of[2], 0.0);
+            }
             for (; s < range.second && sides_[core::at(s)].first == start; ++s) {
                 const Weights& weights = weights_[core::at(s)];
                 if constexpr (turning) {
                     Vec3 motion = Vec3::Zero();
                     for (std::size_t a = 0; a < values.size(); ++a)
                         motion += weights.slope(static_cast<Index>(a)) * values[a].template head<3>().matrix();
-                    motion_[core::at(s)] << motion.array(), 0.0;
+                    motion_[core::at(s)] = Padded(motion[0], motion[1], motion[2], 0.0);
                 } else {
                     Padded even = Padded::Zero(), odd = Padded::Zero();  // two sums, neither of which waits for the other
                     for (std::size_t a = 0; a + 1 < values.size(); a += 2) {

@@ -69,6 +69,15 @@ concept CentreTouched = CentrelineOnly<B> || TouchedOnCentreline<B>;
 template <class B>
 concept DeformableSections = !CentrelineOnly<B> && !TurningSections<B> && !TouchedOnCentreline<B>;
 
+/// Sections are circles at rest, and a mesh refuses others: what ovals need is not compiled.
+template <class B>
+concept RoundAtRest = requires {
+    requires B::round_at_rest;
+};
+/// Contours that are no circles at rest may come.
+template <class B>
+concept OvalSections = DeformableSections<B> && !RoundAtRest<B>;
+
 /// An element of a fibre: consecutive nodes, one shared by neighbours.
 ///
 /// `Rest` is what an element keeps of its rest shape, section and material; `Stresses` are the conjugates of all its

@@ -20,6 +20,7 @@ struct DirectorBeamOptions {
     SectionSampling sampling = SectionSampling::nodal;
     QuadraticStrain quadratic = QuadraticStrain::none;
     TwistStrain twist = TwistStrain::metric;
+    bool round_at_rest = false;  ///< all sections are circles at rest, else a mesh refuses them: a program compiles in less time
 };
 
 /// Beam x = x_0 + xi_1 g_1 + xi_2 g_2 with 9 unknowns a node (Durville, eq. 1 and 2), Nodes - 1 Gauss points.
@@ -40,6 +41,7 @@ public:
     static constexpr std::array<scene::VectorKind, 3> kinds{scene::VectorKind::position, scene::VectorKind::direction,
                                                             scene::VectorKind::direction};
     static constexpr DirectorBeamOptions options = Options;
+    static constexpr bool round_at_rest = Options.round_at_rest;
     using ElementVector = typename Interpolation::ElementVector;
     using ElementMatrix = typename Interpolation::ElementMatrix;
     using ElementWeights = std::array<double, static_cast<std::size_t>(3 * Nodes)>;
@@ -276,5 +278,9 @@ protected:
 };
 
 static_assert(BeamElement<DirectorBeam<2>> && BeamElement<DirectorBeam<3>>);
+
+/// The same of sections that are circles at rest; a mesh refuses others.
+template <int Nodes = 3>
+using RoundDirectorBeam = DirectorBeam<Nodes, DirectorBeamOptions{.round_at_rest = true}>;
 
 }  // namespace fibrant::beam

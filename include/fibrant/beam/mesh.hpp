@@ -5,6 +5,7 @@
 #include <fibrant/beam/beam_element.hpp>
 #include <fibrant/beam/followed_shape.hpp>
 #include <fibrant/beam/nodal_sums.hpp>
+#include <fibrant/core/ordering.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/core/rotation.hpp>
 #include <fibrant/scene/assembly.hpp>
@@ -53,7 +54,14 @@ public:
             const Index nodes = fibre.elements * (B::nodes - 1) + 1;
             const std::string label = scene::label("fibre", core::count(fibres_), fibre.name);
             std::vector<scene::NodeFrame> starts, frames;
-            core::with_place([&] { return label; }, [&] { cut_fibre<B>(fibre, nodes, starts, frames); });
+            core::with_place([&] { return label; },
+                             [&] {
+                                 if (RoundAtRest<B> && fibre.section.semi_axis_1 != fibre.section.semi_axis_2)
+                                     core::refuse("section.semi_axis_2", core::text(fibre.section.semi_axis_2),
+                                                  "semi_axis_1 = " + core::text(fibre.section.semi_axis_1) +
+                                                      ", for a beam that is round_at_rest");
+                                 cut_fibre<B>(fibre, nodes, starts, frames);
+                             });
             double length = 0.0;
             for (std::size_t k = 1; k < frames.size(); ++k) length += (frames[k].position - frames[k - 1].position).norm();
             fibres_.push_back({first, fibre.elements, length / static_cast<double>(fibre.elements), fibre.section, fibre.material,
@@ -61,7 +69,7 @@ public:
             layout_.chains.push_back({first, nodes, B::vectors_per_node, B::reach, fibre.group, fibre.closed});
             for (Index v = 0; fibre.closed && v < B::vectors_per_node; ++v)
                 layout_.images.push_back({first + (nodes - 1) * B::vectors_per_node + v, first + v});
-            frames_.insert(frames_.end(), starts.begin(), starts.end());
+            core::append(frames_, starts);
             for (const scene::NodeFrame& frame : starts)
                 for (const Vec3& vector : nodal_vectors<B>(frame, fibres_.back().element_length)) start.push_back(vector);
             for (const scene::NodeFrame& frame : frames) {

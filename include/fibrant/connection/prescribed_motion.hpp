@@ -4,6 +4,7 @@
 
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/connection/channels.hpp>
+#include <fibrant/core/ordering.hpp>
 #include <fibrant/core/rotation.hpp>
 #include <fibrant/core/symmetric_eigen.hpp>
 
@@ -53,7 +54,7 @@ public:
                     core::refuse("Hold.rotation", "of " + std::to_string(std::lround(held.trace())) + " axes",
                                  "of all three: rotations do not add up");
             }
-        std::stable_sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) { return a.vector < b.vector; });
+        core::stable_sort(items_, [](const Item& a, const Item& b) { return a.vector < b.vector; });
     }
 
     /// Held vectors at the given amplitudes; target[k] is the held part of held[k]'s vector.

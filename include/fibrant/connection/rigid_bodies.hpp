@@ -7,6 +7,7 @@
 #include <fibrant/connection/coordinate_groups.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/connection/solid_places.hpp>
+#include <fibrant/scene/image_vectors.hpp>
 #include <fibrant/scene/tied_vectors.hpp>
 
 #include <Eigen/SVD>
@@ -129,21 +130,18 @@ public:
     /// Adds the vectors that are held to those of other holds, whose order by vector is kept. @param targets  held parts
     void hold(std::vector<scene::HeldVector>& held, std::vector<Vec3>& targets) const {
         if (tied_ == ties_.size()) return;
-        std::vector<std::pair<scene::HeldVector, Vec3>> all;
-        for (std::size_t k = 0; k < held.size(); ++k) all.emplace_back(held[k], targets[k]);
+        std::vector<scene::HeldTarget> more;
         for (std::size_t k = tied_; k < ties_.size(); ++k) {
             const Condition& condition = conditions_[k];
             const Vec3 from = condition.director ? Vec3(Vec3::Zero()) : motion_.position(condition.owner);
-            auto& [one, target] = all.emplace_back(scene::HeldVector{ties_[k].vectors.front(), Mat3::Identity()}, Vec3::Zero());
+            auto& [one, target] = more.emplace_back(scene::HeldVector{ties_[k].vectors.front(), Mat3::Identity()}, Vec3::Zero());
             for (Index a = 0; a < ties_[k].count; ++a) {
                 const Vec3 axis = direction(condition, a);
                 one.free -= axis * axis.transpose();
                 target += (axis.dot(from) + offset(condition, a)) * axis;
             }
         }
-        std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first.vector < b.first.vector; });
-        held.clear(), targets.clear();
-        for (const auto& [one, target] : all) held.push_back(one), targets.push_back(target);
+        scene::hold_more(held, targets, more);
     }
 
     void place(const Vector& state, scene::DofLayout& layout) {

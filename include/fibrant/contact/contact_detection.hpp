@@ -5,6 +5,7 @@
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
+#include <fibrant/core/ordering.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
 
@@ -230,7 +231,7 @@ std::vector<Zone> find_zones(const beam::Mesh<B>& mesh, const Vector& state, Sea
             zone.forced = zone.crossing = true;
             zones.push_back(zone);
         }
-        std::stable_sort(zones.begin(), zones.end(), [](const Zone& a, const Zone& b) {
+        core::stable_sort(zones, [](const Zone& a, const Zone& b) {
             return a.span.fibre_i != b.span.fibre_i ? a.span.fibre_i < b.span.fibre_i : a.span.fibre_j < b.span.fibre_j;
         });
     }

@@ -3,12 +3,14 @@
 /// @file What is remembered of contacts when contact elements are made anew: normals, and friction on material abscissae.
 
 #include <fibrant/contact/contact_element.hpp>
+#include <fibrant/core/ordering.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -137,7 +139,7 @@ public:
     const std::vector<double>& periods() const noexcept { return periods_; }
     void assign(std::vector<Record> records) {
         records_ = std::move(records);
-        if (!std::is_sorted(records_.begin(), records_.end())) std::stable_sort(records_.begin(), records_.end());
+        if (!std::is_sorted(records_.begin(), records_.end())) core::stable_sort(records_, std::less<>());
         if (!periods_.empty()) mirror();
     }
 
@@ -260,7 +262,7 @@ private:
             }
             mirrored_.push_back(other);
         }
-        std::stable_sort(mirrored_.begin(), mirrored_.end());
+        core::stable_sort(mirrored_, std::less<>());
     }
     std::vector<double> periods_;
     std::vector<Record> records_, mirrored_;

@@ -114,7 +114,9 @@ PairGeometry pair_geometry(const beam::Mesh<B>& mesh, const Vector& state, Index
     const Vec3 bend_i = patches.bend(i, u_i, half_i), bend_j = patches.bend(j, u_j, half_j);
     const double square_i = pair.speed_i * pair.speed_i, square_j = pair.speed_j * pair.speed_j, cosine = pair.t_i.dot(pair.t_j);
     pair.bend_i = bend_i / square_i, pair.bend_j = bend_j / square_j;
-    pair.closeness << 1.0 - pair.centres.dot(bend_i) / square_i, -cosine, -cosine, 1.0 + pair.centres.dot(bend_j) / square_j;
+    pair.closeness(0, 0) = 1.0 - pair.centres.dot(bend_i) / square_i;
+    pair.closeness(1, 1) = 1.0 + pair.centres.dot(bend_j) / square_j;
+    pair.closeness(0, 1) = pair.closeness(1, 0) = -cosine;
     return pair;
 }
 

@@ -72,7 +72,7 @@ public:
         std::vector<Eigen::Vector2d> known;
         if (zone.settled) memory.visit_places(zone.span, [&](double u_i, double u_j) { known.emplace_back(u_i, u_j); });
         zone.settled = true;
-        const auto first = static_cast<std::ptrdiff_t>(pairs.size());
+        const std::size_t first = pairs.size();
         const std::vector<Eigen::Vector2d> places = closest_places(mesh, state, zone.span, {crossing.u_i, crossing.u_j});
         const auto nearest = [&](const Eigen::Vector2d& to) {
             const auto nearer = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -88,15 +88,14 @@ public:
             middle.u_i = places[place][0], middle.u_j = places[place][1];
             settle_one(mesh, state, zone, places, place, own, middle, pairs);
         }
-        std::sort(pairs.begin() + first, pairs.end(),
-                  [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
+        sort_along(pairs, first);
     }
 
     /// The closest patches of a state, and the normal from the one to the other.
     template <class Element>
     void follow(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
         const Vec3 before = element.normal;
-        if constexpr (beam::DeformableSections<B>) {
+        if constexpr (beam::OvalSections<B>) {
             if (oval_pair(mesh, element.fibre_i, element.fibre_j)) {
                 Held& one = held_[core::at(element.place)];
                 if (!stand(mesh, element, one)) renew(mesh, state, element);
@@ -132,7 +131,7 @@ public:
     }
     SlidingStiffness stiffness(const auto& element, double reaction, double slope, bool positive) const {
         const SlidingPlace<B>& place = of(element);
-        if constexpr (beam::DeformableSections<B>)
+        if constexpr (beam::OvalSections<B>)
             if (place.oval) return oval_stiffness(place, element.normal, reaction, slope, positive);
         return sliding_stiffness(place, element.normal, reaction, slope, positive);
     }
@@ -358,7 +357,7 @@ private:
                                     const auto& one) {
         const Index i = element.fibre_i, j = element.fibre_j;
         const Slide slide = slide_of(mesh, zone, element.slide);
-        if constexpr (beam::DeformableSections<B>)
+        if constexpr (beam::OvalSections<B>)
             if (oval_pair(mesh, i, j)) {
                 const OvalGap gap = oval_gap(mesh, pair_geometry(mesh, state, i, j, element.u_i, element.u_j), i, j,
                                              standing_directors(mesh, state, i, j, one.i, one.j), element.normal);

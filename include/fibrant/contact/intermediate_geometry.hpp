@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 
@@ -20,6 +21,12 @@ struct StationPair {
     double length = 0.0;    ///< of the zone that it stands for [length]; for a crossing the touching length, for a last section 0
     std::int8_t slide = 0;  ///< of a followed crossing: how its place slides (FollowedPlaces)
 };
+
+/// Sorts pairs along both fibres. @param first  of those that are sorted
+inline void sort_along(std::vector<StationPair>& pairs, std::size_t first = 0) {
+    std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end(),
+              [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
+}
 
 /// The pair of closest points near a start, both inside their fibres.
 ///

@@ -23,9 +23,9 @@ Vec3 material_shift(const beam::Mesh<B>& mesh, const Vector& state, Index fibre,
     } else {
         const double xi = mesh.locate(fibre, u).second;
         const auto [g_1, g_2] = beam::Mesh<B>::element_directors(state, first, xi);
-        Mat3 axes;
-        axes << beam::Mesh<B>::centre(state, first, B::centreline_derivative_weights(xi)), g_1, g_2;
-        return axes.inverse() * shift;
+        const Vec3 along = beam::Mesh<B>::centre(state, first, B::centreline_derivative_weights(xi));
+        const Mat3 inverse = core::columns(along, g_1, g_2).inverse();
+        return inverse * shift;
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/contact/contact_detection.hpp>
+#include <fibrant/core/ordering.hpp>
 #include <fibrant/proximity/moving_segments.hpp>
 #include <fibrant/scene/tool.hpp>
 
@@ -86,7 +87,7 @@ struct Swept {
             std::vector<PassedPair> passed = between_fibres(lines, contacts, forced);
             if constexpr (requires { contacts.tools(); }) {
                 const std::vector<PassedPair> through = through_tools(lines, contacts.tools(), tools_moved);
-                passed.insert(passed.end(), through.begin(), through.end());
+                core::append(passed, through);
             }
             if (passed.empty()) return {};
             PassedPair answer = passed.front();
@@ -167,7 +168,7 @@ struct Swept {
         template <class Item>
         static std::vector<Item> joined(const std::vector<std::vector<Item>>& parts) {
             std::vector<Item> all;
-            for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+            for (const auto& part : parts) core::append(all, part);
             return all;
         }
 

@@ -11,6 +11,7 @@ namespace fibrant::contact {
 /// Whether a section of two fibres is not round.
 template <class B>
 bool oval_pair(const beam::Mesh<B>& mesh, Index i, Index j) noexcept {
+    if constexpr (beam::RoundAtRest<B>) return false;
     const auto oval = [&](Index f) { return mesh.fibre(f).section.semi_axis_1 != mesh.fibre(f).section.semi_axis_2; };
     return oval(i) || oval(j);
 }
@@ -27,7 +28,7 @@ struct SlidPair {
 template <class B>
 SlidPair slid(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, const Slide& slide, StationPair& at,
               [[maybe_unused]] Vec3& normal) noexcept {
-    if constexpr (beam::DeformableSections<B>) {
+    if constexpr (beam::OvalSections<B>) {
         if (oval_pair(mesh, i, j)) {
             const auto standing = [](double u) { return StandingSection{u, Eigen::Vector2d::UnitX(), true}; };
             const auto follow = [&] {

@@ -193,7 +193,8 @@ SlidingPlace<B> sliding_place(const beam::Mesh<B>& mesh, const Vector& state, In
     place.distance = std::max(std::abs(pair.centres.dot(normal)), 0.1 * (place.i.extent + place.j.extent));
     const Vec3 along = normal.unitOrthogonal(), across = normal.cross(along);
     Eigen::Matrix<double, 2, 4> b;
-    b << -pair.t_i.dot(along), -pair.t_i.dot(across), -1.0, 0.0, pair.t_j.dot(along), pair.t_j.dot(across), 0.0, 1.0;
+    b.row(0) = Eigen::RowVector4d(-pair.t_i.dot(along), -pair.t_i.dot(across), -1.0, 0.0);
+    b.row(1) = Eigen::RowVector4d(pair.t_j.dot(along), pair.t_j.dot(across), 0.0, 1.0);
     Eigen::Matrix2d slack = slide.slack(pair, pair.closeness, least_closeness);
     // What is at an end of its fibre does not slide.
     const bool held_i = u_i <= mesh.bounds(i).first || u_i >= mesh.bounds(i).second;
@@ -201,7 +202,7 @@ SlidingPlace<B> sliding_place(const beam::Mesh<B>& mesh, const Vector& state, In
     if (held_i || held_j) slack.setZero();
     if (slide.kind == Slide::freely && held_i && !held_j) slack(1, 1) = 1.0 / std::max(pair.closeness(1, 1), least_closeness);
     if (slide.kind == Slide::freely && held_j && !held_i) slack(0, 0) = 1.0 / std::max(pair.closeness(0, 0), least_closeness);
-    place.curvature = -b.transpose() * slack * b;
+    place.curvature = -(b.transpose() * slack * b);
     place.curvature(0, 0) += 1.0, place.curvature(1, 1) += 1.0;
     place.curvature /= place.distance;
     return place;
@@ -263,7 +264,7 @@ SlidingStiffness sliding_stiffness(const SlidingPlace<B>& place, const Vec3& nor
     sum.stiffness.block<4, 4>(1, 1) = form;
     if constexpr (rows == 11) {
         Eigen::Matrix2d shear;
-        shear << 0.0, -1.0, -1.0, -1.0;
+        shear(0, 0) = 0.0, shear(0, 1) = shear(1, 0) = shear(1, 1) = -1.0;
         if (positive) shear = core::SymmetricEigen<2>(shear).raised(0.0);
         for (const auto& [row, side] : {std::pair<Index, const PatchSide<B>&>{5, place.i}, {8, place.j}}) {
             sum.stiffness(row, row) = reaction / side.extent;

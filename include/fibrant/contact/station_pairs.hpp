@@ -95,8 +95,7 @@ public:
             }
         const auto begin = pairs_.begin() + static_cast<std::ptrdiff_t>(before_);
         pairs_.erase(std::remove_if(begin, pairs_.end(), [&](const StationPair& pair) { return is_one(pair); }), pairs_.end());
-        std::sort(pairs_.begin() + static_cast<std::ptrdiff_t>(before_), pairs_.end(),
-                  [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
+        sort_along(pairs_, before_);
     }
 
 private:
@@ -307,14 +306,12 @@ void wrap_stations(const beam::Mesh<B>& mesh, Index i, Index j, double points_pe
         if (i != j || pair.u_i <= pair.u_j) continue;
         std::swap(pair.u_i, pair.u_j), std::swap(pair.end_i, pair.end_j);
     }
-    const auto begin = pairs.begin() + static_cast<std::ptrdiff_t>(first);
-    std::sort(begin, pairs.end(),
-              [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
+    sort_along(pairs, first);
     const double same = 0.02 / points_per_element;  // a sixth of the least spacing, which is halved three times [elements]
     const auto one = [&](const StationPair& a, const StationPair& b) {
         return mesh.apart(i, a.u_i, b.u_i) < same && mesh.apart(j, a.u_j, b.u_j) < same;
     };
-    pairs.erase(std::unique(begin, pairs.end(), one), pairs.end());
+    pairs.erase(std::unique(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end(), one), pairs.end());
     if (pairs.size() > first + 1 && one(pairs[first], pairs.back())) pairs.pop_back();
 }
 

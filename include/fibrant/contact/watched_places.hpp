@@ -57,8 +57,7 @@ inline void add_watched(const Zone& zone, std::vector<StationPair>& pairs) {
         pair.u_i = u_i, pair.u_j = u_j, pair.length = length;
         pairs.push_back(pair);
     }
-    std::sort(pairs.begin(), pairs.end(),
-              [](const StationPair& a, const StationPair& b) { return a.u_i != b.u_i ? a.u_i < b.u_i : a.u_j < b.u_j; });
+    sort_along(pairs);
 }
 
 /// Mends what is too deep, between two increments: where no contact point stands it gets one, and its zone begins as soft there

@@ -13,9 +13,18 @@
 namespace fibrant::core {
 
 inline Mat3 cross_matrix(const Vec3& v) noexcept {
-    Mat3 m;
-    m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-    return m;
+    return columns(Vec3(0, v.z(), -v.y()), Vec3(-v.z(), 0, v.x()), Vec3(v.y(), -v.x(), 0));
+}
+
+/// Rotation by an angle [radian] about a unit axis.
+inline Mat3 turn_about(const Vec3& axis, double angle) noexcept {
+    const Vec3 across = std::sin(angle) * axis;
+    const double cosine = std::cos(angle);
+    const Vec3 along = (1.0 - cosine) * axis;
+    const double xy = along.x() * axis.y(), xz = along.x() * axis.z(), yz = along.y() * axis.z();
+    return columns(Vec3(along.x() * axis.x() + cosine, xy + across.z(), xz - across.y()),
+                   Vec3(xy - across.z(), along.y() * axis.y() + cosine, yz + across.x()),
+                   Vec3(xz + across.y(), yz - across.x(), along.z() * axis.z() + cosine));
 }
 
 namespace detail {

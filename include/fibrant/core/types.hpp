@@ -2,9 +2,8 @@
 #pragma once
 /// @file The numbers of the whole toolkit: double precision, columns of three components.
 
-#include <fibrant/core/config.hpp>
+#include <fibrant/core/vectors.hpp>
 
-#include <Eigen/Core>
 #include <Eigen/SparseCore>
 
 #include <cstddef>
@@ -12,11 +11,6 @@
 
 namespace fibrant {
 
-using Index = Eigen::Index;      ///< signed; -1 means "none"
-using Vec3 = Eigen::Vector3d;    ///< position, director or force in space
-using Mat3 = Eigen::Matrix3d;    ///< projector or stiffness between two 3-vectors
-using Vector = Eigen::VectorXd;  ///< unknowns or residual: component k % 3 of 3-vector k / 3
-using Matrix = Eigen::MatrixXd;  ///< dense, column-major
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
 }  // namespace fibrant

@@ -80,10 +80,8 @@ public:
             own[z].a_i += by_i, own[z].b_i += by_i, own[z].closest_i += by_i;
             own[z].a_j += by_j, own[z].b_j += by_j, own[z].closest_j += by_j;
         }
-        std::sort(own.begin(), own.end(), [](const ProximityZone& a, const ProximityZone& b) {
-            return std::tie(a.a_i, a.a_j, a.b_i, a.b_j) < std::tie(b.a_i, b.a_j, b.b_i, b.b_j);
-        });
-        zones.insert(zones.end(), own.begin(), own.end());
+        sort_along(own);
+        for (const ProximityZone& zone : own) zones.push_back(zone);
     }
 
 private:

@@ -5,11 +5,14 @@
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/types.hpp>
 
+#include <algorithm>
 #include <compare>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace fibrant::proximity {
@@ -44,6 +47,14 @@ struct ProximityZone {
     double distance = 0;                  ///< there, between the axes [length]
     friend bool operator==(const ProximityZone&, const ProximityZone&) = default;
 };
+
+/// Sorts zones of one pair of fibres along both. @param first  of those that are sorted
+inline void sort_along(std::vector<ProximityZone>& zones, std::size_t first = 0) {
+    std::sort(zones.begin() + static_cast<std::ptrdiff_t>(first), zones.end(),
+              [](const ProximityZone& a, const ProximityZone& b) {
+                  return std::tie(a.a_i, a.a_j, a.b_i, a.b_j) < std::tie(b.a_i, b.a_j, b.b_i, b.b_j);
+              });
+}
 
 /// Finds every pair of segments whose axes are closer than
 ///     r_i + r_j + inflation_i + inflation_j + reach,

@@ -19,10 +19,10 @@ namespace detail {
 // What a loop over lanes calls is inlined whatever the options of that loop are.
 struct Plain3 {
     double x, y, z;
+    [[gnu::always_inline]] friend constexpr Plain3 operator-(const Plain3& a, const Plain3& b) noexcept {
+        return {a.x - b.x, a.y - b.y, a.z - b.z};
+    }
 };
-[[gnu::always_inline]] inline constexpr Plain3 operator-(const Plain3& a, const Plain3& b) noexcept {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
 [[gnu::always_inline]] inline constexpr double dot(const Plain3& a, const Plain3& b) noexcept {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }

@@ -66,10 +66,7 @@ public:
         for (std::size_t k = 0; k < n; ++k) measure(k, extent_[zone_[k]], zones[before + zone_[k]]);
         for (std::size_t z = 0; z < extent_.size(); ++z)
             if (extent_[z].sense < 0.0) std::swap(zones[before + z].a_j, zones[before + z].b_j);
-        std::sort(zones.begin() + static_cast<std::ptrdiff_t>(before), zones.end(),
-                  [](const ProximityZone& a, const ProximityZone& b) {
-                      return std::tie(a.a_i, a.a_j, a.b_i, a.b_j) < std::tie(b.a_i, b.a_j, b.b_i, b.b_j);
-                  });
+        sort_along(zones, before);
     }
 
 private:

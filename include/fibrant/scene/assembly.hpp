@@ -2,6 +2,7 @@
 #pragma once
 /// @file A scene as a user writes it: fibres, groups of fibres in any hierarchy, and what is imposed on them.
 
+#include <fibrant/core/rotation.hpp>
 #include <fibrant/scene/conditions.hpp>
 #include <fibrant/scene/cross_section.hpp>
 #include <fibrant/scene/elastic_material.hpp>
@@ -348,8 +349,7 @@ public:
 private:
     static std::function<Mat3(double)> by_amplitude(const Vec3& rotation) {
         if (!(rotation.norm() > 0.0)) return {};
-        return
-            [rotation](double amplitude) { return Mat3(Eigen::AngleAxisd(amplitude * rotation.norm(), rotation.normalized())); };
+        return [rotation](double amplitude) { return core::turn_about(rotation.normalized(), amplitude * rotation.norm()); };
     }
     void check(const Station& at) const {
         if (at.fibre < 0 || at.fibre >= core::count(fibres_))

@@ -26,11 +26,7 @@ struct NodeFrame {
     Vec3 director_1 = Vec3::UnitX();
     Vec3 director_2 = Vec3::UnitY();
     /// Columns g_1, g_2, tangent: section components to space.
-    Mat3 basis() const {
-        Mat3 columns;
-        columns << director_1, director_2, tangent;
-        return columns;
-    }
+    Mat3 basis() const { return core::columns(director_1, director_2, tangent); }
 };
 
 namespace detail {

@@ -32,7 +32,7 @@ public:
     }
     void put(const std::string& text) {
         put(static_cast<std::uint64_t>(text.size()));
-        data_.insert(data_.end(), text.begin(), text.end());
+        data_.insert(data_.end(), text.data(), text.data() + text.size());
     }
     void put(const Vector& vector) {
         put(static_cast<std::uint64_t>(vector.size()));
