@@ -65,4 +65,28 @@ TEST_CASE_TEMPLATE("a point, a tangent and a director are the same by one vector
     CHECK(least > 1e-3);        // none of them is nothing
 }
 
+TEST_CASE("a beam whose sections are circles at rest has the forces of one whose may be ovals, and refuses these") {
+    using Round = beam::RoundDirectorBeam<3>;
+    static_assert(beam::DeformableSections<Round> && !beam::OvalSections<Round> && beam::OvalSections<beam::DirectorBeam<3>>);
+    const auto assembly = [](const scene::CrossSection& section) {
+        scene::Assembly one;
+        one.add(
+            {.from = {0, 0, 0}, .to = {1, 0, 0}, .section = section, .material = {7300.0, 0.3}, .elements = 2, .name = "warp"});
+        return one;
+    };
+    const scene::Assembly circles = assembly(scene::circular(0.02));
+    const Round beam{Round::Parameters{}};
+    const beam::Mesh<Round> mesh(circles, beam);
+    Vector bent = mesh.rest_state();
+    for (Index k = 0; k < bent.size(); ++k) bent[k] += 1e-3 * std::sin(static_cast<double>(k));
+    const beam::DirectorBeam<3> any{beam::DirectorBeam<3>::Parameters{}};
+    const beam::Mesh<beam::DirectorBeam<3>> other(circles, any);
+    CHECK(beam.internal_force(mesh.rest(0, 1), mesh.element(bent, 0, 1)) ==
+          any.internal_force(other.rest(0, 1), other.element(bent, 0, 1)));
+    CHECK_THROWS_WITH_AS(beam::Mesh<Round>(assembly(scene::elliptical(0.03, 0.02)), beam),
+                         "section.semi_axis_2 = 0.02, but it must be semi_axis_1 = 0.03, for a beam that is "
+                         "round_at_rest (fibre 0 'warp')",
+                         std::invalid_argument);
+}
+
 }  // namespace mesh_points_test

@@ -58,9 +58,8 @@ public:
         // A fibre's line goes on beyond its end, its end does not: the gap across both tangents is less than that of a cap, by
         // 0.1 r where lines part by a quarter of r. Then an end that slides to where the one kind begins would be sent back by
         // the other for ever.
-        const double nearly_none = 0.01 * r_;
-        pair.end_i = (pair.u_i <= low_i_ || pair.u_i >= end_i_) && off_i > nearly_none;
-        pair.end_j = (pair.u_j <= low_j_ || pair.u_j >= end_j_) && off_j > nearly_none;
+        pair.end_i = (pair.u_i <= low_i_ || pair.u_i >= end_i_) && off_i > cap_from * r_;
+        pair.end_j = (pair.u_j <= low_j_ || pair.u_j >= end_j_) && off_j > cap_from * r_;
         pairs_.push_back(pair);
     }
 
@@ -73,10 +72,10 @@ public:
         std::vector<double> between;
         earlier([&](double u_i, double u_j) {
             const double k = mean_abscissa(u_i, u_j) / step_;
-            if (std::abs(k - std::round(k)) > 0.1) between.push_back(k);
+            if (std::abs(k - std::round(k)) > off_multiple) between.push_back(k);
         });
-        const auto first = static_cast<Index>(std::ceil(from_ / step_ - 1e-6)),
-                   last = static_cast<Index>(std::floor(to_ / step_ + 1e-6));
+        const auto first = static_cast<Index>(std::ceil(from_ / step_ - at_multiple)),
+                   last = static_cast<Index>(std::floor(to_ / step_ + at_multiple));
         if (first > last) add_station(0.5, step_ * h_);
         Station station{};
         for (Index k = first; k <= last; ++k) {
@@ -99,6 +98,26 @@ public:
     }
 
 private:
+    /// How far beside an end the other fibre's closest point may be, along the end's fibre, before contact is with its cap: but
+    /// for rounding not at all [radius].
+    static constexpr double cap_from = 0.01;
+    /// Distance from an end's plane from which the other fibre does not come by it any more, and from which an end is beyond
+    /// the other one's; splayed ends make the first, blunt ones the second [radius].
+    static constexpr double left = 0.05, end_to_end = 0.25;
+    /// What is less aside is at a multiple of the spacing: rounding, and what a station moves along between two detections.
+    /// Spacings are halved three times, so that stations between are an eighth or more aside [spacing].
+    static constexpr double at_multiple = 1e-6, off_multiple = 0.1;
+    static constexpr int most_parts = 8;  ///< of a spacing that is halved three times
+    /// Looks along the other fibre for where Newton's method starts, its iterations and the step at which it has ended [element]:
+    /// it converges by the square, so that what is left is rounding.
+    static constexpr int looks = 8, most_iterations = 12;
+    static constexpr double settled = 1e-11;
+    static constexpr double parallel =
+        1e-3;  ///< sine below which lines count as parallel, so that nothing is divided by zero [1]
+    /// Least length over which facing sections part, of the thinner half axis: those that are deep in each other have no
+    /// direction that is furthest [1].
+    static constexpr double sharpest = 0.1;
+
     struct Station {
         double u_i, u_j, sine;
     };  // sine of the angle between the fibres
@@ -121,8 +140,6 @@ private:
         const SectionAxes axes_i = section_axes(mesh_, state_, i_, u_i), axes_j = section_axes(mesh_, state_, j_, u_j);
         const Vec3 across = centres - centres.dot(tangent) * tangent;
         const Vec3 normal = furthest_direction(across, axes_i, axes_j, tangent, unit_or(across, tangent.unitOrthogonal()));
-        const double sharpest =
-            0.1;  // of the thinner half axis: sections that are deep in each other have no direction that is furthest
         return {normal, std::max(sharpest * thin_, normal_turn(across, axes_i, axes_j, tangent, normal).length)};
     }
     // In a bend the points of a fibre that are closest to each other are next to each other, or one.
@@ -164,21 +181,21 @@ private:
         double v = 0.5 * (low + high);
         const double other_low = of_i ? low_j_ : low_i_, other_end = of_i ? end_j_ : end_i_;
         double best = (mesh_.position(state_, other, v) - centre).squaredNorm();
-        for (int k = 0; k <= 8; ++k) {  // a start close enough for the tangent planes to converge
-            const double w = low + (high - low) * k / 8.0;
+        for (int k = 0; k <= looks; ++k) {  // a start close enough for the tangent planes to converge
+            const double w = low + (high - low) * k / looks;
             const double square = (mesh_.position(state_, other, w) - centre).squaredNorm();
             if (square < best) best = square, v = w;
         }
-        for (int iteration = 0; iteration < 12; ++iteration) {
+        for (int iteration = 0; iteration < most_iterations; ++iteration) {
             const Vec3 d = mesh_.derivative(state_, other, v);
             const double step = std::clamp((centre - mesh_.position(state_, other, v)).dot(d) / d.squaredNorm(), -1.0, 1.0);
             v = std::clamp(v + step, other_low, other_end);
-            if (std::abs(step) < 1e-11) break;
+            if (std::abs(step) < settled) break;
         }
         const Vec3 d = mesh_.derivative(state_, other, v);
         const double beyond = std::abs((centre - mesh_.position(state_, other, v)).dot(d.normalized()));
         StationPair pair{of_i ? u : v, of_i ? v : u, false, of_i, !of_i, 0.5 * r_};
-        if (beyond > 0.25 * r_) pair.end_i = pair.end_j = true;  // end to end
+        if (beyond > end_to_end * r_) pair.end_i = pair.end_j = true;  // end to end
         pairs_.push_back(pair);
     }
 
@@ -193,11 +210,11 @@ private:
         const Vec3 tangent = mean_tangent(t, t_other);
         // A station next to it will do, unless the fibres come closer by more than may go unseen between the two.
         const double near =
-            std::min(0.1 * step_, spacing_.largest_unseen * thin_ / (h_ * std::max(sine_between(t, t_other), 1e-3)));
+            std::min(off_multiple * step_, spacing_.largest_unseen * thin_ / (h_ * std::max(sine_between(t, t_other), parallel)));
         for (std::size_t k = before_; k < pairs_.size(); ++k)
             if (std::abs((of_i ? pairs_[k].u_i : pairs_[k].u_j) - u) < near) return true;
         v = plane_section(mesh_, state_, other, v, origin, tangent);
-        if ((v <= other_low || v >= other_end) && std::abs((mesh_.position(state_, other, v) - origin).dot(tangent)) > 0.05 * r_)
+        if ((v <= other_low || v >= other_end) && std::abs((mesh_.position(state_, other, v) - origin).dot(tangent)) > left * r_)
             return false;
         pairs_.push_back({of_i ? u : v, of_i ? v : u, false, false, false, 0.0});
         return true;
@@ -214,8 +231,8 @@ private:
         u_j = plane_section(mesh_, state_, j_, u_j, middle, tangent);
         const double off_i = std::abs((mesh_.position(state_, i_, u_i) - middle).dot(tangent));
         const double off_j = std::abs((mesh_.position(state_, j_, u_j) - middle).dot(tangent));
-        const bool left_i = off_i > 0.05 * r_ && (u_i <= low_i_ || u_i >= end_i_);
-        const bool left_j = off_j > 0.05 * r_ && (u_j <= low_j_ || u_j >= end_j_);
+        const bool left_i = off_i > left * r_ && (u_i <= low_i_ || u_i >= end_i_);
+        const bool left_j = off_j > left * r_ && (u_j <= low_j_ || u_j >= end_j_);
         if (left_i || left_j) {
             const bool of_i = left_i;
             const double u = of_i ? u_i : u_j;
@@ -251,11 +268,11 @@ private:
         const auto was_halved = [&](int parts) {
             return std::any_of(earlier.begin(), earlier.end(), [&](double station) {
                 const double place = (station - static_cast<double>(k)) * 2.0 * parts;  // odd at the stations of this halving
-                return place > 0.0 && place < 2.0 * parts && std::abs(std::remainder(place - 1.0, 2.0)) < 0.2;
+                return place > 0.0 && place < 2.0 * parts && std::abs(std::remainder(place - 1.0, 2.0)) < 2.0 * off_multiple;
             });
         };
         int parts = 1;
-        while (parts < 8 && (unseen(parts) > spacing_.largest_unseen * thin_ || was_halved(parts))) parts *= 2;
+        while (parts < most_parts && (unseen(parts) > spacing_.largest_unseen * thin_ || was_halved(parts))) parts *= 2;
         for (int m = 1; m < parts; ++m) {
             const double at = static_cast<double>(k) + static_cast<double>(m) / parts;
             if (at * step_ > from_ && at * step_ < to_) add_station(share(at), step_ * h_ / parts);

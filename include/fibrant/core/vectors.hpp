@@ -23,19 +23,17 @@ using Matrix = Eigen::MatrixXd;  ///< dense, column-major
 namespace core {
 
 template <class T>
-inline constexpr bool three_numbers = false;
-template <>
-inline constexpr bool three_numbers<Vec3> = true;
-template <>
-inline constexpr bool three_numbers<Eigen::VectorBlock<Vector, 3>> = true;
-template <>
-inline constexpr bool three_numbers<Eigen::VectorBlock<const Vector, 3>> = true;
-template <>
-inline constexpr bool three_numbers<Eigen::Block<Mat3, 3, 1, true>> = true;
-template <>
-inline constexpr bool three_numbers<Eigen::Block<const Mat3, 3, 1, true>> = true;
+inline constexpr bool by_columns = false;
+template <int rows, int columns>
+inline constexpr bool by_columns<Eigen::Matrix<double, rows, columns, Eigen::ColMajor, rows, columns>> = true;
+template <class T>
+inline constexpr bool three_numbers = std::is_same_v<T, Vec3>;
+template <class M>
+inline constexpr bool three_numbers<Eigen::VectorBlock<M, 3>> = by_columns<std::remove_const_t<M>>&& M::ColsAtCompileTime == 1;
+template <class M>
+inline constexpr bool three_numbers<Eigen::Block<M, 3, 1, true>> = by_columns<std::remove_const_t<M>>;
 
-/// Three numbers in one piece: a Vec3, three of a Vector, a column of a Mat3.
+/// Three numbers in one piece: a Vec3, three of a column vector, a column of a matrix of three rows.
 template <class T>
 concept Triple = three_numbers<T>;
 
@@ -175,10 +173,10 @@ operator*(const A& a, const B& b) noexcept {
     });
 }
 /// a^T b, the same.
-template <core::Small A, core::Small B>
-    requires(A::RowsAtCompileTime == 2 && B::RowsAtCompileTime == 2)
+template <class A, core::Small B>
+    requires(core::Small<core::Untransposed<A>>&& A::RowsAtCompileTime == 2 && B::RowsAtCompileTime == 2)
 core::SmallMatrix<A::ColsAtCompileTime, B::ColsAtCompileTime>
-operator*(const Eigen::Transpose<const A>& a, const B& b) noexcept {
+operator*(const Eigen::Transpose<A>& a, const B& b) noexcept {
     constexpr Index rows = A::ColsAtCompileTime;
     return core::by_entry<core::SmallMatrix<A::ColsAtCompileTime, B::ColsAtCompileTime>>([&](Index k) {
         const double *of_a = a.nestedExpression().data() + 2 * (k % rows), *of_b = b.data() + 2 * (k / rows);
@@ -211,7 +209,16 @@ requires std::same_as<core::Untransposed<T>, Mat3> Mat3 operator*(const M& a, co
         return core::product(a.data(), row);
     });
 }
-/// a b^T.
+/// a b^T, of vectors that are no Triple.
+template <core::Small A, class B>
+    requires(core::Small<core::Untransposed<B>>&& A::ColsAtCompileTime == 1 && B::ColsAtCompileTime == 1)
+core::SmallMatrix<A::RowsAtCompileTime, B::RowsAtCompileTime>
+operator*(const A& a, const Eigen::Transpose<B>& b) noexcept {
+    constexpr Index rows = A::RowsAtCompileTime;
+    return core::by_entry<core::SmallMatrix<A::RowsAtCompileTime, B::RowsAtCompileTime>>(
+        [&](Index k) { return a.data()[k % rows] * b.nestedExpression().data()[k / rows]; });
+}
+/// The same of Triples.
 template <core::Triple A, class V>
 requires std::same_as<core::Untransposed<V>, Vec3> Mat3 operator*(const A& a, const Eigen::Transpose<V>& b) noexcept {
     const double *x = a.data(), *y = b.nestedExpression().data();
