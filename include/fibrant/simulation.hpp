@@ -29,6 +29,7 @@
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 #include <fibrant/simulation/state_file.hpp>
+#include <fibrant/simulation/step_control.hpp>
 #include <fibrant/simulation/stored_state.hpp>
 #include <fibrant/simulation/support_wrench.hpp>
 #include <fibrant/simulation/watching.hpp>

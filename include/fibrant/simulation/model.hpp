@@ -101,6 +101,13 @@ concept HasActs = requires {
 template <class M>
 concept ActsAreTerms = !HasActs<M> || term::ListFor<typename M::Acts, typename M::Beam>;
 
+/// A model whose increments are cut and grown in a way of their own says so: `using Steps = ...;`, a StepControl. May be left
+/// out.
+template <class M>
+concept HasSteps = requires {
+    typename M::Steps;
+};
+
 // A part that may be left out is refused under a name that is nearly its own.
 template <class M>
 concept SpellsTools = !detail::NearTools<M>;
@@ -112,11 +119,13 @@ template <class M>
 concept SpellsPassage = !detail::NearPassage<M>;
 template <class M>
 concept SpellsActs = !detail::NearActs<M>;
+template <class M>
+concept SpellsSteps = !detail::NearSteps<M>;
 
 /// A model names its Beam, Proximity, Normal, Friction and Solver, each of which satisfies its own contract.
 template <class M>
 concept Model = HasBeam<M> && HasProximity<M> && HasNormal<M> && HasFriction<M> && HasSolver<M> && ActsAreTerms<M> &&
-    SpellsTools<M> && SpellsConnections<M> && SpellsSolid<M> && SpellsPassage<M> && SpellsActs<M>;
+    SpellsTools<M> && SpellsConnections<M> && SpellsSolid<M> && SpellsPassage<M> && SpellsActs<M> && SpellsSteps<M>;
 
 namespace detail {
 template <Model M>

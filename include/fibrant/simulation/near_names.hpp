@@ -57,5 +57,14 @@ concept NearActs = requires {
 || requires { typename M::Loads; }
 || requires { typename M::Forces; }
 || requires { typename M::Actions; };
+template <class M>
+concept NearSteps = requires {
+    typename M::Step;
+}
+|| requires { typename M::steps; }
+|| requires { typename M::Setps; }
+|| requires { typename M::StepControl; }
+|| requires { typename M::Stepping; }
+|| requires { typename M::HalvedSteps; };
 
 }  // namespace fibrant::simulation::detail

@@ -26,15 +26,10 @@ struct Position {
     Index mends = 0;  ///< of pairs that are too deep unseen, since that last became better
     double mended = std::numeric_limits<double>::infinity();  ///< how deep they are then [length]
     bool following = false;                                   ///< places of crossings are followed
-    std::pair<Index, double> tried{-1, 0.0};       ///< accepted increments and fraction at which another following was tried last
-    std::vector<double> from;                      ///< amplitudes at the start of the stage
-    std::vector<double> holding;                   ///< damping of each fibre over that of all, >= 1
-    static constexpr double least_damping = 1e-3;  ///< over that of the stage: below, none
-    static constexpr double vanishing = 1e-6;      ///< the same where damping waits: it ends by its share, and by halves
-    static constexpr double few = 0.1;             ///< of the fibres, which alone are held harder
-    static constexpr double far = 0.25;            ///< of the greatest motion: what counts as restless
-    static constexpr double most_holding = 4096.0;
-    static constexpr Index most_mends = 12;  ///< without a success
+    std::pair<Index, double> tried{-1, 0.0};  ///< accepted increments and fraction at which another following was tried last
+    std::vector<double> from;                 ///< amplitudes at the start of the stage
+    std::vector<double> holding;              ///< damping of each fibre over that of all, >= 1
+    static constexpr Index most_mends = 12;   ///< without a success
 
     /// Progress that the next increment of a stage is to reach.
     template <Model M>
@@ -51,27 +46,6 @@ struct Position {
         return present.duration * fraction / static_cast<double>(present.increments);
     }
 
-    /// After an attempt that has failed. What stops increments is often one fibre, or two at the edge of a bundle: those that
-    /// moved most in the last iteration or pass, if they are few, are held four times as hard, and the increment stays as it is.
-    /// Else it is made smaller, and damping of all rises.
-    /// @param moved     of each fibre, in what did not settle [length]; empty: not known
-    /// @param allowed   that it may be without harm [length]
-    /// @param attempts  at this increment that have failed, >= 1
-    template <Model M>
-    void give_way(const Stage<M>& present, const std::vector<double>& moved, double allowed, Index attempts) {
-        easy = 0;
-        if (fraction > 1.0) {
-            fraction = std::max(1.0, 0.5 * fraction);
-            return;
-        }
-        if (attempts % 5 != 0 && damping * present.damping > 0.0 && hold_restless(moved, allowed)) return;
-        // Once its ramps are over, only more damping makes an increment easier.
-        const bool damped = present.damping > 0.0 && damping < 1.0 / least_damping;
-        if (progress < 1.0 || !damped) fraction *= 0.5;
-        damping_floor = 2.0 * damping;
-        damping = std::clamp(4.0 * damping, least_damping, 1.0 / least_damping);
-    }
-
     /// An attempt has failed: the other way of finding places is tried before anything else is, once at a size of increment.
     /// Where that fails too the first one is taken up again. @returns whether the same increment is to be tried
     bool try_other_places(contact::Places places) {
@@ -86,44 +60,6 @@ struct Position {
     /// Over an increment as the stage says it, >= 1: gaps are limited to as much more, contact is as much softer, and damping
     /// holds as much less.
     double stride() const noexcept { return std::max(1.0, fraction); }
-
-    /// After an accepted increment: what was cut grows again, and one that parts what is deep goes further.
-    /// @param growth  factor after two increments without a cut
-    /// @param effort  as of `adapt_damping`
-    template <Model M>
-    void grow(const Stage<M>& present, const IncrementReport& increment, double growth, double effort) {
-        const double part = 0.25, with_ease = 0.6;  // of the deepest overlap, by trial; of the iterations, as for damping
-        double most = 1.0;
-        if (present.gap_limit && present.largest_fraction > 1.0)
-            most = std::clamp(part * increment.contact.greatest_penetration / *present.gap_limit, 1.0, present.largest_fraction);
-        fraction = std::min(fraction, most);
-        if (increment.cuts > 0 || ++easy < 2 || fraction >= most || (fraction >= 1.0 && effort > with_ease)) return;
-        fraction = std::min(fraction < 1.0 ? 1.0 : most, growth * fraction), easy = 0;
-    }
-
-    /// Damping is the inverse of a time step: what was solved with ease goes on faster, and what was hard more slowly.
-    /// @param effort  iterations of a normal pass of the last attempt over how many it may take [1]
-    template <Model M>
-    void adapt_damping(const Stage<M>& present, const IncrementReport& increment, double effort) {
-        const double before = damping;
-        // What holds little enough falls no further: without any, a slack fibre is sought all over the place, and the last stage
-        // takes what it takes.
-        const bool waits = present.damping_waits && progress >= 1.0,
-                   enough = waits && damping > 0.0 && increment.damping <= present.damping_share;
-        if (waits && !stage_over && increment.damping < 0.5 * present.damping_share)
-            damping = std::clamp(2.0 * damping, least_damping, 1.0 / least_damping);
-        else if (!enough && increment.cuts == 0 && increment.displacement <= present.damping_calm && effort <= 0.6)
-            damping = std::max(damping * (damping > 1.0 ? 0.5 : std::pow(present.damping_decay, fraction)),
-                               std::min(damping, damping_floor));
-        else if (present.damping_decay < 1.0 && effort > 0.75)
-            damping = std::min(2.0 * damping, 1.0 / least_damping);
-        if (damping < (waits ? vanishing : least_damping)) damping = 0.0;
-        damping_floor *= 0.8;
-        // What holds a single fibre is halved after each increment without a cut, be it by its own factor or by that of all.
-        const double share = 0.5 * (before > 0.0 ? before / std::max(damping, 0.5 * before) : 1.0);
-        if (increment.cuts == 0)
-            for (double& factor : holding) factor = std::max(1.0, share * factor);
-    }
 
     /// Begins the next stage. @param amplitudes  now
     template <Model M>
@@ -187,19 +123,6 @@ struct Position {
     }
 
 private:
-    /// @returns false where too many moved, or one that did is held as hard as may be
-    bool hold_restless(const std::vector<double>& moved, double allowed) {
-        const double most = moved.empty() ? 0.0 : *std::max_element(moved.begin(), moved.end());
-        std::vector<std::size_t> restless;
-        for (std::size_t f = 0; f < moved.size(); ++f)
-            if (moved[f] > std::max(far * most, allowed)) restless.push_back(f);
-        if (restless.empty() || static_cast<double>(restless.size()) > few * static_cast<double>(moved.size())) return false;
-        for (const std::size_t f : restless)
-            if (holding[f] >= most_holding) return false;
-        for (const std::size_t f : restless) holding[f] *= 4.0;
-        return true;
-    }
-
     template <class Self, class Body>
     static void each_of(Self& self, const Body& body) {
         body(self.stage), body(self.in_stage), body(self.accepted), body(self.easy);

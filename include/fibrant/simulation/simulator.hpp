@@ -9,6 +9,7 @@
 #include <fibrant/simulation/scene_checks.hpp>
 #include <fibrant/simulation/section_laws.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
+#include <fibrant/simulation/step_control.hpp>
 #include <fibrant/simulation/watching.hpp>
 
 #include <algorithm>
@@ -37,6 +38,8 @@ public:
     using Acts = typename detail::ActsOf<M>::Type;
     using Equilibrium = assembly::Equilibrium<Beam, Contacts, typename detail::ConnectionsOf<M>::Type, Solid, Acts>;
     using Passage = typename detail::PassageOf<M>::Type;
+    using Steps = typename detail::StepsOf<M>::Type;
+    static_assert(StepControl<Steps, M>);
 
     /// @throws std::invalid_argument naming the field that is wrong
     Simulator(const scene::Assembly& assembly, const ModelParameters<M>& parameters);
@@ -212,7 +215,7 @@ private:
                 contacts_.places().follow(position_.following = parameters_.contact.places == contact::Places::as_needed);
                 continue;
             }
-            position_.give_way(stage, equilibrium_.greatest_by_fibre(attempt.unsettled), attempt.allowed, increment.cuts);
+            steps_.give_way(position_, stage, equilibrium_.greatest_by_fibre(attempt.unsettled), attempt.allowed, increment.cuts);
             if (position_.fraction < loading.smallest_fraction || report.rejected_increments > loading.most_rejected) {
                 report.counts += increment.counts;
                 report.reason = present + attempt.reason;
@@ -226,7 +229,7 @@ private:
         else
             position_.calming.soften_after(increment.unstable, increment.displacement / radius_, Calming::softest(mesh_));
         ++position_.accepted, position_.in_stage += position_.calming.resting ? 0 : 1;
-        if (may_grow(equilibrium_, loading.growth)) position_.grow(stage, increment, loading.growth, effort);
+        if (may_grow(equilibrium_, loading.growth)) steps_.grow(position_, stage, increment, loading.growth, effort);
         increment.number = position_.accepted, increment.stage = stage.name, increment.stage_progress = position_.progress;
         increment.progress = part_done(stages, position_.stage, position_.progress);
         // At rest: what holds takes no more force than the balance may miss anyway.
@@ -237,7 +240,7 @@ private:
                     : std::string();
         position_.stage_over = !laws_.again() && ((reached && !held && deep_.empty()) ||
                                                   (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments));
-        position_.adapt_damping(stage, increment, effort);
+        steps_.adapt_damping(position_, stage, increment, effort);
         contacts_.accept(state_), equilibrium_.accept(state_);
         if constexpr (HasSolid<M>)
             if (equilibrium_.solid().accept(state_) > 0)
@@ -303,6 +306,7 @@ private:
     std::optional<Vec3> loose_;  ///< what nothing holds the scene along
     std::vector<Index> tool_channels_;
     Position position_;
+    [[no_unique_address]] Steps steps_;
     MeanMotion motion_;
     EnergyAccount energy_;
     core::StageClock clock_;
