@@ -147,8 +147,19 @@ struct LeastModel {
 };
 static_assert(simulation::Model<LeastModel>);
 
+/// The first increment is as it is said, all others are a quarter of that.
+struct LeastSteps {
+    void give_way(simulation::Position& position, const auto&, const std::vector<double>&, double, Index) const {
+        position.fraction *= 0.5;
+    }
+    void grow(simulation::Position& position, const auto&, const simulation::IncrementReport&, double, double) const {
+        position.fraction = 0.25;
+    }
+    void adapt_damping(simulation::Position&, const auto&, const simulation::IncrementReport&, double) const {}
+};
 struct WithDirect : LeastModel {
     using Solver = solver::SparseCholesky;
+    using Steps = LeastSteps;
 };
 struct WithBlocks : LeastModel {
     using Solver = solver::FibreBlockPcg;
@@ -200,6 +211,18 @@ TEST_CASE_TEMPLATE("other solvers work with the least beam, search and laws", M,
     simulation::Simulator<M> simulator(assembly, all);
     CHECK(simulator.run({.increments = 1}).converged);
     CHECK(simulator.value(scene::last_end(bar)).x() > 2.0);
+}
+
+TEST_CASE("a model's own steps say how far increments go") {
+    scene::Assembly assembly;
+    const Index bar = add_bar(assembly, 0.0);
+    assembly.apply(scene::DeadForce{scene::last_end(bar), scene::NodeVector::position, Vec3(1.0, 0, 0), "load"});
+    simulation::ModelParameters<WithDirect> all;
+    all.contact.stiffness.allowed_penetration = 1e-3;
+    simulation::Simulator<WithDirect> simulator(assembly, all);
+    const simulation::Report report = simulator.run({.increments = 4});
+    CHECK(report.converged);
+    CHECK(report.increments.size() == 13);  // a quarter of the way, and twelve sixteenths
 }
 
 TEST_CASE("what a node does not have is neither held nor loaded: refused by name") {
