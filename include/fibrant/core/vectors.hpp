@@ -3,7 +3,8 @@
 /// @file Vectors of three and 3 by 3 matrices, and their arithmetic as plain functions.
 ///
 /// Eigen makes a type of every expression, and compilers spend more on these types than on all else. What is found here is taken
-/// in its place, by code in namespace fibrant and by all that says `using namespace fibrant`; it gives the same bits.
+/// in its place, by code in namespace fibrant and by all that says `using namespace fibrant`; it gives the same bits. Results are
+/// values: what looks at one, as `(a - b).array()` does, ends with the expression that it stands in, and is not kept by `auto`.
 
 #include <fibrant/core/config.hpp>
 
