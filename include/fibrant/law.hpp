@@ -7,6 +7,7 @@
 #include <fibrant/law/directed_friction.hpp>
 #include <fibrant/law/friction_law.hpp>
 #include <fibrant/law/frictionless.hpp>
+#include <fibrant/law/impact.hpp>
 #include <fibrant/law/limited_gap.hpp>
 #include <fibrant/law/linear_penalty.hpp>
 #include <fibrant/law/normal_law.hpp>
