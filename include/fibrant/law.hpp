@@ -14,4 +14,5 @@
 #include <fibrant/law/physical_normal.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/law/shaped_friction.hpp>
 #include <fibrant/law/smooth_coulomb.hpp>
