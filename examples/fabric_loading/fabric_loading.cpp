@@ -92,7 +92,7 @@ bool run(const fabric_loading::LoadFile& load, example::SceneReader& file, examp
 bool solve(example::SceneReader& file, example::Output& output) {
     const fabric_loading::LoadFile load = fabric_loading::read_load_file(file, output.scene.parent_path());
     return load.scene.own_laws() ? run<example::LoadedFibres<true>>(load, file, output)
-                                   : run<example::LoadedFibres<false>>(load, file, output);
+                                 : run<example::LoadedFibres<false>>(load, file, output);
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ struct Nest {
 
 struct Shape {
     Index fibres = 10, elements = 6;
-    double radius = core::unset, length = core::unset, spacing = 2.5, turn_deg = 137.5, height = core::unset, drum = core::unset, pressed = 0.0;
+    double radius = core::unset, length = core::unset, spacing = 2.5, turn_deg = 137.5, height = core::unset, drum = core::unset,
+           pressed = 0.0;
     double start(Index fibre) const { return radius + height + spacing * radius * static_cast<double>(fibre); }
 };
 
@@ -165,8 +166,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
                                                                 {"energy_error_over_work", off}});
     example::write_report(output, "fall", summary, simulator.snapshot());
     if (off > missing)
-        std::fprintf(stderr, "fall: the balance of energy misses %.1e of the work, more than motion.missing_energy = %g: take "
-                             "smaller motion.allowed_error_over_radius\n",
+        std::fprintf(stderr,
+                     "fall: the balance of energy misses %.1e of the work, more than motion.missing_energy = %g: take "
+                     "smaller motion.allowed_error_over_radius\n",
                      off, missing);
     return report.converged && audit.clean() && off <= missing;
 }

@@ -51,15 +51,14 @@ struct Scene {
 };
 
 template <bool Own, class Parameters>
-bool draw_with(const Scene& given, const scene::Assembly& assembly, const Parameters& parameters, const example::SceneReader& file,
-          example::Output& output, std::vector<std::pair<std::string, double>> figures) {
+bool draw_with(const Scene& given, const scene::Assembly& assembly, const Parameters& parameters,
+               const example::SceneReader& file, example::Output& output, std::vector<std::pair<std::string, double>> figures) {
     using Strand = StrandOf<Own>;
     const double radius = given.radius;
     simulation::ModelParameters<Strand> model;
     model.normal = {.law = {.regularisation_depth = given.depth * given.allowed * radius},
                     .largest_penetration = given.sinking * radius};
-    model.friction =
-        law::friction_parameters<typename Strand::Friction>(given.mu, given.reversible * radius, given.friction);
+    model.friction = law::friction_parameters<typename Strand::Friction>(given.mu, given.reversible * radius, given.friction);
     model.contact.stiffness.allowed_penetration = given.allowed * radius;
     model.contact.stiffness.initial_fraction = 0.2;
     model.iteration.step_tolerance = model.iteration.residual_tolerance = std::min(0.01 * given.tolerance, 1e-5);

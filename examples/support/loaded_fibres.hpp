@@ -20,8 +20,8 @@ namespace example {
 /// @tparam Own  sections and friction obey laws of their own; else sections are isotropic and friction is Coulomb's
 template <bool Own>
 struct LoadedFibres {
-    using Beam = fibrant::beam::With<
-        fibrant::beam::DirectorBeam<>, std::conditional_t<Own, fibrant::material::Elastic, fibrant::beam::Isotropic>>;
+    using Beam = fibrant::beam::With<fibrant::beam::DirectorBeam<>,
+                                     std::conditional_t<Own, fibrant::material::Elastic, fibrant::beam::Isotropic>>;
     using Proximity = fibrant::proximity::GridSearch;
     using Normal = fibrant::law::LimitedGap<fibrant::law::RegularisedPenalty>;
     using Friction = std::conditional_t<Own, fibrant::law::ShapedFriction, fibrant::law::RegularisedCoulomb>;

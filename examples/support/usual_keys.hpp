@@ -11,8 +11,8 @@
 
 namespace example {
 
-/// Whether strand, composite and knot have models of sections and friction that obey laws of their own beside the usual one, which
-/// takes twice as long to compile. What is left out is refused by its key.
+/// Whether strand, composite and knot have models of sections and friction that obey laws of their own beside the usual one,
+/// which takes twice as long to compile. What is left out is refused by its key.
 #ifdef FIBRANT_OWN_LAWS
 inline constexpr bool has_own_laws = true;
 #else
@@ -91,8 +91,9 @@ inline void check_friction_shape(const SceneReader& file, const fibrant::law::Fr
     const std::string own = "contact.friction";
     file.check(file.given(own, "line_load") == (shape.exponent < 1.0), own, "line_load",
                shape.exponent < 1.0 ? "given, for exponent below 1" : "left out, for exponent = 1");
-    file.check(file.given(own, "weakening_length") == (shape.static_over_kinetic > 1.0), own, "weakening_length",
-               shape.static_over_kinetic > 1.0 ? "given, for static_over_kinetic above 1" : "left out, for static_over_kinetic = 1");
+    file.check(
+        file.given(own, "weakening_length") == (shape.static_over_kinetic > 1.0), own, "weakening_length",
+        shape.static_over_kinetic > 1.0 ? "given, for static_over_kinetic above 1" : "left out, for static_over_kinetic = 1");
 }
 /// Displacement over the radius that friction takes before it slides.
 inline void read_reversible_displacement(SceneReader& file, double& over_radius) {

@@ -10,7 +10,6 @@
 #include "output.hpp"
 #include "scene_file.hpp"
 
-
 #include <cstdio>
 #include <stdexcept>
 
@@ -71,7 +70,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
         }
     }
     return scene.own_laws ? settle<example::LoadedFibres<true>>(scene, file, output)
-                            : settle<example::LoadedFibres<false>>(scene, file, output);
+                          : settle<example::LoadedFibres<false>>(scene, file, output);
 }
 
 }  // namespace

@@ -68,8 +68,8 @@ scene::Assembly bundle(const Asked& asked) {
     return assembly;
 }
 
-/// A fibre along x on top of a pin along z (tool 0), in the plane of both. To amplitude 1 it is wound on by half a turn, stretched
-/// by `strain` from the start on; to 2 it is drawn on by `travel`.
+/// A fibre along x on top of a pin along z (tool 0), in the plane of both. To amplitude 1 it is wound on by half a turn,
+/// stretched by `strain` from the start on; to 2 it is drawn on by `travel`.
 scene::Assembly over_a_pin(const Asked& asked) {
     scene::Assembly assembly;
     const double half = 0.5 * asked.length, rho = asked.pin + asked.radius;
@@ -86,8 +86,7 @@ scene::Assembly over_a_pin(const Asked& asked) {
         scene::Hold end;
         end.at = side < 0.0 ? scene::first_end(0) : scene::last_end(0), end.channel = drive;
         end.path = [=](double amplitude) {
-            const double angle = 0.5 * pi * std::min(amplitude, 1.0),
-                         on = side * asked.travel * std::max(0.0, amplitude - 1.0),
+            const double angle = 0.5 * pi * std::min(amplitude, 1.0), on = side * asked.travel * std::max(0.0, amplitude - 1.0),
                          free = half * (1.0 + asked.strain * std::min(1.0, 20.0 * amplitude)) - rho * angle;
             return Vec3(side * (rho * std::sin(angle) + free * std::cos(angle) - half),
                         rho * std::cos(angle) - free * std::sin(angle) - rho - on, 0.0);
@@ -105,8 +104,8 @@ simulation::ModelParameters<Yarn> model_of(const Asked& asked) {
     simulation::ModelParameters<Yarn> model;
     model.beam.laws = {asked.strength};
     model.normal.regularisation_depth = 0.1 * asked.depth * asked.radius;
-    model.friction = {.friction_coefficient = 0.0, .reversible_displacement = asked.reversible * asked.radius,
-                      .shape = asked.friction};
+    model.friction = {
+        .friction_coefficient = 0.0, .reversible_displacement = asked.reversible * asked.radius, .shape = asked.friction};
     model.contact.stiffness.allowed_penetration = asked.depth * asked.radius;
     model.iteration.contact_tolerance = 0.1 * asked.reversible * asked.radius;
     model.iteration.margin = 2.0, model.iteration.largest_margin = 20.0;  // ends swing far
@@ -185,13 +184,12 @@ bool draw_over_pin(const Asked& asked, const example::SceneReader& file, example
     const simulation::Report report = simulator.run(loading, recorder);
     example::write_pictures(output, simulator.snapshot(), -90.0, 0.0);
     const simulation::Audit audit = example::audit(output, simulator, asked.radius);
-    const observe::JsonObject summary =
-        example::write_summary(output, report, audit, asked.radius,
-                               {{"ratio", ratio()},
-                                {"ratio_of_closed_form", closed()},
-                                {"dissipated", report.energy.dissipated},
-                                {"external_work", report.energy.external},
-                                {"energy_error", report.energy.error()}});
+    const observe::JsonObject summary = example::write_summary(output, report, audit, asked.radius,
+                                                               {{"ratio", ratio()},
+                                                                {"ratio_of_closed_form", closed()},
+                                                                {"dissipated", report.energy.dissipated},
+                                                                {"external_work", report.energy.external},
+                                                                {"energy_error", report.energy.error()}});
     example::write_report(output, "yarn", summary, simulator.snapshot());
     return report.converged && audit.clean();
 }

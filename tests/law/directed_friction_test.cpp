@@ -238,7 +238,8 @@ TEST_CASE("a stuck pair resists without much load, a way slid weakens it, and a 
     CHECK(far(wet, 2.0, 0.25) == test::near(0.6 + 4.0 * 0.25 / 0.5));
 }
 
-TEST_CASE("friction by a coefficient and a shape is each of the laws that have one of its parts, and none at a coefficient of 0") {
+TEST_CASE(
+    "friction by a coefficient and a shape is each of the laws that have one of its parts, and none at a coefficient of 0") {
     const double mu = 0.2, n = 0.8, q = 30.0, a = mu * std::pow(q, 1.0 - n), u = 1e-3;
     const auto shaped = [&](const law::FrictionShape& shape, double coefficient) {
         return law::ShapedFriction(law::friction_parameters<law::ShapedFriction>(coefficient, u, shape));

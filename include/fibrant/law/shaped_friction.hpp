@@ -41,7 +41,7 @@ public:
     struct Parameters {
         double friction_coefficient = core::unset;     ///< mu along fibres, kinetic [1], >= 0
         double reversible_displacement = core::unset;  ///< u_max [length], > 0
-        FrictionShape shape{};
+        FrictionShape shape{};                         ///< what friction is over that of Coulomb
         void validate() const {
             core::require_not_negative("ShapedFriction.friction_coefficient", friction_coefficient);
             core::require_positive("ShapedFriction.reversible_displacement", reversible_displacement);
@@ -71,10 +71,9 @@ public:
             load *= bounded ? shape.largest_coefficient / along : share;
         }
         const double across = shape.across * along;
-        const Mat3 metric = shape.across == 1.0
-                                ? detail::circle(along, touch.normal)
-                                : Mat3(0.5 * (detail::ellipse(along, across, touch.along_i, touch.normal) +
-                                              detail::ellipse(along, across, touch.along_j, touch.normal)));
+        const Mat3 metric = shape.across == 1.0 ? detail::circle(along, touch.normal)
+                                                : Mat3(0.5 * (detail::ellipse(along, across, touch.along_i, touch.normal) +
+                                                              detail::ellipse(along, across, touch.along_j, touch.normal)));
         detail::slide(load, metric, along * p_.reversible_displacement, touch.slip, accepted, answer);
         answer.by_reaction = power * answer.force;
         answer.history.numbers[0] += answer.dissipated / (along * load);

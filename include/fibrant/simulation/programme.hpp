@@ -35,7 +35,7 @@ struct LoadProgramme {
     double calm = std::numeric_limits<double>::infinity();  ///< greatest displacement of an increment after which damping falls
                                                             ///< [length], > 0
     double reversible_displacement = core::unset;           ///< of friction [length], > 0 where a stage changes it
-    law::FrictionShape friction_shape{};  ///< what it is over Coulomb's, of a model whose law has a shape
+    law::FrictionShape friction_shape{};                    ///< what it is over Coulomb's, of a model whose law has a shape
     double largest_displacement = std::numeric_limits<double>::infinity();  ///< of an increment [length], > 0
     Index halvings = 0;                                                     ///< of all increments of ramps, >= 0
 
