@@ -53,7 +53,7 @@ scene::Assembly bundle(const Asked& asked) {
     scene::Assembly assembly;
     const auto row = static_cast<Index>(std::ceil(std::sqrt(static_cast<double>(asked.fibres))));
     for (Index f = 0; f < asked.fibres; ++f) {
-        const Vec3 at = 4.0 * asked.radius * Vec3(static_cast<double>(f % row), static_cast<double>(f / row), 0.0);
+        const Vec3 at = 10.0 * asked.radius * Vec3(static_cast<double>(f % row), static_cast<double>(f / row), 0.0);
         assembly.add({.from = at,
                       .to = at + asked.length * Vec3::UnitZ(),
                       .section = scene::circular(asked.radius),
