@@ -56,7 +56,7 @@ page() {
 
 failed=0
 seen=0
-for program in weave textile fabric_loading composite strand strand_bending two_ply knot tow fall mat dense_mat; do
+for program in weave textile fabric_loading composite strand strand_bending two_ply knot tow fall yarn mat dense_mat; do
   [ -x "$bin/$program" ] || continue
   seen=$((seen + 1))
   page "$program" > "$fresh"

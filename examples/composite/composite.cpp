@@ -5,11 +5,15 @@
 #include "output.hpp"
 #include "scene_file.hpp"
 
-#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/with_law.hpp>
 #include <fibrant/connection/bonded_solid.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>
+#include <fibrant/law/shaped_friction.hpp>
+#include <fibrant/material/elastic.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/solid_pcg.hpp>
+
+#include <type_traits>
 
 using namespace fibrant;
 namespace cloth = compositions::weave;
@@ -17,20 +21,24 @@ namespace parts = compositions::composite;
 
 namespace {
 
-struct Dry {
-    using Beam = beam::DirectorBeam<>;
+/// @tparam Own  sections and friction obey laws of their own; else sections are isotropic and friction is Coulomb's
+template <bool Own>
+struct DryOf {
+    using Beam = beam::With<beam::DirectorBeam<>, std::conditional_t<Own, material::Elastic, beam::Isotropic>>;
     using Proximity = proximity::GridSearch;
     using Normal = law::LimitedGap<law::RegularisedPenalty>;
-    using Friction = law::RegularisedCoulomb;
+    using Friction = std::conditional_t<Own, law::ShapedFriction, law::RegularisedCoulomb>;
     using Solver = solver::TwoLevelPcg;
 };
-struct Composite : Dry {
+template <bool Own>
+struct CompositeOf : DryOf<Own> {
     using Solid = connection::BondedSolid<solid::Hexahedron<solid::EnhancedStrains, solid::NeoHookean>, connection::NeverDebonds>;
     using Connections = connection::RigidBodies;
     using Solver = solver::SolidPcg;
 };
 
 /// Settles the fabric, or takes it from where an earlier run left it.
+template <simulation::Model Dry>
 void settle(simulation::Simulator<Dry>& dry, const composite::Scene& scene, const example::Output& output) {
     auto loading = cloth::settling<Dry>(scene.weave.fabric, scene.weave.settle);
     loading.checkpoint = scene.settled.empty() ? (output.folder / "settled.bin").string() : scene.settled;
@@ -41,10 +49,11 @@ void settle(simulation::Simulator<Dry>& dry, const composite::Scene& scene, cons
     if (!report.converged) throw std::runtime_error("the fabric did not settle: " + report.reason);
 }
 
-bool solve(example::SceneReader& file, example::Output& output) {
-    const composite::Scene scene = composite::read_scene(file);
+template <bool Own>
+bool run(const composite::Scene& scene, const example::SceneReader& file, example::Output& output) {
+    using Dry = DryOf<Own>;
+    using Composite = CompositeOf<Own>;
     const cloth::FabricParameters& fabric = scene.weave.fabric;
-    output.keep(file, "load", "settled", scene.settled);
     output.open(file);
     const scene::Assembly flat = cloth::flat_fabric(fabric, scene.weave.settle.tension_strain);
     auto dry_parameters = cloth::model_parameters<Dry>(fabric, scene.weave.settle);
@@ -56,7 +65,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const solid::Layers layers = parts::layers_of(dry.snapshot(), fabric, scene.matrix);
     const parts::Composite composite = parts::composite_of(fabric, dry.state(), flat, layers, scene.matrix, scene.load);
     auto parameters = cloth::model_parameters<Composite>(fabric, scene.weave.settle);
-    parameters.friction.friction_coefficient = scene.weave.settle.friction_coefficient;
+    parameters.friction = law::friction_parameters<typename Composite::Friction>(
+        scene.weave.settle.friction_coefficient, parameters.friction.reversible_displacement, scene.weave.settle.friction_shape);
     parameters.iteration = scene.weave.iteration, parameters.iteration.margin = 1.0,
     parameters.iteration.largest_margin = 8.0;  // edges swing far
     parameters.iteration.overshoot = scene.overshoot;
@@ -89,6 +99,14 @@ bool solve(example::SceneReader& file, example::Output& output) {
         composite::write_summary(output, simulator, report, audit, end, cloth::smallest_radius(fabric));
     example::write_report(output, "composite", summary, simulator.snapshot());
     return report.converged && audit.clean();
+}
+
+bool solve(example::SceneReader& file, example::Output& output) {
+    const composite::Scene scene = composite::read_scene(file);
+    output.keep(file, "load", "settled", scene.settled);
+    if constexpr (example::has_own_laws)
+        if (scene.weave.own_laws()) return run<true>(scene, file, output);
+    return run<false>(scene, file, output);
 }
 
 }  // namespace

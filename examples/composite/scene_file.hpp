@@ -96,7 +96,10 @@ inline Scene read_scene(example::SceneReader& file) {
                                     : LoadCase::twisting;
     const auto& fabric = scene.weave.fabric;
     for (const char* law : {"material.law", "warp.law", "weft.law"})
-        file.check(!scene.weave.transverse() || !file.given(law, "kind"), law, "kind", "isotropic in a composite");
+        file.check(example::has_own_laws || !scene.weave.transverse() || !file.given(law, "kind"), law, "kind",
+                   example::no_own_laws);
+    file.check(example::has_own_laws || scene.weave.settle.friction_shape.coulomb(), "contact.friction",
+               example::told_shape(file), example::no_own_laws);
     const double stiffest = std::min(fabric.warp.material.young_modulus, fabric.weft.material.young_modulus),
                  thickest = std::max(fabric.warp.fibre_radius, fabric.weft.fibre_radius);
     if (matrix.lower_fibres)

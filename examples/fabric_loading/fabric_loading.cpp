@@ -6,7 +6,6 @@
 #include "load_file.hpp"
 #include "output.hpp"
 
-#include <fibrant/material/elastic.hpp>
 #include <fibrant/simulation/refined_state.hpp>
 
 #include <optional>
@@ -92,8 +91,8 @@ bool run(const fabric_loading::LoadFile& load, example::SceneReader& file, examp
 
 bool solve(example::SceneReader& file, example::Output& output) {
     const fabric_loading::LoadFile load = fabric_loading::read_load_file(file, output.scene.parent_path());
-    return load.scene.transverse() ? run<example::LoadedFibres<material::Elastic>>(load, file, output)
-                                   : run<example::LoadedFibres<beam::Isotropic>>(load, file, output);
+    return load.scene.own_laws() ? run<example::LoadedFibres<true>>(load, file, output)
+                                 : run<example::LoadedFibres<false>>(load, file, output);
 }
 
 }  // namespace

@@ -157,6 +157,7 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     programme.largest_displacement = largest * r;
     programme.calm = calm * r;
     programme.reversible_displacement = fibrant::simulation::reversible_displacement(r, friction, allowed);
+    programme.friction_shape = load.scene.settle.friction_shape;
     // Of a length of fibre, however many nodes it has.
     programme.damping =
         cloth::node_stiffness(load.scene.fabric, load.scene.settle.tension_strain) / static_cast<double>(load.parts);

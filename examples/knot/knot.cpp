@@ -1,38 +1,59 @@
 // SPDX-License-Identifier: MIT
-// A knot is tied in a straight rod, comes to rest and is drawn tight; prints the pull beside that of loose knots.
+// A knot is tied in a straight rod, comes to rest and is drawn tight; prints the pull beside that of loose knots. A polymer's
+// relaxes while it is held: [material.law] kind = "viscoelastic".
 //   knot SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
 #include "../support/program.hpp"
 #include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
-#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/with_law.hpp>
 #include <fibrant/compositions/knot/overhand_knot.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/material/viscoelastic.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <type_traits>
 
 using namespace fibrant;
 namespace knot = compositions::knot;
 
 namespace {
 
-struct Knot {
-    using Beam = beam::DirectorBeam<>;
+/// @tparam Section  law of the rod
+template <class Section>
+struct KnotOf {
+    using Beam = beam::With<beam::DirectorBeam<>, Section>;
     using Proximity = proximity::GridSearch;
     using Normal = law::RegularisedPenalty;
     using Friction = law::RegularisedCoulomb;
     using Solver = solver::SparseCholesky;
 };
 
-bool solve(example::SceneReader& file, example::Output& output) {
+using Polymer = material::Viscoelastic<1>;
+
+/// What the scene file asks for.
+struct Asked {
     knot::KnotParameters parameters;
-    Index crossings = 3, increments = 20;
-    double drawn = 0.0, mu = 0.0;
+    Polymer::Parameters polymer;
+    Index increments = 20;
+    double drawn = 0.0, mu = 0.0, duration = 0.0, hold = 0.0;
+};
+
+template <class Section>
+bool tie(const Asked& asked, const example::SceneReader& file, example::Output& output);
+
+bool solve(example::SceneReader& file, example::Output& output) {
+    Asked asked;
+    knot::KnotParameters& parameters = asked.parameters;
+    Index crossings = 3, &increments = asked.increments;
+    double &drawn = asked.drawn, &mu = asked.mu;
+    std::string kind = "elastic";
     file.require("knot", "radius", parameters.radius, example::positive(), "length", "radius of the rod");
     file.require("knot", "loop_radius", parameters.loop_radius, example::positive(), "length",
                  "radius of the loop in which the knot is tied");
@@ -43,9 +64,18 @@ bool solve(example::SceneReader& file, example::Output& output) {
               "crossings of the knot: 3 overhand, 5 double overhand");
     file.read("knot", "elements", parameters.elements, example::between(16, 100000), "elements along the rod");
     example::read_material(file, "material", parameters.material);
+    file.read("material.law", "kind", kind, {"elastic", "viscoelastic"}, "how the rod behaves");
+    const bool shared = file.read("material.law", "share", asked.polymer.share[0], example::inside(0.0, 1.0), "1",
+                                  "part of the modulus that relaxes"),
+               timed = file.read("material.law", "time", asked.polymer.time[0], example::positive(), "time",
+                                 "time in which it falls by 1/e");
     example::read_friction(file, mu, "coefficient of friction of the rod on itself");
     file.read("loading", "draw", drawn, example::not_negative(), "length", "length by which one end is drawn out");
-    file.read("loading", "increments", increments, example::increments(), "increments of the drawing");
+    file.read("loading", "increments", increments, example::increments(), "increments of the drawing, and of the holding");
+    file.read("loading", "duration", asked.duration, example::not_negative(), "time",
+              "how long tying takes, and drawing likewise, for a rod that is viscoelastic");
+    file.read("loading", "hold", asked.hold, example::not_negative(), "time",
+              "how long the ends are held after that, for a rod that is viscoelastic");
     file.complete();
     file.check(parameters.loop_radius > 20.0 * parameters.radius, "knot", "loop_radius",
                "> 20 knot.radius = " + core::text(20.0 * parameters.radius));
@@ -62,10 +92,29 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.names({{"KnotParameters.", "knot."}, {"fibre.start: turn", "knot.elements is too small: turn"}});
     parameters.crossings = static_cast<int>(crossings);
     parameters.validate();
+    const bool flows = kind == "viscoelastic";
+    const std::string when = flows ? "given, for kind = \"viscoelastic\"" : "left out, for kind = \"elastic\"";
+    file.check(shared == flows, "material.law", "share", when);
+    file.check(timed == flows, "material.law", "time", when);
+    file.check((asked.duration > 0.0) == flows, "loading", "duration", flows ? "> 0, for kind = \"viscoelastic\"" : when);
+    file.check(flows || asked.hold == 0.0, "loading", "hold", when);
+    if constexpr (example::has_own_laws)
+        if (flows) return tie<Polymer>(asked, file, output);
+    file.check(!flows, "material.law", "kind", example::no_own_laws);
+    return tie<beam::Isotropic>(asked, file, output);
+}
+
+template <class Section>
+bool tie(const Asked& asked, const example::SceneReader& file, example::Output& output) {
+    using Knot = KnotOf<Section>;
+    const knot::KnotParameters& parameters = asked.parameters;
+    const Index increments = asked.increments;
+    const double drawn = asked.drawn, mu = asked.mu;
 
     const double radius = parameters.radius, R = parameters.loop_radius;
     const double bending = 0.25 * std::numbers::pi * parameters.material.young_modulus * std::pow(radius, 4);
     simulation::ModelParameters<Knot> model;
+    if constexpr (std::is_same_v<Section, Polymer>) model.beam.laws = {asked.polymer};
     model.normal = {.regularisation_depth = 1e-3 * radius};
     model.friction = {.friction_coefficient = mu, .reversible_displacement = 0.02 * radius};
     model.contact.stiffness.allowed_penetration = 1e-2 * radius;
@@ -99,6 +148,12 @@ bool solve(example::SceneReader& file, example::Output& output) {
         tighten.ramps = {{knot::draw, drawn}};
         tighten.friction.emplace(model.friction);
         tighten.damping = 0.1 * settle.damping;  // what slides along itself without friction has nothing else to hold it
+    }
+    for (auto& stage : loading.stages) stage.duration = asked.duration;
+    if (asked.hold > 0.0) {
+        simulation::Stage<Knot> hold;
+        hold.name = "hold", hold.increments = increments, hold.most_increments = 20 * increments, hold.duration = asked.hold;
+        loading.stages.push_back(hold);
     }
     output.tell(loading);
     const simulation::Report report = simulator.run(loading, recorder);

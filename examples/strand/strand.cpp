@@ -7,28 +7,36 @@
 #include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
 
-#include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/with_law.hpp>
 #include <fibrant/compositions/strand/rope.hpp>
 #include <fibrant/law/augmented.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/law/shaped_friction.hpp>
+#include <fibrant/material/elastic.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/float_block_cholesky.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 using namespace fibrant;
 namespace strand = compositions::strand;
 
 namespace {
 
-struct Strand {
-    using Beam = beam::DirectorBeam<>;
+/// @tparam Own  sections and friction obey laws of their own; else sections are isotropic and friction is Coulomb's
+template <bool Own>
+struct StrandOf {
+    using Beam = beam::With<beam::DirectorBeam<>, std::conditional_t<Own, material::Elastic, beam::Isotropic>>;
     using Proximity = proximity::GridSearch;
     using Normal = law::Augmented<law::RegularisedPenalty>;
-    using Friction = law::RegularisedCoulomb;
+    using Friction = std::conditional_t<Own, law::ShapedFriction, law::RegularisedCoulomb>;
     using Solver = solver::FloatBlockCholesky;
 };
 
@@ -38,16 +46,19 @@ struct Scene {
            allowed = 1e-3, depth = 0.1, tolerance = 1e-4, reversible = 0.01;
     Index elements = 40, increments = 4;
     scene::ElasticMaterial material;
+    law::FrictionShape friction;
+    bool own_laws() const { return material.transverse.given() || !friction.coulomb(); }
 };
 
-template <class Parameters>
-bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters& parameters, const example::SceneReader& file,
-          example::Output& output, std::vector<std::pair<std::string, double>> figures) {
+template <bool Own, class Parameters>
+bool draw_with(const Scene& given, const scene::Assembly& assembly, const Parameters& parameters,
+               const example::SceneReader& file, example::Output& output, std::vector<std::pair<std::string, double>> figures) {
+    using Strand = StrandOf<Own>;
     const double radius = given.radius;
     simulation::ModelParameters<Strand> model;
     model.normal = {.law = {.regularisation_depth = given.depth * given.allowed * radius},
                     .largest_penetration = given.sinking * radius};
-    model.friction = {.friction_coefficient = given.mu, .reversible_displacement = given.reversible * radius};
+    model.friction = law::friction_parameters<typename Strand::Friction>(given.mu, given.reversible * radius, given.friction);
     model.contact.stiffness.allowed_penetration = given.allowed * radius;
     model.contact.stiffness.initial_fraction = 0.2;
     model.iteration.step_tolerance = model.iteration.residual_tolerance = std::min(0.01 * given.tolerance, 1e-5);
@@ -84,8 +95,17 @@ bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters&
     return report.converged && audit.clean();
 }
 
+template <class Parameters>
+bool draw(const Scene& given, const scene::Assembly& assembly, const Parameters& parameters, const example::SceneReader& file,
+          example::Output& output, std::vector<std::pair<std::string, double>> figures) {
+    if constexpr (example::has_own_laws)
+        if (given.own_laws()) return draw_with<true>(given, assembly, parameters, file, output, std::move(figures));
+    return draw_with<false>(given, assembly, parameters, file, output, std::move(figures));
+}
+
 bool solve(example::SceneReader& file, example::Output& output) {
     Scene given;
+    std::string kind = "isotropic";
     Index wires = 7;
     double core_radius = 0.0, rope_lay = 0.0, apart = 0.0, overlap = 0.0;
     bool alternate = true;
@@ -102,7 +122,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("rope", "overlap_over_radius", overlap, example::between(0.0, 0.5), "1",
               "how deep wires may be in each other at the start, over the radius");
     example::read_material(file, "material", given.material);
+    example::read_transverse(file, "material", kind, given.material.transverse);
     example::read_friction(file, given.mu, "coefficient of friction of wires on each other");
+    example::read_friction_shape(file, given.friction);
     example::read_reversible_displacement(file, given.reversible);
     file.read("contact", "largest_penetration_over_radius", given.sinking, example::depth_over_radius(), "1",
               "penetration that multipliers leave, over the radius");
@@ -116,6 +138,11 @@ bool solve(example::SceneReader& file, example::Output& output) {
               "turn at the end; positive tightens a right-handed lay");
     file.read("loading", "increments", given.increments, example::increments(), "increments of the load");
     file.complete();
+    example::check_transverse(file, "material", kind);
+    example::check_friction_shape(file, given.friction);
+    file.check(example::has_own_laws || !given.material.transverse.given(), "material.law", "kind", example::no_own_laws);
+    file.check(example::has_own_laws || given.friction.coulomb(), "contact.friction", example::told_shape(file),
+               example::no_own_laws);
     const bool roped = rope_lay != 0.0;
     if (roped && wires != 7) file.refuse("strand", "wires", "7 in a rope");
     if (roped && core_radius > 0.0) file.refuse("strand", "core_radius", "left out in a rope, whose cores are found");

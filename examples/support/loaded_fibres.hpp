@@ -8,18 +8,23 @@
 #include <fibrant/law/limited_gap.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
+#include <fibrant/law/shaped_friction.hpp>
+#include <fibrant/material/elastic.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/any_solver.hpp>
 
+#include <type_traits>
+
 namespace example {
 
-/// @tparam Section  law of the sections of the fibres
-template <class Section>
+/// @tparam Own  sections and friction obey laws of their own; else sections are isotropic and friction is Coulomb's
+template <bool Own>
 struct LoadedFibres {
-    using Beam = fibrant::beam::With<fibrant::beam::DirectorBeam<>, Section>;
+    using Beam = fibrant::beam::With<fibrant::beam::DirectorBeam<>,
+                                     std::conditional_t<Own, fibrant::material::Elastic, fibrant::beam::Isotropic>>;
     using Proximity = fibrant::proximity::GridSearch;
     using Normal = fibrant::law::LimitedGap<fibrant::law::RegularisedPenalty>;
-    using Friction = fibrant::law::RegularisedCoulomb;
+    using Friction = std::conditional_t<Own, fibrant::law::ShapedFriction, fibrant::law::RegularisedCoulomb>;
     using Solver = fibrant::solver::AnySolver;
     using Tools = fibrant::contact::RigidTools;
     using Connections = fibrant::connection::RigidBodies;

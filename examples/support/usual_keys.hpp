@@ -4,11 +4,21 @@
 
 #include "scene_reader.hpp"
 
+#include <fibrant/law/shaped_friction.hpp>
 #include <fibrant/scene/elastic_material.hpp>
 
 #include <string>
 
 namespace example {
+
+/// Whether strand, composite and knot have models of sections and friction that obey laws of their own beside the usual one,
+/// which takes twice as long to compile. What is left out is refused by its key.
+#ifdef FIBRANT_OWN_LAWS
+inline constexpr bool has_own_laws = true;
+#else
+inline constexpr bool has_own_laws = false;
+#endif
+inline constexpr const char* no_own_laws = "that of a build with -DFIBRANT_OWN_LAWS=ON; without it this program has no such law";
 
 /// Young's modulus and Poisson's ratio; both must be given.
 inline void read_material(SceneReader& file, const std::string& section, fibrant::scene::ElasticMaterial& material) {
@@ -50,6 +60,40 @@ inline void read_own_transverse(SceneReader& file, const std::string& section, s
 /// Friction of fibres. @param which  and when, as a user is told
 inline void read_friction(SceneReader& file, double& coefficient, const char* which) {
     file.read("contact", "friction_coefficient", coefficient, friction(), "1", which);
+}
+/// What friction is over Coulomb's, [contact.friction]: by pressure, direction, adhesion and the way slid. @returns whether it is
+/// anything else
+inline bool read_friction_shape(SceneReader& file, fibrant::law::FrictionShape& shape) {
+    const std::string own = "contact.friction";
+    file.read(own, "across_over_along", shape.across, above(0.0, 1000.0), "1",
+              "coefficient of friction across the fibres over that along them");
+    file.read(own, "exponent", shape.exponent, above(0.0, 1.0), "1",
+              "n of T = a N^n: friction of a line of contact grows by that power of its load");
+    file.read(own, "line_load", shape.line_load, positive(), "force/length",
+              "load of a line of contact at which the coefficient is that given, for an exponent below 1");
+    file.read(own, "line_adhesion", shape.line_adhesion, not_negative(), "force/length",
+              "load that friction of a line of contact has beside its own: adhesion");
+    file.read(own, "crossing_adhesion", shape.crossing_adhesion, not_negative(), "force", "the same of a crossing");
+    file.read(own, "static_over_kinetic", shape.static_over_kinetic, between(1.0, 1000.0), "1",
+              "coefficient of what has not slid yet over that given, which is that of what has");
+    file.read(own, "weakening_length", shape.weakening_length, positive(), "length",
+              "way slid over which it falls by 1/e, for static_over_kinetic above 1");
+    return !shape.coulomb();
+}
+/// The first key of it that is given.
+inline const char* told_shape(const SceneReader& file) {
+    for (const char* key : {"across_over_along", "exponent", "line_adhesion", "crossing_adhesion"})
+        if (file.given("contact.friction", key)) return key;
+    return "static_over_kinetic";
+}
+/// To be checked once all keys are known.
+inline void check_friction_shape(const SceneReader& file, const fibrant::law::FrictionShape& shape) {
+    const std::string own = "contact.friction";
+    file.check(file.given(own, "line_load") == (shape.exponent < 1.0), own, "line_load",
+               shape.exponent < 1.0 ? "given, for exponent below 1" : "left out, for exponent = 1");
+    file.check(
+        file.given(own, "weakening_length") == (shape.static_over_kinetic > 1.0), own, "weakening_length",
+        shape.static_over_kinetic > 1.0 ? "given, for static_over_kinetic above 1" : "left out, for static_over_kinetic = 1");
 }
 /// Displacement over the radius that friction takes before it slides.
 inline void read_reversible_displacement(SceneReader& file, double& over_radius) {

@@ -33,6 +33,7 @@ inline fibrant::simulation::LoadProgramme programme_of(const Scene& scene, const
     programme.rest_penetration = 2.0 * allowed;
     programme.largest_displacement = r, programme.calm = 0.15 * r;  // a fabric's, by trial
     programme.reversible_displacement = simulation::reversible_displacement(r, scene.settle.friction_coefficient, allowed);
+    programme.friction_shape = scene.settle.friction_shape;
     simulation::ProgrammeStage grip, load;
     grip.name = "grip", grip.increments = 1, grip.rest = true, grip.damping = scene.load.rest_damping,
     grip.friction = scene.settle.friction_coefficient;

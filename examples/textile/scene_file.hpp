@@ -42,7 +42,7 @@ struct Scene {
     cloth::Textile textile;
     cloth::SettleParameters settle;
     cloth::Fineness fineness;
-    bool transverse = false;  ///< fibres are softer across than along
+    bool own_laws = false;  ///< fibres are softer across than along, or friction is not Coulomb's
     std::string linear_solver = "float_block_cholesky";
     Load load{};
     bool surfaces = false;                                    ///< of yarns are written
@@ -365,7 +365,7 @@ inline Scene read_scene(SceneReader& file) {
     example::read_material(file, "yarn", yarn.material);
     std::string law = "isotropic";
     example::read_transverse(file, "yarn", law, yarn.material.transverse);
-    scene.transverse = yarn.material.transverse.given();
+    scene.own_laws = yarn.material.transverse.given();
     cloth::YarnType binder = yarn;
     const bool bound = file.describes() || file.given("binder", "radius") || file.given("binder", "fibres");
     if (bound) {
@@ -383,6 +383,7 @@ inline Scene read_scene(SceneReader& file) {
         "fibres are straight when nothing acts on them; false: they are at rest as drawn. Left out: as the generator has it");
     cloth::SettleParameters& settle = scene.settle;
     example::read_friction(file, settle.friction_coefficient, "coefficient of friction, once yarns have parted");
+    if (example::read_friction_shape(file, settle.friction_shape)) scene.own_laws = true;
     example::read_allowed_penetration(file, settle.allowed_penetration_over_radius,
                                       "how deep a contact may be at the end, over the radius");
     file.read("settle", "gap_limit_over_radius", settle.gap_limit_over_radius, example::above(0.0, 1.0), "1",
@@ -421,6 +422,7 @@ inline Scene read_scene(SceneReader& file) {
     scene.textile = detail::generate(file, scene.generator, yarn, binder, scene.file_curves);
     if (file.describes()) file.complete();
     example::check_transverse(file, "yarn", law);
+    example::check_friction_shape(file, settle.friction_shape);
     file.check(ends != "pulled" || tension > 0.0, "ends", "tension_strain", "> 0, where ends are pulled");
     for (cloth::Path& path : scene.textile.paths) {
         path.ends = ends == "held" ? cloth::Ends::held : ends == "pulled" ? cloth::Ends::pulled : cloth::Ends::free;

@@ -10,8 +10,6 @@
 #include "output.hpp"
 #include "scene_file.hpp"
 
-#include <fibrant/material/elastic.hpp>
-
 #include <cstdio>
 #include <stdexcept>
 
@@ -71,8 +69,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
             std::fprintf(stderr, "textile: note: %s; nothing but held ends and friction keeps it\n", loose.what());
         }
     }
-    return scene.transverse ? settle<example::LoadedFibres<material::Elastic>>(scene, file, output)
-                            : settle<example::LoadedFibres<beam::Isotropic>>(scene, file, output);
+    return scene.own_laws ? settle<example::LoadedFibres<true>>(scene, file, output)
+                          : settle<example::LoadedFibres<false>>(scene, file, output);
 }
 
 }  // namespace

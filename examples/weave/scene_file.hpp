@@ -30,6 +30,8 @@ struct Scene {
     cloth::SettleParameters settle;
     /// Fibres of one of the tows are softer across than along.
     bool transverse() const { return fabric.warp.material.transverse.given() || fabric.weft.material.transverse.given(); }
+    /// Fibres are softer across than along, or friction is not Coulomb's.
+    bool own_laws() const { return transverse() || !settle.friction_shape.coulomb(); }
     fibrant::solver::IterationParameters iteration;
     std::string linear_solver = "two_level_pcg";  ///< one of solver::AnySolver
     Index threads = 0;                            ///< 0: as many as the machine has
@@ -200,6 +202,7 @@ Scene read_fabric(SceneReader& file, const More& more) {
     file.read("settle", "overshoot", scene.iteration.overshoot, {.low = 0.0, .high = 1e6, .above = true, .endless = true}, "1",
               "Newton's step is cut where the energy rises at its end by more than this part of the slope at which it fell");
     example::read_friction(file, settle.friction_coefficient, "coefficient of friction, once tows have parted; 0: none");
+    example::read_friction_shape(file, settle.friction_shape);
     example::read_allowed_penetration(file, settle.allowed_penetration_over_radius,
                                       "how deep a contact may be at the end, over the radius");
     read_iteration(file, scene.linear_solver, scene.iteration);
@@ -213,6 +216,7 @@ Scene read_fabric(SceneReader& file, const More& more) {
     file.complete();
 
     example::check_transverse(file, "material", law);
+    example::check_friction_shape(file, settle.friction_shape);
     example::check_transverse(file, "warp", file.given("warp.law", "kind") ? warp_law : "isotropic");
     example::check_transverse(file, "weft", file.given("weft.law", "kind") ? weft_law : "isotropic");
     fabric.pattern = file.is_list("fabric", "pattern") ? cloth::Pattern::from_rows(rows) : cloth::Pattern::named(name);

@@ -98,11 +98,7 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
 
 bool solve(example::SceneReader& file, example::Output& output) {
     const weave::Scene scene = weave::read_fabric(file, [] {});
-    if (scene.transverse()) {
-        file.check(scene.settle.friction_coefficient > 0.0, "contact", "friction_coefficient",
-                   "> 0, for kind = \"transversely_isotropic\"");
-        return settle<Weave<law::RegularisedCoulomb, material::Elastic>>(scene, file, output);
-    }
+    if (scene.own_laws()) return settle<Weave<law::ShapedFriction, material::Elastic>>(scene, file, output);
     return scene.settle.friction_coefficient > 0.0 ? settle<Weave<law::RegularisedCoulomb>>(scene, file, output)
                                                    : settle<Weave<law::Frictionless>>(scene, file, output);
 }

@@ -7,9 +7,10 @@
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
 #include <fibrant/beam/with_law.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/fibrant.hpp>
 #include <fibrant/inertia.hpp>
-#include <fibrant/law/physical_normal.hpp>
+#include <fibrant/law/impact.hpp>
 #include <fibrant/load/gravity.hpp>
 #include <fibrant/material/damped.hpp>
 
@@ -19,6 +20,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -36,10 +38,12 @@ struct Falling {
     using Solver = solver::SparseCholesky;
     using Acts = term::List<inertia::Inertia<>, load::Gravity>;
 };
-/// Rods that damp their strains, and a contact whose stiffness is a property.
+/// Rods that damp their strains, and a contact whose stiffness is a property, on a floor too.
 struct Hitting : Falling {
     using Beam = beam::With<beam::RigidSectionRod, material::Damped<material::Elastic>>;
-    using Normal = law::PowerNormal;
+    using Normal = law::Impact<law::PowerNormal>;
+    using Friction = law::RegularisedCoulomb;
+    using Tools = contact::RigidTools;
 };
 struct Still : Falling {
     using Acts = term::List<load::Gravity>;
@@ -57,14 +61,14 @@ scene::FibreSpecification along_x(double length, double radius, double young, In
 template <class M>
 simulation::ModelParameters<M> parameters(double radius, double density, const Vec3& acceleration = Vec3::Zero()) {
     simulation::ModelParameters<M> all;
-    if constexpr (std::is_same_v<M, Falling>)
+    if constexpr (!std::is_same_v<M, Hitting>)
         all.normal.regularisation_depth = 1e-3 * radius;
     else
-        all.normal = {.line_stiffness = 1.0, .line_exponent = 1.0, .crossing_stiffness = 1.0, .crossing_exponent = 1.0},
-        all.beam.laws.emplace_back();
+        all.normal.law = {.line_stiffness = 1.0, .line_exponent = 1.0, .crossing_stiffness = 1.0, .crossing_exponent = 1.0},
+        all.friction = {.friction_coefficient = 0.0, .reversible_displacement = 1e-3 * radius}, all.beam.laws.emplace_back();
     all.contact.stiffness.allowed_penetration = 1e-2 * radius;
     all.iteration.step_tolerance = 1e-9, all.iteration.residual_tolerance = 1e-9;
-    all.acts.inertia.density = density;
+    if constexpr (simulation::MovesInTime<M>) all.acts.inertia.density = density;
     all.acts.gravity.weight = density * acceleration;
     return all;
 }
@@ -120,26 +124,41 @@ TEST_CASE("inertia keeps the contract of a term, on all beams") {
     check(std::type_identity<beam::RigidSectionRod>{});
 }
 
+/// Mass matrix at rest.
+template <class B>
+Matrix mass_of(const scene::Assembly& assembly, double density) {
+    test::TermScene<B, inertia::Inertia<>> scene(assembly, {.density = density});
+    return 0.5 * 0.1 * 0.1 * scene.stiffness(scene.mesh.rest_state());  // the first step has c^2 = dt^2/2
+}
+/// Stiffness of a fibre alone in a state.
+template <class B>
+Matrix stiffness_of(const beam::Mesh<B>& mesh, const Vector& state) {
+    Matrix stiffness = Matrix::Zero(state.size(), state.size());
+    constexpr Index size = B::nodes * B::dofs_per_node;
+    for (Index e = 0; e < mesh.fibre(0).elements; ++e) {
+        const Index first = mesh.first_unknown(0, e);
+        stiffness.template block<size, size>(first, first) += B().tangent_stiffness(mesh.rest(0, e), mesh.element(state, 0, e));
+    }
+    return stiffness;
+}
+/// Squares of angular frequencies, rising. @param held  unknowns at the start that do not move
+Vector modes(const Matrix& stiffness, const Matrix& mass, Index held) {
+    const Index free = mass.rows() - held;
+    return Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(stiffness.bottomRightCorner(free, free),
+                                                            mass.bottomRightCorner(free, free), Eigen::EigenvaluesOnly)
+        .eigenvalues();
+}
+
 /// Bending frequencies of a cantilever over sqrt(EI/(rho A L^4)): the two lowest pairs.
 template <class B>
 std::array<double, 2> frequencies(double slenderness, Index elements) {
     const double r = 1.0, L = slenderness * r, E = 1.0, density = 1.0;
     scene::Assembly assembly;
     assembly.add(along_x(L, r, E, elements));
-    test::TermScene<B, inertia::Inertia<>> scene(assembly, {.density = density});
-    // The first step has c^2 = dt^2/2.
-    const Vector rest = scene.mesh.rest_state();
-    Matrix mass = 0.5 * 0.1 * 0.1 * scene.stiffness(rest), stiffness = Matrix::Zero(rest.size(), rest.size());
-    constexpr Index size = B::nodes * B::dofs_per_node;
-    for (Index e = 0; e < elements; ++e) {
-        const Index first = scene.mesh.first_unknown(0, e);
-        stiffness.block<size, size>(first, first) += B().tangent_stiffness(scene.mesh.rest(0, e), scene.mesh.element(rest, 0, e));
-    }
-    const Index free = rest.size() - B::dofs_per_node;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes(stiffness.bottomRightCorner(free, free),
-                                                                 mass.bottomRightCorner(free, free));
+    const beam::Mesh<B> mesh(assembly, B());
+    const Vector squares = modes(stiffness_of(mesh, mesh.rest_state()), mass_of<B>(assembly, density), B::dofs_per_node);
     const double unit = std::sqrt(E * 0.25 * r * r / density) / (L * L);
-    return {std::sqrt(modes.eigenvalues()[0]) / unit, std::sqrt(modes.eigenvalues()[2]) / unit};
+    return {std::sqrt(squares[0]) / unit, std::sqrt(squares[2]) / unit};
 }
 
 TEST_CASE("a cantilever rings at the frequencies of Timoshenko's beam with rotary inertia, and of Euler's") {
@@ -157,6 +176,39 @@ TEST_CASE("a cantilever rings at the frequencies of Timoshenko's beam with rotar
     CHECK(rod[1] == test::near(21.275059, 1e-2));
     CHECK(cable[0] == test::near(3.516015, 1e-5));  // Euler and Bernoulli, no rotary inertia
     CHECK(cable[1] == test::near(22.034492, 1e-4));
+}
+
+TEST_CASE("a fibre that is held at one end twists as a shaft does, and one that hangs swings as a chain does") {
+    using B = beam::DirectorBeam<3>;
+    const double L = 20.0;
+    for (const auto& [elements, over] : {std::pair{Index{4}, 1.000016}, std::pair{Index{8}, 1.000001}}) {
+        scene::Assembly assembly;
+        assembly.add(along_x(L, 1.0, 1.0, elements));
+        const beam::Mesh<B> mesh(assembly, B());
+        const Vector squares = modes(stiffness_of(mesh, mesh.rest_state()), mass_of<B>(assembly, 1.0), B::dofs_per_node);
+        const double shaft = 0.5 * pi / L * std::sqrt(1.0 / 2.6);  // (pi/2 L) sqrt(G/rho)
+        double nearest = 0.0;
+        for (Index k = 0; k < squares.size(); ++k)
+            if (std::abs(std::sqrt(squares[k]) - shaft) < std::abs(nearest - shaft)) nearest = std::sqrt(squares[k]);
+        std::printf("shaft, %td elements: %.7f of the closed form\n", elements, nearest / shaft);
+        CHECK(nearest / shaft == test::near(over, 1e-6));
+    }
+    // Zeros of J_0 over 2: 1.202413, 2.760039, less what its own stretch of 5e-4 makes it slower.
+    const double hangs = 1.0, r = 1e-4, load = 1e-3;  // rho g L/E
+    scene::Assembly assembly;
+    auto chain = along_x(hangs, r, 1.0, 12);
+    assembly.add(chain);
+    assembly.hold_position(scene::first_end(0));
+    auto with = parameters<Still>(r, load, Vec3(1, 0, 0));
+    simulation::Simulator<Still> simulator(assembly, with);
+    simulation::Loading<Still> loading;
+    loading.stages.push_back({.name = "hang", .increments = 2, .ramps = {{.channel = "gravity"}}});
+    const simulation::Report report = simulator.run(loading);
+    REQUIRE_MESSAGE(report.converged, report.reason);
+    const Vector squares = modes(stiffness_of(simulator.mesh(), simulator.state()), mass_of<B>(assembly, load), 3);
+    std::printf("chain: %.6f %.6f\n", std::sqrt(squares[1]), std::sqrt(squares[3]));
+    CHECK(std::sqrt(squares[1]) == test::near(1.202413, 5e-4));
+    CHECK(std::sqrt(squares[3]) == test::near(2.760039, 5e-4));
 }
 
 TEST_CASE("a thrown fibre falls as a body does, and keeps its momenta and, to the second order of the step, its energy") {
@@ -182,7 +234,7 @@ TEST_CASE("a thrown fibre falls as a body does, and keeps its momenta and, to th
         turned[fine] = std::abs(own / (spin.y() * mass * (L * L / 12.0 + r * r / 4.0)) - 1.0);
         const simulation::EnergyBalance& energy = fall.report.energy;
         lost[fine] = std::abs(energy.numerical) / energy.kinetic;
-        CHECK(std::abs(energy.error()) < 1e-12 * energy.kinetic);
+        CHECK(energy.error() == energy.numerical);
         std::printf("thrown: spin off by %.1e, lost %.1e of the kinetic energy\n", turned[fine],
                     energy.numerical / energy.kinetic);
     }
@@ -192,13 +244,19 @@ TEST_CASE("a thrown fibre falls as a body does, and keeps its momenta and, to th
     CHECK(turned[1] < 0.3 * turned[0]);
 }
 
-TEST_CASE("a pendulum of 90 degrees swings with the period of the closed form, in steps that follow its error") {
-    // Thin rod on a pivot: 1.180341 times 2 pi sqrt(2 L/3 g) sqrt(1 + 3 r^2/4 L^2).
-    const double L = 1.0, r = 0.01, g = 9.81,
-                 quarter = 0.25 * 1.180341 * 2.0 * pi * std::sqrt(2.0 * L / (3.0 * g) * (1.0 + 0.75 * r * r / (L * L)));
-    for (const bool controlled : {false, true}) {
+TEST_CASE("a pendulum swings with the period of the closed form, in steps that follow its error") {
+    // Thin rod on a pivot: so much of 2 pi sqrt(2 L/3 g) sqrt(1 + 3 r^2/4 L^2), from an amplitude [degree] (complete elliptic
+    // integral).
+    const double L = 1.0, r = 0.01, g = 9.81;
+    for (const auto& [amplitude, share, controlled] :
+         {std::tuple{10.0, 1.001907, false}, std::tuple{45.0, 1.039973, false}, std::tuple{90.0, 1.180341, false},
+          std::tuple{90.0, 1.180341, true}, std::tuple{120.0, 1.372881, false}}) {
+        const double quarter = 0.25 * share * 2.0 * pi * std::sqrt(2.0 * L / (3.0 * g) * (1.0 + 0.75 * r * r / (L * L))),
+                     angle = amplitude * pi / 180.0;
         scene::Assembly assembly;
-        assembly.add(along_x(L, r, 1e8, 4));
+        auto rod = along_x(L, r, 1e8, 4);
+        rod.to = L * Vec3(std::sin(angle), 0, -std::cos(angle)), rod.director = Vec3::UnitY();
+        assembly.add(rod);
         assembly.hold_position(scene::first_end(0));
         auto with = parameters<Hitting>(r, 1.0, {0, 0, -g});
         if (controlled) with.acts.inertia.allowed_error = 2e-6 * L;
@@ -210,13 +268,48 @@ TEST_CASE("a pendulum of 90 degrees swings with the period of the closed form, i
             if (swing.tips[k].x() <= 0.0)
                 passed = T * (swing.lasted[k - 1] + (swing.lasted[k] - swing.lasted[k - 1]) * swing.tips[k - 1].x() /
                                                         (swing.tips[k - 1].x() - swing.tips[k].x()));
-        std::printf("pendulum: quarter period %.6f of %.6f, %zu steps, %td refused; numerical %.1e of the work\n", passed,
-                    quarter, swing.tips.size(), swing.report.rejected_increments,
+        std::printf("pendulum from %g degrees: quarter period %.6f of %.6f, %zu steps, %td refused; numerical %.1e of the work\n",
+                    amplitude, passed, quarter, swing.tips.size(), swing.report.rejected_increments,
                     swing.report.energy.numerical / swing.report.energy.external);
         CHECK(passed == test::near(quarter, 5e-4));
-        CHECK(std::abs(swing.report.energy.numerical) < 1e-3 * swing.report.energy.external);
+        CHECK(std::abs(swing.report.energy.error()) < 1e-3 * swing.report.energy.external);
         CHECK((swing.report.rejected_increments > 0) == controlled);
     }
+}
+
+TEST_CASE("a rod slides down an incline as a block does, and one that spins is longer by its own pull") {
+    const double L = 1.0, r = 0.02, density = 1.0, g = 9.81, mu = 0.3, slope = 30.0 * pi / 180.0, T = 0.3,
+                 mass = density * pi * r * r * L, K = 50.0;
+    scene::Assembly assembly;
+    auto rod = along_x(L, r, 1e5, 4);
+    rod.from.z() = rod.to.z() = r - mass * g * std::cos(slope) / (K * L);  // as deep as it lies
+    assembly.add(rod);
+    assembly.add(scene::Tool{});
+    auto with = parameters<Hitting>(r, density, g * Vec3(std::sin(slope), 0, -std::cos(slope)));
+    with.normal.law.line_stiffness = K, with.normal.law.crossing_stiffness = K * L;
+    with.friction = {.friction_coefficient = mu, .reversible_displacement = 1e-6};
+    Moved<Hitting> slide(assembly, with);
+    slide.run(T, 60);
+    const double way = 0.5 * g * (std::sin(slope) - mu * std::cos(slope)) * T * T, here = slide.tips.back().x() - L;
+    const simulation::EnergyBalance& energy = slide.report.energy;
+    std::printf("incline: slides %.6f of %.6f; dissipated %.5f, error %.1e of the work\n", here, way, energy.dissipated,
+                energy.error() / energy.external);
+    CHECK(here == test::near(way, 1e-4));
+    CHECK(energy.dissipated == test::near(mu * mass * g * std::cos(slope) * way, 2e-3));
+    CHECK(std::abs(energy.error()) < 1e-3 * energy.external);
+
+    // Each half is longer by tan(y)/y - 1, y = w L/2c.
+    const double spin = 0.1, beta = 1.0 / pi;  // c = 1; half of what is critical for the gravest wave
+    scene::Assembly one;
+    one.add(along_x(L, r, density, 8));
+    auto spun = parameters<Hitting>(r, density);
+    spun.beam.laws = {{.stretch = beta, .bending = beta, .turning = beta}};
+    spun.acts.inertia.starts = {{.spin = {0, 0, spin}, .centre = {0.5 * L, 0, 0}}};
+    Moved<Hitting> whirl(one, spun);
+    whirl.run(12.0, 120);
+    const double y = 0.5 * spin * L, longer = (whirl.tips.back() - whirl.simulator.value(scene::first_end(0))).norm() / L - 1.0;
+    std::printf("spinning: longer by %.6e of %.6e\n", longer, std::tan(y) / y - 1.0);
+    CHECK(longer == test::near(std::tan(y) / y - 1.0, 1e-2));  // rods of constant strain, and the spin slows by twice that
 }
 
 TEST_CASE("two rods that meet exchange their velocities in the time of the closed form, and nothing damps a turn") {
@@ -228,7 +321,7 @@ TEST_CASE("two rods that meet exchange their velocities in the time of the close
         assembly.add(rod);
     }
     auto with = parameters<Hitting>(r, density);
-    with.normal.line_stiffness = K;
+    with.normal.law.line_stiffness = K;
     with.beam.laws = {{.stretch = 1.0, .bending = 1.0, .turning = 1.0}};
     const double lasts = pi * std::sqrt(mass / (2.0 * K * L)), T = 0.002 / v + 2.0 * lasts;
     with.acts.inertia.starts = {{.fibre = 0, .velocity = {0, v, 0}}};
@@ -241,10 +334,10 @@ TEST_CASE("two rods that meet exchange their velocities in the time of the close
                second = (hit.others.back() - hit.others[hit.others.size() - 2]) * static_cast<double>(steps) / T;
     std::printf("impact: lasts %.5f of %.5f, velocities %.4f and %.4f of %.1f\n", touching, lasts, first.y(), second.y(), v);
     CHECK(touching == test::near(lasts, 0.03));
-    CHECK(second.y() == test::near(v, 0.03));  // contact is of first order: 40 steps in it keep 0.96 of the approach
-    CHECK(std::abs(first.y()) < 0.03 * v);
+    CHECK(second.y() == test::near(v, 1e-3));  // of second order in the 40 steps
+    CHECK(std::abs(first.y()) < 1e-3 * v);
     CHECK((hit.motion().momentum - mass * Vec3(0, v, 0)).norm() < 1e-8 * mass * v);
-    CHECK(hit.report.energy.numerical >= 0.0);
+    CHECK(std::abs(hit.report.energy.error()) < 1e-3 * hit.report.energy.kinetic);
     CHECK(hit.report.energy.lost < 1e-6 * hit.report.energy.kinetic);
 
     // A damped rod that turns: strains do not change, but for what it is stretched by at first.
@@ -278,7 +371,7 @@ TEST_CASE("a cantilever that is let go under its weight comes to rest at its def
                 sag, energy.kinetic / energy.external, energy.numerical / energy.external, energy.lost / energy.external);
     CHECK(-sink.tips.back().z() == test::near(sag, 5e-3));  // 12 elements of constant strain
     CHECK(energy.kinetic < 1e-6 * energy.external);
-    CHECK(std::abs(energy.numerical) < 3e-3 * energy.external);
+    CHECK(std::abs(energy.error()) < 2e-3 * energy.external);
     // A weight that acts at once does twice the work that is stored in the end.
     CHECK(energy.lost + energy.numerical == test::near(0.5 * energy.external, 1e-2));
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fibrant/law/directed_friction.hpp>
 #include <fibrant/law/physical_normal.hpp>
+#include <fibrant/law/shaped_friction.hpp>
 #include <near.hpp>
 
 #include <refusal.hpp>
@@ -11,6 +12,8 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <string>
+#include <type_traits>
 
 using namespace fibrant;
 
@@ -48,6 +51,18 @@ SlipWeakeningFriction sample<SlipWeakeningFriction>() {
         {.static_coefficient = 0.5, .kinetic_coefficient = 0.2, .weakening_length = 0.01, .reversible_displacement = 1e-3});
 }
 template <>
+law::ShapedFriction sample<law::ShapedFriction>() {
+    return law::ShapedFriction({.friction_coefficient = 0.2,
+                                .reversible_displacement = 1e-3,
+                                .shape = {.across = 2.0,
+                                          .exponent = 0.8,
+                                          .line_load = 30.0,
+                                          .line_adhesion = 5.0,
+                                          .crossing_adhesion = 0.7,
+                                          .static_over_kinetic = 2.5,
+                                          .weakening_length = 0.01}});
+}
+template <>
 Lubricated sample<Lubricated>() {
     Lubricated law(
         {.law = {.friction_coefficient = 0.3, .line_adhesion = 5.0, .crossing_adhesion = 0.7, .reversible_displacement = 1e-3},
@@ -58,7 +73,7 @@ Lubricated sample<Lubricated>() {
 }
 
 TEST_CASE_TEMPLATE("a law that sees has its derivatives, a potential, no direction of its own, and no element's size", L,
-                   DirectedFriction, AdhesiveFriction, SlipWeakeningFriction, Lubricated) {
+                   DirectedFriction, AdhesiveFriction, SlipWeakeningFriction, law::ShapedFriction, Lubricated) {
     const L law = sample<L>();
     std::mt19937_64 generator(5);
     std::normal_distribution<double> normal;
@@ -221,6 +236,49 @@ TEST_CASE("a stuck pair resists without much load, a way slid weakens it, and a 
          .crossing_viscosity = 0.0});
     wet.last(0.5);
     CHECK(far(wet, 2.0, 0.25) == test::near(0.6 + 4.0 * 0.25 / 0.5));
+}
+
+TEST_CASE(
+    "friction by a coefficient and a shape is each of the laws that have one of its parts, and none at a coefficient of 0") {
+    const double mu = 0.2, n = 0.8, q = 30.0, a = mu * std::pow(q, 1.0 - n), u = 1e-3;
+    const auto shaped = [&](const law::FrictionShape& shape, double coefficient) {
+        return law::ShapedFriction(law::friction_parameters<law::ShapedFriction>(coefficient, u, shape));
+    };
+    const auto same = [](const auto& one, const auto& other, double way) {
+        for (const double length : {0.0, 0.02}) {
+            Touch touch{Vec3(2e-3, 1e-3, 0), Vec3::UnitX(), Vec3(0.6, 0.8, 0), Vec3::UnitZ(), 1.7, length};
+            typename std::decay_t<decltype(one)>::History mine;
+            typename std::decay_t<decltype(other)>::History theirs;
+            mine.numbers[0] = way;
+            if constexpr (requires { theirs.numbers; }) theirs.numbers[0] = way;
+            const auto here = one.response(touch, mine);
+            const auto there = other.response(touch, theirs);
+            CHECK((here.force - there.force).norm() < 1e-13 * there.force.norm());
+            CHECK((here.by_reaction - there.by_reaction).norm() < 1e-13 * there.by_reaction.norm());
+            CHECK(here.dissipated == test::near(there.dissipated, 1e-13));
+        }
+    };
+    same(shaped({.across = 2.0, .exponent = n, .line_load = q}, mu),
+         DirectedFriction({.along = a,
+                           .across = 2.0 * a,
+                           .exponent = n,
+                           .crossing_along = mu,
+                           .crossing_across = 2.0 * mu,
+                           .reversible_displacement = u}),
+         0.0);
+    same(shaped({.line_adhesion = 5.0, .crossing_adhesion = 0.7}, mu),
+         AdhesiveFriction(
+             {.friction_coefficient = mu, .line_adhesion = 5.0, .crossing_adhesion = 0.7, .reversible_displacement = u}),
+         0.0);
+    same(shaped({.static_over_kinetic = 2.5, .weakening_length = 0.01}, mu),
+         SlipWeakeningFriction(
+             {.static_coefficient = 0.5, .kinetic_coefficient = mu, .weakening_length = 0.01, .reversible_displacement = u}),
+         0.004);
+    const Touch touch{Vec3(2e-3, 1e-3, 0), Vec3::UnitX(), Vec3::UnitX(), Vec3::UnitZ(), 1.7, 0.02};
+    CHECK(shaped({.line_adhesion = 5.0}, 0.0).response(touch, {}).force.isZero(0.0));
+    CHECK(test::refusal([&] { shaped({.exponent = 0.5}, mu); }).find("FrictionShape.line_load = nan") != std::string::npos);
+    CHECK(test::refusal([&] { shaped({.static_over_kinetic = 0.9}, mu); }).find("FrictionShape.static_over_kinetic = 0.9") !=
+          std::string::npos);
 }
 
 TEST_CASE("physical normal laws push, by an energy, alike however a line is cut, and as Hertz says") {

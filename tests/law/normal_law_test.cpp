@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <fibrant/inertia/time_integrator.hpp>
 #include <fibrant/law/augmented.hpp>
+#include <fibrant/law/impact.hpp>
 #include <fibrant/law/limited_gap.hpp>
 #include <fibrant/law/linear_penalty.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
@@ -8,7 +10,11 @@
 #include <near.hpp>
 #include <refusal.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <limits>
+#include <numbers>
 
 using namespace fibrant;
 
@@ -130,6 +136,95 @@ TEST_CASE("multipliers leave a law as it is, and a law without them is not one t
     static_assert(law::Augmenting<law::Augmented<LinearPenalty>> && !law::Augmenting<RegularisedPenalty>);
     CHECK(test::refusal([] { law::Augmented<LinearPenalty>{{}}; }) ==
           "Augmented.largest_penetration = nan, but it must be finite and > 0");
+}
+
+/// Part of its speed with which a mass leaves a law, `steps` of them in pi sqrt(m/K). @param phase  of the first one, in [0, 1)
+double restitution(law::Impact<law::PowerNormal> law, int steps, double phase, double& balance) {
+    const inertia::GeneralisedAlpha scheme({});
+    const double dt = std::numbers::pi / static_cast<double>(steps);
+    const inertia::TimeStep step = scheme.step(dt);
+    law.last(dt, step.share);
+    law::Approach at{.gap = dt * (1.0 + phase)};
+    double v = -1.0, a = 0.0, dissipated = 0.0;
+    for (int k = 0; k < 8 * steps; ++k) {
+        at.before = at.gap;
+        const double place = at.gap + step.by_velocity * v + step.by_acceleration * a;
+        double low = -10.0, high = 10.0 * std::max(1.0, place);  // the law falls with the gap: one place balances it
+        for (int half = 0; half < 80; ++half) {
+            at.gap = 0.5 * (low + high);
+            ((at.gap - place) / step.c2 > law.response(at).reaction ? high : low) = at.gap;
+        }
+        const double next = (at.gap - place) / step.c2;
+        CHECK(law.dissipated(at) >= 0.0);
+        dissipated += law.dissipated(at);
+        v += step.old_acceleration * a + step.new_acceleration * next, a = next;
+    }
+    CHECK(law.energy(at) == 0.0);
+    balance = 1.0 - (0.5 * v * v + dissipated) / 0.5;
+    return v;
+}
+
+TEST_CASE("what meets in motion parts as the closed form says, however few steps it takes, and all of its energy is told") {
+    const auto impact = [](double exponent, double damping) {
+        return law::Impact<law::PowerNormal>(
+            {.law = {.line_stiffness = 1.0, .crossing_stiffness = 1.0, .crossing_exponent = exponent}, .damping = damping});
+    };
+    // Undamped: of second order, and hardly any energy is put in where steps are too long.
+    double most = 0.0, least[3] = {1.0, 1.0, 1.0}, balance = 0.0;
+    for (int fine = 0; fine < 3; ++fine)
+        for (double phase = 0.0; phase < 1.0; phase += 0.1) {
+            const double e = restitution(impact(1.0, 0.0), 8 << fine, phase, balance);
+            most = std::max(most, e), least[fine] = std::min(least[fine], e);
+        }
+    std::printf("impact: 8, 16, 32 steps: %.5f %.5f %.5f, most %.5f\n", least[0], least[1], least[2], most);
+    CHECK(least[0] > 0.99);
+    CHECK(1.0 - least[2] < 0.1 * (1.0 - least[0]));  // a sixteenth
+    CHECK(most < 1.001);
+    // Damped: ln((1 + y)/(1 - e y)) = y (1 + e), whatever the power. 40 steps.
+    const double y[] = {0.1, 0.3, 1.0, 3.0}, e[] = {0.937476, 0.832870, 0.593624, 0.306897};
+    for (const double exponent : {1.0, 1.5})
+        for (int k = 0; k < 4; ++k) {
+            const double here = restitution(impact(exponent, y[k]), 100, 0.3, balance);
+            CAPTURE(exponent);
+            CAPTURE(y[k]);
+            CHECK(here == test::near(e[k], 1e-3));
+            CHECK(std::abs(balance) < 6e-3);  // of first order where damping makes it jump
+        }
+}
+
+TEST_CASE("laws that pull and laws of a step have the slope and the energy that they owe, whatever the element's length") {
+    using Sticky = law::Adhesive<law::PowerNormal>;
+    const law::PowerNormal::Parameters power{.line_stiffness = 3.0, .crossing_stiffness = 2.0, .crossing_exponent = 2.0};
+    const Sticky sticky({.law = power, .line_pull = 0.4, .crossing_pull = 0.3, .range = 0.5});
+    law::Impact<Sticky> moving({.law = {.law = power, .line_pull = 0.4, .crossing_pull = 0.3, .range = 0.5}, .damping = 0.6});
+    moving.last(0.7, 2.0 / 3.0);
+    double lost = 0.0;
+    for (const double length : {0.0, 2.0})
+        for (const double gap : {-0.7, -0.2, -0.01, 0.01, 0.2, 0.49, 0.51, 2.0})
+            for (const double before : {-0.5, 0.1, 0.9}) {
+                CAPTURE(length);
+                CAPTURE(gap);
+                CAPTURE(before);
+                const double by = 1e-6;
+                const law::Approach at{gap, length, 1.0, before}, less{gap - by, length, 1.0, before},
+                    more{gap + by, length, 1.0, before}, half{gap, 0.5 * length, 1.0, before};
+                const auto slope_of = [&](const auto& law) {
+                    return (law.response(more).reaction - law.response(less).reaction) / (2.0 * by);
+                };
+                CHECK(std::abs(slope_of(sticky) - sticky.response(at).slope) < 1e-8);
+                CHECK(std::abs(slope_of(moving) - moving.response(at).slope) < 1e-8);
+                CHECK(std::abs((sticky.energy(more) - sticky.energy(less)) / (2.0 * by) + sticky.response(at).reaction) < 1e-8);
+                CHECK(sticky.push(at) >= 0.0);
+                CHECK(moving.dissipated(at) >= 0.0);
+                lost += moving.dissipated(at);
+                if (length > 0.0) CHECK(2.0 * moving.response(half).reaction == test::near(moving.response(at).reaction, 1e-13));
+                if (gap > 0.5) CHECK(sticky.response(at).reaction == 0.0);
+            }
+    CHECK(lost > 0.0);
+    // Depth without a load, K p^2 = F, and work of coming off, F d/2 and what it had sunk by.
+    const double rests = std::sqrt(0.3 / 2.0);
+    CHECK(std::abs(sticky.response({-rests}).reaction) < 1e-12);
+    CHECK(-sticky.energy({-rests}) == test::near(0.5 * 0.3 * 0.5 + 2.0 / 3.0 * 0.3 * rests, 1e-12));
 }
 
 }  // namespace normal_law_test

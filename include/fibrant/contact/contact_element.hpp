@@ -33,6 +33,12 @@ struct GapShift<Normal> {
     double length = 0.0;  ///< of the line of contact; 0: a crossing, or an end [length]
     double value() const noexcept { return 0.0; }
 };
+template <law::SteppedNormal Normal>
+struct GapShift<Normal> {
+    double length = 0.0;  ///< of the line of contact; 0: a crossing, or an end [length]
+    double before = 0.0;  ///< gap in the last accepted state [length]
+    double value() const noexcept { return 0.0; }
+};
 
 /// Memory of friction, for laws that have one; nothing otherwise.
 template <beam::BeamElement B, law::FrictionLaw Friction>

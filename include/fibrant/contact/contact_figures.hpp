@@ -26,6 +26,7 @@ ContactFigures figures(const Contacts& contacts, const beam::Mesh<B>& mesh, cons
             sum.greatest_penetration = std::max(sum.greatest_penetration, -element.gap(state));
             sum.work += normal_energy(contacts.normal_law(), mesh, element, response.gap, contacts.stiffness(element));
             sum.reaction_sum += response.reaction;
+            sum.dissipated += normal_loss(contacts.normal_law(), mesh, element, response.gap);
             if constexpr (requires { element.friction.bound; })
                 sum.work += contacts.frictions()[core::at(k)].stored,
                     sum.dissipated += contacts.frictions()[core::at(k)].dissipated;

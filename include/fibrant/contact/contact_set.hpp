@@ -94,7 +94,7 @@ public:
             const Vec3 before = element.normal;
             if (!slides(k)) place_particles(element, state, accepted, before);
             const double turn = slides(k) ? follow(k, state) : turn_between(before, element.normal);
-            if (k < core::count(responses_) && responses_[core::at(k)].reaction > 0.0) turned[core::at(k)] = turn;
+            if (k < core::count(responses_) && responses_[core::at(k)].reaction != 0.0) turned[core::at(k)] = turn;
         });
         hold_reactions();
         return turned.empty() ? 0.0 : *std::max_element(turned.begin(), turned.end());
@@ -106,7 +106,7 @@ public:
         if constexpr (core::Active<Friction>)
             if (!follows())
                 for (std::size_t k = 0; k < std::min(elements_.size(), responses_.size()); ++k)
-                    elements_[k].friction.bound = responses_[k].reaction;
+                    elements_[k].friction.bound = friction_bound(normal_, *mesh_, elements_[k], responses_[k]);
     }
 
     /// Inner loop: gaps, reactions and friction of a state.
@@ -133,7 +133,10 @@ public:
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             if constexpr (core::Active<Friction>) {
                 slip -= slip.dot(plane(k)) * plane(k);
-                const double bound = none ? 0.0 : element.friction.bound < 0.0 ? response.reaction : element.friction.bound;
+                const double bound = none ? 0.0
+                                     : element.friction.bound < 0.0
+                                         ? friction_bound(normal_, *mesh_, element, responses_[core::at(k)])
+                                         : element.friction.bound;
                 frictions_[core::at(k)] = friction_answer(friction_, *mesh_, element, slip, zone.friction_factor, bound);
             }
         });
@@ -398,6 +401,7 @@ private:
     /// Where both forces of an element act, and from where its slip counts.
     void meet(Element& element, const Vector& state, const Vector& accepted) const {
         find_meeting_point(*mesh_, state, element), see_directions(*mesh_, state, element);
+        if constexpr (law::SteppedNormal<Normal>) element.shift.before = gap_in(*mesh_, parameters_.normal, element, accepted);
         if constexpr (core::Active<Friction>) {
             element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
             element.friction.accepted_offset = contact::accepted_offset(*mesh_, parameters_.normal, element, state, accepted);
@@ -420,7 +424,7 @@ private:
             if constexpr (law::Augmenting<Normal>)
                 if (k < core::count(responses_)) record.multiplier.force = responses_[core::at(k)].reaction;
             if constexpr (core::Active<Friction>) {
-                if (k < core::count(frictions_) && responses_[core::at(k)].reaction > 0.0)
+                if (k < core::count(frictions_) && responses_[core::at(k)].reaction != 0.0)
                     record.friction = recorded_friction<Friction>(*mesh_, element, state, frictions_[core::at(k)].history);
             }
         });

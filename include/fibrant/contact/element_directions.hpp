@@ -45,6 +45,12 @@ Vec3 accepted_offset(const beam::Mesh<B>& mesh, const NormalRule& rule, const El
     return offset.dot(then.along) * now.along + offset.dot(then.across) * now.across + offset.dot(before) * element.normal;
 }
 
+/// Gap of the particles of an element in another state, by the normal of then [length].
+template <beam::BeamElement B, class Element>
+double gap_in(const beam::Mesh<B>& mesh, const NormalRule& rule, const Element& element, const Vector& other) {
+    return element.offset(other).dot(element_normal(mesh, other, element, rule, element.normal)) - element.cap;
+}
+
 /// A history of friction by components between the tangents of its element, and back.
 template <law::FrictionLaw Friction, class B, class Element>
 RecordedFriction<Friction> recorded_friction(const beam::Mesh<B>& mesh, const Element& element, const Vector& state,

@@ -74,11 +74,13 @@ void see_directions([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]]
 /// What a normal law is shown that sees.
 template <beam::BeamElement B, class Element>
 law::Approach approach(const beam::Mesh<B>& mesh, const Element& element, double gap) noexcept {
+    law::Approach seen{gap, element.shift.length};
     if constexpr (requires { element.fibre_i; })
-        return {gap, element.shift.length,
-                mesh.fibre(element.fibre_i).section.radius() + mesh.fibre(element.fibre_j).section.radius()};
+        seen.reach = mesh.fibre(element.fibre_i).section.radius() + mesh.fibre(element.fibre_j).section.radius();
     else
-        return {gap, element.shift.length, mesh.fibre(element.fibre).section.radius()};
+        seen.reach = mesh.fibre(element.fibre).section.radius();
+    if constexpr (requires { element.shift.before; }) seen.before = element.shift.before;
+    return seen;
 }
 template <law::NormalLaw Normal, beam::BeamElement B, class Element>
 law::NormalResponse normal_answer(const Normal& normal, [[maybe_unused]] const beam::Mesh<B>& mesh,
@@ -95,6 +97,25 @@ double normal_energy(const Normal& normal, [[maybe_unused]] const beam::Mesh<B>&
         return normal.energy(approach(mesh, element, gap), 0.0);
     else
         return normal.energy(gap, stiffness);
+}
+
+/// What a normal law has dissipated in the increment [force * length].
+template <law::NormalLaw Normal, beam::BeamElement B, class Element>
+double normal_loss([[maybe_unused]] const Normal& normal, [[maybe_unused]] const beam::Mesh<B>& mesh,
+                   [[maybe_unused]] const Element& element, [[maybe_unused]] double gap) {
+    if constexpr (law::SteppedNormal<Normal>)
+        return normal.dissipated(approach(mesh, element, gap));
+    else
+        return 0.0;
+}
+/// What bounds friction of an element [force].
+template <law::NormalLaw Normal, beam::BeamElement B, class Element>
+double friction_bound([[maybe_unused]] const Normal& normal, [[maybe_unused]] const beam::Mesh<B>& mesh,
+                      [[maybe_unused]] const Element& element, const ContactResponse& response) {
+    if constexpr (law::PullingNormal<Normal>)
+        return normal.push(approach(mesh, element, response.gap));
+    else
+        return response.reaction;
 }
 
 /// Friction of an element. The factor of a pair or a tool is one on the coefficients of the law.

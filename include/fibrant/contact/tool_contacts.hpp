@@ -127,7 +127,7 @@ public:
                     reversible = turned(reversible, before, element.normal);
                     reversible -= reversible.dot(element.normal) * element.normal;
                 }
-                if (k < core::count(responses_) && responses_[core::at(k)].reaction > 0.0)
+                if (k < core::count(responses_) && responses_[core::at(k)].reaction != 0.0)
                     angle[core::at(k)] = std::atan2(before.cross(element.normal).norm(), before.dot(element.normal));
             },
             core::light_items);
@@ -142,7 +142,7 @@ public:
             for (std::size_t k = 0; k < std::min(elements_.size(), responses_.size()); ++k) {
                 Element& element = elements_[k];
                 const Record* record = starting ? find(accepted_, key_of(element)) : nullptr;
-                element.friction.bound = !starting ? responses_[k].reaction : record ? record->multiplier : 0.0;
+                element.friction.bound = !starting ? bound_of(k) : record ? record->multiplier : 0.0;
             }
         }
     }
@@ -151,6 +151,7 @@ public:
     void evaluate(const Vector& state, const Normal& normal, const Friction& friction) {
         responses_.resize(elements_.size());
         if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
+        if constexpr (law::PullingNormal<Normal>) pushes_.resize(elements_.size());
         core::parallel_for(
             core::count(elements_),
             [&](Index k) {
@@ -164,9 +165,11 @@ public:
                 const double gap = element.gap(state) + element.normal.dot(back) + element.shift.value();
                 const law::NormalResponse response = normal_answer(normal, *mesh_, element, gap, stiffness(element));
                 responses_[core::at(k)] = {gap, response.reaction, response.slope};
+                if constexpr (law::PullingNormal<Normal>)
+                    pushes_[core::at(k)] = friction_bound(normal, *mesh_, element, responses_[core::at(k)]);
                 if constexpr (core::Active<Friction>) {
                     slip -= slip.dot(element.normal) * element.normal;
-                    const double bound = element.friction.bound < 0.0 ? response.reaction : element.friction.bound;
+                    const double bound = element.friction.bound < 0.0 ? bound_of(core::at(k)) : element.friction.bound;
                     frictions_[core::at(k)] =
                         friction_answer(friction, *mesh_, element, slip, tools_[core::at(element.tool)].friction_factor, bound);
                 }
@@ -254,6 +257,7 @@ public:
             sum.greatest_penetration = std::max(sum.greatest_penetration, -element.gap(state));
             sum.work += normal_energy(normal, *mesh_, element, response.gap, stiffness(element));
             sum.reaction_sum += response.reaction;
+            sum.dissipated += normal_loss(normal, *mesh_, element, response.gap);
             if constexpr (core::Active<Friction>)
                 sum.work += frictions_[core::at(k)].stored, sum.dissipated += frictions_[core::at(k)].dissipated;
         }
@@ -308,7 +312,7 @@ public:
     }
     void restore() {
         stiffness_ = accepted_stiffness_;
-        elements_.clear(), responses_.clear(), frictions_.clear();
+        elements_.clear(), responses_.clear(), frictions_.clear(), pushes_.clear();
         std::fill(first_.begin(), first_.end(), 0);
     }
     /// Passes each number of what was accepted last to see(number): for files.
@@ -348,6 +352,13 @@ private:
         }
         return depth;
     }
+    /// What bounds friction of an element in the last evaluation [force].
+    double bound_of(std::size_t k) const noexcept {
+        if constexpr (law::PullingNormal<Normal>)
+            return pushes_[k];
+        else
+            return responses_[k].reaction;
+    }
     std::size_t slot(Index fibre, Index tool) const noexcept { return core::at(fibre * core::count(tools_) + tool); }
     Vec3 tangent(const Element& element, const Vector& state) const {
         return contact_tangent(*mesh_, state, element.fibre, element.u).normalized();
@@ -379,6 +390,12 @@ private:
         if constexpr (law::Augmenting<Normal>)
             element.shift.shift = -normal.penetration(element.shift.multiplier, stiffness(element));
         see_directions(*mesh_, state, element);
+        if constexpr (law::SteppedNormal<Normal>)
+            element.shift.before =
+                scene::tool_distance(tools_[t],
+                                     accepted_pose_[t].material(beam::Mesh<B>::point(accepted, element.first, element.weights)))
+                    .distance -
+                element.cap;
         if constexpr (core::Active<Friction>) {
             element.friction.weights_j = element.weights;
             const scene::ToolPose& before = accepted_pose_[t];
@@ -403,9 +420,9 @@ private:
             const Element& element = elements_[k];
             list[k].fibre = element.fibre, list[k].tool = element.tool, list[k].station = element.station;
             if (k >= responses_.size()) continue;
-            list[k].multiplier = responses_[k].reaction;
+            list[k].multiplier = bound_of(k);
             if constexpr (core::Active<Friction>) {
-                if (!(responses_[k].reaction > 0.0)) continue;
+                if (responses_[k].reaction == 0.0) continue;
                 const TangentPlane plane(tangent(element, state), element.normal);
                 list[k].friction = RecordedFriction<Friction>::of(frictions_[k].history, plane);
             }
@@ -422,6 +439,7 @@ private:
     std::vector<Index> first_;  // element of each fibre
     std::vector<ContactResponse> responses_;
     std::vector<law::FrictionAnswer<Friction>> frictions_;
+    std::vector<double> pushes_;  // of a law that pulls: what is left of its reactions then
     std::vector<Record> accepted_;
     bool starting_ = false;  // fibres stand where the last increment left them
 };

@@ -86,14 +86,17 @@ public:
 
     static std::vector<std::string> channels(const Parameters&) { return {}; }
     /// How long the next increments last; to be called before `begin`. @param duration  [time], > 0
-    void last(double duration) noexcept { duration_ = duration; }
-    void begin(std::span<const double>, const Vector& accepted) {
-        from_ = Own::of(accepted);
-        extent_ = from_.cwiseAbs().maxCoeff();
+    void last(double duration) noexcept {
+        duration_ = duration;
         if (!(duration_ > 0.0)) return;
         step_ = integrator_.step(duration_);
         if (moving_ == 0.0 && (step_.by_acceleration != 0.0 || step_.old_acceleration != 0.0 || step_.share != 1.0))
             step_ = first_step(duration_);
+    }
+    void begin(std::span<const double>, const Vector& accepted) {
+        from_ = Own::of(accepted);
+        extent_ = from_.cwiseAbs().maxCoeff();
+        if (!(duration_ > 0.0)) return;
         place_ = from_ + step_.by_velocity * velocity_ + step_.by_acceleration * acceleration_;
     }
     double share() const noexcept { return step_.share; }

@@ -19,6 +19,7 @@ struct Approach {
     double gap = 0.0;     ///< < 0 in penetration [length]
     double length = 0.0;  ///< of the line of contact that the element stands for; 0: a crossing, or an end [length]
     double reach = 0.0;   ///< sum of both radii; of a tool that of the fibre [length]
+    double before = 0.0;  ///< gap of the same particles in the last accepted state, for a SteppedNormal [length]
 };
 
 namespace detail {
@@ -48,6 +49,21 @@ concept NormalLaw = core::Policy<L> && requires(const L law, const typename deta
 template <class L>
 concept SeeingNormal = NormalLaw<L> && requires {
     requires std::same_as<typename L::Sees, Approach>;
+};
+
+/// A law that depends on how the gap has changed: told before each increment how long it lasts and at which part of it contact
+/// acts, 1 its end. Owed beside: nothing negative is dissipated, and an increment that takes no time is one of the law at rest.
+template <class L>
+concept SteppedNormal = SeeingNormal<L> && requires(L law, const L seen, const Approach& approach, double number) {
+    law.last(number, number);
+    law.rest(true);                                         // from now on as in an increment that takes no time; false: as it was
+    { seen.dissipated(approach) } -> std::same_as<double>;  // of an increment, >= 0 [force length]
+};
+
+/// A law that also pulls: what pushes bounds friction. Its reaction may be negative, and nothing else that NormalLaw owes falls.
+template <class L>
+concept PullingNormal = SeeingNormal<L> && requires(const L law, const Approach& approach) {
+    { law.push(approach) } -> std::same_as<double>;  // >= 0 [force]
 };
 
 /// A normal law that shifts the gap of each contact element by an amount chosen when an increment starts.

@@ -3,9 +3,11 @@
 /// @file Keeps the energy balance of a run, increment by increment.
 
 #include <fibrant/core/types.hpp>
+#include <fibrant/law/normal_law.hpp>
 #include <fibrant/simulation/report.hpp>
 
 #include <cmath>
+#include <type_traits>
 
 namespace fibrant::simulation {
 
@@ -77,6 +79,7 @@ public:
         if constexpr (requires { contacts.tools(); })
             balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(true);
         const contact::ContactFigures end = contacts.figures(to);
+        rest(contacts, true);
         const auto pairs = contacts.turn_back(from);
         contacts.evaluate(from, true);  // the same contact elements, where the increment started
         balance_.rearranged += contacts.figures(from).work - balance_.contact;
@@ -90,6 +93,7 @@ public:
         contacts.evaluate(to);
         contact_.setZero();
         contacts.add_forces(contact_);
+        if (rest(contacts, false)) contacts.evaluate(to);
         balance_.dissipated += end.dissipated + equilibrium.dissipated(to);
         balance_.contact = end.work;
         balance_.elastic = equilibrium.elastic_energy(to);
@@ -99,7 +103,7 @@ public:
     /// The balance of an increment of which all is booked. What a motion misses then is lost to the scheme that moves it.
     template <bool Moves>
     const EnergyBalance& closed() {
-        if constexpr (Moves) balance_.numerical += balance_.error();
+        if constexpr (Moves) balance_.numerical = balance_.error();
         return balance_;
     }
     /// What the laws of sections have lost in an increment, and what work what drives them has done.
@@ -121,6 +125,13 @@ public:
     void each(auto&& see) { see(external_), see(damping_), see(contact_), see(balance_); }
 
 private:
+    /// A normal law with a rate as it is at rest, and as it was. @returns whether there is one
+    template <class Contacts>
+    static bool rest([[maybe_unused]] Contacts& contacts, [[maybe_unused]] bool still) {
+        constexpr bool stepped = law::SteppedNormal<std::decay_t<decltype(contacts.normal_law())>>;
+        if constexpr (stepped) contacts.normal_law().rest(still);
+        return stepped;
+    }
     /// Half of the work of a force on a way, and of that which it was before. @param last  becomes the force
     static double trapezium(const Vector& way, Vector& last, const Vector& force) {
         if (last.size() != force.size()) last = Vector::Zero(force.size());

@@ -127,6 +127,7 @@ struct Loading {
             core::require(over >= 1.0 && over < 1e12, "Loading.damping_of_fibres", over, ">= 1 and < 1e12");
         const std::string timed = law::FrictionWithRate<typename M::Friction> ? "the law of friction has a rate"
                                   : MovesInTime<M>                            ? "fibres have inertia"
+                                  : law::SteppedNormal<typename M::Normal>    ? "the normal law has a rate"
                                                                               : "";
         if (!timed.empty() && stages.empty())
             core::refuse("Loading.stages", "none", "at least one that has a duration: " + timed);

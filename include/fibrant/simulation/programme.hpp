@@ -2,6 +2,7 @@
 #pragma once
 /// @file A loading programme as plain data, whatever the model: stages of ramps, cycles, friction that changes, and rest.
 
+#include <fibrant/law/shaped_friction.hpp>
 #include <fibrant/simulation/simulator.hpp>
 
 #include <algorithm>
@@ -34,6 +35,7 @@ struct LoadProgramme {
     double calm = std::numeric_limits<double>::infinity();  ///< greatest displacement of an increment after which damping falls
                                                             ///< [length], > 0
     double reversible_displacement = core::unset;           ///< of friction [length], > 0 where a stage changes it
+    law::FrictionShape friction_shape{};                    ///< what it is over Coulomb's, of a model whose law has a shape
     double largest_displacement = std::numeric_limits<double>::infinity();  ///< of an increment [length], > 0
     Index halvings = 0;                                                     ///< of all increments of ramps, >= 0
 
@@ -42,6 +44,7 @@ struct LoadProgramme {
         core::require(rest_share > 0.0 && rest_share <= 0.01, "LoadProgramme.rest_share", rest_share, "> 0 and <= 0.01");
         core::require(largest_displacement > 0.0, "LoadProgramme.largest_displacement", largest_displacement, "> 0");
         core::require_at_least("LoadProgramme.halvings", halvings, 0);
+        friction_shape.validate();
         if (stages.empty()) core::refuse("LoadProgramme.stages", "none", "at least one");
         for (const ProgrammeStage& stage : stages) {
             core::require_at_least("ProgrammeStage.increments", stage.increments, 1);
@@ -77,7 +80,8 @@ Loading<M> loading_of(const LoadProgramme& programme) {
         stage.looseness = given.looseness;
         if (given.friction)
             if constexpr (core::Active<typename M::Friction>)
-                stage.friction.emplace(typename M::Friction::Parameters{*given.friction, programme.reversible_displacement});
+                stage.friction.emplace(law::friction_parameters<typename M::Friction>(
+                    *given.friction, programme.reversible_displacement, programme.friction_shape));
         if (given.rest) {
             stage.until = until_settled(programme.rest_motion, programme.rest_penetration, programme.rest_share);
             stage.damping_decay = stage.damping > 0.0 ? 0.5 : 1.0;

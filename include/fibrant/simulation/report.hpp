@@ -22,11 +22,10 @@ struct EnergyBalance {
     double rearranged = 0.0;  ///< put in by changes of contact elements, gap shifts, friction's bound and penalty stiffness
     double released = 0.0;    ///< let go in stages that force an order: an increment starts from an imposed overlap and leaps
     double kinetic = 0.0;     ///< of fibres that move in time
-    double numerical =
-        0.0;  ///< lost to the scheme that moves them: all that a motion misses, impacts that its steps do not resolve included
-    /// What is missing: external + rearranged - released - dissipated - lost - damped - numerical - stored.
+    double numerical = 0.0;   ///< of a motion `error()`: lost to the scheme, impacts that its steps do not resolve included
+    /// What is missing: external + rearranged - released - dissipated - lost - damped - stored.
     double error() const noexcept {
-        return external + rearranged - released - dissipated - lost - damped - elastic - contact - kinetic - numerical;
+        return external + rearranged - released - dissipated - lost - damped - elastic - contact - kinetic;
     }
 };
 

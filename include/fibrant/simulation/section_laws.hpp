@@ -7,6 +7,7 @@
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/connection/channels.hpp>
 #include <fibrant/law/friction_law.hpp>
+#include <fibrant/law/normal_law.hpp>
 #include <fibrant/simulation/energy_account.hpp>
 
 #include <cmath>
@@ -18,16 +19,18 @@
 
 namespace fibrant::simulation {
 
-/// Tells inertia and a law of friction that has a rate how long an increment lasts; in one that takes no time what flows is at
+/// Tells inertia and laws of contact that have a rate how long an increment lasts; in one that takes no time what flows is at
 /// rest. Where fibres move none takes no time: what follows the ramps of a stage goes on in steps of it. @returns the duration
 /// @param step  part of the stage that the increment is made for, if that is not over
 template <class Contacts, class Equilibrium>
 double let_last([[maybe_unused]] Contacts& contacts, [[maybe_unused]] Equilibrium& equilibrium, double duration,
                 [[maybe_unused]] double step) {
+    double share = 1.0;
     if constexpr (Equilibrium::moves) {
         if (!(duration > 0.0)) duration = step;
-        equilibrium.terms().moving([&](auto& term) { term.last(duration); });
+        equilibrium.terms().moving([&](auto& term) { term.last(duration), share = term.share(); });
     }
+    if constexpr (law::SteppedNormal<std::decay_t<decltype(contacts.normal_law())>>) contacts.normal_law().last(duration, share);
     if constexpr (law::FrictionWithRate<std::decay_t<decltype(contacts.friction_law())>>)
         contacts.friction_law().last(duration > 0.0 ? duration : std::numeric_limits<double>::infinity());
     return duration;

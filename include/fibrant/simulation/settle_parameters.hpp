@@ -3,6 +3,7 @@
 /// @file What a settling may be told; nothing has to be.
 
 #include <fibrant/core/parameters.hpp>
+#include <fibrant/law/shaped_friction.hpp>
 
 #include <string>
 
@@ -11,6 +12,7 @@ namespace fibrant::simulation {
 /// How fibres that lie in each other become a textile at rest. Radii are those of the thinnest fibre.
 struct SettleParameters {
     double friction_coefficient = 0.15;             ///< once fibres have parted [1], >= 0
+    law::FrictionShape friction_shape{};            ///< what it is over Coulomb's, of a model whose law has a shape
     double allowed_penetration_over_radius = 1e-2;  ///< at rest [1], in (0, 0.5]
     double gap_limit_over_radius = 0.25;  ///< deepest penetration that a law is shown, about the motion of an increment [1], > 0
     double final_tension_factor = 1.0;    ///< tension at the end over that at which fibres part [1], in (0, 1]
@@ -27,6 +29,7 @@ struct SettleParameters {
     void validate() const {
         const std::string name = "SettleParameters.";
         core::require_not_negative(name + "friction_coefficient", friction_coefficient);
+        friction_shape.validate();
         core::require(allowed_penetration_over_radius > 0.0 && allowed_penetration_over_radius <= 0.5,
                       name + "allowed_penetration_over_radius", allowed_penetration_over_radius, "> 0 and <= 0.5");
         core::require_positive(name + "gap_limit_over_radius", gap_limit_over_radius);

@@ -82,8 +82,9 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     Stage<M> handover = common;
     handover.name = "handover";
     if constexpr (core::Active<typename M::Friction>)
-        handover.friction.emplace(typename M::Friction::Parameters{
-            settle.friction_coefficient, reversible_displacement(r, settle.friction_coefficient, allowed)});
+        handover.friction.emplace(law::friction_parameters<typename M::Friction>(
+            settle.friction_coefficient, reversible_displacement(r, settle.friction_coefficient, allowed),
+            settle.friction_shape));
     handover.until = until_settled(motion, parted, share_on_the_way);
     handover.most_increments = settle.rest_increments;
     handover.enough_increments = std::max<Index>(1, settle.rest_increments / 2);  // what creeps for ever does so no longer

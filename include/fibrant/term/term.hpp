@@ -134,13 +134,13 @@ concept Shown = requires(const T term, const Vector& state, observe::Snapshot& s
 /// that lasts, and refuses a step that errs too much.
 template <class T>
 concept Moving = requires(T term, const T seen, const Vector& state, Vector& sum, double number) {
-    term.last(number);                                     // duration of the next increments; before `begin` [time]
-    term.add_averaged(state, state, sum);                  // state, forces of the fibres in it
-    { seen.share() } -> std::same_as<double>;              // of those in that average: factor on their stiffness
-    { seen.left(state) } -> std::same_as<Vector>;          // of them, what the average has not
-    { seen.rounding() } -> std::same_as<double>;           // norm of what rounding makes of its forces [force]
-    { seen.begins() } -> std::same_as<bool>;               // the motion, with this step
-    { seen.kinetic(state) } -> std::same_as<double>;       // [force length]
+    term.last(number);                                // duration of the next increments; before `begin` [time]
+    term.add_averaged(state, state, sum);             // state, forces of the fibres in it
+    { seen.share() } -> std::same_as<double>;         // of those in that average, known once `last` is: factor on their stiffness
+    { seen.left(state) } -> std::same_as<Vector>;     // of them, what the average has not
+    { seen.rounding() } -> std::same_as<double>;      // norm of what rounding makes of its forces [force]
+    { seen.begins() } -> std::same_as<bool>;          // the motion, with this step
+    { seen.kinetic(state) } -> std::same_as<double>;  // [force length]
     { term.refusal(state) } -> std::same_as<std::string>;  // empty: none
     { seen.may_grow(number) } -> std::same_as<bool>;       // the next step, by a factor
 };
