@@ -183,9 +183,10 @@ TEST_CASE("an oval section touches a round tool where its contour is nearest, an
                         true_gap = std::min(true_gap, scene::tool_distance(tool, x).distance);
                     }
                 }
-                CHECK(std::abs(true_gap) < thin);  // near enough to matter
+                CHECK(std::abs(true_gap) < thin);                // near enough to matter
                 CHECK(std::abs(seen - true_gap) < 1e-4 * thin);  // half the square of the points' distance, over the radius
-                const auto audited = observe::tool_gap(simulation::detail::curves_of(mesh, mesh.rest_state()).fibres[0], tool, {});
+                const auto audited =
+                    observe::tool_gap(simulation::detail::curves_of(mesh, mesh.rest_state()).fibres[0], tool, {});
                 if (slant == 0.0) CHECK(std::abs(audited.gap - true_gap) < 2e-3 * thin);
             }
 }

@@ -33,7 +33,8 @@ inline Vec3 normal_at_section(const scene::Tool& tool, const Vec3& centre, const
     };
     double low = std::atan2(-middle.dot(section.second), -middle.dot(section.first)), low_slope = slope(low);
     if (std::abs(low_slope) <= settled) return normal;
-    const double stride = low_slope > 0.0 ? -0.1 : 0.1;  // [radian]; narrower than the valleys of sections ten times as wide as thick
+    const double stride =
+        low_slope > 0.0 ? -0.1 : 0.1;  // [radian]; narrower than the valleys of sections ten times as wide as thick
     double high = low, high_slope = low_slope;
     for (double way = 0.0; high_slope * low_slope > 0.0; way += std::abs(stride)) {
         if (way > 0.5 * std::numbers::pi) return middle;
