@@ -73,10 +73,11 @@ TEST_CASE("a rod of four turns whose ends approach by half of its length winds u
         const double twisted = twist(fibre), writhed = writhe(fibre.position);
         const double most = *std::max_element(fibre.curvature.begin(), fibre.curvature.end()) * rod.radius;
         force[run++] = simulator.reaction(scene::last_end(0)).x();
-        std::printf("plectoneme in %td increments (%td accepted, %td Newton): %td contacts press, force %.6f, %.4f turns twist and "
-                    "%.4f writhe, r kappa %.3f, gap %.2e r, energy missing %.1e of %.1e\n",
-                    increments, report.increments.back().number, report.counts.newton, report.contact.active, force[run - 1],
-                    twisted, writhed, most, audit.least_gap.gap_over_radius, report.energy.error(), report.energy.elastic);
+        std::printf(
+            "plectoneme in %td increments (%td accepted, %td Newton): %td contacts press, force %.6f, %.4f turns twist and "
+            "%.4f writhe, r kappa %.3f, gap %.2e r, energy missing %.1e of %.1e\n",
+            increments, report.increments.back().number, report.counts.newton, report.contact.active, force[run - 1], twisted,
+            writhed, most, audit.least_gap.gap_over_radius, report.energy.error(), report.energy.elastic);
         CHECK(audit.clean());
         CHECK(report.contact.active > 20);  // strands lie on each other, and do not but cross once
         CHECK(most < 0.5);
