@@ -177,6 +177,11 @@ fibrant::simulation::Audit audit(const Output& output, const Simulator& simulato
         std::fprintf(stderr, "audit: fibres %td and %td are %.4f radii deep in each other at (%g, %g, %g), and may be %.4f\n",
                      least.fibre_i, least.fibre_j, -least.gap / radius, least.position.x(), least.position.y(),
                      least.position.z(), answer.allowed / radius);
+    const observe::ToolGap& tool = answer.tool_gap;
+    if (tool.gap < -answer.allowed)
+        std::fprintf(stderr, "audit: fibre %td is %.4f radii deep in tool %td at (%g, %g, %g), and may be %.4f\n", tool.fibre,
+                     -tool.gap / radius, tool.tool, tool.position.x(), tool.position.y(), tool.position.z(),
+                     answer.allowed / radius);
     return answer;
 }
 
@@ -190,6 +195,7 @@ inline observe::JsonObject write_summary(const Output& output, const fibrant::si
     observe::JsonObject& json = begin;
     json.add("converged", report.converged).add("audit_clean", audit.clean()).add("reason", report.reason);
     json.add("least_gap_over_radius", audit.least_gap.gap_over_radius).add("deepest_allowed_over_radius", audit.allowed / radius);
+    if (audit.tool_gap.tool >= 0) json.add("least_tool_gap_over_radius", audit.tool_gap.gap / radius);
     // Of the last increment, then the most of any, over what is stated: 1 or less where that was kept.
     json.add("residual_over_tolerance", report.use.residual).add("penetration_over_allowed", report.use.penetration);
     json.add("most_residual_over_tolerance", report.most_use.residual)

@@ -35,5 +35,6 @@
 #include <fibrant/contact/support.hpp>
 #include <fibrant/contact/tool_contacts.hpp>
 #include <fibrant/contact/tool_element.hpp>
+#include <fibrant/contact/tool_place.hpp>
 #include <fibrant/contact/watched_places.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>

@@ -22,5 +22,6 @@
 #include <fibrant/observe/svg_solid.hpp>
 #include <fibrant/observe/svg_view.hpp>
 #include <fibrant/observe/text_file.hpp>
+#include <fibrant/observe/tool_gap.hpp>
 #include <fibrant/observe/vtk_writer.hpp>
 #include <fibrant/observe/yarn_section.hpp>

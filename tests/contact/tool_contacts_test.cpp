@@ -151,6 +151,46 @@ TEST_CASE("forces of tools are the slope of their energy, and the tangent is the
     }
 }
 
+TEST_CASE("an oval section touches a round tool where its contour is nearest, and the audit sees the same gap") {
+    // A straight fibre beside a cylinder of half its width, along it and at a slant, its section turned by any angle. Against:
+    // the least distance of a thousand points of the contour from the cylinder.
+    const double wide = 3.0 * r, thin = r;
+    for (const bool hollow : {false, true})
+        for (const double slant : {0.0, 0.6})
+            for (int k = 0; k < 12; ++k) {
+                const double turn = 0.05 + k * pi / 12.0;
+                scene::FibreSpecification fibre = straight_fibre({-0.3, 0, 0}, {0.3, 0, 0}, r, 6);
+                fibre.section = scene::elliptical(wide, thin);
+                fibre.director = Vec3(0.0, std::cos(turn), std::sin(turn));
+                scene::Assembly assembly;
+                assembly.add(fibre);
+                const double depth = 0.2 * thin, radius = hollow ? 2.0 * wide : 0.5 * wide,
+                             height = std::hypot(wide * std::sin(turn), thin * std::cos(turn));
+                const double centre = hollow ? -(radius - height + depth) : radius + height - depth;
+                const Vec3 axis(std::cos(slant), std::sin(slant), 0.0), at(0.0, 0.0, centre);
+                const scene::Tool tool = round(scene::ToolShape::cylinder, at, axis, radius, hollow);
+                assembly.add(tool);
+                const Mesh mesh(assembly, Beam{});
+                Tools tools(assembly, mesh, {}, 2.0);
+                tools.detect(mesh.rest_state(), mesh.rest_state(), 2.0 * thin, penalty);
+                double seen = 1.0, true_gap = 1.0;
+                for (const auto& element : tools.elements()) {
+                    if (element.u != 3.0) continue;  // the middle, above the cylinder
+                    seen = element.gap(mesh.rest_state());
+                    for (int p = 0; p < 1000; ++p) {
+                        const double angle = 2.0 * pi * p / 1000.0, y = wide * std::cos(angle), z = thin * std::sin(angle);
+                        const Vec3 x(0.0, y * std::cos(turn) - z * std::sin(turn), y * std::sin(turn) + z * std::cos(turn));
+                        true_gap = std::min(true_gap, scene::tool_distance(tool, x).distance);
+                    }
+                }
+                CHECK(std::abs(true_gap) < thin);                // near enough to matter
+                CHECK(std::abs(seen - true_gap) < 1e-4 * thin);  // half the square of the points' distance, over the radius
+                const auto audited =
+                    observe::tool_gap(simulation::detail::curves_of(mesh, mesh.rest_state()).fibres[0], tool, {});
+                if (slant == 0.0) CHECK(std::abs(audited.gap - true_gap) < 2e-3 * thin);
+            }
+}
+
 TEST_CASE("what a tool feels is what its fibre feels, turned round") {
     const scene::Assembly assembly = crowded();
     const Mesh mesh(assembly, Beam{});

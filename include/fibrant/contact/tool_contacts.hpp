@@ -7,6 +7,7 @@
 #include <fibrant/contact/seen_touch.hpp>
 #include <fibrant/contact/support.hpp>
 #include <fibrant/contact/tool_element.hpp>
+#include <fibrant/contact/tool_place.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/scene/tool.hpp>
@@ -373,12 +374,25 @@ private:
         return element.foot - used_pose_[t].place(pose_[t].material(element.foot));
     }
 
+    /// In the tool's own axes.
+    Vec3 normal_at(const Element& element, const scene::Tool& tool, const scene::ToolPose& pose, const Vector& state) const {
+        const Vec3 centre = pose.material(mesh_->position(state, element.fibre, element.u));
+        if constexpr (beam::CentrelineOnly<B> || beam::TouchedOnCentreline<B>) {
+            return scene::tool_distance(tool, centre).normal;
+        } else {
+            const auto [g_1, g_2] =
+                beam::Mesh<B>::element_directors(state, element.first, mesh_->locate(element.fibre, element.u).second);
+            const scene::CrossSection& section = mesh_->fibre(element.fibre).section;
+            const Mat3 back = pose.turn.transpose();
+            return normal_at_section(tool, centre, {section.semi_axis_1 * (back * g_1), section.semi_axis_2 * (back * g_2)});
+        }
+    }
+
     void place_particle(Element& element, const Vector& state, const Vector& accepted,
                         [[maybe_unused]] const Normal& normal) const {
         const std::size_t t = core::at(element.tool);
         const scene::ToolPose& pose = pose_[t];
-        element.normal =
-            pose.turn * scene::tool_distance(tools_[t], pose.material(mesh_->position(state, element.fibre, element.u))).normal;
+        element.normal = pose.turn * normal_at(element, tools_[t], pose, state);
         // Of a section that faces the tool with its flat side, the furthest particle is now here, now there: a rounded end is
         // not.
         const bool last = element.u == 0.0 || element.u == static_cast<double>(mesh_->fibre(element.fibre).elements);

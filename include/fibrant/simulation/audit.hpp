@@ -4,6 +4,7 @@
 /// right side out.
 
 #include <fibrant/observe/least_gap.hpp>
+#include <fibrant/observe/tool_gap.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/simulation/acceptance.hpp>
 #include <fibrant/simulation/model.hpp>
@@ -19,11 +20,12 @@ namespace fibrant::simulation {
 
 struct Audit {
     observe::LeastGap least_gap;  ///< of any two fibres, and of a fibre and itself where contact is asked to see that
-    double allowed = 0.0;         ///< how deep that may be [length]
+    observe::ToolGap tool_gap;    ///< of any fibre and any tool, where the model has tools
+    double allowed = 0.0;         ///< how deep those may be [length]
     std::optional<beam::InsideOut> inside_out;
 
-    /// No fibres deeper in each other than allowed, anywhere, and no section inside out.
-    bool clean() const noexcept { return !inside_out && !(least_gap.gap < -allowed); }
+    /// No fibres deeper in each other or in a tool than allowed, anywhere, and no section inside out.
+    bool clean() const noexcept { return !inside_out && !(std::min(least_gap.gap, tool_gap.gap) < -allowed); }
 };
 
 /// How deep fibres may be in each other between contact points as well, by what the parameters state: the greatest penetration
@@ -73,9 +75,12 @@ Audit audit(const Simulator& simulator, double allowed = core::unset) {
     Audit answer;
     answer.allowed = std::isnan(allowed) ? stated_depth(simulator.contacts(), parameters, radius) : allowed;
     answer.inside_out = beam::first_inside_out(simulator.mesh(), simulator.beam(), simulator.state());
+    const observe::Snapshot shot = detail::curves_of(simulator.mesh(), simulator.state());
     answer.least_gap =
-        observe::least_gap(detail::curves_of(simulator.mesh(), simulator.state()), proximity::GridSearch{},
+        observe::least_gap(shot, proximity::GridSearch{},
                            parameters.detection.self_contact ? observe::OwnTurns::counted : observe::OwnTurns::left_out);
+    if constexpr (requires { simulator.contacts().tools(); })
+        answer.tool_gap = observe::least_tool_gap(shot, simulator.contacts().tools());
     return answer;
 }
 

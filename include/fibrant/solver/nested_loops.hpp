@@ -41,8 +41,10 @@ inline constexpr double finer = 0.1;                            ///< part of a t
 inline constexpr double least_ratio = 0.4;  ///< of two travels, from which it pays [1]
 inline constexpr double largest_ratio =
     0.8;  ///< above it the sum of the series is too uncertain: it is taken as that of this ratio [1]
-inline constexpr double largest_series = 4.0;  ///< = 0.8 / (1 - 0.8)
-inline constexpr double longest_leap = 0.25;   ///< of an extrapolation [radius]
+inline constexpr double largest_series = 4.0;   ///< = 0.8 / (1 - 0.8)
+inline constexpr double longest_leap = 0.25;    ///< of an extrapolation [radius]
+inline constexpr double least_swing = 0.5;      ///< ratio of two contact passes' travels, against each other, that is one
+inline constexpr double swing_likeness = 0.25;  ///< square of the cosine that two such travels have at least
 }  // namespace nested_numbers
 
 /// Solves increments; loops inside are solved to a part of the last change of the loop outside.
@@ -84,7 +86,7 @@ public:
         const double bound = contact_possible_ ? std::max(reach, radius_) : std::numeric_limits<double>::infinity();
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
-        Vector searched, travel;                                  // state of the last search, displacement of the last pass
+        Vector searched, travel, last_travel;  // state of the last search, displacements of the last pass and of the one before
         const bool strict = looseness <= 1.0;
         Index passes = 0, searches = 0, moves = 0, renewals = 0, stiffenings = 0;
         // Further than so many searches reach: what hardly anything holds goes on for ever, and where displacements have a bound,
@@ -141,9 +143,13 @@ public:
                 return strict && stiffenings < most_stiffenings &&
                        contact::stiffen_deep_zones(*contacts_, contacts_->parameters().stiffness) && ++stiffenings > 0;
             };
-            if (stiffer()) continue;
+            if (stiffer()) {
+                last_travel.resize(0);
+                continue;
+            }
             if (change >= contact_tolerance) {
                 ++passes;
+                settle_swing(state, travel, last_travel);
                 continue;
             }
             if (!multipliers_change()) {
@@ -203,6 +209,24 @@ private:
             state = searched + passed->touch * (state - searched);
             equilibrium_->reset_stresses(state);
         }
+    }
+
+    /// Contact passes that swing to and fro about their end begin the next one there: elements along a line of contact, as
+    /// between the strands of a plectoneme, stand elsewhere after each of them, and carry the fibres back.
+    void settle_swing(Vector& state, const Vector& travel, Vector& last) const {
+        namespace with = nested_numbers;
+        const double along = last.size() > 0 ? equilibrium_->product(travel, last) : 0.0;
+        const double before = last.size() > 0 ? equilibrium_->product(last, last) : 0.0;
+        if (!(along < -with::least_swing * before) ||
+            along * along < with::swing_likeness * before * equilibrium_->product(travel, travel)) {
+            last = travel;
+            return;
+        }
+        // Travels t, -q t, q^2 t ... from where the last one began end at t / (1 + q) (Aitken 1926).
+        const double q = -along / before;
+        state -= q / (1.0 + q) * travel;
+        equilibrium_->reset_stresses(state);
+        last.resize(0);
     }
 
     /// Contacts of a law with multipliers carry them on at the next pass, and are not yet where they should be.

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// A twisted rod whose ends approach by half of its length winds up on itself: a plectoneme.
+#include <near.hpp>
+#include <simulation/twisted_rod.hpp>
+
+#include <fibrant/simulation/audit.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <vector>
+
+using namespace fibrant;
+
+namespace plectoneme_long_test {
+
+const double pi = std::numbers::pi;
+
+/// Turns of a section about the axis from node to node, beside what carries it along without twist.
+double twist(const observe::FibreSnapshot& fibre) {
+    double sum = 0.0;
+    const std::size_t nodes = fibre.position.size();
+    const auto tangent = [&](std::size_t k) {
+        const Vec3 cross = fibre.director_1[k].cross(fibre.director_2[k]);
+        return Vec3(cross.normalized());
+    };
+    for (std::size_t k = 0; k + 1 < nodes; ++k) {
+        const Vec3 t = tangent(k + 1);
+        const Vec3 carried = Eigen::Quaterniond::FromTwoVectors(tangent(k), t) * fibre.director_1[k];
+        sum += std::atan2(carried.cross(fibre.director_1[k + 1]).dot(t), carried.dot(fibre.director_1[k + 1]));
+    }
+    return sum / (2.0 * pi);
+}
+
+/// Writhe of a polygon whose ends go on straight for ever: Gauss' integral over pairs of sides in closed form (Klenin and
+/// Langowski 2000, method 1a).
+double writhe(std::vector<Vec3> points) {
+    const Vec3 first = points.front() - points[1], last = points.back() - points[points.size() - 2];
+    const double far = 1e6;
+    points.insert(points.begin(), Vec3(points.front() + far * first));
+    points.push_back(points.back() + far * last);
+    double sum = 0.0;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i)
+        for (std::size_t j = i + 2; j + 1 < points.size(); ++j) {
+            const Vec3 a = points[j] - points[i], b = points[j + 1] - points[i], c = points[j + 1] - points[i + 1],
+                       d = points[j] - points[i + 1];
+            Vec3 n[4] = {a.cross(b), b.cross(c), c.cross(d), d.cross(a)};
+            double area = 0.0;
+            for (Vec3& normal : n) normal /= std::max(normal.norm(), 1e-300);
+            for (int k = 0; k < 4; ++k) area += std::asin(std::clamp(n[k].dot(n[(k + 1) % 4]), -1.0, 1.0));
+            const double side = (points[j + 1] - points[j]).cross(points[i + 1] - points[i]).dot(a);
+            sum += side > 0.0 ? area : -area;
+        }
+    return sum / (2.0 * pi);
+}
+
+TEST_CASE("a rod of four turns whose ends approach by half of its length winds up on itself, and keeps its turns") {
+    double force[2];
+    int run = 0;
+    for (const Index increments : {60, 120}) {
+        test::Twisted rod;
+        rod.slack = 0.5, rod.elements = 80, rod.increments = increments, rod.damping = 1e-4;
+        auto parameters = rod.parameters();
+        parameters.contact.detection.self_contact = true;
+        simulation::Simulator<test::Smooth> simulator(rod.assembly(), parameters);
+        const simulation::Report report = simulator.run(rod.loading());
+        REQUIRE_MESSAGE(report.converged, report.reason);
+        const simulation::Audit audit = simulation::audit(simulator);
+        const observe::FibreSnapshot fibre = simulator.snapshot().fibres[0];
+        const double twisted = twist(fibre), writhed = writhe(fibre.position);
+        const double most = *std::max_element(fibre.curvature.begin(), fibre.curvature.end()) * rod.radius;
+        force[run++] = simulator.reaction(scene::last_end(0)).x();
+        std::printf(
+            "plectoneme in %td increments (%td accepted, %td Newton): %td contacts press, force %.6f, %.4f turns twist and "
+            "%.4f writhe, r kappa %.3f, gap %.2e r, energy missing %.1e of %.1e\n",
+            increments, report.increments.back().number, report.counts.newton, report.contact.active, force[run - 1], twisted,
+            writhed, most, audit.least_gap.gap_over_radius, report.energy.error(), report.energy.elastic);
+        CHECK(audit.clean());
+        CHECK(report.contact.active > 20);  // strands lie on each other, and do not but cross once
+        CHECK(most < 0.5);
+        // Linking number = twist + writhe (Calugareanu, White, Fuller): a passage through itself would take away two. Chords of
+        // 1.25 radii along arcs of some 8 radii.
+        CHECK(twisted + writhed == test::near(4.0, 5e-3));
+        CHECK(writhed > 2.0);
+    }
+    CHECK(force[0] == test::near(force[1], 1e-2));
+}
+
+}  // namespace plectoneme_long_test
