@@ -45,4 +45,34 @@ TEST_CASE(
     CHECK(direct.contact.reaction_sum > 0.0);
 }
 
+TEST_CASE("what a snapshot shows of contacts between fibres balances what the supports of these bear, friction and all") {
+    Crossing crossing;
+    crossing.drag = 0.05;
+    const simulation::ModelParameters<test::Rough> parameters = test::tight_parameters<test::Rough>(crossing.radius);
+    simulation::Simulator<test::Rough> simulator(crossing.assembly(), parameters);
+    simulation::Loading<test::Rough> loading;
+    for (const char* channel : {"approach", "drag"})
+        loading.stages.push_back({.name = channel, .increments = 4, .ramps = {{channel, 1.0}}});
+    const simulation::Report report = simulator.run(loading);
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    const observe::Snapshot shot = simulator.snapshot();
+    Vec3 normal = Vec3::Zero(), friction = Vec3::Zero();  // on the upper fibre
+    for (const observe::ContactSnapshot& contact : shot.contacts) {
+        REQUIRE(contact.fibre_i + contact.fibre_j == 1);
+        const double side = contact.fibre_j == crossing.upper() ? 1.0 : -1.0;
+        normal += side * contact.reaction * contact.normal, friction -= side * contact.friction;
+    }
+    Vec3 borne = Vec3::Zero();
+    for (const double end : {0.0, 1.0}) borne += simulator.reaction({crossing.upper(), end});
+    CHECK(normal.z() > 0.0);
+    CHECK(friction.norm() > 0.1 * parameters.friction.friction_coefficient * normal.norm());
+    CHECK((normal + friction + borne).norm() < 1e-6 * borne.norm());
+    // Ends went where they were taken.
+    const observe::FibreSnapshot &lower = shot.fibres[core::at(crossing.lower())],
+                                 &upper = shot.fibres[core::at(crossing.upper())];
+    CHECK((lower.displacement.front() - Vec3(crossing.drag, 0, 0)).norm() < 1e-9 * crossing.drag);
+    CHECK((upper.displacement.back() - Vec3(0, 0, -crossing.approach)).norm() < 1e-9 * crossing.approach);
+}
+
 }  // namespace report_test
