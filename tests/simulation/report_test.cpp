@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 using namespace fibrant;
 
 namespace report_test {
@@ -73,6 +75,22 @@ TEST_CASE("what a snapshot shows of contacts between fibres balances what the su
                                  &upper = shot.fibres[core::at(crossing.upper())];
     CHECK((lower.displacement.front() - Vec3(crossing.drag, 0, 0)).norm() < 1e-9 * crossing.drag);
     CHECK((upper.displacement.back() - Vec3(0, 0, -crossing.approach)).norm() < 1e-9 * crossing.approach);
+}
+
+TEST_CASE("a snapshot shows how far a cantilever has moved from its rest, and the curvature P (L - s) / E I") {
+    const test::Rod rod;
+    const double load = 1e-3;  // P L^2 / E I: slopes to 5e-4, so that squares of these are rounding
+    simulation::Simulator<Smooth> simulator(rod.pushed(load), test::tight_parameters<Smooth>(rod.radius));
+    REQUIRE(simulator.run({.increments = 1}).converged);
+    const observe::FibreSnapshot shown = simulator.snapshot().fibres[0];
+    REQUIRE(core::count(shown.curvature) == 2 * rod.elements + 1);
+    for (Index e = 0; e < rod.elements; ++e) {  // in the middle of each element, where a parabola has the curvature of the rod
+        const double left = 1.0 - (static_cast<double>(e) + 0.5) / static_cast<double>(rod.elements);
+        CHECK(std::abs(shown.curvature[core::at(2 * e + 1)] * rod.length / load - left) < 5e-3);
+    }
+    // P L^3 / 3 E I, and what shear adds: 2.2 (r / L)^2 or so.
+    CHECK(shown.displacement.back().x() == test::near(load * rod.length / 3.0, 2e-3));
+    CHECK(shown.displacement.front().norm() < 1e-12 * rod.length);
 }
 
 }  // namespace report_test

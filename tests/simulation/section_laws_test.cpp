@@ -47,11 +47,6 @@ TEST_CASE("curvature, twist, length and width that are set in bend a free fibre 
         const double R = 1.01 / kappa;
         const Vec3 tip(R * (1.0 - std::cos(2.0)), 0.0, R * std::sin(2.0));
         error[fine] = (simulator.value(scene::last_end(0)) - tip).norm() / rod.length;
-        const observe::FibreSnapshot shown = simulator.snapshot().fibres[0];
-        CHECK((shown.displacement.back() - (tip - Vec3(0, 0, rod.length))).norm() < 1e-5 * rod.length);
-        // That of a chain of parabolas: half an element's turn, squared, is what its ends miss.
-        for (const double curvature : shown.curvature)
-            CHECK(curvature == test::near(1.0 / R, 1.5 * std::pow(1.0 / static_cast<double>(rod.elements), 2)));
         CHECK(report.energy.elastic < 1e-20 * rod.young * pi * rod.radius * rod.radius * rod.length);
     }
     std::printf("set-in curvature: tip off by %.1e, %.1e L with 8 and 16 elements\n", error[0], error[1]);

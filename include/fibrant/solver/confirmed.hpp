@@ -27,7 +27,7 @@ public:
         int patience =
             6;  ///< verdicts in a row before a larger system is factored, >= 1: Newton's shifts mend what is truly indefinite
         double largest_fill = 2.5e8;  ///< entries of a factor that is allowed (8 bytes each), >= 0
-        double moderate_fill = 2e7;   ///< up to which a doubt is enough: 20,000 unknowns of a weave have 7e6, >= 0
+        double moderate_fill = 2e7;   ///< up to which a doubt is enough: 16,000 unknowns have 7e6 where fibres cross, >= 0
         void validate() const {
             iterative.validate();
             core::require_at_least("Confirmed.small", small, 0);
