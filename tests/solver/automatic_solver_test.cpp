@@ -108,6 +108,29 @@ struct Doubting {
     }
 };
 
+// Says so before it solves, as blocks of single precision do, and solves it all the same.
+struct Prejudiced : solver::TwoLevelPcg {
+    using solver::TwoLevelPcg::TwoLevelPcg;
+    solver::SolveStatus prepare(const auto& system) {
+        solver::TwoLevelPcg::prepare(system);
+        return solver::SolveStatus::indefinite;
+    }
+};
+
+TEST_CASE("what is called indefinite before it is solved is solved, unshifted: factored at once where that costs little") {
+    const test::SyntheticSystem system = touching();
+    const Vector b = test::random_load(system.layout(), 1);
+    Vector x;
+    for (const double moderate : {0.0, 2e7}) {
+        solver::Confirmed<Prejudiced> large{{.small = 0, .patience = 3, .moderate_fill = moderate}};
+        large.analyse(system);
+        CHECK(large.prepare(system) == solver::SolveStatus::converged);
+        CHECK(large.solve(system, b, 1e-9, x).status == solver::SolveStatus::converged);
+        CHECK(test::residual_of(system, b, x) < 1.1e-9);
+        CHECK(large.factored() == (moderate > 0.0));
+    }
+}
+
 TEST_CASE("what iterations call indefinite is factored: it is solved if it is not") {
     const test::SyntheticSystem system = touching();
     const Vector b = test::random_load(system.layout(), 1);

@@ -5,6 +5,7 @@
 #include <fibrant/solver/float_block_cholesky.hpp>
 #include <fibrant/solver/linear_solver.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace fibrant::solver {
@@ -13,6 +14,10 @@ namespace fibrant::solver {
 /// between a few short fibres: no shift of the tangent helps then. A small system is then factored in double precision, and that
 /// says what it is. A larger one is from a number of such verdicts in a row on, and until the next analysis: what it does depends
 /// on what was solved since the last one.
+///
+/// What is said of a larger one before it is solved is a doubt, for blocks of preconditioners are of single precision: it is
+/// factored at once where that costs no more than a long iteration, and else solved all the same. Conjugate gradients meet a
+/// curvature that is not positive in double precision, or none.
 template <class Iterative>
 class Confirmed {
 public:
@@ -22,11 +27,13 @@ public:
         int patience =
             6;  ///< verdicts in a row before a larger system is factored, >= 1: Newton's shifts mend what is truly indefinite
         double largest_fill = 2.5e8;  ///< entries of a factor that is allowed (8 bytes each), >= 0
+        double moderate_fill = 2e7;   ///< up to which a doubt is enough: 16,000 unknowns have 7e6 where fibres cross, >= 0
         void validate() const {
             iterative.validate();
             core::require_at_least("Confirmed.small", small, 0);
             core::require_at_least("Confirmed.patience", patience, 1);
             core::require_not_negative("Confirmed.largest_fill", largest_fill);
+            core::require_not_negative("Confirmed.moderate_fill", moderate_fill);
         }
     };
     Confirmed() : Confirmed(Parameters{}) {}
@@ -36,14 +43,18 @@ public:
     template <assembly::LinearSystem System>
     void analyse(const System& system) {
         iterative_.analyse(system);
-        verdicts_ = 0, factored_ = false;
+        verdicts_ = 0, factored_ = heavy_ = false;
     }
     template <assembly::LinearSystem System>
     SolveStatus prepare(const System& system) {
         if (small(system)) factored_ = false;
         if (factored_) return factor_.prepare(system);
         const SolveStatus status = iterative_.prepare(system);
-        return status == SolveStatus::indefinite && factor_instead(system) ? factor_.prepare(system) : status;
+        if (status != SolveStatus::indefinite) return status;
+        const double most =
+            small(system) ? parameters_.largest_fill : std::min(parameters_.moderate_fill, parameters_.largest_fill);
+        heavy_ = heavy_ || !analysed(system, most);
+        return heavy_ ? SolveStatus::converged : factor_.prepare(system);
     }
     template <assembly::LinearSystem System>
     SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
@@ -66,16 +77,20 @@ private:
     }
     template <class System>
     bool factor_instead(const System& system) {
-        if (!small(system) && ++verdicts_ < parameters_.patience) return false;
+        return (small(system) || ++verdicts_ >= parameters_.patience) && analysed(system, parameters_.largest_fill);
+    }
+    /// @returns whether the system has a factor that is no larger than that
+    template <class System>
+    bool analysed(const System& system, double largest_fill) {
         factor_.analyse(system);
-        return factored_ = static_cast<double>(factor_.fill()) <= parameters_.largest_fill;
+        return factored_ = static_cast<double>(factor_.fill()) <= largest_fill;
     }
 
     Parameters parameters_;
     Iterative iterative_;
     DoubleBlockCholesky factor_;
     int verdicts_ = 0;
-    bool factored_ = false;
+    bool factored_ = false, heavy_ = false;  // the factor of a doubt is too large
 };
 
 }  // namespace fibrant::solver
