@@ -32,6 +32,7 @@ struct Scene {
     bool transverse() const { return fabric.warp.material.transverse.given() || fabric.weft.material.transverse.given(); }
     fibrant::solver::IterationParameters iteration;
     std::string linear_solver = "two_level_pcg";  ///< one of solver::AnySolver
+    int subdomains = 64;                          ///< of runs that ranks share
     Index threads = 0;                            ///< 0: as many as the machine has
     bool paraview = true;                         ///< write the ParaView files
     Index paraview_every = 1;                     ///< increments

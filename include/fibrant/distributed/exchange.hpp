@@ -16,8 +16,8 @@ namespace fibrant::distributed {
 
 /// Who sends how many numbers to whom: partners in rising order, the same in both directions.
 struct Partners {
-    std::vector<int> ranks;            ///< rising, without the own one
-    std::vector<Index> first_sent;     ///< of each partner, and their number
+    std::vector<int> ranks;             ///< rising, without the own one
+    std::vector<Index> first_sent;      ///< of each partner, and their number
     std::vector<Index> first_received;  ///< of each partner, and their number
     Index sent() const noexcept { return first_sent.empty() ? 0 : first_sent.back(); }
     Index received() const noexcept { return first_received.empty() ? 0 : first_received.back(); }

@@ -5,6 +5,7 @@
 #include <fibrant/distributed/exchange.hpp>
 #include <fibrant/distributed/pair_terms.hpp>
 #include <fibrant/distributed/piece_system.hpp>
+#include <fibrant/distributed/routes.hpp>
 #include <fibrant/distributed/subdomains.hpp>
 
 #include <algorithm>
@@ -13,17 +14,6 @@
 #include <vector>
 
 namespace fibrant::distributed {
-
-/// What was sent, by one rank.
-struct Traffic {
-    Index messages = 0, bytes = 0;                   ///< to single partners
-    Index gatherings = 0, gathered_bytes = 0;        ///< of all ranks; bytes that this one gave
-    Traffic& operator+=(const Traffic& other) noexcept {
-        messages += other.messages, bytes += other.bytes;
-        gatherings += other.gatherings, gathered_bytes += other.gathered_bytes;
-        return *this;
-    }
-};
 
 /// Vectors whose values go from the rank that owns them to the ranks that read them.
 class Halo {
@@ -125,11 +115,12 @@ public:
         for (const Index first : in) partners_.first_received.push_back(3 * first);
         const Index own_slots = slots[core::at(rank)];
         std::vector<std::pair<Index, Index>> sources;  // vector, place among own slots and, behind them, what is received
-        for (const Sent& one : sent)  // rising by part
+        for (const Sent& one : sent)                   // rising by part
             if (one.to == rank) sources.emplace_back(one.vector, one.from == rank ? one.slot : own_slots + in[place(one.from)]++);
         std::stable_sort(sources.begin(), sources.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
         for (const auto& [vector, source] : sources) {
-            if (vectors_.empty() || vectors_.back() != vector) vectors_.push_back(vector), first_.push_back(core::count(sources_));
+            if (vectors_.empty() || vectors_.back() != vector)
+                vectors_.push_back(vector), first_.push_back(core::count(sources_));
             sources_.push_back(source);
         }
         first_.push_back(core::count(sources_));
@@ -137,10 +128,9 @@ public:
         own_slots_ = own_slots;
     }
 
-    /// z of own vectors = the sum of weight times what the slots of all parts have.
-    /// @param weight  of each own vector
+    /// z of own vectors = the sum of what the slots of all parts have.
     template <Exchange E>
-    void sum(const E& exchange, const Vector& slots, const std::vector<double>& weight, Vector& z, Traffic& traffic) {
+    void sum(const E& exchange, const Vector& slots, Vector& z, Traffic& traffic) {
         if (exchange.ranks() > 1) {
             for (std::size_t k = 0; k < sent_.size(); ++k)
                 for (std::size_t i = 0; i < 3; ++i) out_[3 * k + i] = slots[3 * sent_[k] + static_cast<Index>(i)];
@@ -159,8 +149,7 @@ public:
                         sum += Vec3(in_[core::at(3 * (source - own_slots_))], in_[core::at(3 * (source - own_slots_) + 1)],
                                     in_[core::at(3 * (source - own_slots_) + 2)]);
                 }
-                const Index v = vectors_[core::at(k)];
-                z.segment<3>(3 * v) = weight[core::at(v)] * sum;
+                z.segment<3>(3 * vectors_[core::at(k)]) = sum;
             },
             core::light_items);
     }

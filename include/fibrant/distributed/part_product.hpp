@@ -27,11 +27,14 @@ public:
         : first_part_{first_part}, runs_(core::at(last_part - first_part)) {
         for (Index c = 0; c < core::count(layout.chains); ++c) {
             const scene::Chain& chain = layout.chains[core::at(c)];
-            const auto owner = [&](Index node) { return cut.owner()[core::at(chain.first_vector + node * chain.vectors_per_node)]; };
+            const auto owner = [&](Index node) {
+                return cut.owner()[core::at(chain.first_vector + node * chain.vectors_per_node)];
+            };
             for (Index a = 0; a < chain.nodes;) {
                 Index last = a;
                 while (last + 1 < chain.nodes && owner(last + 1) == owner(a)) ++last;
-                if (owner(a) >= first_part && owner(a) < last_part) runs_[core::at(owner(a) - first_part)].push_back({c, a, last});
+                if (owner(a) >= first_part && owner(a) < last_part)
+                    runs_[core::at(owner(a) - first_part)].push_back({c, a, last});
                 a = last + 1;
             }
         }
@@ -65,7 +68,12 @@ public:
     }
     void apply(const Vector& x, Vector& y) const {
         core::parallel_for<core::Share::turns>(parts(), [&](Index part) {
-            for (const Run& run : runs(part)) add_band(run, x, y);
+            for (const Run& run : runs(part)) {
+                if (layout_->chains[core::at(run.chain)].vectors_per_node == 3)
+                    add_band<9>(run, x, y);
+                else
+                    add_band<Eigen::Dynamic>(run, x, y);
+            }
             const int own = static_cast<int>(first_part_ + part);
             for (const auto& [k, side] : sides_[core::at(part)]) {
                 const PairTerms::Term term = (*terms_)[k];
@@ -85,19 +93,26 @@ public:
     }
 
 private:
+    /// @tparam Block  m if known when compiled (a director beam), or Eigen::Dynamic
+    template <int Block>
     void add_band(const Run& run, const Vector& x, Vector& y) const {
+        using Part = Eigen::Matrix<double, Block, Block>;
+        using Values = Eigen::Matrix<double, Block, 1>;
         const scene::Chain& chain = layout_->chains[core::at(run.chain)];
         const Matrix& band = (*bands_)[core::at(run.chain)];
-        const Index m = 3 * chain.vectors_per_node, first = 3 * chain.first_vector;
+        const Index m = 3 * chain.vectors_per_node;
+        const auto part = [&](Index a, Index d) {
+            return Eigen::Map<const Part, 0, Eigen::OuterStride<>>(band.data() + a * m + d * m * band.rows(), m, m,
+                                                                   Eigen::OuterStride<>(band.rows()));
+        };
+        const auto values = [&](Index a) { return Eigen::Map<const Values>(x.data() + 3 * chain.first_vector + a * m, m); };
         for (Index a = run.first_node; a <= run.last_node; ++a) {
-            auto row = y.segment(first + a * m, m);
-            row.noalias() = band.block(a * m, 0, m, m).lazyProduct(x.segment(first + a * m, m));
+            Values sum = part(a, 0).lazyProduct(values(a));
             for (Index d = 1; d <= chain.reach; ++d) {
-                if (a >= d) row.noalias() += band.block(a * m, d * m, m, m).lazyProduct(x.segment(first + (a - d) * m, m));
-                if (a + d < chain.nodes)
-                    row.noalias() +=
-                        band.block((a + d) * m, d * m, m, m).transpose().lazyProduct(x.segment(first + (a + d) * m, m));
+                if (a >= d) sum += part(a, d).lazyProduct(values(a - d));
+                if (a + d < chain.nodes) sum += part(a + d, d).transpose().lazyProduct(values(a + d));
             }
+            y.segment(3 * chain.first_vector + a * m, m) = sum;
         }
     }
 

@@ -100,8 +100,8 @@ public:
     void visit_couplings(Terms& terms, Index first, Index last) const {
         for (Index k = first; k < last; ++k) {
             const PairTerms::Term term = (*terms_)[local_[core::at(k)].term];
-            terms.point(assembly::PointTerm{
-                std::span(slots_).subspan(local_[core::at(k)].first, term.vectors.size()), term.weights, term.stiffness});
+            terms.point(assembly::PointTerm{std::span(slots_).subspan(local_[core::at(k)].first, term.vectors.size()),
+                                            term.weights, term.stiffness});
         }
     }
     template <class Terms>

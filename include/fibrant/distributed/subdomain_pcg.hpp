@@ -2,6 +2,7 @@
 #pragma once
 /// @file Conjugate gradients shared by ranks: pieces of chains in subdomains, and the rigid motions of clusters of chains.
 
+#include <fibrant/distributed/chain_joints.hpp>
 #include <fibrant/distributed/halo.hpp>
 #include <fibrant/distributed/part_product.hpp>
 
@@ -27,6 +28,7 @@ struct RankUse {
     double prepare_seconds = 0.0;  ///< all of the preparations
     double sweep_seconds = 0.0;    ///< of the iterations: chains,
     double product_seconds = 0.0;  ///< products,
+    double joint_seconds = 0.0;    ///< joints of chains, their exchange included,
     double coarse_seconds = 0.0;   ///< coarse space, its gathering included,
     double waiting_seconds = 0.0;  ///< other exchanges,
     double whole_seconds = 0.0;    ///< and all
@@ -36,9 +38,9 @@ struct RankUse {
 /// and the whole b, and get the whole x; the work of a solve is divided.
 ///
 /// Two levels, by A-DEF2 of Tang, Nabben, Vuik and Erlangga (Journal of Scientific Computing 39, 2009): z = N r, then z += Q (r -
-/// A z), from x = Q b. N adds up, over the subdomains, the sweeps forth and back over their pieces of chains (ChainSweeps), with
-/// weights of 1 / sqrt(number of pieces) on both sides where pieces share nodes; Q = P (P^T A P)^-1 P^T with P a
-/// RigidCoarseSpace of the whole scene, whose system is gathered and factored by all.
+/// A z), from x = Q b. N adds up the sweeps forth and back of each subdomain over its pieces of chains (ChainSweeps), and the
+/// motions of whole chains that are cut (ChainJoints); Q = P (P^T A P)^-1 P^T with P a RigidCoarseSpace of the whole scene, whose
+/// system is gathered and factored by all.
 ///
 /// The number of subdomains belongs to the scene. Every sum is one of subdomains, added in their order: the bits of x depend on
 /// the system and on that number, not on ranks and threads. A system that is not symmetric is taken as its symmetric part.
@@ -51,6 +53,7 @@ public:
         int fibres_per_cluster = 19;   ///< about, > 0
         int elements_per_station = 2;  ///< along the chains, > 0
         int iteration_limit = 2000;    ///< > 0
+        bool joints = true;            ///< motions of whole chains where they are cut; left out to see what they give
         void validate() const {
             cut.validate();
             core::require_at_least("SubdomainPcg.fibres_per_cluster", fibres_per_cluster, 1);
@@ -86,12 +89,12 @@ private:
         std::vector<Matrix> bands;  // of chains that own parts have pieces of
         PartProduct product;
         SumToOwners to_owners;
+        ChainJoints joints;
         Halo halo;
-        std::vector<Halo::Reader> fixed_readers;      // of pieces and bands
-        std::vector<double> weight;                   // of each vector, 1 / sqrt of its pieces
-        std::vector<std::vector<int>> stations;       // of each part, own or not
-        std::vector<std::vector<int>> places;         // of each own part: place of a station in its list
-        std::vector<Index> station_counts;            // numbers that each rank gives
+        std::vector<Halo::Reader> fixed_readers;  // of pieces and bands
+        std::vector<std::vector<int>> stations;   // of each part, own or not
+        std::vector<std::vector<int>> places;     // of each own part: place of a station in its list
+        std::vector<Index> station_counts;        // numbers that each rank gives
         Vector free, r, z, p, product_of_p, left, slots, moved, station_values;
         std::vector<double> own_values, all_values, sums;
         solver::SolveStatus status = solver::SolveStatus::not_finite;
@@ -186,7 +189,8 @@ void SubdomainPcg<E>::analyse(const System& system) {
     Work& work = *work_;
     const scene::DofLayout& layout = system.layout();
     for (const scene::Chain& chain : layout.chains)
-        if (chain.closed) core::refuse("SubdomainPcg.system", "a closed chain", "of open ones: rings are not shared among ranks yet");
+        if (chain.closed)
+            core::refuse("SubdomainPcg.system", "a closed chain", "of open ones: rings are not shared among ranks yet");
     if (!layout.ties.empty())
         core::refuse("SubdomainPcg.system", "ties of vectors",
                      "without averages and periodic cells: they are not shared among ranks yet");
@@ -196,15 +200,8 @@ void SubdomainPcg<E>::analyse(const System& system) {
     work.sweeps.analyse(work.pieces.layout());
     work.product = PartProduct(layout, work.cut, first_part(), last_part());
     work.to_owners = SumToOwners(rank(), layout, work.runs, work.cut);
+    if (parameters_.joints) work.joints.analyse(layout, work.cut, work.runs, rank());
     work.coarse.analyse(system, parameters_.fibres_per_cluster, parameters_.elements_per_station);
-    std::vector<int> pieces(core::at(layout.vectors()), 0);
-    for (const Piece& piece : work.cut.pieces()) {
-        const scene::Chain& chain = layout.chains[core::at(piece.chain)];
-        const Index first = chain.first_vector + piece.first_node * chain.vectors_per_node;
-        for (Index v = first; v < first + piece.nodes * chain.vectors_per_node; ++v) ++pieces[core::at(v)];
-    }
-    work.weight.clear();
-    for (const int count : pieces) work.weight.push_back(1.0 / std::sqrt(static_cast<double>(count)));
     find_readers(layout);
     find_stations(layout);
     work.use.parts = work.cut.parts(), work.use.coarse_unknowns = 6 * work.coarse.stations();
@@ -340,6 +337,7 @@ solver::SolveStatus SubdomainPcg<E>::prepare(const System& system) {
         }
         work.pieces.take(layout, work.bands, work.terms);
         work.product.take(layout, work.cut, work.bands, work.terms);
+        if (parameters_.joints) work.joints.prepare(exchange_, layout, work.bands, work.use.traffic);
         const solver::SolveStatus coarse = work.coarse.finish(system);
         work.status = std::find(finite.begin(), finite.end(), 0) != finite.end()
                           ? solver::SolveStatus::not_finite
@@ -368,17 +366,14 @@ void SubdomainPcg<E>::smooth(const scene::DofLayout& layout, Vector& r, Vector& 
         Vector& slots = work.slots;
         slots.resize(3 * work.pieces.slots()), work.moved.resize(slots.size());
         core::parallel_for(
-            work.pieces.slots(),
-            [&](Index s) {
-                const Index v = work.pieces.vector()[core::at(s)];
-                slots.segment<3>(3 * s) = work.weight[core::at(v)] * r.segment<3>(3 * v);
-            },
+            work.pieces.slots(), [&](Index s) { slots.segment<3>(3 * s) = r.segment<3>(3 * work.pieces.vector()[core::at(s)]); },
             core::light_items);
         project(work.pieces.layout(), slots);
         work.sweeps.apply(work.pieces.layout(), work.slots, work.moved, [](const Vector&, Vector&) {});
     });
-    timed(work.use.waiting_seconds,
-          [&] { work.to_owners.sum(exchange_, work.moved, work.weight, z, work.use.traffic); });
+    timed(work.use.waiting_seconds, [&] { work.to_owners.sum(exchange_, work.moved, z, work.use.traffic); });
+    if (parameters_.joints)
+        timed(work.use.joint_seconds, [&] { work.joints.add_correction(exchange_, layout, r, z, work.use.traffic); });
     project(layout, z);
 }
 

@@ -65,6 +65,23 @@ public:
     const std::vector<Index>& first_piece() const noexcept { return first_piece_; }
     /// Vectors that each part owns, rising.
     const std::vector<std::vector<Index>>& owned() const noexcept { return owned_; }
+    /// Elements of a chain that are of one part, one behind another.
+    struct Run {
+        int part;
+        Index first_node, last_node;    ///< of the elements: neighbours share a node, unless the chain has no reach
+        Index first_element, elements;  ///< within the chain
+    };
+    std::vector<Run> runs(const scene::DofLayout& layout, Index c) const {
+        const scene::Chain& chain = layout.chains[core::at(c)];
+        std::vector<Run> own;
+        for (Index e = 0; e < elements(chain); ++e) {
+            const int part = part_[core::at(first_element_[core::at(c)] + e)];
+            const auto [first, last] = nodes_of(chain, e, e);
+            if (own.empty() || own.back().part != part) own.push_back({part, first, last, e, 0});
+            own.back().last_node = last, ++own.back().elements;
+        }
+        return own;
+    }
     /// Work of each part, by weight of its elements.
     std::vector<Index> work() const {
         std::vector<Index> sum(core::at(parts_), 0);
@@ -115,8 +132,8 @@ private:
                     if (c == before) continue;
                     before = c;
                     const scene::Chain& chain = layout.chains[core::at(c)];
-                    weight[core::at(first_element[core::at(c)] +
-                                    element_of(chain, places.number(v) / chain.vectors_per_node))] += side_weight;
+                    weight[core::at(first_element[core::at(c)] + element_of(chain, places.number(v) / chain.vectors_per_node))] +=
+                        side_weight;
                 }
             }
         } weigh{system.layout(), assembly::VectorPlaces(system.layout()), first_element_, weight_};
@@ -169,7 +186,8 @@ private:
             const Index own = weight_[core::at(order[k].second)];
             // Each side needs an element a part at least.
             const Index taken = static_cast<Index>(k);
-            if (taken < half || (parts * (2 * sum + own) < 2 * half * whole && core::count(order) - taken > parts - half)) ++split;
+            if (taken < half || (parts * (2 * sum + own) < 2 * half * whole && core::count(order) - taken > parts - half))
+                ++split;
             sum += own;
         }
         bisect(middle, first, split, part, half);
@@ -195,14 +213,11 @@ private:
     void make_pieces(const scene::DofLayout& layout, Index overlap) {
         for (Index c = 0; c < core::count(layout.chains); ++c) {
             const scene::Chain& chain = layout.chains[core::at(c)];
-            const auto part = [&](Index e) { return part_[core::at(first_element_[core::at(c)] + e)]; };
             std::vector<Piece> own;
-            for (Index e = 0; e < elements(chain);) {
-                Index last = e;
-                while (last + 1 < elements(chain) && part(last + 1) == part(e)) ++last;
-                const auto [from, to] = nodes_of(chain, e - overlap, last + overlap);
-                own.push_back({part(e), c, from, to - from + 1});
-                e = last + 1;
+            for (const Run& run : runs(layout, c)) {
+                const Index first = run.first_element;
+                const auto [from, to] = nodes_of(chain, first - overlap, first + run.elements - 1 + overlap);
+                own.push_back({run.part, c, from, to - from + 1});
             }
             std::stable_sort(own.begin(), own.end(), [](const Piece& a, const Piece& b) { return a.part < b.part; });
             for (const Piece& piece : own) {  // runs of one part that meet are one piece

@@ -25,7 +25,8 @@ public:
         std::span<const double> out;
         const Partners* partners = nullptr;
     };
-    /// Shows the others what one has, calls look(shown, of all ranks) once all have come, and lets nobody go before all have looked.
+    /// Shows the others what one has, calls look(shown, of all ranks) once all have come, and lets nobody go before all have
+    /// looked.
     /// @throws std::runtime_error if a rank has failed: there is nothing to wait for
     template <class Look>
     void meet(int rank, const Shown& own, const Look& look) {
@@ -104,7 +105,8 @@ private:
 };
 static_assert(Exchange<ThreadRank>);
 
-/// Calls body(parameters of a ThreadRank) on a thread for each rank, and waits for all. What the first of them throws is thrown here.
+/// Calls body(parameters of a ThreadRank) on a thread for each rank, and waits for all. What the first of them throws is thrown
+/// here.
 /// @param ranks  > 0
 template <class Body>
 void run_on_threads(int ranks, const Body& body) {

@@ -183,7 +183,8 @@ public:
     /// (P^T A P)^-1 of forces and moments at all stations, in their place.
     void solve_stations(Vector& values) { matrix_.solve(values); }
     /// z += P times the values of all stations, of nodes [begin, end) of a chain; held vectors as if they were free.
-    void prolong_to_nodes(const scene::DofLayout& layout, const Vector& values, Index c, Index begin, Index end, Vector& z) const {
+    void prolong_to_nodes(const scene::DofLayout& layout, const Vector& values, Index c, Index begin, Index end,
+                          Vector& z) const {
         const scene::Chain& chain = layout.chains[core::at(c)];
         for (Index a = begin; a < end; ++a) {
             const Index first = chain.first_vector + a * chain.vectors_per_node;
