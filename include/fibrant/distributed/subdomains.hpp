@@ -102,7 +102,7 @@ public:
     static Index first_part(Index parts, int ranks, int rank) noexcept { return parts * rank / ranks; }
 
 private:
-    // A contact costs each of its sides about a sixth of what an element costs, measured on a weave of 608 fibres.
+    // A contact costs each of its sides about a sixth of what an element costs.
     static constexpr Index element_weight = 6, side_weight = 1;
 
     static Index elements(const scene::Chain& chain) noexcept {
