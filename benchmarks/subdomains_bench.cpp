@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What does it cost to cut a recorded system into subdomains, and does the number of ranks change its bits?
-// usage: benchmark_subdomains_bench SYSTEM TOLERANCE PARTS,OVERLAP,RANKS[,JOINTS] ...
-//   JOINTS  0: without the motions of whole chains that are cut; default 1
+// usage: benchmark_subdomains_bench SYSTEM TOLERANCE PARTS,RANKS ...
 //   RANKS  threads that are ranks; 0: one rank without exchange; -1: the ranks of mpirun, where it is built with MPI
 
 #include <fibrant/distributed/cut_report.hpp>
@@ -33,10 +32,10 @@ std::uint64_t fingerprint(const Vector& x) {
 }
 
 template <class E>
-void solve(const solver::SavedSystem& system, double tolerance, const distributed::Subdomains::Parameters& cut, bool joints,
+void solve(const solver::SavedSystem& system, double tolerance, const distributed::Subdomains::Parameters& cut,
            const typename E::Parameters& exchange) {
     typename distributed::SubdomainPcg<E>::Parameters parameters;
-    parameters.cut = cut, parameters.exchange = exchange, parameters.joints = joints;
+    parameters.cut = cut, parameters.exchange = exchange;
     distributed::SubdomainPcg<E> pcg(parameters);
     pcg.analyse(system);
     pcg.prepare(system);
@@ -47,9 +46,9 @@ void solve(const solver::SavedSystem& system, double tolerance, const distribute
     const distributed::RankUse& use = pcg.use();
     const auto each = [&](Index sum) { return static_cast<double>(sum) / static_cast<double>(std::max(report.iterations, 1)); };
     std::printf(
-        "%td,%d,%d,%d,%d,%td,%td,%td,%td,%td,%td,%td,%td,%.3f,%d,%.2e,%.1f,%.0f,%.1f,%.0f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%"
+        "%td,%d,%d,%td,%td,%td,%td,%td,%td,%td,%td,%.3f,%d,%.2e,%.1f,%.0f,%.1f,%.0f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%"
         "016llx\n",
-        cost.parts, cut.overlap, joints ? 1 : 0, pcg.exchange().ranks(), core::threads(), cost.terms, cost.cut_terms,
+        cost.parts, pcg.exchange().ranks(), core::threads(), cost.terms, cost.cut_terms,
         cost.cut_elements, cost.most_nodes, cost.most_halo_nodes, cost.most_terms, cost.most_halo_terms, cost.most_neighbours,
         cost.imbalance, report.status == solver::SolveStatus::converged ? report.iterations : -1, report.residual,
         each(use.traffic.messages), each(use.traffic.bytes), each(use.traffic.gatherings), each(use.traffic.gathered_bytes),
@@ -68,29 +67,29 @@ int main(int argc, char** argv) {
     const bool first = true;
 #endif
     if (argc < 4) {
-        std::fprintf(stderr, "usage: %s SYSTEM TOLERANCE PARTS,OVERLAP,RANKS[,JOINTS] ...\n", argv[0]);
+        std::fprintf(stderr, "usage: %s SYSTEM TOLERANCE PARTS,RANKS ...\n", argv[0]);
         return 2;
     }
     const solver::SavedSystem system{std::filesystem::path(argv[1])};
     const double tolerance = std::atof(argv[2]);
     if (first)
         std::printf(
-            "parts,overlap,joints,ranks,threads,terms,cut_terms,cut_elements,nodes,halo_nodes,own_terms,halo_terms,neighbours,"
+            "parts,ranks,threads,terms,cut_terms,cut_elements,nodes,halo_nodes,own_terms,halo_terms,neighbours,"
             "imbalance,iterations,residual,messages,bytes,gatherings,gathered_bytes,prepare_seconds,solve_seconds,"
             "sweep_seconds,joint_seconds,product_seconds,coarse_seconds,waiting_seconds,bits\n");
     for (int k = 3; k < argc; ++k) {
         distributed::Subdomains::Parameters cut;
-        int ranks = 0, joints = 1;
-        if (std::sscanf(argv[k], "%d,%d,%d,%d", &cut.parts, &cut.overlap, &ranks, &joints) < 3) return 2;
+        int ranks = 0;
+        if (std::sscanf(argv[k], "%d,%d", &cut.parts, &ranks) != 2) return 2;
         if (ranks > 0)
             distributed::run_on_threads(ranks, [&](const distributed::ThreadRank::Parameters& own) {
-                solve<distributed::ThreadRank>(system, tolerance, cut, joints != 0, own);
+                solve<distributed::ThreadRank>(system, tolerance, cut, own);
             });
         else if (ranks == 0)
-            solve<distributed::OneRank>(system, tolerance, cut, joints != 0, {});
+            solve<distributed::OneRank>(system, tolerance, cut, {});
 #ifdef FIBRANT_WITH_MPI
         else
-            solve<distributed::MpiExchange>(system, tolerance, cut, joints != 0, {});
+            solve<distributed::MpiExchange>(system, tolerance, cut, {});
 #endif
     }
 #ifdef FIBRANT_WITH_MPI

@@ -69,11 +69,11 @@ TEST_CASE("a rank that fails ends all of them, and says why") {
                          "no more room", std::domain_error);
 }
 
-TEST_CASE("parts share the work evenly, and every vector has one owner among those who work on it") {
+TEST_CASE("parts share the work evenly, and every node has one owner, who works on it or joins it to another part") {
     const test::FabricSystem system(fabric);
     const scene::DofLayout& layout = system.layout();
     for (const int parts : {1, 7, 32}) {
-        const distributed::Subdomains cut(system, {.parts = parts, .overlap = 1});
+        const distributed::Subdomains cut(system, {.parts = parts});
         CHECK(cut.parts() == parts);
         std::vector<int> owners(core::at(layout.vectors()), 0);
         for (const auto& own : cut.owned())
@@ -81,26 +81,35 @@ TEST_CASE("parts share the work evenly, and every vector has one owner among tho
         CHECK(std::all_of(owners.begin(), owners.end(), [](int n) { return n == 1; }));
         const std::vector<Index> work = cut.work();
         CHECK(*std::max_element(work.begin(), work.end()) <= 1.3 * *std::min_element(work.begin(), work.end()));
-        for (const distributed::Piece& piece : cut.pieces()) {  // an element beyond its own elements, where the chain goes on
+        std::vector<int> worked_on(core::at(layout.vectors()), 0);
+        for (const distributed::Piece& piece : cut.pieces()) {
             const scene::Chain& chain = layout.chains[core::at(piece.chain)];
-            const auto owner = [&](Index a) { return cut.owner()[core::at(chain.first_vector + a * chain.vectors_per_node)]; };
-            if (piece.first_node > 0) CHECK(owner(piece.first_node) != piece.part);
-            Index own = 0;
-            for (Index a = piece.first_node; a < piece.first_node + piece.nodes; ++a) own += owner(a) == piece.part;
-            CHECK(own > 0);
+            for (Index a = piece.first_node; a < piece.first_node + piece.nodes; ++a) {
+                const Index v = chain.first_vector + a * chain.vectors_per_node;
+                CHECK(cut.owner()[core::at(v)] == piece.part);
+                ++worked_on[core::at(v)];
+            }
         }
+        Index joints = 0;  // once each, and what is in no piece is where two parts meet
+        for (const scene::Chain& chain : layout.chains)
+            for (Index a = 0; a < chain.nodes; ++a) {
+                const int times = worked_on[core::at(chain.first_vector + a * chain.vectors_per_node)];
+                CHECK(times <= 1);
+                joints += times == 0;
+            }
+        CHECK(joints == cut.cut_elements(layout));
         const distributed::CutReport report = distributed::report_cut(system, cut);
         CHECK(report.terms == system.contacts());
         CHECK((parts > 1) == (report.cut_terms > 0));
         CHECK((parts > 1) == (report.most_neighbours > 0));
     }
-    CHECK(distributed::Subdomains(test::FabricSystem({.bundles = 1, .parallel = true, .fibres = 2, .elements = 3}), {4096, 1})
+    CHECK(distributed::Subdomains(test::FabricSystem({.bundles = 1, .parallel = true, .fibres = 2, .elements = 3}), {4096})
               .parts() == 6);  // no more than there are elements
 }
 
 TEST_CASE("the bits of a solution depend on the subdomains, not on ranks or threads") {
     const test::FabricSystem system(fabric);
-    const distributed::Subdomains::Parameters cut{.parts = 8, .overlap = 1};
+    const distributed::Subdomains::Parameters cut{.parts = 8};
     const Solved alone = solve<distributed::OneRank>(system, cut, 1e-6);
     REQUIRE(alone.report.status == solver::SolveStatus::converged);
     for (const int ranks : {1, 2, 3, 4}) {
@@ -114,7 +123,7 @@ TEST_CASE("the bits of a solution depend on the subdomains, not on ranks or thre
             CHECK(shared.report.curvature == alone.report.curvature);
         });
     }
-    CHECK(solve<distributed::OneRank>(system, {.parts = 9, .overlap = 1}, 1e-6).x != alone.x);
+    CHECK(solve<distributed::OneRank>(system, {.parts = 9}, 1e-6).x != alone.x);
 }
 
 TEST_CASE("the solution is that of the whole system, however many subdomains, with little more iterations") {
@@ -123,7 +132,7 @@ TEST_CASE("the solution is that of the whole system, however many subdomains, wi
     Vector left(b.size());
     int whole = 0;
     for (const int parts : {1, 4, 16, 64}) {
-        const Solved solved = solve<distributed::OneRank>(system, {.parts = parts, .overlap = 1}, 1e-8);
+        const Solved solved = solve<distributed::OneRank>(system, {.parts = parts}, 1e-8);
         REQUIRE(solved.report.status == solver::SolveStatus::converged);
         system.apply(solved.x, left);
         left = b - left;
@@ -143,7 +152,7 @@ TEST_CASE("held vectors keep what they are told, in whole or in part, on any num
                                  .seed = seed});
         Vector b(system.layout().unknowns()), left(b.size());
         for (Index k = 0; k < b.size(); ++k) b[k] = 0.001 * static_cast<double>((7919 * k) % 1000) - 0.5;
-        distributed::SubdomainPcg<> alone({.cut = {.parts = 6, .overlap = 1}});
+        distributed::SubdomainPcg<> alone({.cut = {.parts = 6}});
         alone.analyse(system);
         try {
             alone.prepare(system);
@@ -158,7 +167,7 @@ TEST_CASE("held vectors keep what they are told, in whole or in part, on any num
         left = b - left;
         CHECK(solver::scaled_norm(system.layout(), left) <= 1.001e-8 * solver::scaled_norm(system.layout(), b));
         distributed::run_on_threads(3, [&](const auto& own) {
-            distributed::SubdomainPcg<distributed::ThreadRank> shared({.cut = {.parts = 6, .overlap = 1}, .exchange = own});
+            distributed::SubdomainPcg<distributed::ThreadRank> shared({.cut = {.parts = 6}, .exchange = own});
             Vector same;
             shared.analyse(system);
             shared.prepare(system);
@@ -191,7 +200,6 @@ TEST_CASE("what ranks cannot share yet is refused by name") {
     CHECK(test::refusal([&] { Pcg().analyse(closed); }).starts_with("SubdomainPcg.system"));
     CHECK(test::refusal([] { Pcg({.cut = {.parts = 0}}); }).starts_with("Subdomains.parts"));
     CHECK(test::refusal([] { Pcg({.cut = {.parts = 4097}}); }).starts_with("Subdomains.parts"));
-    CHECK(test::refusal([] { Pcg({.cut = {.overlap = -1}}); }).starts_with("Subdomains.overlap"));
 }
 
 }  // namespace subdomain_pcg_test

@@ -36,7 +36,7 @@ public:
         for (Index c = 0; c < core::count(layout.chains); ++c) {
             const scene::Chain& chain = layout.chains[core::at(c)];
             const std::vector<Subdomains::Run> parts = cut.runs(layout, c);
-            if (parts.size() < 2) continue;
+            if (parts.size() < 2 || chain.reach == 0) continue;
             const auto owner = [&](Index node) {
                 return cut.owner()[core::at(chain.first_vector + node * chain.vectors_per_node)];
             };

@@ -55,13 +55,13 @@ CutReport report_cut(const System& system, const Subdomains& cut) {
             for (const std::int32_t v : vectors)
                 if (owner[core::at(v)] != part) read.emplace_back(part, node_of(v));
     }
-    for (const Piece& piece : cut.pieces()) {
-        const scene::Chain& chain = layout.chains[core::at(piece.chain)];
-        for (Index a = piece.first_node; a < piece.first_node + piece.nodes; ++a) {
-            const Index v = chain.first_vector + a * chain.vectors_per_node;
-            if (owner[core::at(v)] != piece.part) read.emplace_back(piece.part, v);
-        }
-    }
+    for (const scene::Chain& chain : layout.chains)
+        for (Index a = 0; a < chain.nodes; ++a)
+            for (Index b = std::max<Index>(0, a - chain.reach); b <= std::min(chain.nodes - 1, a + chain.reach); ++b) {
+                const Index v = chain.first_vector + b * chain.vectors_per_node;
+                const int part = owner[core::at(chain.first_vector + a * chain.vectors_per_node)];
+                if (owner[core::at(v)] != part) read.emplace_back(part, v);
+            }
     std::sort(read.begin(), read.end());
     read.erase(std::unique(read.begin(), read.end()), read.end());
     auto from = read.begin();

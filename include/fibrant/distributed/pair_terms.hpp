@@ -38,7 +38,21 @@ public:
     }
     void clear() {
         first_.assign(1, 0);
+        usual_count_ = 0, usual_stride_ = 1;
         vectors_.clear(), weights_.clear(), split_.clear(), stiffness_.clear();
+    }
+
+    /// Vectors of a particle of the first term of the system, whether it is kept or not, and the step from one to the next: as
+    /// those of most terms. 0 if there is none.
+    Index usual_count() const noexcept { return usual_count_; }
+    Index usual_stride() const noexcept { return usual_stride_; }
+    /// Whether both particles of a term have as many vectors, with such steps.
+    bool usual(const Term& term) const noexcept {
+        if (core::count(term.vectors) != 2 * usual_count_ || core::count(term.side(0)) != usual_count_) return false;
+        for (std::size_t side = 0; side < 2; ++side)
+            for (std::size_t k = 1; k < term.side(side).size(); ++k)
+                if (term.side(side)[k] - term.side(side)[k - 1] != usual_stride_) return false;
+        return true;
     }
 
     /// Takes the terms of a system in their order: all, or those that `wanted(vectors)` is true of.
@@ -77,6 +91,10 @@ public:
                 if (!pair && !in_band(term.vectors))
                     core::refuse("PairTerms.system", "a system with terms of one chain far apart, or of three",
                                  "one of contacts between two chains: a fibre that touches itself is not shared among ranks yet");
+                if (pair && own.usual_count_ == 0) {
+                    own.usual_count_ = split - begin;
+                    own.usual_stride_ = own.usual_count_ > 1 ? term.vectors[1] - term.vectors[0] : 1;
+                }
                 if (!pair || !wanted(term.vectors)) return;
                 for (const Index v : term.vectors) own.vectors_.push_back(static_cast<std::int32_t>(v));
                 own.weights_.insert(own.weights_.end(), term.weights.begin(), term.weights.end());
@@ -89,6 +107,7 @@ public:
     }
 
 private:
+    Index usual_count_ = 0, usual_stride_ = 1;
     std::vector<Index> first_{0};
     std::vector<std::int32_t> vectors_;
     std::vector<double> weights_;

@@ -10,14 +10,13 @@
 
 #include <algorithm>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace fibrant::distributed {
 
-/// The pieces of parts [first, last) as chains, with the terms that lie within one part as couplings. Nodes that pieces of
-/// several parts share are there several times: their vectors have numbers of their own, `slots`. The band of a piece is that of
-/// its chain, so what it is coupled with beyond it counts as held.
+/// The pieces of parts [first, last) as chains, with the terms between two pieces of a part as couplings. Vectors have numbers of
+/// their own, `slots`. The band of a piece is that of its chain, so what it is coupled with beyond it counts as held; of a
+/// particle that stands on a joint, too, a piece has its share.
 class PieceSystem {
 public:
     /// Numbers the slots; takes no values.
@@ -27,28 +26,24 @@ public:
         layout_ = {};
         layout_.unit_length = whole.unit_length, layout_.unit_stiffness = whole.unit_stiffness;
         vector_.clear();
-        first_slot_.assign(1, 0);
         for (const Piece& piece : pieces_) {
             const scene::Chain& chain = whole.chains[core::at(piece.chain)];
-            while (core::count(first_slot_) <= piece.part - first_part) first_slot_.push_back(core::count(vector_));
             layout_.chains.push_back({core::count(vector_), piece.nodes, chain.vectors_per_node,
                                       std::min(chain.reach, piece.nodes - 1), piece.part, false});
             const Index first = chain.first_vector + piece.first_node * chain.vectors_per_node;
             for (Index v = first; v < first + piece.nodes * chain.vectors_per_node; ++v) vector_.push_back(v);
         }
-        while (core::count(first_slot_) <= last_part - first_part) first_slot_.push_back(core::count(vector_));
         for (const Index v : vector_) {
             layout_.kind.push_back(whole.kind[core::at(v)]);
             layout_.value.push_back(whole.value[core::at(v)]);
             layout_.length.push_back(whole.length[core::at(v)]);
         }
-        std::vector<std::pair<Index, Index>> order;  // vector, slot
-        for (Index s = 0; s < core::count(vector_); ++s) order.emplace_back(vector_[core::at(s)], s);
-        std::sort(order.begin(), order.end());
-        first_of_.assign(core::at(whole.vectors() + 1), 0);
-        slot_of_.clear();
-        for (const auto& [vector, slot] : order) ++first_of_[core::at(vector + 1)], slot_of_.push_back(slot);
-        for (std::size_t v = 1; v < first_of_.size(); ++v) first_of_[v] += first_of_[v - 1];
+        slot_of_.assign(core::at(whole.vectors()), -1);
+        for (Index s = 0; s < core::count(vector_); ++s) slot_of_[core::at(vector_[core::at(s)])] = s;
+        piece_of_.clear();
+        for (Index p = 0; p < core::count(pieces_); ++p)
+            piece_of_.insert(piece_of_.end(), core::at(layout_.chains[core::at(p)].nodes * layout_.chains[core::at(p)].vectors_per_node),
+                             p);
     }
 
     /// Takes the values: bands of all chains that have pieces here, and the terms within parts.
@@ -58,27 +53,17 @@ public:
         bands_ = &bands;
         layout_.held.clear();
         for (const scene::HeldVector& held : whole.held)
-            for (const Index slot : slots(held.vector)) layout_.held.push_back({slot, held.free});
+            if (slot_of_[core::at(held.vector)] >= 0) layout_.held.push_back({slot_of_[core::at(held.vector)], held.free});
         std::sort(layout_.held.begin(), layout_.held.end(), [](const auto& a, const auto& b) { return a.vector < b.vector; });
         terms_ = &terms;
-        local_.clear(), slots_.clear();
-        for (Index k = 0; k < terms.size(); ++k)
-            for (const Index slot : slots(terms[k].vectors.front())) add(k, terms[k].vectors, part_of(slot));
+        local_.clear(), slots_.clear(), weights_.clear();
+        for (Index k = 0; k < terms.size(); ++k) add(k);
         std::stable_sort(local_.begin(), local_.end(), [](const Local& a, const Local& b) { return a.part < b.part; });
     }
 
     Index slots() const noexcept { return core::count(vector_); }
-    /// Slots of a part of this system, from 0.
-    std::pair<Index, Index> slots_of_part(Index part) const noexcept {
-        return {first_slot_[core::at(part)], first_slot_[core::at(part + 1)]};
-    }
     /// Vector of each slot.
     const std::vector<Index>& vector() const noexcept { return vector_; }
-    /// Slots of a vector, rising by part.
-    std::span<const Index> slots(Index vector) const noexcept {
-        return std::span(slot_of_).subspan(core::at(first_of_[core::at(vector)]),
-                                           core::at(first_of_[core::at(vector + 1)] - first_of_[core::at(vector)]));
-    }
     const std::vector<Piece>& pieces() const noexcept { return pieces_; }
 
     const scene::DofLayout& layout() const noexcept { return layout_; }
@@ -100,8 +85,9 @@ public:
     void visit_couplings(Terms& terms, Index first, Index last) const {
         for (Index k = first; k < last; ++k) {
             const PairTerms::Term term = (*terms_)[local_[core::at(k)].term];
-            terms.point(assembly::PointTerm{std::span(slots_).subspan(local_[core::at(k)].first, term.vectors.size()),
-                                            term.weights, term.stiffness});
+            const std::size_t begin = local_[core::at(k)].first, count = term.vectors.size();
+            terms.point(assembly::PointTerm{std::span(slots_).subspan(begin, count), std::span(weights_).subspan(begin, count),
+                                            term.stiffness});
         }
     }
     template <class Terms>
@@ -117,32 +103,55 @@ public:
 
 private:
     struct Local {
-        Index part, term;
+        int part;
+        Index term;
         std::size_t first;  // of its slots
     };
-    Index part_of(Index slot) const noexcept {
-        return std::upper_bound(first_slot_.begin(), first_slot_.end(), slot) - first_slot_.begin() - 1;
-    }
-    /// Keeps a term of a part that has all of its vectors.
-    void add(Index term, std::span<const std::int32_t> vectors, Index part) {
+    /// Keeps a term between two pieces of a part. Vectors of a particle that its piece does not have are replaced by others of the
+    /// piece, without weight: all terms have as many.
+    void add(Index k) {
+        const PairTerms::Term term = (*terms_)[k];
+        if (!terms_->usual(term)) return;  // ChainCouplings leaves them out as well, but by those that come first here
         const std::size_t begin = slots_.size();
-        const Index first = first_slot_[core::at(part)], last = first_slot_[core::at(part + 1)];
-        for (const std::int32_t v : vectors) {
-            const auto of = slots(v);
-            const auto own = std::find_if(of.begin(), of.end(), [&](Index slot) { return slot >= first && slot < last; });
-            if (own == of.end()) return slots_.resize(begin);
-            slots_.push_back(*own);
+        const Index count = terms_->usual_count(), stride = terms_->usual_stride();
+        int part = -1;
+        for (std::size_t side = 0; side < 2; ++side) {
+            const auto vectors = term.side(side);
+            const auto weights = term.weights_of(side);
+            const auto known = std::find_if(vectors.begin(), vectors.end(),
+                                            [&](std::int32_t v) { return slot_of_[core::at(v)] >= 0; });
+            const auto drop = [&] { slots_.resize(begin), weights_.resize(begin); };
+            if (known == vectors.end()) return drop();
+            const Index piece = piece_of_[core::at(slot_of_[core::at(*known)])];
+            const scene::Chain& chain = layout_.chains[core::at(piece)];
+            const Index end = chain.first_vector + chain.nodes * chain.vectors_per_node;
+            if (part >= 0 && part != pieces_[core::at(piece)].part) return drop();
+            part = pieces_[core::at(piece)].part;
+            // Where the particle would begin, moved by whole nodes to where the piece has all of its vectors.
+            Index first = slot_of_[core::at(*known)] - (known - vectors.begin()) * stride;
+            while (first < chain.first_vector) first += chain.vectors_per_node;
+            while (first + (count - 1) * stride >= end) first -= chain.vectors_per_node;
+            if (first < chain.first_vector) return drop();
+            const std::size_t at = slots_.size();
+            for (Index i = 0; i < count; ++i) slots_.push_back(first + i * stride), weights_.push_back(0.0);
+            for (std::size_t i = 0; i < vectors.size(); ++i) {
+                const Index slot = slot_of_[core::at(vectors[i])];
+                if (slot < 0 || piece_of_[core::at(slot)] != piece) continue;
+                if ((slot - first) % stride != 0) return drop();
+                weights_[at + core::at((slot - first) / stride)] = weights[i];
+            }
         }
-        local_.push_back({part, term, begin});
+        local_.push_back({part, k, begin});
     }
 
     std::vector<Piece> pieces_;
     scene::DofLayout layout_;
-    std::vector<Index> vector_, first_slot_, first_of_, slot_of_;
+    std::vector<Index> vector_, slot_of_, piece_of_;  // of each slot; of each vector, or -1; of each slot
     const std::vector<Matrix>* bands_ = nullptr;
     const PairTerms* terms_ = nullptr;
     std::vector<Local> local_;
     std::vector<Index> slots_;
+    std::vector<double> weights_;
 };
 static_assert(assembly::LinearSystem<PieceSystem>);
 

@@ -5,6 +5,7 @@
 #include <fibrant/distributed/chain_joints.hpp>
 #include <fibrant/distributed/halo.hpp>
 #include <fibrant/distributed/part_product.hpp>
+#include <fibrant/distributed/piece_system.hpp>
 
 #include <fibrant/core/stage_clock.hpp>
 #include <fibrant/solver/chain_sweeps.hpp>
@@ -53,7 +54,6 @@ public:
         int fibres_per_cluster = 19;   ///< about, > 0
         int elements_per_station = 2;  ///< along the chains, > 0
         int iteration_limit = 2000;    ///< > 0
-        bool joints = true;            ///< motions of whole chains where they are cut; left out to see what they give
         void validate() const {
             cut.validate();
             core::require_at_least("SubdomainPcg.fibres_per_cluster", fibres_per_cluster, 1);
@@ -86,12 +86,11 @@ private:
         solver::ChainSweeps sweeps;
         solver::RigidCoarseSpace<> coarse;
         PairTerms terms;
-        std::vector<Matrix> bands;  // of chains that own parts have pieces of
+        std::vector<Matrix> bands;  // of chains that own parts have elements of
         PartProduct product;
-        SumToOwners to_owners;
         ChainJoints joints;
         Halo halo;
-        std::vector<Halo::Reader> fixed_readers;  // of pieces and bands
+        std::vector<Halo::Reader> fixed_readers;  // of bands
         std::vector<std::vector<int>> stations;   // of each part, own or not
         std::vector<std::vector<int>> places;     // of each own part: place of a station in its list
         std::vector<Index> station_counts;        // numbers that each rank gives
@@ -158,7 +157,7 @@ private:
     }
     void find_readers(const scene::DofLayout& layout);
     void find_stations(const scene::DofLayout& layout);
-    void smooth(const scene::DofLayout& layout, Vector& r, Vector& z);
+    void smooth(const scene::DofLayout& layout, const Vector& r, Vector& z);
     void add_coarse(const scene::DofLayout& layout, const Vector& r, Vector& z);
     static void project(const scene::DofLayout& layout, Vector& z) {
         for (const scene::HeldVector& held : layout.held)
@@ -199,27 +198,19 @@ void SubdomainPcg<E>::analyse(const System& system) {
     work.pieces.analyse(layout, work.cut, first_part(), last_part());
     work.sweeps.analyse(work.pieces.layout());
     work.product = PartProduct(layout, work.cut, first_part(), last_part());
-    work.to_owners = SumToOwners(rank(), layout, work.runs, work.cut);
-    if (parameters_.joints) work.joints.analyse(layout, work.cut, work.runs, rank());
+    work.joints.analyse(layout, work.cut, work.runs, rank());
     work.coarse.analyse(system, parameters_.fibres_per_cluster, parameters_.elements_per_station);
     find_readers(layout);
     find_stations(layout);
     work.use.parts = work.cut.parts(), work.use.coarse_unknowns = 6 * work.coarse.stations();
 }
 
-/// Who reads the vectors of pieces and of bands, whatever touches.
+/// Who reads vectors because of bands, whatever touches.
 template <Exchange E>
 void SubdomainPcg<E>::find_readers(const scene::DofLayout& layout) {
     Work& work = *work_;
     const auto rank_of = [&](Index v) { return work.runs.rank_of(work.cut.owner()[core::at(v)]); };
     work.fixed_readers.clear();
-    for (const Piece& piece : work.cut.pieces()) {
-        const int reader = work.runs.rank_of(piece.part);
-        const scene::Chain& chain = layout.chains[core::at(piece.chain)];
-        const Index first = chain.first_vector + piece.first_node * chain.vectors_per_node;
-        for (Index v = first; v < first + piece.nodes * chain.vectors_per_node; ++v)
-            if (rank_of(v) != reader) work.fixed_readers.emplace_back(reader, v);
-    }
     for (const scene::Chain& chain : layout.chains)
         for (Index a = 0; a < chain.nodes; ++a)
             for (Index b = std::max<Index>(0, a - chain.reach); b <= std::min(chain.nodes - 1, a + chain.reach); ++b) {
@@ -278,7 +269,7 @@ solver::SolveStatus SubdomainPcg<E>::prepare(const System& system) {
             const int first = rank_of(vectors.front());
             for (const Index v : vectors) {
                 const int rank_here = rank_of(v);
-                own = own || rank_here == rank() || !work.pieces.slots(v).empty();
+                own = own || rank_here == rank();
                 shared = shared || rank_here != first;
             }
             if (shared)
@@ -292,7 +283,9 @@ solver::SolveStatus SubdomainPcg<E>::prepare(const System& system) {
         // Bands: of own pieces for the sweeps, and of a share of all chains for the coarse space.
         work.bands.resize(layout.chains.size());
         std::vector<char> needed(layout.chains.size(), 0), here(layout.chains.size(), 0);
-        for (const Piece& piece : work.pieces.pieces()) needed[core::at(piece.chain)] = 1;
+        for (Index c = 0; c < core::count(layout.chains); ++c)
+            for (const Subdomains::Run& run : work.cut.runs(layout, c))
+                if (run.part >= first_part() && run.part < last_part()) needed[core::at(c)] = 1;
         const BlockRuns chains(core::count(layout.chains), exchange_.ranks());
         for (Index c = chains.first(rank()); c < chains.first(rank() + 1); ++c) here[core::at(c)] = 1;
         const assembly::HeldProjector held(layout);
@@ -337,7 +330,7 @@ solver::SolveStatus SubdomainPcg<E>::prepare(const System& system) {
         }
         work.pieces.take(layout, work.bands, work.terms);
         work.product.take(layout, work.cut, work.bands, work.terms);
-        if (parameters_.joints) work.joints.prepare(exchange_, layout, work.bands, work.use.traffic);
+        work.joints.prepare(exchange_, layout, work.bands, work.use.traffic);
         const solver::SolveStatus coarse = work.coarse.finish(system);
         work.status = std::find(finite.begin(), finite.end(), 0) != finite.end()
                           ? solver::SolveStatus::not_finite
@@ -357,11 +350,9 @@ static_assert(solver::SolveStatus::converged < solver::SolveStatus::indefinite &
               solver::SolveStatus::indefinite < solver::SolveStatus::not_finite);
 
 /// z = N r in own vectors.
-/// @param r  in own vectors; is refreshed
 template <Exchange E>
-void SubdomainPcg<E>::smooth(const scene::DofLayout& layout, Vector& r, Vector& z) {
+void SubdomainPcg<E>::smooth(const scene::DofLayout& layout, const Vector& r, Vector& z) {
     Work& work = *work_;
-    refresh(r);
     timed(work.use.sweep_seconds, [&] {
         Vector& slots = work.slots;
         slots.resize(3 * work.pieces.slots()), work.moved.resize(slots.size());
@@ -371,9 +362,12 @@ void SubdomainPcg<E>::smooth(const scene::DofLayout& layout, Vector& r, Vector& 
         project(work.pieces.layout(), slots);
         work.sweeps.apply(work.pieces.layout(), work.slots, work.moved, [](const Vector&, Vector&) {});
     });
-    timed(work.use.waiting_seconds, [&] { work.to_owners.sum(exchange_, work.moved, z, work.use.traffic); });
-    if (parameters_.joints)
-        timed(work.use.joint_seconds, [&] { work.joints.add_correction(exchange_, layout, r, z, work.use.traffic); });
+    for_owned([&](Index k) { z.segment<3>(k).setZero(); });
+    const Vector& moved = work.moved;
+    core::parallel_for(
+        work.pieces.slots(), [&](Index s) { z.segment<3>(3 * work.pieces.vector()[core::at(s)]) = moved.segment<3>(3 * s); },
+        core::light_items);
+    timed(work.use.joint_seconds, [&] { work.joints.add_correction(exchange_, layout, r, z, work.use.traffic); });
     project(layout, z);
 }
 

@@ -26,17 +26,14 @@ struct Piece {
 ///
 /// An element is a run of `reach` nodes of a chain and the next one; a chain without reach has an element a node. Elements weigh
 /// what their own stiffness costs and what the contacts on them cost. A node belongs to the lowest part among its elements; a
-/// term to the part that owns its first vector. The pieces of a part are its elements with all their nodes and `overlap`
-/// elements more at both ends: they may share nodes with pieces of other parts. The cut depends on the system alone, not on who
-/// works on the parts.
+/// term to the part that owns its first vector. Where two parts meet in a chain its node is a joint, and the pieces of a part are
+/// the nodes of its elements but joints. The cut depends on the system alone, not on who works on the parts.
 class Subdomains {
 public:
     struct Parameters {
-        int parts = 64;   ///< subdomains, in [1, 4096]; no more than there are elements are made
-        int overlap = 1;  ///< elements that pieces reach beyond their own, in [0, 8]
+        int parts = 64;  ///< subdomains, in [1, 4096]; no more than there are elements are made
         void validate() const {
             core::require(parts >= 1 && parts <= 4096, "Subdomains.parts", parts, "in [1, 4096]");
-            core::require(overlap >= 0 && overlap <= 8, "Subdomains.overlap", overlap, "in [0, 8]");
         }
     };
 
@@ -54,7 +51,7 @@ public:
         weigh_terms(system);
         cut(layout, parameters.parts);
         own(layout);
-        make_pieces(layout, parameters.overlap);
+        make_pieces(layout);
     }
 
     Index parts() const noexcept { return parts_; }
@@ -210,23 +207,14 @@ private:
         owned_.assign(core::at(parts_), {});
         for (Index v = 0; v < layout.vectors(); ++v) owned_[core::at(owner_[core::at(v)])].push_back(v);
     }
-    void make_pieces(const scene::DofLayout& layout, Index overlap) {
+    void make_pieces(const scene::DofLayout& layout) {
         for (Index c = 0; c < core::count(layout.chains); ++c) {
             const scene::Chain& chain = layout.chains[core::at(c)];
-            std::vector<Piece> own;
             for (const Run& run : runs(layout, c)) {
-                const Index first = run.first_element;
-                const auto [from, to] = nodes_of(chain, first - overlap, first + run.elements - 1 + overlap);
-                own.push_back({run.part, c, from, to - from + 1});
-            }
-            std::stable_sort(own.begin(), own.end(), [](const Piece& a, const Piece& b) { return a.part < b.part; });
-            for (const Piece& piece : own) {  // runs of one part that meet are one piece
-                Piece* before = pieces_.empty() ? nullptr : &pieces_.back();
-                if (before != nullptr && before->chain == c && before->part == piece.part &&
-                    piece.first_node <= before->first_node + before->nodes)
-                    before->nodes = std::max(before->nodes, piece.first_node + piece.nodes - before->first_node);
-                else
-                    pieces_.push_back(piece);
+                const bool left = chain.reach > 0 && run.first_element > 0;
+                const bool right = chain.reach > 0 && run.first_element + run.elements < elements(chain);
+                const Index first = run.first_node + (left ? 1 : 0), nodes = run.last_node - (right ? 1 : 0) - first + 1;
+                if (nodes > 0) pieces_.push_back({run.part, c, first, nodes});
             }
         }
         std::stable_sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) { return a.part < b.part; });
