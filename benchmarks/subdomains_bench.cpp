@@ -48,12 +48,12 @@ void solve(const solver::SavedSystem& system, double tolerance, const distribute
     std::printf(
         "%td,%d,%d,%td,%td,%td,%td,%td,%td,%td,%td,%.3f,%d,%.2e,%.1f,%.0f,%.1f,%.0f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%"
         "016llx\n",
-        cost.parts, pcg.exchange().ranks(), core::threads(), cost.terms, cost.cut_terms,
-        cost.cut_elements, cost.most_nodes, cost.most_halo_nodes, cost.most_terms, cost.most_halo_terms, cost.most_neighbours,
-        cost.imbalance, report.status == solver::SolveStatus::converged ? report.iterations : -1, report.residual,
-        each(use.traffic.messages), each(use.traffic.bytes), each(use.traffic.gatherings), each(use.traffic.gathered_bytes),
-        use.prepare_seconds, use.whole_seconds, use.sweep_seconds, use.joint_seconds, use.product_seconds, use.coarse_seconds,
-        use.waiting_seconds, static_cast<unsigned long long>(fingerprint(x)));
+        cost.parts, pcg.exchange().ranks(), core::threads(), cost.terms, cost.cut_terms, cost.cut_elements, cost.most_nodes,
+        cost.most_halo_nodes, cost.most_terms, cost.most_halo_terms, cost.most_neighbours, cost.imbalance,
+        report.status == solver::SolveStatus::converged ? report.iterations : -1, report.residual, each(use.traffic.messages),
+        each(use.traffic.bytes), each(use.traffic.gatherings), each(use.traffic.gathered_bytes), use.prepare_seconds,
+        use.whole_seconds, use.sweep_seconds, use.joint_seconds, use.product_seconds, use.coarse_seconds, use.waiting_seconds,
+        static_cast<unsigned long long>(fingerprint(x)));
     std::fflush(stdout);
 }
 

@@ -142,6 +142,17 @@ TEST_CASE("the solution is that of the whole system, however many subdomains, wi
     }
 }
 
+TEST_CASE("where nothing touches fibres are solved exactly, however often they are cut") {
+    test::Fabric apart = fabric;
+    apart.active = 0.0;
+    const test::FabricSystem system(apart);
+    for (const int parts : {1, 5, 64, 200}) {
+        const Solved solved = solve<distributed::OneRank>(system, {.parts = parts}, 1e-8);
+        CHECK(solved.report.status == solver::SolveStatus::converged);
+        CHECK(solved.report.iterations <= 3);  // factors are floats: each iteration gives five digits or more
+    }
+}
+
 TEST_CASE("held vectors keep what they are told, in whole or in part, on any number of ranks") {
     int solved_systems = 0;
     for (unsigned seed = 1; seed <= 12; ++seed) {

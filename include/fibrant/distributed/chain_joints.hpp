@@ -150,20 +150,19 @@ private:
         if (segment.left && segment.right) stiffness.block(m, 0, m, m) = block(segment.last_node, segment.first_node);
         segment.motions.resize(std::max<Index>(0, last - first + 1) * m, 2 * m);
         if (last >= first) {
-            const Index nodes = last - first + 1;
-            reach = std::min(reach, nodes - 1);
-            Matrix inner = band.block(first * m, 0, nodes * m, (reach + 1) * m);
-            for (Index a = 0; a < reach; ++a) inner.block(a * m, (a + 1) * m, m, (reach - a) * m).setZero();
+            const Index nodes = last - first + 1, within = std::min(reach, nodes - 1);
+            Matrix inner = band.block(first * m, 0, nodes * m, (within + 1) * m);
+            for (Index a = 0; a < within; ++a) inner.block(a * m, (a + 1) * m, m, (within - a) * m).setZero();
             Matrix coupling = Matrix::Zero(nodes * m, 2 * m);
             for (Index a = first; a <= last; ++a) {
                 if (segment.left) coupling.block((a - first) * m, 0, m, m) = block(a, segment.first_node);
                 if (segment.right) coupling.block((a - first) * m, m, m, m) = block(segment.last_node, a).transpose();
             }
-            if (!solve_inner(m, reach, inner, coupling, segment.motions)) segment.motions.setZero();
+            if (!solve_inner(m, within, inner, coupling, segment.motions)) segment.motions.setZero();
             // Phi^T B Phi with Phi as it came to be: positive semidefinite, whatever was rounded.
             Matrix product = coupling;
             for (Index a = 0; a < nodes; ++a)
-                for (Index d = 0; d <= std::min(a, reach); ++d) {
+                for (Index d = 0; d <= std::min(a, within); ++d) {
                     const auto part = inner.block(a * m, d * m, m, m);
                     product.middleRows(a * m, m).noalias() += part.lazyProduct(segment.motions.middleRows((a - d) * m, m));
                     if (d > 0)

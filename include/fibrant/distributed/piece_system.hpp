@@ -42,8 +42,8 @@ public:
         for (Index s = 0; s < core::count(vector_); ++s) slot_of_[core::at(vector_[core::at(s)])] = s;
         piece_of_.clear();
         for (Index p = 0; p < core::count(pieces_); ++p)
-            piece_of_.insert(piece_of_.end(), core::at(layout_.chains[core::at(p)].nodes * layout_.chains[core::at(p)].vectors_per_node),
-                             p);
+            piece_of_.insert(piece_of_.end(),
+                             core::at(layout_.chains[core::at(p)].nodes * layout_.chains[core::at(p)].vectors_per_node), p);
     }
 
     /// Takes the values: bands of all chains that have pieces here, and the terms within parts.
@@ -107,8 +107,8 @@ private:
         Index term;
         std::size_t first;  // of its slots
     };
-    /// Keeps a term between two pieces of a part. Vectors of a particle that its piece does not have are replaced by others of the
-    /// piece, without weight: all terms have as many.
+    /// Keeps a term between two pieces of a part. Vectors of a particle that its piece does not have are replaced by others of
+    /// the piece, without weight: all terms have as many.
     void add(Index k) {
         const PairTerms::Term term = (*terms_)[k];
         if (!terms_->usual(term)) return;  // ChainCouplings leaves them out as well, but by those that come first here
@@ -118,8 +118,8 @@ private:
         for (std::size_t side = 0; side < 2; ++side) {
             const auto vectors = term.side(side);
             const auto weights = term.weights_of(side);
-            const auto known = std::find_if(vectors.begin(), vectors.end(),
-                                            [&](std::int32_t v) { return slot_of_[core::at(v)] >= 0; });
+            const auto known =
+                std::find_if(vectors.begin(), vectors.end(), [&](std::int32_t v) { return slot_of_[core::at(v)] >= 0; });
             const auto drop = [&] { slots_.resize(begin), weights_.resize(begin); };
             if (known == vectors.end()) return drop();
             const Index piece = piece_of_[core::at(slot_of_[core::at(*known)])];

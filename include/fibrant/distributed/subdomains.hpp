@@ -32,9 +32,7 @@ class Subdomains {
 public:
     struct Parameters {
         int parts = 64;  ///< subdomains, in [1, 4096]; no more than there are elements are made
-        void validate() const {
-            core::require(parts >= 1 && parts <= 4096, "Subdomains.parts", parts, "in [1, 4096]");
-        }
+        void validate() const { core::require(parts >= 1 && parts <= 4096, "Subdomains.parts", parts, "in [1, 4096]"); }
     };
 
     Subdomains() = default;
