@@ -39,4 +39,42 @@ for run in "2 1" "2 2" "4 1"; do
   on "$1" "$2" "$weave" "$scene" --output "$out/$1x$2" $small || fail "the small scene did not settle on $1 ranks of $2 threads"
   figures "$out/$1x$2" | cmp -s - "$out/expected" || fail "$1 ranks of $2 threads have other bits than one of one"
 done
+
+# Stopped on two ranks, gone on with on one: the checkpoint has all that a state is.
+on 2 1 "$weave" "$scene" --output "$out/parts" $small --set settle.separation_increments=6
+[ $? -eq 1 ] || fail "a run that was stopped early did not say so"
+on 1 1 "$weave" "$scene" --output "$out/parts" $small --resume --other-scene || fail "the resumed run did not settle"
+figures "$out/parts" | cmp -s - "$out/expected" || fail "a run resumed on another number of ranks has other bits"
+
+# Input that all ranks refuse, said once; what ranks cannot share; nothing is left of the folders of other ranks.
+on 2 1 "$weave" "$scene" --output "$out/refused" $small --set solver.linear_solver=sparse_cholesky 2>"$out/message" &&
+  fail "a solver that ranks cannot share was taken"
+[ "$(grep -c 'solver.linear_solver' "$out/message")" -eq 1 ] || fail "a refusal is not said once: $(cat "$out/message")"
+
+# One rank is told to stop: all do, after the same increment.
+on 2 1 "$weave" "$scene" --output "$out/stopped" $small 2>"$out/message" &
+run=$!
+waited=0
+while [ ! -s "$out/stopped/increments.csv" ] && [ $waited -lt 600 ]; do
+  sleep 0.1
+  waited=$((waited + 1))
+done
+kill -TERM "$(cat "$out/stopped/.lock")"
+wait $run
+[ -s "$out/stopped/checkpoint.bin" ] || fail "a rank that was told to stop left no checkpoint"
+on 4 1 "$weave" "$scene" --output "$out/stopped" $small --resume || fail "the run that was told to stop did not settle in the end"
+figures "$out/stopped" | cmp -s - "$out/expected" || fail "the run that was told to stop has other bits"
+
+# One rank is killed: the run ends, and goes on from its checkpoint.
+on 2 1 "$weave" "$scene" --output "$out/killed" $small 2>"$out/message" &
+run=$!
+waited=0
+while [ ! -s "$out/killed/increments.csv" ] && [ $waited -lt 600 ]; do
+  sleep 0.1
+  waited=$((waited + 1))
+done
+kill -KILL "$(cat "$out/killed/.lock")"
+wait $run && fail "a run whose rank was killed ended well"
+on 2 1 "$weave" "$scene" --output "$out/killed" $small --resume || fail "the run whose rank was killed did not settle in the end"
+figures "$out/killed" | cmp -s - "$out/expected" || fail "the run whose rank was killed has other bits"
 exit 0
