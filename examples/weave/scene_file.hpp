@@ -34,6 +34,7 @@ struct Scene {
     bool own_laws() const { return transverse() || !settle.friction_shape.coulomb(); }
     fibrant::solver::IterationParameters iteration;
     std::string linear_solver = "two_level_pcg";  ///< one of solver::AnySolver
+    int subdomains = 64;                          ///< of runs that ranks share
     Index threads = 0;                            ///< 0: as many as the machine has
     bool paraview = true;                         ///< write the ParaView files
     Index paraview_every = 1;                     ///< increments

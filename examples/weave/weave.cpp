@@ -15,6 +15,11 @@
 #include <fibrant/observe/vtk_writer.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/any_solver.hpp>
+#ifdef FIBRANT_WITH_MPI  // weave_mpi: the same program, whose linear systems are solved by all ranks
+#include "../support/ranks.hpp"
+
+#include <fibrant/distributed/subdomain_pcg.hpp>
+#endif
 
 #include <cmath>
 #include <cstdio>
@@ -33,7 +38,11 @@ struct Weave {
     using Proximity = proximity::GridSearch;
     using Normal = law::LimitedGap<law::RegularisedPenalty>;
     using Friction = Law;
+#ifdef FIBRANT_WITH_MPI
+    using Solver = solver::Confirmed<distributed::SubdomainPcg<distributed::MpiExchange>>;
+#else
     using Solver = solver::AnySolver;
+#endif
 };
 
 template <simulation::Model M>
@@ -41,7 +50,14 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     const double radius = weave::cloth::smallest_radius(scene.fabric);
     auto parameters = weave::cloth::model_parameters<M>(scene.fabric, scene.settle);
     parameters.iteration = scene.iteration;
+#ifdef FIBRANT_WITH_MPI
+    parameters.solver.iterative.cut.parts = scene.subdomains;
+    const example::RankFolder own(output);
+    const bool paraview = scene.paraview && own.shown(), pictures = scene.pictures && own.shown();
+#else
     parameters.solver.strategy = scene.linear_solver;
+    const bool paraview = scene.paraview, pictures = scene.pictures;
+#endif
     const scene::Assembly assembly = weave::cloth::flat_fabric(scene.fabric, scene.settle.tension_strain);
     simulation::Simulator<M> simulator(assembly, parameters);
 
@@ -52,9 +68,12 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     const observe::Start start = output.start();
     auto progress = example::progress_printer(radius, 0, output.quiet);
     weave::IncrementTable table(folder, radius, start);
-    weave::Series series(folder / "paraview", start, scene.paraview ? scene.paraview_every : 0);
+    weave::Series series(folder / "paraview", start, paraview ? scene.paraview_every : 0);
     auto loading = weave::cloth::settling<M>(scene.fabric, scene.settle);
     output.tell(loading, 15.0);
+#ifdef FIBRANT_WITH_MPI
+    loading.stop = example::stopped_together;
+#endif
     simulation::Report report = simulator.run(loading, progress, table, series);
     if (!report.converged)
         for (const std::string& doubt : doubts) report.reason += "; " + doubt;
@@ -73,7 +92,7 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     summary.thickness = weave::cloth::thickness(snapshot, scene.fabric);
     summary.threads = core::threads();
     weave::write_measures(folder, snapshot, scene.fabric, crimp);
-    if (scene.pictures) weave::write_pictures(folder, snapshot, scene.fabric, scene.unit);
+    if (pictures) weave::write_pictures(folder, snapshot, scene.fabric, scene.unit);
     summary.cpu_seconds = example::cpu_seconds();
     summary.peak_memory_bytes = example::peak_memory_bytes();
     example::write_report(
@@ -97,7 +116,17 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
 }
 
 bool solve(example::SceneReader& file, example::Output& output) {
+#ifdef FIBRANT_WITH_MPI
+    Index subdomains = 64;
+    weave::Scene scene = weave::read_fabric(file, [&] {
+        file.read("solver", "subdomains", subdomains, example::between(1, 4096),
+                  "parts that the scene is cut into for the ranks; results depend on it, and not on the ranks");
+    });
+    scene.subdomains = static_cast<int>(subdomains);
+    file.check(scene.linear_solver == "two_level_pcg", "solver", "linear_solver", "\"two_level_pcg\", which ranks can share");
+#else
     const weave::Scene scene = weave::read_fabric(file, [] {});
+#endif
     if (scene.own_laws()) return settle<Weave<law::ShapedFriction, material::Elastic>>(scene, file, output);
     return scene.settle.friction_coefficient > 0.0 ? settle<Weave<law::RegularisedCoulomb>>(scene, file, output)
                                                    : settle<Weave<law::Frictionless>>(scene, file, output);

@@ -5,7 +5,7 @@
 # usage: folder_order.sh INCLUDE_FOLDER
 set -eu
 cd "$1"
-order='core scene beam term material solid proximity law contact connection load damping inertia assembly solver observe exchange simulation compiled compositions'
+order='core scene beam term material solid proximity law contact connection load damping inertia assembly solver distributed observe exchange simulation compiled compositions'
 failed=0
 
 find fibrant -name '*.hpp' | sort | xargs grep -nE '^[[:space:]]*#[[:space:]]*include' /dev/null | awk -v order="$order" '

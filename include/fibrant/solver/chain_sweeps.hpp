@@ -26,13 +26,14 @@ public:
         factors_.analyse(layout);
     }
 
-    /// @param see  see(chain, band) is called for each chain with its band, from several threads at once
+    /// @param see     see(chain, band) is called for each chain with its band, from several threads at once
+    /// @param always  sweeps where classes leave most lanes empty, too
     template <assembly::LinearSystem System, class See>
-    SolveStatus prepare(const System& system, const See& see) {
+    SolveStatus prepare(const System& system, const See& see, bool always = false) {
         couplings_.find(system);
         const std::vector<int> before = std::move(class_of_);
         class_of_.clear();
-        if (pays()) class_of_ = couplings_.class_of();
+        if (always ? !couplings_.empty() : pays()) class_of_ = couplings_.class_of();
         if (class_of_ != before) factors_.analyse(system.layout(), class_of_, class_of_.empty() ? 1 : couplings_.classes());
         return factors_.prepare(system, see);
     }

@@ -142,11 +142,79 @@ public:
             z.segment<3>(3 * held.vector) = held.free * z.segment<3>(3 * held.vector).eval();
     }
 
+    // In parts, for those who share the work of a correction among themselves:
+
+    using Motion = Eigen::Matrix<double, 6, 1>;
+    /// Calls add(station, its share of P^T r) for nodes [first, last) of a chain, in the order of the chain; a station may come
+    /// several times.
+    template <class Add>
+    void restrict_nodes(const scene::DofLayout& layout, const Vector& r, Index c, Index begin, Index end, const Add& add) const {
+        const scene::Chain& chain = layout.chains[core::at(c)];
+        Motion near = Motion::Zero(), far = Motion::Zero();  // of the two stations that nodes are between
+        int station = modes_.places[core::at(chain.first_vector + begin * chain.vectors_per_node)].hat.station;
+        const auto store = [&] {
+            add(station, near);
+            if (!far.isZero(0.0)) add(station + 1, far);
+        };
+        for (Index a = begin; a < end; ++a) {
+            Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+            const Index first = chain.first_vector + a * chain.vectors_per_node;
+            for (Index v = first; v < first + chain.vectors_per_node; ++v) {
+                const Vec3 f = r.segment<3>(3 * v);
+                if (layout.kind[core::at(v)] == scene::VectorKind::position) force += f;
+                if (modes_.turns(layout, v))
+                    moment += modes_.turn[core::at(v)].transpose() * f;
+                else
+                    moment += modes_.arm[core::at(v)].cross(f);
+            }
+            const Hat& hat = modes_.places[core::at(first)].hat;
+            if (hat.station != station) {
+                store();
+                near.setZero(), far.setZero();
+                station = hat.station;
+            }
+            Motion both;
+            both << force, moment;
+            near += hat.weight(0) * both;
+            far += hat.second * both;
+        }
+        store();
+    }
+    /// (P^T A P)^-1 of forces and moments at all stations, in their place.
+    void solve_stations(Vector& values) { matrix_.solve(values); }
+    /// z += P times the values of all stations, of nodes [begin, end) of a chain; held vectors as if they were free.
+    void prolong_to_nodes(const scene::DofLayout& layout, const Vector& values, Index c, Index begin, Index end,
+                          Vector& z) const {
+        const scene::Chain& chain = layout.chains[core::at(c)];
+        for (Index a = begin; a < end; ++a) {
+            const Index first = chain.first_vector + a * chain.vectors_per_node;
+            const Hat& hat = modes_.places[core::at(first)].hat;
+            Motion motion = hat.weight(0) * values.segment<6>(6 * hat.station);
+            if (hat.second > 0.0) motion += hat.second * values.segment<6>(6 * hat.station + 6);
+            const Vec3 translation = motion.head<3>(), rotation = motion.tail<3>();
+            for (Index v = first; v < first + chain.vectors_per_node; ++v) {
+                Vec3 move = modes_.turns(layout, v) ? Vec3(modes_.turn[core::at(v)] * rotation)
+                                                    : Vec3(rotation.cross(modes_.arm[core::at(v)]));
+                if (layout.kind[core::at(v)] == scene::VectorKind::position) move += translation;
+                z.segment<3>(3 * v) += move;
+            }
+        }
+    }
+    /// What `add_chain` has made of a chain, 36 numbers a block, to be sent to others.
+    std::span<double> chain_values(Index c) noexcept {
+        std::vector<Block>& blocks = chains_[core::at(c)].blocks;
+        return blocks.empty() ? std::span<double>() : std::span<double>(blocks.front().data(), 36 * blocks.size());
+    }
+    /// Makes room for what another has made of a chain.
+    void expect_chain(const scene::DofLayout& layout, Index c) {
+        Chain& own = chains_[core::at(c)];
+        own.blocks.assign(core::at((own.intervals + 1) * (own.reach(layout.chains[core::at(c)].reach) + 1)), Block::Zero());
+    }
+
 private:
     using Block = CoarseModes::Block;
     using Hat = CoarseModes::Hat;
     using Modes = Eigen::Matrix<double, Eigen::Dynamic, 6>;
-    using Motion = Eigen::Matrix<double, 6, 1>;
 
     struct Chain {
         int first_station = 0;
@@ -284,38 +352,9 @@ private:
         core::parallel_for(
             clusters(),
             [&](Index cluster) {
-                for (const Index c : clusters_[core::at(cluster)].chains) {
-                    const scene::Chain& chain = layout.chains[core::at(c)];
-                    Motion near = Motion::Zero(), far = Motion::Zero();  // of the two stations that nodes are between
-                    int station = modes_.places[core::at(chain.first_vector)].hat.station;
-                    const auto store = [&] {
-                        station_values_.segment<6>(6 * station) += near;
-                        if (!far.isZero(0.0)) station_values_.segment<6>(6 * station + 6) += far;
-                    };
-                    for (Index a = 0; a < chain.nodes; ++a) {
-                        Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-                        const Index first = chain.first_vector + a * chain.vectors_per_node;
-                        for (Index v = first; v < first + chain.vectors_per_node; ++v) {
-                            const Vec3 f = r.segment<3>(3 * v);
-                            if (layout.kind[core::at(v)] == scene::VectorKind::position) force += f;
-                            if (modes_.turns(layout, v))
-                                moment += modes_.turn[core::at(v)].transpose() * f;
-                            else
-                                moment += modes_.arm[core::at(v)].cross(f);
-                        }
-                        const Hat& hat = modes_.places[core::at(first)].hat;
-                        if (hat.station != station) {
-                            store();
-                            near.setZero(), far.setZero();
-                            station = hat.station;
-                        }
-                        Motion both;
-                        both << force, moment;
-                        near += hat.weight(0) * both;
-                        far += hat.second * both;
-                    }
-                    store();
-                }
+                for (const Index c : clusters_[core::at(cluster)].chains)
+                    restrict_nodes(layout, r, c, 0, layout.chains[core::at(c)].nodes,
+                                   [&](int station, const Motion& sum) { station_values_.segment<6>(6 * station) += sum; });
             },
             grain(layout, clusters()));
     }
@@ -324,22 +363,7 @@ private:
     void prolong(const scene::DofLayout& layout, Vector& z) const {
         core::parallel_for(
             core::count(layout.chains),
-            [&](Index c) {
-                const scene::Chain& chain = layout.chains[core::at(c)];
-                for (Index a = 0; a < chain.nodes; ++a) {
-                    const Index first = chain.first_vector + a * chain.vectors_per_node;
-                    const Hat& hat = modes_.places[core::at(first)].hat;
-                    Motion motion = hat.weight(0) * station_values_.segment<6>(6 * hat.station);
-                    if (hat.second > 0.0) motion += hat.second * station_values_.segment<6>(6 * hat.station + 6);
-                    const Vec3 translation = motion.head<3>(), rotation = motion.tail<3>();
-                    for (Index v = first; v < first + chain.vectors_per_node; ++v) {
-                        Vec3 move = modes_.turns(layout, v) ? Vec3(modes_.turn[core::at(v)] * rotation)
-                                                            : Vec3(rotation.cross(modes_.arm[core::at(v)]));
-                        if (layout.kind[core::at(v)] == scene::VectorKind::position) move += translation;
-                        z.segment<3>(3 * v) += move;
-                    }
-                }
-            },
+            [&](Index c) { prolong_to_nodes(layout, station_values_, c, 0, layout.chains[core::at(c)].nodes, z); },
             grain(layout, core::count(layout.chains)));
     }
 

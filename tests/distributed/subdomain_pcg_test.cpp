@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "distributed/exchange_contract.hpp"
+#include "refusal.hpp"
+#include "support/fabric_system.hpp"
+#include "support/synthetic_system.hpp"
+
+#include <fibrant/distributed/cut_report.hpp>
+#include <fibrant/distributed/subdomain_pcg.hpp>
+#include <fibrant/distributed/thread_ranks.hpp>
+
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+using namespace fibrant;
+
+namespace subdomain_pcg_test {
+
+const test::Fabric fabric{.bundles = 2, .fibres = 12, .elements = 16, .length = 2.2};
+
+/// A force in the middle of every third fibre.
+Vector load_of(const test::FabricSystem& system) {
+    const scene::DofLayout& layout = system.layout();
+    Vector b = Vector::Zero(layout.unknowns());
+    for (std::size_t c = 0; c < layout.chains.size(); c += 3) {
+        const scene::Chain& chain = layout.chains[c];
+        b.segment<3>(3 * (chain.first_vector + (chain.nodes / 2) * chain.vectors_per_node)) = Vec3(0.1, -0.2, 0.3);
+    }
+    return b;
+}
+
+struct Solved {
+    Vector x;
+    solver::SolveReport report;
+};
+template <class E>
+Solved solve(const test::FabricSystem& system, const distributed::Subdomains::Parameters& cut, double tolerance,
+             const typename E::Parameters& exchange = {}) {
+    typename distributed::SubdomainPcg<E>::Parameters parameters;
+    parameters.cut = cut, parameters.exchange = exchange;
+    distributed::SubdomainPcg<E> pcg(parameters);
+    pcg.analyse(system);
+    Solved solved;
+    if (pcg.prepare(system) != solver::SolveStatus::converged) return solved;
+    solved.report = pcg.solve(system, load_of(system), tolerance, solved.x);
+    return solved;
+}
+
+TEST_CASE("ranks get what the others send, and their sums have one order") {
+    test::check_exchange(distributed::OneRank());
+    test::check_exchange(distributed::ThreadRank());
+    for (const int ranks : {1, 2, 3, 4})
+        distributed::run_on_threads(ranks, [](const auto& own) { test::check_exchange(distributed::ThreadRank(own)); });
+}
+
+TEST_CASE("a rank that fails ends all of them, and says why") {
+    CHECK_THROWS_WITH_AS(distributed::run_on_threads(3,
+                                                     [](const auto& own) {
+                                                         const distributed::ThreadRank rank(own);
+                                                         if (rank.rank() == 1) throw std::domain_error("no more room");
+                                                         std::vector<double> all(3);
+                                                         const double value = 1.0;
+                                                         rank.gather({&value, 1}, std::vector<Index>(3, 1), all);
+                                                     }),
+                         "no more room", std::domain_error);
+}
+
+TEST_CASE("parts share the work evenly, and every node has one owner, who works on it or joins it to another part") {
+    const test::FabricSystem system(fabric);
+    const scene::DofLayout& layout = system.layout();
+    for (const int parts : {1, 7, 32}) {
+        const distributed::Subdomains cut(system, {.parts = parts});
+        CHECK(cut.parts() == parts);
+        std::vector<int> owners(core::at(layout.vectors()), 0);
+        for (const auto& own : cut.owned())
+            for (const Index v : own) ++owners[core::at(v)];
+        CHECK(std::all_of(owners.begin(), owners.end(), [](int n) { return n == 1; }));
+        const std::vector<Index> work = cut.work();
+        CHECK(*std::max_element(work.begin(), work.end()) <= 1.3 * *std::min_element(work.begin(), work.end()));
+        std::vector<int> worked_on(core::at(layout.vectors()), 0);
+        for (const distributed::Piece& piece : cut.pieces()) {
+            const scene::Chain& chain = layout.chains[core::at(piece.chain)];
+            for (Index a = piece.first_node; a < piece.first_node + piece.nodes; ++a) {
+                const Index v = chain.first_vector + a * chain.vectors_per_node;
+                CHECK(cut.owner()[core::at(v)] == piece.part);
+                ++worked_on[core::at(v)];
+            }
+        }
+        Index joints = 0;  // once each, and what is in no piece is where two parts meet
+        for (const scene::Chain& chain : layout.chains)
+            for (Index a = 0; a < chain.nodes; ++a) {
+                const int times = worked_on[core::at(chain.first_vector + a * chain.vectors_per_node)];
+                CHECK(times <= 1);
+                joints += times == 0;
+            }
+        CHECK(joints == cut.cut_elements(layout));
+        const distributed::CutReport report = distributed::report_cut(system, cut);
+        CHECK(report.terms == system.contacts());
+        CHECK((parts > 1) == (report.cut_terms > 0));
+        CHECK((parts > 1) == (report.most_neighbours > 0));
+    }
+    CHECK(distributed::Subdomains(test::FabricSystem({.bundles = 1, .parallel = true, .fibres = 2, .elements = 3}), {4096})
+              .parts() == 6);  // no more than there are elements
+}
+
+TEST_CASE("the bits of a solution depend on the subdomains, not on ranks or threads") {
+    const test::FabricSystem system(fabric);
+    const distributed::Subdomains::Parameters cut{.parts = 8};
+    const Solved alone = solve<distributed::OneRank>(system, cut, 1e-6);
+    REQUIRE(alone.report.status == solver::SolveStatus::converged);
+    for (const int ranks : {1, 2, 3, 4}) {
+        distributed::run_on_threads(ranks, [&](const auto& own) {
+#if defined(_OPENMP)
+            omp_set_num_threads(own.rank % 2 + 1);
+#endif
+            const Solved shared = solve<distributed::ThreadRank>(system, cut, 1e-6, own);
+            CHECK(shared.x == alone.x);
+            CHECK(shared.report.iterations == alone.report.iterations);
+            CHECK(shared.report.curvature == alone.report.curvature);
+        });
+    }
+    CHECK(solve<distributed::OneRank>(system, {.parts = 9}, 1e-6).x != alone.x);
+}
+
+TEST_CASE("the solution is that of the whole system, however many subdomains, with little more iterations") {
+    const test::FabricSystem system(fabric);
+    const Vector b = load_of(system);
+    Vector left(b.size());
+    int whole = 0;
+    for (const int parts : {1, 4, 16, 64}) {
+        const Solved solved = solve<distributed::OneRank>(system, {.parts = parts}, 1e-8);
+        REQUIRE(solved.report.status == solver::SolveStatus::converged);
+        system.apply(solved.x, left);
+        left = b - left;
+        CHECK(solver::scaled_norm(system.layout(), left) <= 1.001e-8 * solver::scaled_norm(system.layout(), b));
+        if (parts == 1) whole = solved.report.iterations;
+        CHECK(solved.report.iterations <= whole * 3 / 2 + 2);
+    }
+}
+
+TEST_CASE("where nothing touches fibres are solved exactly, however often they are cut") {
+    test::Fabric apart = fabric;
+    apart.active = 0.0;
+    const test::FabricSystem system(apart);
+    for (const int parts : {1, 5, 64, 200}) {
+        const Solved solved = solve<distributed::OneRank>(system, {.parts = parts}, 1e-8);
+        CHECK(solved.report.status == solver::SolveStatus::converged);
+        CHECK(solved.report.iterations <= 3);  // factors are floats: each iteration gives five digits or more
+    }
+}
+
+TEST_CASE("held vectors keep what they are told, in whole or in part, on any number of ranks") {
+    int solved_systems = 0;
+    for (unsigned seed = 1; seed <= 12; ++seed) {
+        const test::SyntheticSystem system =
+            test::random_system({.chains = std::vector<scene::Chain>(12, {.nodes = 9, .vectors_per_node = 3, .reach = 2}),
+                                 .points = 10,
+                                 .held = 9,
+                                 .seed = seed});
+        Vector b(system.layout().unknowns()), left(b.size());
+        for (Index k = 0; k < b.size(); ++k) b[k] = 0.001 * static_cast<double>((7919 * k) % 1000) - 0.5;
+        distributed::SubdomainPcg<> alone({.cut = {.parts = 6}});
+        alone.analyse(system);
+        try {
+            alone.prepare(system);
+        } catch (const std::invalid_argument&) {  // a chain that touches itself
+            continue;
+        }
+        ++solved_systems;
+        Vector x;
+        const solver::SolveReport report = alone.solve(system, b, 1e-8, x);
+        CHECK(report.status == solver::SolveStatus::converged);
+        system.apply(x, left);
+        left = b - left;
+        CHECK(solver::scaled_norm(system.layout(), left) <= 1.001e-8 * solver::scaled_norm(system.layout(), b));
+        distributed::run_on_threads(3, [&](const auto& own) {
+            distributed::SubdomainPcg<distributed::ThreadRank> shared({.cut = {.parts = 6}, .exchange = own});
+            Vector same;
+            shared.analyse(system);
+            shared.prepare(system);
+            shared.solve(system, b, 1e-8, same);
+            CHECK(same == x);
+        });
+    }
+    CHECK(solved_systems >= 2);
+}
+
+TEST_CASE("what ranks cannot share yet is refused by name") {
+    using Pcg = distributed::SubdomainPcg<>;
+    test::FabricSystem system(fabric);
+    struct Closed {
+        scene::DofLayout own;
+        const test::FabricSystem* of;
+        const scene::DofLayout& layout() const { return own; }
+        void apply(const Vector& x, Vector& y) const { of->apply(x, y); }
+        void node_blocks(Index c, Matrix& blocks) const { of->node_blocks(c, blocks); }
+        void chain_band(Index c, Matrix& blocks) const { of->chain_band(c, blocks); }
+        template <class Terms>
+        void visit(Terms& terms) const {
+            of->visit(terms);
+        }
+    } closed{system.layout(), &system};
+    closed.own.chains[1].closed = true;
+    CHECK(test::refusal([&] { Pcg().analyse(closed); }).starts_with("SubdomainPcg.system"));
+    closed.own = system.layout();
+    closed.own.ties.push_back({});
+    CHECK(test::refusal([&] { Pcg().analyse(closed); }).starts_with("SubdomainPcg.system"));
+    CHECK(test::refusal([] { Pcg({.cut = {.parts = 0}}); }).starts_with("Subdomains.parts"));
+    CHECK(test::refusal([] { Pcg({.cut = {.parts = 4097}}); }).starts_with("Subdomains.parts"));
+}
+
+}  // namespace subdomain_pcg_test
