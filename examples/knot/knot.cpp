@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A knot is tied in a straight rod, comes to rest and is drawn tight; prints the pull beside that of loose knots.
+// A knot is tied in a straight rod, comes to rest, is drawn tight and let back; prints the pull beside that of loose knots.
 //   knot SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
 #include "../support/program.hpp"
@@ -32,7 +32,7 @@ struct Knot {
 bool solve(example::SceneReader& file, example::Output& output) {
     knot::KnotParameters parameters;
     Index crossings = 3, increments = 20;
-    double drawn = 0.0, mu = 0.0;
+    double drawn = 0.0, back = 0.0, mu = 0.0;
     file.require("knot", "radius", parameters.radius, example::positive(), "length", "radius of the rod");
     file.require("knot", "loop_radius", parameters.loop_radius, example::positive(), "length",
                  "radius of the loop in which the knot is tied");
@@ -45,7 +45,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     example::read_material(file, "material", parameters.material);
     example::read_friction(file, mu, "coefficient of friction of the rod on itself");
     file.read("loading", "draw", drawn, example::not_negative(), "length", "length by which one end is drawn out");
-    file.read("loading", "increments", increments, example::increments(), "increments of the drawing");
+    file.read("loading", "back", back, example::not_negative(), "length", "length by which it is let back then");
+    file.read("loading", "increments", increments, example::increments(), "increments of the drawing, and of the way back");
     file.complete();
     file.check(parameters.loop_radius > 20.0 * parameters.radius, "knot", "loop_radius",
                "> 20 knot.radius = " + core::text(20.0 * parameters.radius));
@@ -55,6 +56,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
                "<= 1000 knot.loop_radius = " + core::text(1000.0 * parameters.loop_radius));
     const double around = 2.0 * std::numbers::pi * parameters.loop_radius;
     file.check(drawn < around, "loading", "draw", "< the length of the loop, " + core::text(around));
+    file.check(back <= drawn, "loading", "back", "<= loading.draw = " + core::text(drawn));
     const double length = 2.0 * parameters.tail + around, element = length / static_cast<double>(parameters.elements);
     file.check(element >= parameters.radius, "knot", "elements",
                "<= " + core::text(std::floor(length / parameters.radius)) + ", or elements are shorter than a radius");
@@ -99,6 +101,11 @@ bool solve(example::SceneReader& file, example::Output& output) {
         tighten.ramps = {{knot::draw, drawn}};
         tighten.friction.emplace(model.friction);
         tighten.damping = 0.1 * settle.damping;  // what slides along itself without friction has nothing else to hold it
+    }
+    if (back > 0.0) {
+        simulation::Stage<Knot> loosen = loading.stages.back();
+        loosen.name = "back", loosen.ramps = {{knot::draw, drawn - back}};
+        loading.stages.push_back(loosen);
     }
     output.tell(loading);
     const simulation::Report report = simulator.run(loading, recorder);
