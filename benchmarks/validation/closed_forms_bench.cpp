@@ -105,7 +105,7 @@ void hanging() {
     // Nearly a parabola of that length, straight at rest.
     assembly.add({.from = {0, 0, 0},
                   .to = {length, 0, 0},
-                  .start = [](double t) { return Vec3(t, -4.0 * parabola * t * (1.0 - t), 0.0); },
+                  .start = [parabola](double t) { return Vec3(t, -4.0 * parabola * t * (1.0 - t), 0.0); },
                   .section = scene::circular(radius),
                   .material = material,
                   .elements = elements,
@@ -166,7 +166,7 @@ void loop() {
 void wound() {
     const double radius = 0.01, rho = 1.0, length = 20.0, tail = 1.0, strain = 0.003;
     for (const double mu : {0.3, 0.5})
-        for (const double turns : {0.5, 1.0, 1.5, 2.0}) {
+        for (const double turns : {0.5, 1.0, 1.5, 2.0, 2.2}) {
             const double theta = 2.0 * pi * turns, sine = rho * theta / length, cosine = std::sqrt(1.0 - sine * sine);
             const double whole = length + 2.0 * tail;
             const auto elements = static_cast<Index>(std::ceil(whole / (0.06 / std::max(sine, 0.3))));

@@ -90,8 +90,10 @@ bool solve(example::SceneReader& file, example::Output& output) {
     simulation::Loading<Knot> loading;
     loading.stages.resize(drawn > 0.0 ? 2 : 1);
     simulation::Stage<Knot>& settle = loading.stages[0];  // without friction: it would hold the knot as it is tied
-    settle.name = "settle", settle.increments = 2, settle.most_increments = 80;
-    settle.damping = 10.0 * bending / (R * R * R) / static_cast<double>(parameters.elements);
+    settle.name = "settle", settle.increments = 2, settle.most_increments = 120;
+    const double damping = 10.0 * bending / (R * R * R) / static_cast<double>(parameters.elements);
+    // A braid of more turns springs open over its own length, the root of 2 r R times a number, and not over that of the loop.
+    settle.damping = crossings > 3 ? damping * std::pow(R / (2.0 * radius), 1.5) : damping;
     settle.damping_decay = 0.5, settle.damping_share = 1e-3;
     settle.until = simulation::until_settled(0.05 * radius, 0.02 * radius);
     settle.friction.emplace(law::RegularisedCoulomb::Parameters{0.0, 0.02 * radius});
@@ -100,7 +102,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
         tighten.name = "draw", tighten.increments = increments, tighten.most_increments = 20 * increments;
         tighten.ramps = {{knot::draw, drawn}};
         tighten.friction.emplace(model.friction);
-        tighten.damping = 0.1 * settle.damping;  // what slides along itself without friction has nothing else to hold it
+        tighten.damping = 0.1 * damping;  // what slides along itself without friction has nothing else to hold it
     }
     if (back > 0.0) {
         simulation::Stage<Knot> loosen = loading.stages.back();
