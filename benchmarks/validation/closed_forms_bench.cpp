@@ -51,9 +51,7 @@ simulation::ModelParameters<Single> parameters(double radius) {
 }
 
 /// Material of unit bending stiffness.
-scene::ElasticMaterial unit(double radius) {
-    return {.young_modulus = 4.0 / (pi * std::pow(radius, 4)), .poisson_ratio = 0.3};
-}
+scene::ElasticMaterial unit(double radius) { return {.young_modulus = 4.0 / (pi * std::pow(radius, 4)), .poisson_ratio = 0.3}; }
 
 void run(Simulator& simulator, const std::vector<simulation::Stage<Single>>& stages) {
     const simulation::Report report = simulator.run(simulation::Loading<Single>{.stages = stages});
@@ -166,7 +164,7 @@ void loop() {
 void wound() {
     const double radius = 0.01, rho = 1.0, length = 20.0, tail = 1.0, strain = 0.003;
     for (const double mu : {0.3, 0.5})
-        for (const double turns : {0.5, 1.0, 1.5, 2.0, 2.2}) {
+        for (const double turns : {0.5, 1.0, 1.5, 2.0}) {
             const double theta = 2.0 * pi * turns, sine = rho * theta / length, cosine = std::sqrt(1.0 - sine * sine);
             const double whole = length + 2.0 * tail;
             const auto elements = static_cast<Index>(std::ceil(whole / (0.06 / std::max(sine, 0.3))));
@@ -183,7 +181,8 @@ void wound() {
                           .material = unit(radius),
                           .elements = elements});
             scene::Tool guide;
-            guide.shape = scene::ToolShape::cylinder, guide.axis = Vec3::UnitX(), guide.radius = rho - radius, guide.channel = "ends";
+            guide.shape = scene::ToolShape::cylinder, guide.axis = Vec3::UnitX(), guide.radius = rho - radius,
+            guide.channel = "ends";
             assembly.add(guide);
             const double stretch = 0.5 * strain * whole, drawn = 2.0 * stretch;  // beyond what friction holds along the way
             const Vec3 first(cosine, 0.0, sine), last(cosine, -sine * std::sin(theta), sine * std::cos(theta));
@@ -203,7 +202,8 @@ void wound() {
             draw.name = "draw", draw.increments = 20, draw.ramps = {{"ends", 2.0}};
             draw.friction.emplace(law::RegularisedCoulomb::Parameters{mu, 0.02 * radius});
             run(simulator, {tighten, draw});
-            const double slack = simulator.reaction(scene::first_end(0)).norm(), pull = simulator.reaction(scene::last_end(0)).norm();
+            const double slack = simulator.reaction(scene::first_end(0)).norm(),
+                         pull = simulator.reaction(scene::last_end(0)).norm();
             print("wound", "mu " + core::text(mu) + "; turns " + core::text(turns) + "; log of the ratio", mu * theta * sine,
                   std::log(pull / slack));
         }

@@ -200,6 +200,15 @@ def mats():
         pressure.line([m[:2] for m in means], colours[k])
         contact.points(contacts, colours[k], title)
         contact.line(contacts, colours[k])
+        idle = {}  # contacts of the last level of each seed that carries nothing but its springs
+        for row in rows(folder / name / "levels.csv"):
+            if row["at_rest"] not in ("1", "true"):
+                idle[row["seed"]] = float(row["contacts_per_fibre"])
+        if idle and len(means) > 2:
+            least = sum(idle.values()) / len(idle)
+            over = [(math.log(number - least), math.log(mean[1])) for (_, number), mean in zip(contacts, means)]
+            print("idle levels have %.2f contacts; power of the pressure over contacts beyond these" % least,
+                  "%.2f +- %.2f" % straight_line(over))
         if len(means) > 2:
             last = [(math.log(x), math.log(y)) for x, y, *_ in means[-3:]]
             print("power of the last three levels: pressure %.2f +- %.2f" % straight_line(last))
@@ -231,36 +240,48 @@ def twist():
         plot.write(folder / "twist.svg")
 
 
+course_spacing = 2.12  # mm, of benchmarks/validation/knit.toml
+
+
 def knits():
-    """Strain of a knit against force per width, measured and computed."""
-    measured = {}
-    for row in rows(here / "data" / "knits" / "strain_at_load.csv"):
-        key = (row["fabric"], row["direction"])
-        measured.setdefault(key, []).append(
-            (float(row["force_per_width_N_per_mm"]), float(row["strain_mean"]), float(row["strain_sd"])))
-    computed = {}
-    for path in sorted(folder.glob("knit_*/loading/increments.csv")):
-        fabric, direction = path.parent.parent.name.split("_")[1:3]
-        width = knit_width[direction]
-        computed[(fabric, direction)] = [
-            (float(row["force"]) / width, float(row["strain"])) for row in rows(path) if row["stage"] == "load"]
-    if not computed:
-        return
-    plot = Plot("a plain knit of acrylic yarn, pulled", "strain", "force per width [N/mm]", (0, 1.0), (0, 0.32))
-    for k, (key, curve) in enumerate(computed.items()):
-        name = f"{key[0]}, along {'the courses' if key[1] == 'x' else 'the wales'}"
-        plot.points([(strain, force) for force, strain, _ in measured[key]], colours[k], name + ": measured", hollow=True)
-        plot.line([(s, f) for f, s in curve if f >= 0], colours[k], "computed")
-        at = lambda load: next((a[1] + (b[1] - a[1]) * (load - a[0]) / (b[0] - a[0])
-                                for a, b in zip(curve, curve[1:]) if a[0] <= load < b[0]), None)
-        print(f"\nknit {name}: force per width, measured strain (deviation), computed")
-        for force, strain, deviation in measured[key]:
-            mine = at(force)
-            print(f"{force:g} | {strain:.3f} ({deviation:.3f}) | {'-' if mine is None else f'{mine:.3f}'}")
+    """A plain knit that is pulled along its courses. What two samples differ by, of five courses and of three, is the force of
+    two courses with neighbours on both sides: edges cancel."""
+    curves = []
+    for courses in (3, 5):
+        path = folder / f"knit_{courses}" / "loading" / "increments.csv"
+        if not path.exists():
+            return
+        curves.append([(float(row["strain"]), float(row["force"])) for row in rows(path) if row["stage"] == "load"])
+
+    def at(curve, strain):
+        for (x0, y0), (x1, y1) in zip(curve, curve[1:]):
+            if x0 <= strain <= x1 and x1 > x0:
+                return y0 + (y1 - y0) * (strain - x0) / (x1 - x0)
+        return None
+
+    data = here / "data" / "knits"
+    measured = [row for row in rows(data / "strain_at_load.csv") if (row["fabric"], row["direction"]) == ("stockinette", "x")]
+    measured = [tuple(float(row[key]) for key in ("strain_mean", "force_per_width_N_per_mm", "strain_sd")) for row in measured]
+    periodic = [(float(row["strain_x"]), float(row["force_per_width_N_per_mm"]))
+                for row in rows(data / "periodic_simulation_stockinette_x.csv") if row["force_per_width_N_per_mm"]]
+    mine = []
+    for strain, force in curves[1]:
+        other = at(curves[0], strain)
+        if other is not None:
+            mine.append((strain, (force - other) / (2.0 * course_spacing)))
+    print("\nknit, along the courses: strain, force per width computed, by the periodic simulation, ratio; measured")
+    measured_curve = [m[:2] for m in measured]
+    for strain in [0.05 * k for k in range(1, 20)]:
+        values = [at(curve, strain) for curve in (mine, periodic, measured_curve)]
+        if values[0] is not None and values[1] is not None:
+            tested = "-" if values[2] is None else f"{values[2]:.4f}"
+            print(f"{strain:.2f} | {values[0]:.4f} | {values[1]:.4f} | {values[0] / values[1]:.2f} | {tested}")
+    plot = Plot("a plain knit of acrylic yarn, pulled along its courses", "strain", "force per width [N/mm]", (0, 1.0), (0, 0.32))
+    plot.points([m[:2] for m in measured], colours[1], "measured (deviation of the strain 0.002 to 0.008)", hollow=True)
+    plot.line([p for p in periodic if p[0] >= 0], colours[2], "the authors' simulation, periodic, no friction", "5 4")
+    plot.line([p for p in mine if p[1] >= 0], colours[0], "computed, five courses less three")
     plot.write(folder / "knits.svg")
 
-
-knit_width = {"x": 1.0, "y": 1.0}
 
 for part in (knots, mats, twist, knits):
     part()

@@ -36,8 +36,8 @@ for set in ${*:-closed knots knits mats}; do
       compute dense_mat "$mat" mat_space --set mat.tilt_deg=90 --set mat.volume_fraction=0.1 --set levels.last=0.26 --set mat.seeds=2
       ;;
     knits)
-      for axis in x y; do
-        compute textile "$here/knit.toml" knit_stockinette_$axis --set loading.axis=$axis
+      for courses in 3 5; do
+        compute textile "$here/knit.toml" knit_$courses --set weft_knit.courses=$courses
       done
       ;;
     *) echo "$set is none of closed, knots, knits, mats"; exit 2 ;;

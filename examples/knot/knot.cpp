@@ -90,7 +90,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     simulation::Loading<Knot> loading;
     loading.stages.resize(drawn > 0.0 ? 2 : 1);
     simulation::Stage<Knot>& settle = loading.stages[0];  // without friction: it would hold the knot as it is tied
-    settle.name = "settle", settle.increments = 2, settle.most_increments = 120;
+    settle.name = "settle", settle.increments = 2, settle.most_increments = 200;
     const double damping = 10.0 * bending / (R * R * R) / static_cast<double>(parameters.elements);
     // A braid of more turns springs open over its own length, the root of 2 r R times a number, and not over that of the loop.
     settle.damping = crossings > 3 ? damping * std::pow(R / (2.0 * radius), 1.5) : damping;
