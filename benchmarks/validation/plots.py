@@ -39,9 +39,13 @@ class Plot:
             self._at(y, self.y, self.log[1], self.height - self.bottom, self.top),
         )
 
+    @staticmethod
+    def _pen(colour, dash=""):
+        return f'stroke="{colour}" stroke-width="1.6" stroke-dasharray="{dash}"'
+
     def line(self, points, colour, name=None, dash=""):
         text = " ".join(f"{a:.1f},{b:.1f}" for a, b in (self.place(*p) for p in points))
-        self.parts.append(f'<polyline points="{text}" fill="none" stroke="{colour}" stroke-width="1.6" stroke-dasharray="{dash}"/>')
+        self.parts.append(f'<polyline points="{text}" fill="none" {self._pen(colour, dash)}/>')
         if name:
             self.keys.append((name, colour, dash, False))
 
@@ -51,18 +55,22 @@ class Plot:
             a, b = self.place(*point[:2])
             if len(point) == 4:
                 low, high = (self.place(point[0], v)[1] for v in point[2:])
-                self.parts.append(f'<line x1="{a:.1f}" y1="{low:.1f}" x2="{a:.1f}" y2="{high:.1f}" stroke="{colour}" stroke-width="1.4"/>')
+                self.parts.append(f'<line x1="{a:.1f}" y1="{low:.1f}" x2="{a:.1f}" y2="{high:.1f}" {self._pen(colour)}/>')
             fill = "white" if hollow else colour
-            self.parts.append(f'<circle cx="{a:.1f}" cy="{b:.1f}" r="4" fill="{fill}" stroke="{colour}" stroke-width="1.6"/>')
+            self.parts.append(f'<circle cx="{a:.1f}" cy="{b:.1f}" r="4" fill="{fill}" {self._pen(colour)}/>')
         if name:
             self.keys.append((name, colour, "hollow" if hollow else "", True))
+
+    @staticmethod
+    def _said(value, log):
+        return f"1e{math.log10(value):.0f}" if log and value < 0.01 else f"{value:g}"
 
     def _ticks(self, bounds, log):
         if log:
             # 1, 2 and 5 of each decade
             decades = range(math.floor(math.log10(bounds[0])), math.ceil(math.log10(bounds[1])) + 1)
             wide = bounds[1] / bounds[0] > 100
-            values = [m * 10.0**d for d in decades for m in ((1,) if wide else (1, 1.5, 2, 3, 5))]
+            values = [m * 10.0**d for d in decades for m in ((1,) if wide else (1, 1.5, 2, 2.5, 3, 4, 5))]
         else:
             raw = (bounds[1] - bounds[0]) / 5
             unit = 10 ** math.floor(math.log10(raw))
@@ -73,7 +81,8 @@ class Plot:
 
     def write(self, path, keys_at="top"):
         out = [
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" font-family="sans-serif" font-size="13">',
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" '
+            'font-family="sans-serif" font-size="13">',
             f'<rect width="{self.width}" height="{self.height}" fill="white"/>',
             f'<text x="{self.width / 2}" y="18" text-anchor="middle" font-size="14">{self.title}</text>',
         ]
@@ -86,7 +95,7 @@ class Plot:
         for value in self._ticks(self.y, self.log[1]):
             b = self.place(self.x[0], value)[1]
             out.append(f'<line x1="{x0 - 5}" y1="{b:.1f}" x2="{x0}" y2="{b:.1f}" stroke="#444"/>')
-            out.append(f'<text x="{x0 - 8}" y="{b + 4:.1f}" text-anchor="end">{value:g}</text>')
+            out.append(f'<text x="{x0 - 8}" y="{b + 4:.1f}" text-anchor="end">{self._said(value, self.log[1])}</text>')
         out.append(f'<text x="{(x0 + x1) / 2}" y="{self.height - 12}" text-anchor="middle">{self.labels[0]}</text>')
         middle = (y0 + y1) / 2
         out.append(f'<text x="16" y="{middle}" text-anchor="middle" transform="rotate(-90 16 {middle})">{self.labels[1]}</text>')
@@ -96,9 +105,9 @@ class Plot:
             a = x0 + 12
             if is_point:
                 fill = "white" if dash == "hollow" else colour
-                out.append(f'<circle cx="{a + 12}" cy="{b - 4}" r="4" fill="{fill}" stroke="{colour}" stroke-width="1.6"/>')
+                out.append(f'<circle cx="{a + 12}" cy="{b - 4}" r="4" fill="{fill}" {self._pen(colour)}/>')
             else:
-                out.append(f'<line x1="{a}" y1="{b - 4}" x2="{a + 24}" y2="{b - 4}" stroke="{colour}" stroke-width="1.6" stroke-dasharray="{dash}"/>')
+                out.append(f'<line x1="{a}" y1="{b - 4}" x2="{a + 24}" y2="{b - 4}" {self._pen(colour, dash)}/>')
             out.append(f'<text x="{a + 32}" y="{b}">{name}</text>')
         path.write_text("\n".join(out + ["</svg>"]) + "\n")
         print(f"wrote {path}")
@@ -126,16 +135,14 @@ sigma = {3: 0.4923009, 5: 1.4668422, 7: 2.441369, 9: 3.415897}
 
 def knots():
     """What friction adds to the pull of a knot, over mu times what the theory of loose knots has for its contact forces."""
-    print("\nknots: crossings, r/R, pull without friction F R^2/EI (theory), sigma by contact forces (theory), friction's part of the"
-          " pull over mu P")
+    print("\nknots: crossings, r/R, F R^2/EI without friction (theory), sum of contact forces r^1/2 R^3/2 / EI (sigma), W R/EI,"
+          " what friction adds over mu P")
     found = []
     for path in sorted(folder.glob("knot_*/increments.csv")):
         crossings, radius = (int(text) for text in path.parent.name.split("_")[1:3])
         table = rows(path)
         settled = [row for row in table if row["stage"] == "settle"][-1]
         drawn = [row for row in table if row["stage"] == "draw"]
-        if not drawn:
-            continue
         mu = knot_friction
         loop = float(settled["shortening"]) / (2 * math.pi)
         pull, pressed = float(settled["force"]), float(settled["contact_force"])
@@ -146,23 +153,28 @@ def knots():
             ratios.append(friction / mu / float(row["contact_force"]))
         theory = 0.5 + 3 * sigma[crossings] / math.pi / math.sqrt(loop)
         by_contact = pressed * loop**1.5
-        ratio = sum(ratios) / len(ratios)
-        print(f"{crossings} | 1/{loop:.0f} | {pull * loop**2:.4f} ({theory:.4f}) | {by_contact:.3f} ({sigma[crossings]:.3f}) | {ratio:.4f}")
-        found.append((crossings, radius, by_contact, by_contact * ratio))
+        ratio = f"{sum(ratios) / len(ratios):.4f}" if ratios else "-"
+        energy = float(settled["elastic_energy"]) * loop
+        print(f"{crossings} | 1/{loop:.0f} | {pull * loop**2:.4f} ({theory:.4f}) | {by_contact:.3f} ({sigma[crossings]:.3f}) |",
+              f"{energy:.4f} | {ratio}")
+        found.append((crossings, loop, by_contact, energy))
     if not found:
         return
-    plot = Plot("knots: sigma, tied loosely and drawn", "(r / R)^(1/2)", "sum of contact forces, r^(1/2) R^(3/2) / E I", (0, 0.12), (0, 4))
+    # W = pi E I / R + 4 sigma E I r^1/2 / R^3/2 + ...
+    plot = Plot("loose knots: sigma by their energy", "(r / R)^(1/2)", "(W R / E I - pi) / 4 (R / r)^(1/2)", (0, 0.12), (0, 4))
     for k, crossings in enumerate(sorted({f[0] for f in found})):
         plot.points([(0, sigma[crossings])], colours[k], f"{crossings} crossings: theory at r/R = 0", hollow=True)
-        mine = [(math.sqrt(1 / f[1]), f[2]) for f in found if f[0] == crossings]
+        mine = sorted((math.sqrt(1 / f[1]), 0.25 * (f[3] - math.pi) * math.sqrt(f[1])) for f in found if f[0] == crossings)
         plot.points(mine, colours[k], "computed")
-        plot.line([(0, sigma[crossings])] + sorted(mine), colours[k], dash="4 3")
+        if len(mine) == 2:
+            (x0, y0), (x1, y1) = mine
+            print(f"{crossings} crossings: a line through both meets r/R = 0 at {y0 - x0 * (y1 - y0) / (x1 - x0):.3f}")
+        plot.line([(0, sigma[crossings])] + mine, colours[k], dash="4 3")
     plot.write(folder / "knots.svg")
 
 
 knot_friction = 0.1  # of benchmarks/validation/knot.toml
 
-# Elsewhere: pressures over the modulus, contacts of a length of fibre.
 philipse = 9.8  # contacts of a thin rod in random packings, measured (Wouterse, Luding, Philipse 2009)
 
 
@@ -177,15 +189,16 @@ def level_groups(name):
 
 
 def mats():
-    """Pressure and contacts over the volume fraction: fibres of all directions, in a plane, along one direction."""
-    kinds = [("mat_space", "all directions"), ("mat_plane", "within 20 degrees of a plane"), ("mat_along", "along one direction")]
+    """Pressure and contacts over the volume fraction: fibres of all directions, and nearly in a plane."""
+    kinds = [("mat_space", "all directions"), ("mat_plane", "within 20 degrees of a plane")]
     kinds = [(level_groups(name), name, title) for name, title in kinds]
     kinds = [kind for kind in kinds if kind[0]]
     if not kinds:
         return
-    pressure = Plot("mats: pressure", "volume fraction", "pressure / modulus", (0.1, 0.7), (1e-7, 1e-2), True, True)
-    contact = Plot("mats: contacts", "volume fraction", "contacts of a length of fibre (30 diameters)", (0.1, 0.7), (5, 50), True, True)
-    contact.line([(0.1, philipse), (0.7, philipse)], "#888", "random packings of thin rods, measured: 9.8", "5 4")
+    pressure = Plot("mats: pressure", "volume fraction", "pressure / modulus", (0.14, 0.4), (1e-7, 1e-2), True, True)
+    length = "contacts of a length of fibre (30 diameters)"
+    contact = Plot("mats: contacts", "volume fraction", length, (0.14, 0.4), (5, 40), True, True)
+    contact.line([(0.14, philipse), (0.4, philipse)], "#888", "random packings of thin rods, measured: 9.8", "5 4")
     for k, (groups, name, title) in enumerate(kinds):
         print(f"\n{name}: volume fraction, seeds, pressure over modulus (factor of a seed), contacts, over those without bulk")
         means, contacts = [], []
@@ -195,7 +208,8 @@ def mats():
             bare = sum(float(row["contacts_without_bulk"]) for row in group) / len(group)
             means.append((fraction, math.exp(log), math.exp(log - spread), math.exp(log + spread)))
             contacts.append((fraction, number))
-            print(f"{fraction:.4f} | {len(group)} | {math.exp(log):.3g} ({math.exp(spread):.2f}) | {number:.2f} | {number / bare:.2f}")
+            print(f"{fraction:.4f} | {len(group)} | {math.exp(log):.3g} ({math.exp(spread):.2f}) | {number:.2f} |",
+                  f"{number / bare:.2f}")
         pressure.points(means, colours[k], title)
         pressure.line([m[:2] for m in means], colours[k])
         contact.points(contacts, colours[k], title)
@@ -213,8 +227,9 @@ def mats():
             last = [(math.log(x), math.log(y)) for x, y, *_ in means[-3:]]
             print("power of the last three levels: pressure %.2f +- %.2f" % straight_line(last))
             print("power of all levels: contacts %.2f +- %.2f" % straight_line([(math.log(x), math.log(y)) for x, y in contacts]))
-            print("scatter of seeds at the last level: pressure %.0f %%, thickness %.1f %%" % (
-                100 * math.log(means[-1][3] / means[-1][1]), 100 * math.log(means[-1][3] / means[-1][1]) / straight_line(last)[0]))
+            scatter = 100 * math.log(means[-1][3] / means[-1][1])
+            print(f"scatter of seeds at the last level: pressure {scatter:.0f} %, thickness",
+                  f"{scatter / straight_line(last)[0]:.1f} %")
     pressure.write(folder / "mats_pressure.svg", "bottom")
     contact.write(folder / "mats_contacts.svg")
 
@@ -235,7 +250,8 @@ def twist():
         plot.line([(0, 0)] + [(x, e) for x, _, e in points], colours[k], f"mu theta^2 rho / L, mu = {mu:g}", "5 4")
         plot.points([(x, y) for x, y, _ in points], colours[k], "computed")
         slope, error = straight_line([(x, y) for x, y, _ in points])
-        print(f"\nwound, mu {mu:g}: slope of the log over theta^2 {slope:.5f} +- {error:.5f}; mu rho / L = {points[0][2] / points[0][0]:.5f}")
+        print(f"\nwound, mu {mu:g}: slope of the log over theta^2 {slope:.5f} +- {error:.5f};",
+              f"mu rho / L = {points[0][2] / points[0][0]:.5f}")
     if found:
         plot.write(folder / "twist.svg")
 
@@ -276,7 +292,7 @@ def knits():
         if values[0] is not None and values[1] is not None:
             tested = "-" if values[2] is None else f"{values[2]:.4f}"
             print(f"{strain:.2f} | {values[0]:.4f} | {values[1]:.4f} | {values[0] / values[1]:.2f} | {tested}")
-    plot = Plot("a plain knit of acrylic yarn, pulled along its courses", "strain", "force per width [N/mm]", (0, 1.0), (0, 0.32))
+    plot = Plot("a plain knit of acrylic yarn, pulled along its courses", "strain", "force per width [N/mm]", (0, 1.0), (0, 0.4))
     plot.points([m[:2] for m in measured], colours[1], "measured (deviation of the strain 0.002 to 0.008)", hollow=True)
     plot.line([p for p in periodic if p[0] >= 0], colours[2], "the authors' simulation, periodic, no friction", "5 4")
     plot.line([p for p in mine if p[1] >= 0], colours[0], "computed, five courses less three")

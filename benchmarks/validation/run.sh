@@ -26,14 +26,18 @@ for set in ${*:-closed knots knits mats}; do
     closed) "$programs/benchmark_validation_closed_forms_bench" > "$folder/closed.csv" || status=1 ;;
     knots)
       compute knot "$here/knot.toml" knot_3_100 --set knot.loop_radius=100 --set knot.tail=300 --set knot.elements=200
-      compute knot "$here/knot.toml" knot_3_200 --set knot.loop_radius=200 --set knot.tail=500 --set knot.elements=320
+      compute knot "$here/knot.toml" knot_3_200 --set knot.loop_radius=200 --set knot.tail=500 --set knot.elements=320 \
+        --set loading.draw=10
+      compute knot "$here/knot.toml" knot_5_100 --set knot.crossings=5 --set knot.loop_radius=100 --set knot.tail=300 \
+        --set knot.elements=240 --set loading.draw=26
       compute knot "$here/knot.toml" knot_5_200 --set knot.crossings=5 --set knot.loop_radius=200 --set knot.tail=500 \
-        --set knot.elements=360 --set loading.draw=20
+        --set knot.elements=360 --set loading.draw=0
       ;;
     mats)
       mat="$here/../../examples/dense_mat/dense_mat.toml"
       compute dense_mat "$mat" mat_plane --set levels.last=0.33 --set mat.seeds=3
-      compute dense_mat "$mat" mat_space --set mat.tilt_deg=90 --set mat.volume_fraction=0.1 --set levels.last=0.26 --set mat.seeds=2
+      compute dense_mat "$mat" mat_space --set mat.tilt_deg=90 --set mat.volume_fraction=0.1 --set levels.last=0.26 \
+        --set mat.seeds=2
       ;;
     knits)
       for courses in 3 5; do
