@@ -35,7 +35,7 @@ for set in ${*:-closed knots knits mats}; do
       ;;
     mats)
       mat="$here/../../examples/dense_mat/dense_mat.toml"
-      compute dense_mat "$mat" mat_plane --set levels.last=0.33 --set mat.seeds=3
+      compute dense_mat "$mat" mat_plane --set levels.last=0.33 --set mat.seeds=2
       compute dense_mat "$mat" mat_space --set mat.tilt_deg=90 --set mat.volume_fraction=0.1 --set levels.last=0.26 \
         --set mat.seeds=2
       ;;
