@@ -70,6 +70,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.require("mat", "volume_fraction", fraction, example::inside(0.0, 0.9), "1",
                  "volume fraction of fibres in the box at the start");
     example::read_random_fibres(file, parameters.tilt_deg, parameters.elements, "elements along a length of fibre");
+    file.read("mat", "spread_deg", parameters.spread_deg, example::between(0.0, 90.0), "degree",
+              "greatest angle of a fibre to the plane of x and z, seen from above; 90: all directions");
     example::read_seed(file, seed);
     file.read("mat", "seeds", seeds, example::between(1, 1000),
               "number of mats, one after the other; more than one: each has a folder of its own");

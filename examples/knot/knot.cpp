@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A knot is tied in a straight rod, comes to rest and is drawn tight; prints the pull beside that of loose knots. A polymer's
-// relaxes while it is held: [material.law] kind = "viscoelastic".
+// A knot is tied in a straight rod, comes to rest, is drawn tight and let back; prints the pull beside that of loose knots. A
+// polymer's relaxes while it is held: [material.law] kind = "viscoelastic".
 //   knot SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
 #include "../support/program.hpp"
@@ -42,7 +42,7 @@ struct Asked {
     knot::KnotParameters parameters;
     Polymer::Parameters polymer;
     Index increments = 20;
-    double drawn = 0.0, mu = 0.0, duration = 0.0, hold = 0.0;
+    double drawn = 0.0, back = 0.0, mu = 0.0, duration = 0.0, hold = 0.0;
 };
 
 template <class Section>
@@ -52,7 +52,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     Asked asked;
     knot::KnotParameters& parameters = asked.parameters;
     Index crossings = 3, &increments = asked.increments;
-    double &drawn = asked.drawn, &mu = asked.mu;
+    double &drawn = asked.drawn, &back = asked.back, &mu = asked.mu;
     std::string kind = "elastic";
     file.require("knot", "radius", parameters.radius, example::positive(), "length", "radius of the rod");
     file.require("knot", "loop_radius", parameters.loop_radius, example::positive(), "length",
@@ -71,7 +71,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
                                  "time in which it falls by 1/e");
     example::read_friction(file, mu, "coefficient of friction of the rod on itself");
     file.read("loading", "draw", drawn, example::not_negative(), "length", "length by which one end is drawn out");
-    file.read("loading", "increments", increments, example::increments(), "increments of the drawing, and of the holding");
+    file.read("loading", "back", back, example::not_negative(), "length", "length by which it is let back then");
+    file.read("loading", "increments", increments, example::increments(), 
+              "increments of the drawing, of the way back and of the holding");
     file.read("loading", "duration", asked.duration, example::not_negative(), "time",
               "how long tying takes, and drawing likewise, for a rod that is viscoelastic");
     file.read("loading", "hold", asked.hold, example::not_negative(), "time",
@@ -85,6 +87,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
                "<= 1000 knot.loop_radius = " + core::text(1000.0 * parameters.loop_radius));
     const double around = 2.0 * std::numbers::pi * parameters.loop_radius;
     file.check(drawn < around, "loading", "draw", "< the length of the loop, " + core::text(around));
+    file.check(back <= drawn, "loading", "back", "<= loading.draw = " + core::text(drawn));
     const double length = 2.0 * parameters.tail + around, element = length / static_cast<double>(parameters.elements);
     file.check(element >= parameters.radius, "knot", "elements",
                "<= " + core::text(std::floor(length / parameters.radius)) + ", or elements are shorter than a radius");
@@ -109,7 +112,7 @@ bool tie(const Asked& asked, const example::SceneReader& file, example::Output& 
     using Knot = KnotOf<Section>;
     const knot::KnotParameters& parameters = asked.parameters;
     const Index increments = asked.increments;
-    const double drawn = asked.drawn, mu = asked.mu;
+    const double drawn = asked.drawn, back = asked.back, mu = asked.mu;
 
     const double radius = parameters.radius, R = parameters.loop_radius;
     const double bending = 0.25 * std::numbers::pi * parameters.material.young_modulus * std::pow(radius, 4);
@@ -137,8 +140,10 @@ bool tie(const Asked& asked, const example::SceneReader& file, example::Output& 
     simulation::Loading<Knot> loading;
     loading.stages.resize(drawn > 0.0 ? 2 : 1);
     simulation::Stage<Knot>& settle = loading.stages[0];  // without friction: it would hold the knot as it is tied
-    settle.name = "settle", settle.increments = 2, settle.most_increments = 80;
-    settle.damping = 10.0 * bending / (R * R * R) / static_cast<double>(parameters.elements);
+    settle.name = "settle", settle.increments = 2, settle.most_increments = 200;
+    const double damping = 10.0 * bending / (R * R * R) / static_cast<double>(parameters.elements);
+    // A braid of more turns springs open over its own length, the root of 2 r R times a number, and not over that of the loop.
+    settle.damping = crossings > 3 ? damping * std::pow(R / (2.0 * radius), 1.5) : damping;
     settle.damping_decay = 0.5, settle.damping_share = 1e-3;
     settle.until = simulation::until_settled(0.05 * radius, 0.02 * radius);
     settle.friction.emplace(law::RegularisedCoulomb::Parameters{0.0, 0.02 * radius});
@@ -147,7 +152,12 @@ bool tie(const Asked& asked, const example::SceneReader& file, example::Output& 
         tighten.name = "draw", tighten.increments = increments, tighten.most_increments = 20 * increments;
         tighten.ramps = {{knot::draw, drawn}};
         tighten.friction.emplace(model.friction);
-        tighten.damping = 0.1 * settle.damping;  // what slides along itself without friction has nothing else to hold it
+        tighten.damping = 0.1 * damping;  // what slides along itself without friction has nothing else to hold it
+    }
+    if (back > 0.0) {
+        simulation::Stage<Knot> loosen = loading.stages.back();
+        loosen.name = "back", loosen.ramps = {{knot::draw, drawn - back}};
+        loading.stages.push_back(loosen);
     }
     for (auto& stage : loading.stages) stage.duration = asked.duration;
     if (asked.hold > 0.0) {

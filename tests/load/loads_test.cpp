@@ -115,6 +115,35 @@ TEST_CASE("a fibre that hangs in a stream lies along weight and drag, and stretc
     CHECK(energy.external == test::near(stored, 1e-2));
 }
 
+TEST_CASE("a slack fibre that hangs between two points has the tension and the sag of the elastic catenary") {
+    // 1.1 spans long, w L / (E A) = 1e-3. Bending takes a part of 1e-3, E I / (w span^3) = 6e-5.
+    const double radius = 5e-4, length = 1.1, area = scene::circular(radius).area();
+    scene::Assembly assembly;
+    assembly.add({.from = {0, 0, 0},
+                  .to = {length, 0, 0},
+                  .start = [](double t) { return Vec3(t, -0.8 * t * (1.0 - t), 0.0); },
+                  .section = scene::circular(radius),
+                  .material = {1.0 / area, 0.3},
+                  .elements = 40});
+    for (const scene::Station& end : {scene::first_end(0), scene::last_end(0)}) assembly.hold_position(end);
+    simulation::ModelParameters<Weighted> all = parameters();
+    all.acts.gravity.weight = Vec3(0, -1e-3 / length / area, 0);
+    simulation::Simulator<Weighted> simulator(assembly, all);
+    simulation::Loading<Weighted> loading;
+    loading.stages.resize(2);
+    loading.stages[0].name = "weight", loading.stages[0].increments = 2, loading.stages[0].ramps = {{"gravity", 1.0}};
+    loading.stages[0].damping = 1e-3;  // nothing is taut to begin with
+    loading.stages[1].name = "rest", loading.stages[1].damping_goes_on = true, loading.stages[1].damping_decay = 0.1;
+    loading.stages[1].until = [](const simulation::IncrementReport& increment) { return increment.damping <= 1e-9; };
+    const simulation::Report report = simulator.run(loading);
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    const Vec3 held = simulator.reaction(scene::last_end(0));
+    CHECK(held.x() == test::near(0.00059296895, 2e-3));
+    CHECK(held.norm() == test::near(0.00077563663, 2e-3));
+    CHECK(-simulator.value(scene::Station{0, 0.5}).y() == test::near(0.20107194, 1e-3));
+}
+
 TEST_CASE("loads that nothing carries are refused by name") {
     scene::Assembly assembly;
     assembly.add(fibre({0, 0, 0}, {1, 0, 0}, 2));

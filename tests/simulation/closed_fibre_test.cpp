@@ -92,6 +92,17 @@ TEST_CASE("a ring under two opposite forces is that of thin rings wherever its f
     }
 }
 
+TEST_CASE("a ring under large forces, apart and together, is the plane elastica") {
+    struct Expected {
+        double load, along, across;  // diameters over R, elliptic integrals
+    };
+    for (const Expected& e : {Expected{0.5, 2.0702675, 1.9331297}, {-0.5, 1.921201, 2.0695799}}) {
+        const Diameters d = pulled<beam::DirectorBeam<3>>({.elements = 40}, e.load, "sparse_cholesky");
+        CHECK(std::abs((2.0 + e.load * d.along) / e.along - 1.0) < 1e-5);
+        CHECK(std::abs((2.0 + e.load * d.across) / e.across - 1.0) < 1e-5);
+    }
+}
+
 TEST_CASE("all strategies give the same ring") {
     const Ring ring{.elements = 20, .shift = 7.0 / 40.0};
     const Diameters exact = pulled<beam::DirectorBeam<3>>(ring, 1e-2, "sparse_cholesky");

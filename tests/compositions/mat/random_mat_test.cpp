@@ -88,12 +88,21 @@ TEST_CASE("random fibres touch as often as the excluded volume says, and the sea
     }
 }
 
-TEST_CASE("directions of a mat are uniform on the sphere, or on the band of it that the tilt leaves") {
+TEST_CASE("directions of a mat are uniform on the sphere, or on the part of it that tilt and spread leave") {
     // Archimedes: heights on a sphere are uniform, and independent of the azimuth. Kolmogorov's distance of n uniform numbers is
     // above 1.95 / sqrt(n) once in a thousand times.
-    for (const double tilt_deg : {90.0, 35.0}) {
-        mat::MatParameters parameters{
-            .radius = 0.01, .length = 0.5, .width = 2.0, .height = 1.0, .fibres = 1, .tilt_deg = tilt_deg};
+    struct Directions {
+        double tilt_deg, spread_deg;
+    };
+    for (const auto& [tilt_deg, spread_deg] : {Directions{90.0, 90.0}, {35.0, 90.0}, {35.0, 10.0}}) {
+        mat::MatParameters parameters{.radius = 0.01,
+                                      .length = 0.5,
+                                      .width = 2.0,
+                                      .height = 1.0,
+                                      .fibres = 1,
+                                      .tilt_deg = tilt_deg,
+                                      .spread_deg = spread_deg};
+        const double widest = (spread_deg < 90.0 ? spread_deg / 180.0 : 1.0) * std::numbers::pi;  // a fibre has two ends
         const std::size_t n = 20000;
         const double highest = std::sin(tilt_deg * std::numbers::pi / 180.0);
         mat::Draws draw(3);
@@ -104,7 +113,7 @@ TEST_CASE("directions of a mat are uniform on the sphere, or on the band of it t
             const mat::MatFibre fibre = mat::drawn_fibre(parameters, draw);
             CHECK(std::abs(fibre.along.norm() - 1.0) < 1e-14);
             height.push_back(0.5 * (1.0 + fibre.along.z() / highest)),
-                azimuth.push_back(0.5 + std::atan2(fibre.along.y(), fibre.along.x()) / (2.0 * std::numbers::pi));
+                azimuth.push_back(0.5 + std::atan2(fibre.along.y(), fibre.along.x()) / (2.0 * widest));
             both += 12.0 * (height.back() - 0.5) * (azimuth.back() - 0.5) / std::sqrt(static_cast<double>(n));
             middle += fibre.middle / static_cast<double>(n);
         }
@@ -242,6 +251,8 @@ TEST_CASE("a box that is full, and what is not a mat, is refused by name") {
     parameters.draws = 20000;
     const std::string full = test::refusal([&] { mat::random_fibres(parameters); });
     CHECK(full.find("MatParameters.fibres = 1000, but it must be at most ") == 0);
+    parameters.spread_deg = -1.0;
+    CHECK(test::refusal([&] { parameters.validate(); }).find("MatParameters.spread_deg = -1") == 0);
     parameters.tilt_deg = 100.0;
     CHECK(test::refusal([&] { parameters.validate(); }).find("MatParameters.tilt_deg = 100") == 0);
 }

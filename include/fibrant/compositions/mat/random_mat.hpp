@@ -50,7 +50,10 @@ struct MatParameters {
     /// directions are as many at the sides as inside. What is shorter than a tenth of a fibre is left out. Straight fibres only.
     bool cut = false;
     double bend_deg = 0.0;  ///< by which each fibre turns from one end to the other, a circle's arc at rest [degree], in [0, 180]
-    double tilt_deg = 90.0;   ///< greatest angle to the plane of x and y; 90: all directions alike [degree], in [0, 90]
+    double tilt_deg = 90.0;  ///< greatest angle to the plane of x and y; 90: all directions alike [degree], in [0, 90]
+    /// Greatest angle to the plane of x and z, as it is seen from above; 90: all directions of the plane of x and y alike
+    /// [degree], in [0, 90].
+    double spread_deg = 90.0;
     double clearance = 0.02;  ///< least gap between two fibres [radius]; -2 or less: they may lie in each other
     scene::ElasticMaterial material{};
     Index elements = 8;       ///< along each fibre
@@ -70,6 +73,7 @@ struct MatParameters {
         core::require_at_least("MatParameters.fibres", fibres, 1);
         core::require_between("MatParameters.bend_deg", bend_deg, 0.0, 180.0);
         core::require_between("MatParameters.tilt_deg", tilt_deg, 0.0, 90.0);
+        core::require_between("MatParameters.spread_deg", spread_deg, 0.0, 90.0);
         core::require_finite("MatParameters.clearance", clearance);
         core::require_at_least("MatParameters.elements", elements, 1);
         core::require_at_least("MatParameters.draws", draws, fibres);
@@ -98,15 +102,17 @@ struct MatFibre {
     }
 };
 
-/// A fibre of any place in the box, and of any direction within the tilt: equal parts of the sphere are equally likely.
+/// A fibre of any place in the box, and of any direction within the tilt and the spread: equal parts of the sphere are equally
+/// likely.
 inline MatFibre drawn_fibre(const MatParameters& parameters, Draws& draw) {
     MatFibre fibre;
     const double beyond = parameters.cut ? 0.5 * parameters.length : 0.0;
     const double x = draw(-beyond, parameters.width + beyond), y = draw(-beyond, parameters.width + beyond),
                  z = draw(0.0, parameters.height);
     fibre.middle = {x, y, z};
-    const double up = std::sin(parameters.tilt_deg * std::numbers::pi / 180.0), sine = draw(-up, up),
-                 azimuth = draw(0.0, 2.0 * std::numbers::pi);
+    const double up = std::sin(parameters.tilt_deg * std::numbers::pi / 180.0), sine = draw(-up, up);
+    const double azimuth = parameters.spread_deg < 90.0 ? draw(-1.0, 1.0) * parameters.spread_deg * std::numbers::pi / 180.0
+                                                        : draw(0.0, 2.0 * std::numbers::pi);
     const double cosine = std::sqrt(std::max(0.0, 1.0 - sine * sine));
     fibre.along = {cosine * std::cos(azimuth), cosine * std::sin(azimuth), sine};
     // Bends as little out of the plane as its direction does.

@@ -1,0 +1,303 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Tables and plots of what benchmarks/validation/run.sh left: python3 plots.py FOLDER
+
+Reads what is there, prints a table for each set, and writes FOLDER/<set>.svg. Needs nothing but Python.
+"""
+import csv
+import math
+import pathlib
+import sys
+
+here = pathlib.Path(__file__).parent
+folder = pathlib.Path(sys.argv[1])
+colours = ["#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b"]
+
+
+def rows(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class Plot:
+    """Lines and points with error bars; axes linear or logarithmic."""
+
+    width, height, left, bottom, top, right = 560, 380, 70, 55, 30, 15
+
+    def __init__(self, title, x_label, y_label, x, y, log_x=False, log_y=False):
+        self.parts, self.keys = [], []
+        self.title, self.labels = title, (x_label, y_label)
+        self.x, self.y, self.log = x, y, (log_x, log_y)
+
+    def _at(self, value, bounds, log, low, high):
+        f = math.log if log else float
+        return low + (f(value) - f(bounds[0])) / (f(bounds[1]) - f(bounds[0])) * (high - low)
+
+    def place(self, x, y):
+        return (
+            self._at(x, self.x, self.log[0], self.left, self.width - self.right),
+            self._at(y, self.y, self.log[1], self.height - self.bottom, self.top),
+        )
+
+    @staticmethod
+    def _pen(colour, dash=""):
+        return f'stroke="{colour}" stroke-width="1.6" stroke-dasharray="{dash}"'
+
+    def line(self, points, colour, name=None, dash=""):
+        text = " ".join(f"{a:.1f},{b:.1f}" for a, b in (self.place(*p) for p in points))
+        self.parts.append(f'<polyline points="{text}" fill="none" {self._pen(colour, dash)}/>')
+        if name:
+            self.keys.append((name, colour, dash, False))
+
+    def points(self, points, colour, name=None, hollow=False):
+        """Each point is (x, y) or (x, y, lowest y, highest y)."""
+        for point in points:
+            a, b = self.place(*point[:2])
+            if len(point) == 4:
+                low, high = (self.place(point[0], v)[1] for v in point[2:])
+                self.parts.append(f'<line x1="{a:.1f}" y1="{low:.1f}" x2="{a:.1f}" y2="{high:.1f}" {self._pen(colour)}/>')
+            fill = "white" if hollow else colour
+            self.parts.append(f'<circle cx="{a:.1f}" cy="{b:.1f}" r="4" fill="{fill}" {self._pen(colour)}/>')
+        if name:
+            self.keys.append((name, colour, "hollow" if hollow else "", True))
+
+    @staticmethod
+    def _said(value, log):
+        return f"1e{math.log10(value):.0f}" if log and value < 0.01 else f"{value:g}"
+
+    def _ticks(self, bounds, log):
+        if log:
+            # 1, 2 and 5 of each decade
+            decades = range(math.floor(math.log10(bounds[0])), math.ceil(math.log10(bounds[1])) + 1)
+            wide = bounds[1] / bounds[0] > 100
+            values = [m * 10.0**d for d in decades for m in ((1,) if wide else (1, 1.5, 2, 2.5, 3, 4, 5))]
+        else:
+            raw = (bounds[1] - bounds[0]) / 5
+            unit = 10 ** math.floor(math.log10(raw))
+            step = next(m * unit for m in (1, 2, 5, 10) if m * unit >= raw)
+            first = math.ceil(bounds[0] / step - 1e-9)
+            values = [k * step for k in range(first, first + 20)]
+        return [v for v in values if bounds[0] * (1 - 1e-9) <= v <= bounds[1] * (1 + 1e-9) or v == 0 and bounds[0] <= 0]
+
+    def write(self, path, keys_at="top"):
+        out = [
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" '
+            'font-family="sans-serif" font-size="13">',
+            f'<rect width="{self.width}" height="{self.height}" fill="white"/>',
+            f'<text x="{self.width / 2}" y="18" text-anchor="middle" font-size="14">{self.title}</text>',
+        ]
+        x0, x1, y0, y1 = self.left, self.width - self.right, self.height - self.bottom, self.top
+        out.append(f'<rect x="{x0}" y="{y1}" width="{x1 - x0}" height="{y0 - y1}" fill="none" stroke="#444"/>')
+        for value in self._ticks(self.x, self.log[0]):
+            a = self.place(value, self.y[0])[0]
+            out.append(f'<line x1="{a:.1f}" y1="{y0}" x2="{a:.1f}" y2="{y0 + 5}" stroke="#444"/>')
+            out.append(f'<text x="{a:.1f}" y="{y0 + 19}" text-anchor="middle">{value:g}</text>')
+        for value in self._ticks(self.y, self.log[1]):
+            b = self.place(self.x[0], value)[1]
+            out.append(f'<line x1="{x0 - 5}" y1="{b:.1f}" x2="{x0}" y2="{b:.1f}" stroke="#444"/>')
+            out.append(f'<text x="{x0 - 8}" y="{b + 4:.1f}" text-anchor="end">{self._said(value, self.log[1])}</text>')
+        out.append(f'<text x="{(x0 + x1) / 2}" y="{self.height - 12}" text-anchor="middle">{self.labels[0]}</text>')
+        middle = (y0 + y1) / 2
+        out.append(f'<text x="16" y="{middle}" text-anchor="middle" transform="rotate(-90 16 {middle})">{self.labels[1]}</text>')
+        out += self.parts
+        for k, (name, colour, dash, is_point) in enumerate(self.keys):
+            b = (y1 + 16 + 18 * k) if keys_at == "top" else (y0 - 12 - 18 * (len(self.keys) - 1 - k))
+            a = x0 + 12
+            if is_point:
+                fill = "white" if dash == "hollow" else colour
+                out.append(f'<circle cx="{a + 12}" cy="{b - 4}" r="4" fill="{fill}" {self._pen(colour)}/>')
+            else:
+                out.append(f'<line x1="{a}" y1="{b - 4}" x2="{a + 24}" y2="{b - 4}" {self._pen(colour, dash)}/>')
+            out.append(f'<text x="{a + 32}" y="{b}">{name}</text>')
+        path.write_text("\n".join(out + ["</svg>"]) + "\n")
+        print(f"wrote {path}")
+
+
+def straight_line(points):
+    """Slope and its standard error of y over x."""
+    n = len(points)
+    mean_x, mean_y = (sum(p[k] for p in points) / n for k in (0, 1))
+    xx = sum((x - mean_x) ** 2 for x, _ in points)
+    slope = sum((x - mean_x) * (y - mean_y) for x, y in points) / xx
+    rest = sum((y - mean_y - slope * (x - mean_x)) ** 2 for x, y in points)
+    return slope, math.sqrt(rest / max(n - 2, 1) / xx)
+
+
+def mean_and_deviation(values):
+    mean = sum(values) / len(values)
+    return mean, math.sqrt(sum((v - mean) ** 2 for v in values) / max(len(values) - 1, 1))
+
+
+# sigma of a knot of 2 n + 1 crossings: contact forces add up to sigma E I / (r^1/2 R^3/2) where r is small against R. The first
+# two from the boundary-value problem of the braid (Audoly, Clauvelin, Neukirch 2007); each further turn of the braid adds 0.9745.
+sigma = {3: 0.4923009, 5: 1.4668422, 7: 2.441369, 9: 3.415897}
+
+
+def knots():
+    """What friction adds to the pull of a knot, over mu times what the theory of loose knots has for its contact forces."""
+    print("\nknots: crossings, r/R, F R^2/EI without friction (theory), sum of contact forces r^1/2 R^3/2 / EI (sigma), W R/EI,"
+          " what friction adds over mu P")
+    found = []
+    for path in sorted(folder.glob("knot_*/increments.csv")):
+        crossings, radius = (int(text) for text in path.parent.name.split("_")[1:3])
+        table = rows(path)
+        settled = [row for row in table if row["stage"] == "settle"][-1]
+        drawn = [row for row in table if row["stage"] == "draw"]
+        mu = knot_friction
+        loop = float(settled["shortening"]) / (2 * math.pi)
+        pull, pressed = float(settled["force"]), float(settled["contact_force"])
+        ratios = []
+        for row in drawn[-5:]:
+            other = float(row["shortening"]) / (2 * math.pi)
+            friction = float(row["force"]) - pull * (loop / other) ** 2
+            ratios.append(friction / mu / float(row["contact_force"]))
+        theory = 0.5 + 3 * sigma[crossings] / math.pi / math.sqrt(loop)
+        by_contact = pressed * loop**1.5
+        ratio = f"{sum(ratios) / len(ratios):.4f}" if ratios else "-"
+        energy = float(settled["elastic_energy"]) * loop
+        print(f"{crossings} | 1/{loop:.0f} | {pull * loop**2:.4f} ({theory:.4f}) | {by_contact:.3f} ({sigma[crossings]:.3f}) |",
+              f"{energy:.4f} | {ratio}")
+        found.append((crossings, loop, by_contact, energy))
+    if not found:
+        return
+    # W = pi E I / R + 4 sigma E I r^1/2 / R^3/2 + ...
+    plot = Plot("loose knots: sigma by their energy", "(r / R)^(1/2)", "(W R / E I - pi) / 4 (R / r)^(1/2)", (0, 0.12), (0, 4))
+    for k, crossings in enumerate(sorted({f[0] for f in found})):
+        plot.points([(0, sigma[crossings])], colours[k], f"{crossings} crossings: theory at r/R = 0", hollow=True)
+        mine = sorted((math.sqrt(1 / f[1]), 0.25 * (f[3] - math.pi) * math.sqrt(f[1])) for f in found if f[0] == crossings)
+        plot.points(mine, colours[k], "computed")
+        if len(mine) == 2:
+            (x0, y0), (x1, y1) = mine
+            print(f"{crossings} crossings: a line through both meets r/R = 0 at {y0 - x0 * (y1 - y0) / (x1 - x0):.3f}")
+        plot.line([(0, sigma[crossings])] + mine, colours[k], dash="4 3")
+    plot.write(folder / "knots.svg")
+
+
+knot_friction = 0.1  # of benchmarks/validation/knot.toml
+
+philipse = 9.8  # contacts of a thin rod in random packings, measured (Wouterse, Luding, Philipse 2009)
+
+
+def level_groups(name):
+    """Rows at rest of levels.csv, by volume fraction."""
+    path = folder / name / "levels.csv"
+    groups = {}
+    for row in rows(path) if path.exists() else []:
+        if row["at_rest"] in ("1", "true"):
+            groups.setdefault(round(float(row["volume_fraction"]), 4), []).append(row)
+    return dict(sorted(groups.items()))
+
+
+def mats():
+    """Pressure and contacts over the volume fraction: fibres of all directions, and nearly in a plane."""
+    kinds = [("mat_space", "all directions"), ("mat_plane", "within 20 degrees of a plane")]
+    kinds = [(level_groups(name), name, title) for name, title in kinds]
+    kinds = [kind for kind in kinds if kind[0]]
+    if not kinds:
+        return
+    pressure = Plot("mats: pressure", "volume fraction", "pressure / modulus", (0.14, 0.4), (1e-7, 1e-2), True, True)
+    length = "contacts of a length of fibre (30 diameters)"
+    contact = Plot("mats: contacts", "volume fraction", length, (0.14, 0.4), (5, 40), True, True)
+    contact.line([(0.14, philipse), (0.4, philipse)], "#888", "random packings of thin rods, measured: 9.8", "5 4")
+    for k, (groups, name, title) in enumerate(kinds):
+        print(f"\n{name}: volume fraction, seeds, pressure over modulus (factor of a seed), contacts, over those without bulk")
+        means, contacts = [], []
+        for fraction, group in groups.items():
+            log, spread = mean_and_deviation([math.log(float(row["pressure_over_modulus"])) for row in group])
+            number = sum(float(row["contacts_per_fibre"]) for row in group) / len(group)
+            bare = sum(float(row["contacts_without_bulk"]) for row in group) / len(group)
+            means.append((fraction, math.exp(log), math.exp(log - spread), math.exp(log + spread)))
+            contacts.append((fraction, number))
+            print(f"{fraction:.4f} | {len(group)} | {math.exp(log):.3g} ({math.exp(spread):.2f}) | {number:.2f} |",
+                  f"{number / bare:.2f}")
+        pressure.points(means, colours[k], title)
+        pressure.line([m[:2] for m in means], colours[k])
+        contact.points(contacts, colours[k], title)
+        contact.line(contacts, colours[k])
+        idle = {}  # contacts of the last level of each seed that carries nothing but its springs
+        for row in rows(folder / name / "levels.csv"):
+            if row["at_rest"] not in ("1", "true"):
+                idle[row["seed"]] = float(row["contacts_per_fibre"])
+        if idle and len(means) > 2:
+            least = sum(idle.values()) / len(idle)
+            over = [(math.log(number - least), math.log(mean[1])) for (_, number), mean in zip(contacts, means)]
+            print("idle levels have %.2f contacts; power of the pressure over contacts beyond these" % least,
+                  "%.2f +- %.2f" % straight_line(over))
+        if len(means) > 2:
+            last = [(math.log(x), math.log(y)) for x, y, *_ in means[-3:]]
+            print("power of the last three levels: pressure %.2f +- %.2f" % straight_line(last))
+            print("power of all levels: contacts %.2f +- %.2f" % straight_line([(math.log(x), math.log(y)) for x, y in contacts]))
+            scatter = 100 * math.log(means[-1][3] / means[-1][1])
+            print(f"scatter of seeds at the last level: pressure {scatter:.0f} %, thickness",
+                  f"{scatter / straight_line(last)[0]:.1f} %")
+    pressure.write(folder / "mats_pressure.svg", "bottom")
+    contact.write(folder / "mats_contacts.svg")
+
+
+def twist():
+    """Friction of a fibre on a helix against the square of its turn."""
+    path = folder / "closed.csv"
+    if not path.exists():
+        return
+    plot = Plot("a fibre on a helix: friction against twist", "square of the turn theta [rad^2]", "log of the ratio of tensions",
+                (0, 170), (0, 5))
+    found = {}
+    for row in rows(path):
+        if row["form"] == "wound":
+            mu, turns = (float(part.split()[-1]) for part in row["case"].split(";")[:2])
+            found.setdefault(mu, []).append(((2 * math.pi * turns) ** 2, float(row["computed"]), float(row["expected"])))
+    for k, (mu, points) in enumerate(sorted(found.items())):
+        plot.line([(0, 0)] + [(x, e) for x, _, e in points], colours[k], f"mu theta^2 rho / L, mu = {mu:g}", "5 4")
+        plot.points([(x, y) for x, y, _ in points], colours[k], "computed")
+        slope, error = straight_line([(x, y) for x, y, _ in points])
+        print(f"\nwound, mu {mu:g}: slope of the log over theta^2 {slope:.5f} +- {error:.5f};",
+              f"mu rho / L = {points[0][2] / points[0][0]:.5f}")
+    if found:
+        plot.write(folder / "twist.svg")
+
+
+course_spacing = 2.12  # mm, of benchmarks/validation/knit.toml
+
+
+def knits():
+    """A plain knit that is pulled along its courses. What two samples differ by, of five courses and of three, is the force of
+    two courses with neighbours on both sides: edges cancel."""
+    curves = []
+    for courses in (3, 5):
+        path = folder / f"knit_{courses}" / "loading" / "increments.csv"
+        if not path.exists():
+            return
+        curves.append([(float(row["strain"]), float(row["force"])) for row in rows(path) if row["stage"] == "load"])
+
+    def at(curve, strain):
+        for (x0, y0), (x1, y1) in zip(curve, curve[1:]):
+            if x0 <= strain <= x1 and x1 > x0:
+                return y0 + (y1 - y0) * (strain - x0) / (x1 - x0)
+        return None
+
+    data = here / "data" / "knits"
+    measured = [row for row in rows(data / "strain_at_load.csv") if (row["fabric"], row["direction"]) == ("stockinette", "x")]
+    measured = [tuple(float(row[key]) for key in ("strain_mean", "force_per_width_N_per_mm", "strain_sd")) for row in measured]
+    periodic = [(float(row["strain_x"]), float(row["force_per_width_N_per_mm"]))
+                for row in rows(data / "periodic_simulation_stockinette_x.csv") if row["force_per_width_N_per_mm"]]
+    mine = []
+    for strain, force in curves[1]:
+        other = at(curves[0], strain)
+        if other is not None:
+            mine.append((strain, (force - other) / (2.0 * course_spacing)))
+    print("\nknit, along the courses: strain, force per width computed, by the periodic simulation, ratio; measured")
+    measured_curve = [m[:2] for m in measured]
+    for strain in [0.05 * k for k in range(1, 20)]:
+        values = [at(curve, strain) for curve in (mine, periodic, measured_curve)]
+        if values[0] is not None and values[1] is not None:
+            tested = "-" if values[2] is None else f"{values[2]:.4f}"
+            print(f"{strain:.2f} | {values[0]:.4f} | {values[1]:.4f} | {values[0] / values[1]:.2f} | {tested}")
+    plot = Plot("a plain knit of acrylic yarn, pulled along its courses", "strain", "force per width [N/mm]", (0, 1.0), (0, 0.4))
+    plot.points([m[:2] for m in measured], colours[1], "measured (deviation of the strain 0.002 to 0.008)", hollow=True)
+    plot.line([p for p in periodic if p[0] >= 0], colours[2], "the authors' simulation, periodic, no friction", "5 4")
+    plot.line([p for p in mine if p[1] >= 0], colours[0], "computed, five courses less three")
+    plot.write(folder / "knits.svg")
+
+
+for part in (knots, mats, twist, knits):
+    part()
