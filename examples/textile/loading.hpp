@@ -43,6 +43,81 @@ inline fibrant::simulation::LoadProgramme programme_of(const Scene& scene, const
     return programme;
 }
 
+/// Six small strains of a cell that repeats, there and back one by one, in the folder "loading" of the results: stiffness.csv.
+/// Contacts hold: friction is as strong as it has to be, and as elastic as it was.
+/// @returns whether it is sound
+template <class Model>
+bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Assembled& assembled,
+              const fibrant::simulation::Simulator<Model>& settled_by) {
+    namespace simulation = fibrant::simulation;
+    const observe::Snapshot settled = settled_by.snapshot();
+    const double radius = scene.textile.smallest_radius();
+    const std::vector<fibrant::Vec3> images = cloth::images_of(scene.textile, assembled, settled),
+                                     periods = cloth::periods_of(scene.textile, images);
+    const double area = periods[0].cross(periods[1]).norm();
+    cloth::Assembled strained = cloth::assemble(scene.textile, scene.fineness, {true, images});
+    strained.assembly.begin_at(settled_by.state());
+    auto parameters = cloth::model_parameters<Model>(scene.textile, scene.settle);
+    parameters.solver.strategy = scene.linear_solver;
+    // Efforts are differences: what iterations leave has to be a small part of what a strain changes.
+    parameters.iteration.residual_tolerance = 1e-9, parameters.iteration.step_tolerance = 1e-7,
+    parameters.iteration.linear_tolerance = 1e-9, parameters.iteration.normal_step_tolerance = 1e-7,
+    parameters.iteration.normal_limit = 40, parameters.iteration.inexact = 0.0;
+    simulation::Simulator<Model> simulator(strained.assembly, parameters);
+    simulator.start_from(whole.checkpoint());
+    simulation::LoadProgramme programme = programme_of(scene, assembled);
+    constexpr double hold = 100.0;  // on friction and on the slip that it takes: the same stiffness, and no slip
+    programme.reversible_displacement *= hold;
+    const double friction = hold * scene.settle.friction_coefficient;
+    programme.stages.resize(1);
+    programme.stages[0].friction = friction;
+    cloth::CellStiffness stiffness;
+    for (std::size_t c = 0; c < 6; ++c) {
+        stiffness.amount[c] = scene.load.parameters.amount / (c < 3 ? 1.0 : radius);
+        simulation::ProgrammeStage stage;
+        stage.name = cloth::cell_channels()[c], stage.increments = 1, stage.cycles = 1, stage.looseness = 1.0;
+        stage.ramps = {{stage.name, stiffness.amount[c], false}};
+        programme.stages.push_back(stage);
+    }
+    example::Output output = whole;
+    output.folder = whole.folder / "loading";
+    output.resume = false;
+    std::filesystem::create_directories(output.folder);
+    example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
+        std::vector<observe::Column> row;
+        bool resting = true;
+        for (const std::string& name : cloth::cell_channels()) {
+            row.push_back({name, simulator.amplitude(name)});
+            resting = resting && simulator.amplitude(name) == 0.0 && stiffness.efforts.size() < 2;
+        }
+        const cloth::CellVector efforts = cloth::cell_efforts(simulator, area);
+        if (resting) stiffness.efforts.clear();
+        stiffness.efforts.push_back(efforts);
+        const std::array<const char*, 6> names{"n_x", "n_y", "n_xy", "m_x", "m_y", "m_xy"};
+        for (std::size_t c = 0; c < 6; ++c) row.push_back({names[c], efforts[static_cast<Index>(c)]});
+        return row;
+    });
+    simulation::Loading<Model> loading = simulation::loading_of<Model>(programme);
+    output.tell(loading, 20.0);
+    const simulation::Report report = simulator.run(loading, recorder);
+    const simulation::Audit audit = example::audit(output, simulator, radius);
+    observe::JsonObject json;
+    json.add("case", "cell").add("area", area);
+    if (report.converged) {
+        stiffness.evaluate();
+        observe::CsvWriter table(output.folder / "stiffness.csv");
+        for (Index i = 0; i < 6; ++i) {
+            std::vector<observe::Column> row{{"strain", cloth::cell_channels()[static_cast<std::size_t>(i)]}};
+            const std::array<const char*, 6> names{"n_x", "n_y", "n_xy", "m_x", "m_y", "m_xy"};
+            for (Index j = 0; j < 6; ++j) row.push_back({names[static_cast<std::size_t>(j)], stiffness.matrix(j, i)});
+            table.row(row);
+        }
+        json.add("asymmetry", stiffness.asymmetry).add("irreversible", stiffness.irreversible);
+    }
+    example::write_summary(output, report, audit, radius, {}, json);
+    return report.converged && audit.clean();
+}
+
 /// Runs it in the folder "loading" of the results.
 /// @returns what summary.json is told, and whether it is sound
 template <class Model>
