@@ -12,6 +12,7 @@
 #include <fibrant/simulation/programme.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -43,57 +44,75 @@ inline fibrant::simulation::LoadProgramme programme_of(const Scene& scene, const
     return programme;
 }
 
-/// Six small strains of a cell that repeats, there and back one by one, in the folder "loading" of the results: stiffness.csv.
-/// Contacts hold: friction is as strong as it has to be, and as elastic as it was.
+/// Six small strains of a cell that repeats, one by one, in the folder "loading" of the results: stiffness.csv.
+///
+/// Friction at rest depends on the pressure of its contact, and creeps as normals turn: the cell rests without, and no contact
+/// bears any until it is strained. Then friction is as stiff as it was, and never slips.
 /// @returns whether it is sound
 template <class Model>
 bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Assembled& assembled,
               const fibrant::simulation::Simulator<Model>& settled_by) {
     namespace simulation = fibrant::simulation;
-    const observe::Snapshot settled = settled_by.snapshot();
+    using Simulator = simulation::Simulator<Model>;
     const double radius = scene.textile.smallest_radius();
-    const std::vector<fibrant::Vec3> images = cloth::images_of(scene.textile, assembled, settled),
-                                     periods = cloth::periods_of(scene.textile, images);
-    const double area = periods[0].cross(periods[1]).norm();
-    cloth::Assembled strained = cloth::assemble(scene.textile, scene.fineness, {true, images});
-    strained.assembly.begin_at(settled_by.state());
     auto parameters = cloth::model_parameters<Model>(scene.textile, scene.settle);
     parameters.solver.strategy = scene.linear_solver;
     // Efforts are differences: what iterations leave has to be a small part of what a strain changes.
     parameters.iteration.residual_tolerance = 1e-9, parameters.iteration.step_tolerance = 1e-7,
     parameters.iteration.linear_tolerance = 1e-9, parameters.iteration.normal_step_tolerance = 1e-7,
     parameters.iteration.normal_limit = 40, parameters.iteration.inexact = 0.0;
-    simulation::Simulator<Model> simulator(strained.assembly, parameters);
-    simulator.start_from(whole.checkpoint());
-    simulation::LoadProgramme programme = programme_of(scene, assembled);
-    constexpr double hold = 100.0;  // on friction and on the slip that it takes: the same stiffness, and no slip
-    programme.reversible_displacement *= hold;
-    const double friction = hold * scene.settle.friction_coefficient;
-    programme.stages.resize(1);
-    programme.stages[0].friction = friction;
-    cloth::CellStiffness stiffness;
-    for (std::size_t c = 0; c < 6; ++c) {
-        stiffness.amount[c] = scene.load.parameters.amount / (c < 3 ? 1.0 : radius);
-        simulation::ProgrammeStage stage;
-        stage.name = cloth::cell_channels()[c], stage.increments = 1, stage.cycles = 1, stage.looseness = 1.0;
-        stage.ramps = {{stage.name, stiffness.amount[c], false}};
-        programme.stages.push_back(stage);
-    }
+    const auto cell_of = [&](const observe::Snapshot& state) {
+        return cloth::assemble(scene.textile, scene.fineness, {true, cloth::images_of(scene.textile, assembled, state)}).assembly;
+    };
     example::Output output = whole;
     output.folder = whole.folder / "loading";
     output.resume = false;
     std::filesystem::create_directories(output.folder);
+    simulation::LoadProgramme programme = programme_of(scene, assembled);
+    constexpr double hold = 100.0;  // on friction and on the slip that it takes
+    programme.reversible_displacement *= hold;
+    programme.rest_share = 1e-6, programme.rest_motion = 1e-9 * radius;  // until nothing moves by itself
+    programme.stages.resize(1);
+    programme.stages[0].friction = 0.0;
+    Simulator resting(cell_of(settled_by.snapshot()), parameters);
+    resting.start_from(whole.checkpoint());
+    simulation::Loading<Model> rest = simulation::loading_of<Model>(programme);
+    output.tell(rest, 20.0);
+    if (const simulation::Report report = resting.run(rest); !report.converged) {
+        std::fprintf(stderr, "textile: the cell does not rest without friction: %s\n", report.reason.c_str());
+        return false;
+    }
+    // Strains count from where it rests.
+    const std::vector<fibrant::Vec3> periods =
+        cloth::periods_of(scene.textile, cloth::images_of(scene.textile, assembled, resting.snapshot()));
+    const double area = periods[0].cross(periods[1]).norm();
+    Simulator simulator(cell_of(resting.snapshot()), parameters);
+    simulator.start_from(output.checkpoint());
+    simulation::ProgrammeStage stage;
+    stage.name = "hold", stage.increments = 1, stage.looseness = 1.0;
+    stage.friction = hold * scene.settle.friction_coefficient;
+    programme.stages = {stage};
+    stage.friction.reset();
+    cloth::CellStiffness stiffness;
+    for (std::size_t c = 0; c < 6; ++c) {
+        stiffness.amount[c] = scene.load.parameters.amount / (c < 3 ? 1.0 : radius);
+        stage.name = cloth::cell_channels()[c];
+        // Back, and once more: contacts adapt to what they bear, and are then as stiff as they were.
+        for (const double amount : {stiffness.amount[c], 0.0, 0.0}) {
+            stage.ramps = {{stage.name, amount, false}};
+            programme.stages.push_back(stage);
+        }
+    }
+    const std::array<const char*, 6> names{"n_x", "n_y", "n_xy", "m_x", "m_y", "m_xy"};
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
         std::vector<observe::Column> row;
-        bool resting = true;
+        bool strained = false;
         for (const std::string& name : cloth::cell_channels()) {
             row.push_back({name, simulator.amplitude(name)});
-            resting = resting && simulator.amplitude(name) == 0.0 && stiffness.efforts.size() < 2;
+            strained = strained || simulator.amplitude(name) != 0.0;
         }
         const cloth::CellVector efforts = cloth::cell_efforts(simulator, area);
-        if (resting) stiffness.efforts.clear();
-        stiffness.efforts.push_back(efforts);
-        const std::array<const char*, 6> names{"n_x", "n_y", "n_xy", "m_x", "m_y", "m_xy"};
+        if (strained || stiffness.efforts.empty()) stiffness.efforts.push_back(efforts);
         for (std::size_t c = 0; c < 6; ++c) row.push_back({names[c], efforts[static_cast<Index>(c)]});
         return row;
     });
@@ -106,13 +125,12 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
     if (report.converged) {
         stiffness.evaluate();
         observe::CsvWriter table(output.folder / "stiffness.csv");
-        for (Index i = 0; i < 6; ++i) {
-            std::vector<observe::Column> row{{"strain", cloth::cell_channels()[static_cast<std::size_t>(i)]}};
-            const std::array<const char*, 6> names{"n_x", "n_y", "n_xy", "m_x", "m_y", "m_xy"};
-            for (Index j = 0; j < 6; ++j) row.push_back({names[static_cast<std::size_t>(j)], stiffness.matrix(j, i)});
+        for (Index c = 0; c < 6; ++c) {
+            std::vector<observe::Column> row{{"strain", cloth::cell_channels()[static_cast<std::size_t>(c)]}};
+            for (Index k = 0; k < 6; ++k) row.push_back({names[static_cast<std::size_t>(k)], stiffness.matrix(k, c)});
             table.row(row);
         }
-        json.add("asymmetry", stiffness.asymmetry).add("irreversible", stiffness.irreversible);
+        json.add("asymmetry", stiffness.asymmetry);
     }
     example::write_summary(output, report, audit, radius, {}, json);
     return report.converged && audit.clean();

@@ -70,9 +70,9 @@ inline void see_images(const cloth::Textile& textile, const cloth::Assembled& as
     const observe::LeastGap least = cloth::image_gap(textile, assembled, settled, fibrant::proximity::GridSearch{});
     if (!(least.gap < audit.least_gap.gap)) return;
     if (least.gap < -audit.allowed)
-        std::fprintf(stderr, "audit: with images of the cell, fibres %td and %td are %.4f radii deep in each other at (%g, %g, %g)\n",
-                     least.fibre_i, least.fibre_j, -least.gap / radius, least.position.x(), least.position.y(),
-                     least.position.z());
+        std::fprintf(
+            stderr, "audit: with images of the cell, fibres %td and %td are %.4f radii deep in each other at (%g, %g, %g)\n",
+            least.fibre_i, least.fibre_j, -least.gap / radius, least.position.x(), least.position.y(), least.position.z());
     audit.least_gap = least;
 }
 

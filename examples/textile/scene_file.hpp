@@ -128,8 +128,7 @@ inline void read_height(SceneReader& file, const std::string& section, double& h
 /// @param curves  gets those of a file, if it is one
 /// @param periodic  it goes on at its ends
 inline cloth::Textile generate(SceneReader& file, const std::string& generator, const cloth::YarnType& yarn,
-                               const cloth::YarnType& binder, bool periodic,
-                               std::vector<fibrant::exchange::FileCurve>& curves) {
+                               const cloth::YarnType& binder, bool periodic, std::vector<fibrant::exchange::FileCurve>& curves) {
     const bool all = file.describes();
     cloth::Textile made;
     const auto wanted = [&](const char* name) { return all || generator == name; };

@@ -418,7 +418,8 @@ TEST_CASE("a cell that bends stretches, bends and twists a bar off its middle pl
                                         : Vec3(Vec3::Zero());
         const double unit = bent * length * young * inertia();
         CHECK((ties.cell_moment(0) - expected).norm() < 1e-3 * std::max(unit, expected.norm()));
-        CHECK(std::abs(ties.cell_force(0)(0, 0) + (of == 0 ? bent * length * axial * z : 0.0)) < 1e-3 * bent * length * axial * z);
+        CHECK(std::abs(ties.cell_force(0)(0, 0) + (of == 0 ? bent * length * axial * z : 0.0)) <
+              1e-3 * bent * length * axial * z);
     }
     scene::PeriodicCell loose;
     loose.curvature[1] = scene::Coordinate::loose();

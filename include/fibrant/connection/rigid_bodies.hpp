@@ -17,7 +17,8 @@
 
 namespace fibrant::connection {
 
-/// By how much more the image of a vector moves than the vector, for each of the curvatures of scene::PeriodicCell, a column each.
+/// By how much more the image of a vector moves than the vector, for each of the curvatures of scene::PeriodicCell, a column
+/// each.
 /// @param vector    a place [length], or a director [1]
 /// @param period    to its image, in the plane of x and y [length]
 inline Mat3 bend_jump(const Vec3& vector, const Vec3& period, bool director) noexcept {

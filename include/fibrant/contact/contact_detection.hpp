@@ -77,8 +77,8 @@ public:
     }
 
     bool empty() const noexcept { return orders_.empty(); }
-    /// Forced order between two fibres where they cross, or -1: of several that whose places are the nearest, of equally near ones
-    /// the last one given.
+    /// Forced order between two fibres where they cross, or -1: of several that whose places are the nearest, of equally near
+    /// ones the last one given.
     /// @param at_i, at_j  of the crossing along both, over their lengths [1]
     Index between(Index i, Index j, double at_i, double at_j) const noexcept {
         if (orders_.empty() || group_[core::at(i)] < 0 || group_[core::at(j)] < 0) return -1;

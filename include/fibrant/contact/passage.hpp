@@ -204,7 +204,8 @@ struct Swept {
                 const Vec3 motion_a = a.start_motion + at.s * (a.end_motion - a.start_motion),
                            motion_b = b.start_motion + at.t * (b.end_motion - b.start_motion);
                 if (may_pass(i, j, before, widths, Vec3(motion_b - motion_a), parting, contacts, forced, lines.along(k, at.s),
-                             lines.along(l, at.t))) return;
+                             lines.along(l, at.t)))
+                    return;
                 PassedPair pair;
                 pair.fibre = i, pair.other = j, pair.along = lines.along(k, at.s), pair.along_other = lines.along(l, at.t);
                 pair.place =

@@ -23,9 +23,11 @@ inline constexpr const char* tension_channel = "tension";
 struct Fineness {
     double element_over_radius = 3.0;  ///< greatest length of an element over the radius of its fibre [1], > 0
     Index least_elements = 8;          ///< of a fibre, >= 3
+    double turn = 0.5;                 ///< greatest turn of a path along an element, in the mean of the path [radian], > 0
     void validate() const {
         core::require_positive("Fineness.element_over_radius", element_over_radius);
         core::require_at_least("Fineness.least_elements", least_elements, 3);
+        core::require_positive("Fineness.turn", turn);
     }
 };
 
@@ -59,6 +61,18 @@ inline std::vector<scene::Curve> fibre_curves(const Textile& textile, Index p) {
     return curves;
 }
 
+/// Angle by which a curve turns in all, by chords [radian].
+inline double turning(const scene::Curve& curve, Index chords) {
+    double sum = 0.0;
+    Vec3 last = curve(0.0), along = Vec3::Zero();
+    for (Index k = 1; k <= chords; ++k) {
+        const Vec3 next = curve(static_cast<double>(k) / static_cast<double>(chords)), chord = next - last;
+        if (k > 1) sum += std::atan2(along.cross(chord).norm(), along.dot(chord));
+        last = next, along = chord;
+    }
+    return sum;
+}
+
 /// Mean arc between neighbouring crossings of a path.
 inline double crossing_spacing(const Textile& textile) {
     std::vector<Index> crossings(textile.paths.size(), 0);
@@ -76,7 +90,7 @@ inline double crossing_spacing(const Textile& textile) {
 
 /// How the cell of a textile that repeats is driven.
 struct CellDrive {
-    bool strained = false;      ///< its six strains are held, by cell_channels(); else free ones are under the yarns' tension
+    bool strained = false;       ///< its six strains are held, by cell_channels(); else free ones are under the yarns' tension
     std::vector<Vec3> images{};  ///< from the start of each path to its end, as they stand now; empty: as drawn
 };
 
@@ -137,8 +151,10 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
         answer.first_fibre.push_back(core::count(answer.path_of));
         const std::vector<scene::Curve> curves = detail::fibre_curves(textile, p);
         const double path_length = scene::length_of(path.curve, 128);
-        const Index elements = std::max(
-            fineness.least_elements, static_cast<Index>(std::ceil(path_length / (fineness.element_over_radius * type.radius))));
+        // Steep helices turn by more than elements of a given length can follow: their fibres would go through each other.
+        const auto by_length = static_cast<Index>(std::ceil(path_length / (fineness.element_over_radius * type.radius))),
+                   by_turn = static_cast<Index>(std::ceil(detail::turning(path.curve, 8 * by_length + 64) / fineness.turn));
+        const Index elements = std::max({fineness.least_elements, by_length, by_turn});
         for (const scene::Curve& curve : curves) {
             scene::FibreSpecification fibre;
             fibre.section = scene::circular(type.radius, type.inertia_factor), fibre.material = type.material;
@@ -172,8 +188,8 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
                     assembly.hold_position(last);
                 } else {
                     const double step = 0.25 / static_cast<double>(2 * elements);
-                    const Vec3 along =
-                        path.pull.isZero() ? scene::detail::curve_derivative(curve, 1.0, step).normalized() : path.pull.normalized();
+                    const Vec3 along = path.pull.isZero() ? scene::detail::curve_derivative(curve, 1.0, step).normalized()
+                                                          : path.pull.normalized();
                     assembly.hold_position(last, Mat3::Identity() - along * along.transpose());
                     const double pull = path.tension_strain * type.material.young_modulus * fibre.section.area();
                     assembly.apply(scene::DeadForce{last, scene::NodeVector::position, pull * along, tension_channel});
@@ -196,8 +212,7 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
             (textile.type_of(crossing.above).fibres > 1 || textile.type_of(crossing.below).fibres > 1))
             orders.push_back(crossing);
     const auto pair_of = [](const Crossing& crossing) { return std::pair{crossing.above, crossing.below}; };
-    std::stable_sort(orders.begin(), orders.end(),
-                     [&](const Crossing& a, const Crossing& b) { return pair_of(a) < pair_of(b); });
+    std::stable_sort(orders.begin(), orders.end(), [&](const Crossing& a, const Crossing& b) { return pair_of(a) < pair_of(b); });
     const auto crosses = [&](const std::pair<Index, Index>& pair) {
         const auto at = std::lower_bound(orders.begin(), orders.end(), pair,
                                          [&](const Crossing& a, const auto& wanted) { return pair_of(a) < wanted; });

@@ -12,11 +12,11 @@ namespace fibrant::compositions::textile {
 
 /// A flat braid: yarns that go to and fro between two edges.
 struct FlatBraid {
-    Index yarns = 3;                   ///< >= 3
-    double half_width = core::unset;   ///< from the middle to an edge [length], > 0
-    double period = core::unset;       ///< of a yarn, to and fro [length], > 0
-    double periods = 2.0;              ///< in all [1], > 0
-    Index over = 1;                    ///< yarns in turn that one passes above, then below: 1 or 2
+    Index yarns = 3;                  ///< >= 3
+    double half_width = core::unset;  ///< from the middle to an edge [length], > 0
+    double period = core::unset;      ///< of a yarn, to and fro [length], > 0
+    double periods = 2.0;             ///< in all [1], > 0
+    Index over = 1;                   ///< yarns in turn that one passes above, then below: 1 or 2
     /// Of ends along the braid, beyond the outermost crossings [length]; 0: a yarn's way from crossing to crossing and two
     /// diameters, so that no crossing slides off when the braid is pulled tight.
     double overhang = 0.0;
@@ -30,8 +30,7 @@ struct FlatBraid {
         core::require_positive("FlatBraid.period", period);
         core::require_positive("FlatBraid.periods", periods);
         core::require_not_negative("FlatBraid.overhang", overhang);
-        if (periodic && overhang > 0.0)
-            core::refuse("FlatBraid.overhang", core::text(overhang), "0, of a braid that goes on");
+        if (periodic && overhang > 0.0) core::refuse("FlatBraid.overhang", core::text(overhang), "0, of a braid that goes on");
         if (periodic) require_whole("FlatBraid.periods, of a braid that goes on", periods);
         if (over != 1 && over != 2) core::refuse("FlatBraid.over", std::to_string(over), "1 or 2");
         core::require_positive("FlatBraid.height_over_radius", height_over_radius);
@@ -61,9 +60,9 @@ inline double resting(double x, double low, double high, double turn) noexcept {
 inline Textile flat_braid(const FlatBraid& braid) {
     braid.validate();
     const double apart = 2.0 * braid.half_width / static_cast<double>(braid.yarns);
-    core::require(apart >= 2.0 * half_width(braid.type), "FlatBraid.half_width", braid.half_width,
-                  ">= " + core::text(static_cast<double>(braid.yarns) * half_width(braid.type)) +
-                      ", that of the yarns side by side");
+    core::require(
+        apart >= 2.0 * half_width(braid.type), "FlatBraid.half_width", braid.half_width,
+        ">= " + core::text(static_cast<double>(braid.yarns) * half_width(braid.type)) + ", that of the yarns side by side");
     Textile textile;
     textile.name = "flat braid";
     textile.types = {braid.type};
@@ -71,9 +70,10 @@ inline Textile flat_braid(const FlatBraid& braid) {
     const double tip = 0.4 / n;  // within the outermost meetings, which are half of 1 / N from a tip
     // No end stands on a crossing: meetings are at whole multiples of 1 / (2 N) of a period.
     const double shift = 0.25 / n, row = 0.5 * braid.period / n, turn = braid.periodic ? 0.0 : 0.8 * row;
-    const double tail = braid.periodic          ? 0.0
-                        : braid.overhang > 0.0 ? braid.overhang
-                                               : row * std::hypot(1.0, 4.0 * braid.half_width / braid.period) + 4.0 * half_width(braid.type);
+    const double tail = braid.periodic ? 0.0
+                        : braid.overhang > 0.0
+                            ? braid.overhang
+                            : row * std::hypot(1.0, 4.0 * braid.half_width / braid.period) + 4.0 * half_width(braid.type);
     for (Index k = 0; k < braid.yarns; ++k) {
         Path path;
         path.name = "strand " + std::to_string(k);

@@ -97,31 +97,22 @@ CellVector cell_efforts(const Simulator& simulator, double area) {
     return efforts / area;
 }
 
-/// What six small strains, one at a time there and back, say of a cell: the change of its efforts over each.
+/// What six small strains, one at a time from the same state, say of a cell: the change of its efforts over each.
 struct CellStiffness {
-    std::array<double, 6> amount{};            ///< of each strain, not 0
-    std::vector<CellVector> efforts{};         ///< before the first one, then at each and back: 13
-    CellMatrix matrix = CellMatrix::Zero();    ///< of what `evaluate` found
-    double asymmetry = 0.0, irreversible = 0.0;  ///< greatest |K_ij - K_ji|, and change of a cycle, over sqrt(K_ii K_jj) [1]
+    std::array<double, 6> amount{};          ///< of each strain, not 0
+    std::vector<CellVector> efforts{};       ///< without a strain, then at each of them: 7
+    CellMatrix matrix = CellMatrix::Zero();  ///< of what `evaluate` found
+    double asymmetry = 0.0;                  ///< greatest |K_ij - K_ji| over sqrt(K_ii K_jj) [1]
 
-    /// @throws std::invalid_argument unless there are 13 efforts
+    /// @throws std::invalid_argument unless there are 7 efforts
     void evaluate() {
-        if (efforts.size() != 13) core::refuse("CellStiffness.efforts", std::to_string(efforts.size()), "13");
-        CellMatrix left = CellMatrix::Zero();
-        for (Index c = 0; c < 6; ++c) {
-            const CellVector &before = efforts[core::at(2 * c)], &there = efforts[core::at(2 * c + 1)],
-                             &back = efforts[core::at(2 * c + 2)];
-            matrix.col(c) = (there - 0.5 * (before + back)) / amount[core::at(c)];
-            left.col(c) = (back - before) / amount[core::at(c)];
-        }
-        asymmetry = irreversible = 0.0;
+        if (efforts.size() != 7) core::refuse("CellStiffness.efforts", std::to_string(efforts.size()), "7");
+        for (Index c = 0; c < 6; ++c) matrix.col(c) = (efforts[core::at(c + 1)] - efforts[0]) / amount[core::at(c)];
+        asymmetry = 0.0;
         for (Index i = 0; i < 6; ++i)
-            for (Index j = 0; j < 6; ++j) {
-                const double unit = std::sqrt(std::abs(matrix(i, i) * matrix(j, j)));
-                if (!(unit > 0.0)) continue;
-                asymmetry = std::max(asymmetry, std::abs(matrix(i, j) - matrix(j, i)) / unit);
-                irreversible = std::max(irreversible, std::abs(left(i, j)) / unit);
-            }
+            for (Index j = 0; j < 6; ++j)
+                if (const double unit = std::sqrt(std::abs(matrix(i, i) * matrix(j, j))); unit > 0.0)
+                    asymmetry = std::max(asymmetry, std::abs(matrix(i, j) - matrix(j, i)) / unit);
     }
 };
 

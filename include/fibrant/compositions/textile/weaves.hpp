@@ -24,12 +24,12 @@ struct LevelPlan {
     double column_spacing = core::unset;       ///< along the warp [length], > 0
     double warp_spacing = core::unset;         ///< between neighbouring warps, > 0
     double layer_spacing = 0.0;                ///< between wefts of one column [length]; 0: of yarns that just do not touch
-    double overhang = 0.0;  ///< beyond the outermost crossings [length]; 0: as far as they are apart
+    double overhang = 0.0;                     ///< beyond the outermost crossings [length]; 0: as far as they are apart
     /// Goes on along warps and wefts: yarns end half way between crossings, and whole rows of the matrix make the columns.
     bool periodic = false;
-    YarnType warp{}, weft{};                   ///< of warps and of wefts
-    std::vector<Index> warp_types{};           ///< 0 the warp type, 1 the binder's, by row; empty: all 0
-    YarnType binder{};                         ///< of rows of that type
+    YarnType warp{}, weft{};          ///< of warps and of wefts
+    std::vector<Index> warp_types{};  ///< 0 the warp type, 1 the binder's, by row; empty: all 0
+    YarnType binder{};                ///< of rows of that type
 
     Index warps() const noexcept { return core::count(levels); }
     Index column_count() const noexcept { return columns > 0 ? columns : levels.empty() ? 0 : core::count(levels.front()); }
