@@ -392,8 +392,9 @@ TEST_CASE("a cell that is stretched and sheared holds the force of its bar along
 
 TEST_CASE("a cell that bends stretches, bends and twists a bar off its middle plane, and bears its force and moments") {
     // By the kinematics of a plate without shear: strain -z w,xx, curvature w,xx, twist w,xy.
-    const double z = 0.3, y = -0.7, bent = 1e-5, axial = young * area(), shear = young / 2.6;
+    const double z = 0.3, y = -0.7, axial = young * area(), shear = young / 2.6;
     for (const int of : {0, 1, 2}) {
+        const double bent = of == 2 ? 1e-4 : 1e-5;  // a twist's moment is far below what forces are balanced to
         scene::Assembly assembly;
         const Index f = assembly.add({.from = {-0.5 * length, y, z},
                                       .to = {0.5 * length, y, z},
