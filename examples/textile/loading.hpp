@@ -12,6 +12,7 @@
 #include <fibrant/simulation/programme.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -42,6 +43,98 @@ inline fibrant::simulation::LoadProgramme programme_of(const Scene& scene, const
     load.ramps = {{cloth::load_channel, 1.0, false}};
     programme.stages = {grip, load};
     return programme;
+}
+
+/// Six small strains of a cell that repeats, one by one, in the folder "loading" of the results: stiffness.csv.
+///
+/// Friction at rest depends on the pressure of its contact, and creeps as normals turn: the cell rests without, and no contact
+/// bears any until it is strained. Then friction is as stiff as it was, and never slips.
+/// @returns whether it is sound
+template <class Model>
+bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Assembled& assembled,
+              const fibrant::simulation::Simulator<Model>& settled_by) {
+    namespace simulation = fibrant::simulation;
+    using Simulator = simulation::Simulator<Model>;
+    const double radius = scene.textile.smallest_radius();
+    auto parameters = cloth::model_parameters<Model>(scene.textile, scene.settle);
+    parameters.solver.strategy = scene.linear_solver;
+    // Efforts are differences: what iterations leave has to be a small part of what a strain changes.
+    parameters.iteration.residual_tolerance = 1e-9, parameters.iteration.step_tolerance = 1e-7,
+    parameters.iteration.linear_tolerance = 1e-9, parameters.iteration.normal_step_tolerance = 1e-7,
+    parameters.iteration.normal_limit = 40, parameters.iteration.inexact = 0.0;
+    const auto cell_of = [&](const observe::Snapshot& state) {
+        return cloth::assemble(scene.textile, scene.fineness, {true, cloth::images_of(scene.textile, assembled, state)}).assembly;
+    };
+    example::Output output = whole;
+    output.folder = whole.folder / "loading";
+    output.resume = false;
+    std::filesystem::create_directories(output.folder);
+    simulation::LoadProgramme programme = programme_of(scene, assembled);
+    constexpr double hold = 100.0;  // on friction and on the slip that it takes
+    programme.reversible_displacement *= hold;
+    programme.rest_share = 1e-6, programme.rest_motion = 1e-9 * radius;  // until nothing moves by itself
+    programme.stages.resize(1);
+    programme.stages[0].friction = 0.0;
+    Simulator resting(cell_of(settled_by.snapshot()), parameters);
+    resting.start_from(whole.checkpoint());
+    simulation::Loading<Model> rest = simulation::loading_of<Model>(programme);
+    output.tell(rest, 20.0);
+    if (const simulation::Report report = resting.run(rest); !report.converged) {
+        std::fprintf(stderr, "textile: the cell does not rest without friction: %s\n", report.reason.c_str());
+        return false;
+    }
+    // Strains count from where it rests.
+    const std::vector<fibrant::Vec3> periods =
+        cloth::periods_of(scene.textile, cloth::images_of(scene.textile, assembled, resting.snapshot()));
+    const double area = periods[0].cross(periods[1]).norm();
+    Simulator simulator(cell_of(resting.snapshot()), parameters);
+    simulator.start_from(output.checkpoint());
+    simulation::ProgrammeStage stage;
+    stage.name = "hold", stage.increments = 1, stage.looseness = 1.0;
+    stage.friction = hold * scene.settle.friction_coefficient;
+    programme.stages = {stage};
+    stage.friction.reset();
+    cloth::CellStiffness stiffness;
+    for (std::size_t c = 0; c < 6; ++c) {
+        stiffness.amount[c] = scene.load.parameters.amount / (c < 3 ? 1.0 : radius);
+        stage.name = cloth::cell_channels()[c];
+        // Back, and once more: contacts adapt to what they bear, and are then as stiff as they were.
+        for (const double amount : {stiffness.amount[c], 0.0, 0.0}) {
+            stage.ramps = {{stage.name, amount, false}};
+            programme.stages.push_back(stage);
+        }
+    }
+    const std::array<const char*, 6> names{"n_x", "n_y", "n_xy", "m_x", "m_y", "m_xy"};
+    example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {
+        std::vector<observe::Column> row;
+        bool strained = false;
+        for (const std::string& name : cloth::cell_channels()) {
+            row.push_back({name, simulator.amplitude(name)});
+            strained = strained || simulator.amplitude(name) != 0.0;
+        }
+        const cloth::CellVector efforts = cloth::cell_efforts(simulator, area);
+        if (strained || stiffness.efforts.empty()) stiffness.efforts.push_back(efforts);
+        for (std::size_t c = 0; c < 6; ++c) row.push_back({names[c], efforts[static_cast<Index>(c)]});
+        return row;
+    });
+    simulation::Loading<Model> loading = simulation::loading_of<Model>(programme);
+    output.tell(loading, 20.0);
+    const simulation::Report report = simulator.run(loading, recorder);
+    const simulation::Audit audit = example::audit(output, simulator, radius);
+    observe::JsonObject json;
+    json.add("case", "cell").add("area", area);
+    if (report.converged) {
+        stiffness.evaluate();
+        observe::CsvWriter table(output.folder / "stiffness.csv");
+        for (Index c = 0; c < 6; ++c) {
+            std::vector<observe::Column> row{{"strain", cloth::cell_channels()[static_cast<std::size_t>(c)]}};
+            for (Index k = 0; k < 6; ++k) row.push_back({names[static_cast<std::size_t>(k)], stiffness.matrix(k, c)});
+            table.row(row);
+        }
+        json.add("asymmetry", stiffness.asymmetry);
+    }
+    example::write_summary(output, report, audit, radius, {}, json);
+    return report.converged && audit.clean();
 }
 
 /// Runs it in the folder "loading" of the results.

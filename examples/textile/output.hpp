@@ -6,8 +6,10 @@
 
 #include <fibrant/compositions/textile/audit.hpp>
 #include <fibrant/compositions/textile/imported.hpp>
+#include <fibrant/compositions/textile/periodic.hpp>
 #include <fibrant/compositions/textile/yarn_contacts.hpp>
 #include <fibrant/exchange/files.hpp>
+#include <fibrant/proximity/grid_search.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -60,6 +62,18 @@ inline void write_moves(const std::filesystem::path& folder, const cloth::Assemb
         }
         table.row(row);
     }
+}
+
+/// Of what repeats the least gap counts across seams too, which contact does not see; images have numbers beyond those of fibres.
+inline void see_images(const cloth::Textile& textile, const cloth::Assembled& assembled, const observe::Snapshot& settled,
+                       double radius, fibrant::simulation::Audit& audit) {
+    const observe::LeastGap least = cloth::image_gap(textile, assembled, settled, fibrant::proximity::GridSearch{});
+    if (!(least.gap < audit.least_gap.gap)) return;
+    if (least.gap < -audit.allowed)
+        std::fprintf(
+            stderr, "audit: with images of the cell, fibres %td and %td are %.4f radii deep in each other at (%g, %g, %g)\n",
+            least.fibre_i, least.fibre_j, -least.gap / radius, least.position.x(), least.position.y(), least.position.z());
+    audit.least_gap = least;
 }
 
 /// Says what is wrong with the topology.

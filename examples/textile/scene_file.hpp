@@ -10,6 +10,7 @@
 #include <fibrant/compositions/textile/imported.hpp>
 #include <fibrant/compositions/textile/knits.hpp>
 #include <fibrant/compositions/textile/load_cases.hpp>
+#include <fibrant/compositions/textile/periodic.hpp>
 #include <fibrant/compositions/textile/plies.hpp>
 #include <fibrant/compositions/textile/settle.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
@@ -31,6 +32,7 @@ namespace cloth = fibrant::compositions::textile;
 /// What is done to the settled textile.
 struct Load {
     bool wanted = false;
+    bool cell = false;  ///< six small strains of a cell that repeats, in place of a load case
     cloth::LoadCaseParameters parameters{};
     Index increments = 20, cycles = 0;
     double damping = 1e-4, rest_damping = 0.1;  ///< over the stiffness of a node against moving aside
@@ -79,21 +81,24 @@ inline void read_load(SceneReader& file, Load& load) {
     if (!load.wanted && !file.describes()) return;
     const std::vector<std::string> axes{"x", "y", "z"};
     std::string axis = "x", across = "z";
-    file.require(
-        "loading", "case", load.parameters.name, cloth::load_case_names(),
-        "what is done to the settled textile: grips at both ends are pulled apart, moved aside or turned, or plates press it");
+    std::vector<std::string> cases = cloth::load_case_names();
+    cases.push_back("cell");
+    file.require("loading", "case", load.parameters.name, cases,
+                 "what is done to the settled textile: grips at both ends are pulled apart, moved aside or turned, plates press "
+                 "it, or, where ends are periodic, a cell gets six small strains one by one");
+    load.cell = load.parameters.name == "cell";
     const bool plates = load.parameters.name == "compaction";
     if (plates) axis = "z", across = "x";
     file.read("loading", "axis", axis, axes, "from one grip to the other, or across the plates; left out: x, and z of plates");
     if (axis == across) across = "x";
     file.read("loading", "across", across, axes,
               "direction of a shear, or in which a bent sample rises; left out: z, and x where axis is z");
-    if (!plates || file.describes())
+    if ((!plates && !load.cell) || file.describes())
         file.require("loading", "grip", load.parameters.grip, example::positive(), "length",
                      "length of either grip along the axis");
     file.require("loading", "amount", load.parameters.amount, example::between(-1e3, 1e3), "1",
-                 "strain of the length between the grips, tangent of the shear, angle between the grips [radian], or approach of "
-                 "the plates over their distance");
+                 "strain of the length between the grips, tangent of the shear, angle between the grips [radian], approach of "
+                 "the plates over their distance, or strain of a cell, small; its curvatures are this over the radius");
     file.read(
         "loading", "guided", load.parameters.guided,
         "ends that no grip holds, but that were held or pulled, keep their places across the axis in tension, along the third "
@@ -108,7 +113,10 @@ inline void read_load(SceneReader& file, Load& load) {
     load.parameters.axis = axis[0] - 'x', load.parameters.across = across[0] - 'x';
     if (file.describes()) return;
     file.check(axis != across, "loading", "across", "another axis than loading.axis");
-    load.parameters.validate();
+    if (load.cell)
+        file.check(load.parameters.amount != 0.0, "loading", "amount", "not 0");
+    else
+        load.parameters.validate();
 }
 
 inline void read_height(SceneReader& file, const std::string& section, double& height) {
@@ -118,27 +126,30 @@ inline void read_height(SceneReader& file, const std::string& section, double& h
 
 /// Reads the section of the generator; all of them where there is no file.
 /// @param curves  gets those of a file, if it is one
+/// @param periodic  it goes on at its ends
 inline cloth::Textile generate(SceneReader& file, const std::string& generator, const cloth::YarnType& yarn,
-                               const cloth::YarnType& binder, std::vector<fibrant::exchange::FileCurve>& curves) {
+                               const cloth::YarnType& binder, bool periodic, std::vector<fibrant::exchange::FileCurve>& curves) {
     const bool all = file.describes();
     cloth::Textile made;
     const auto wanted = [&](const char* name) { return all || generator == name; };
     const auto positive = example::positive();
     if (wanted("flat_braid")) {
         cloth::FlatBraid braid;
-        braid.type = yarn;
+        braid.type = yarn, braid.periodic = periodic;
         file.require("flat_braid", "yarns", braid.yarns, example::between(3, 1000), "number of yarns");
         file.require("flat_braid", "half_width", braid.half_width, positive, "length", "distance from the middle to an edge");
         file.require("flat_braid", "period", braid.period, positive, "length",
                      "length in which a yarn goes to the other edge and back");
         file.read("flat_braid", "periods", braid.periods, example::above(0.0, 1e4), "1", "number of periods");
         file.read("flat_braid", "over", braid.over, example::between(1, 2), "how many yarns in turn a yarn passes above");
+        file.read("flat_braid", "overhang", braid.overhang, example::not_negative(), "length",
+                  "straight ends beyond the outermost crossings; 0: a yarn's way from crossing to crossing and two diameters");
         read_height(file, "flat_braid", braid.height_over_radius);
         if (!all) file.complete(), made = cloth::flat_braid(braid);
     }
     if (wanted("tubular_braid")) {
         cloth::TubularBraid braid;
-        braid.type = yarn;
+        braid.type = yarn, braid.periodic = periodic;
         file.require("tubular_braid", "carriers", braid.carriers, example::between(2, 1000), "number of yarns each way round");
         file.require("tubular_braid", "radius", braid.radius, positive, "length",
                      "radius of the tube, to the middle of the yarns");
@@ -154,7 +165,7 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         cloth::LevelPlan plan;
         std::vector<std::string> rows, lifts;
         std::vector<std::string> kinds;
-        plan.warp = plan.weft = yarn, plan.binder = binder;
+        plan.warp = plan.weft = yarn, plan.binder = binder, plan.periodic = periodic;
         file.read("levels", "levels", rows,
                   "one text for each warp, a digit for each column: how many wefts of the column lie below the warp");
         file.read("levels", "lifts", lifts,
@@ -242,7 +253,7 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
     }
     if (wanted("plied")) {
         cloth::Plied rope;
-        rope.type = yarn;
+        rope.type = yarn, rope.periodic = periodic;
         file.require("plied", "plies", rope.plies, example::between(2, 6), "number of plies");
         file.require("plied", "pitch", rope.pitch, positive, "length", "length of a full turn of the plies");
         file.read("plied", "strands", rope.strands, example::between(1, 6),
@@ -374,8 +385,11 @@ inline Scene read_scene(SceneReader& file) {
     }
     file.read("yarn", "element_over_radius", scene.fineness.element_over_radius, example::between(0.1, 100.0), "1",
               "greatest length of an element, over the radius");
-    file.read("ends", "kind", ends, {"held", "pulled", "free"},
-              "how ends of open yarns are: held in place, the last one pulled along itself, or free");
+    file.read("ends", "kind", ends, {"held", "pulled", "free", "periodic"},
+              "how ends of open yarns are: held in place, the last one pulled along itself, free, or images of each other: of "
+              "flat_braid, tubular_braid, levels and plied, which then are cells that repeat");
+    std::string lengths = "free";
+    file.read("ends", "lengths", lengths, {"free", "held"}, "of a cell that repeats: ruled by tension_strain, or as drawn");
     file.read("ends", "tension_strain", tension, example::between(0.0, 0.2), "1",
               "pull at ends that are pulled, over E A of a fibre");
     const bool rest_given = file.read(
@@ -419,11 +433,20 @@ inline Scene read_scene(SceneReader& file) {
     file.read("output", "voxel_spacing", scene.voxel_spacing, example::not_negative(), "length",
               "spacing of the voxels that are written, with an Abaqus mesh and maps of the fibre volume fraction; 0: none");
     detail::read_load(file, scene.load);
-    scene.textile = detail::generate(file, scene.generator, yarn, binder, scene.file_curves);
+    const bool periodic = ends == "periodic";
+    scene.textile = detail::generate(file, scene.generator, yarn, binder, periodic, scene.file_curves);
     if (file.describes()) file.complete();
+    file.check(!periodic || !scene.textile.lattice.empty(), "ends", "kind",
+               "held, pulled or free: only flat_braid, tubular_braid, levels and plied go on");
+    file.check(periodic || !file.given("ends", "lengths"), "ends", "lengths", "left out, unless ends.kind = \"periodic\"");
+    if (lengths == "free") scene.textile.free_lengths();
+    if (scene.load.wanted)
+        file.check(scene.load.cell == periodic && (!periodic || scene.textile.lattice.size() == 2), "loading", "case",
+                   periodic ? "\"cell\", of what repeats both ways, as levels do" : "another one, unless ends are periodic");
     example::check_transverse(file, "yarn", law);
     example::check_friction_shape(file, settle.friction_shape);
     file.check(ends != "pulled" || tension > 0.0, "ends", "tension_strain", "> 0, where ends are pulled");
+    file.check(!periodic || lengths != "held" || tension == 0.0, "ends", "tension_strain", "0, where lengths are held");
     for (cloth::Path& path : scene.textile.paths) {
         path.ends = ends == "held" ? cloth::Ends::held : ends == "pulled" ? cloth::Ends::pulled : cloth::Ends::free;
         path.tension_strain = tension;

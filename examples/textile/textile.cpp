@@ -36,7 +36,8 @@ bool settle(const textile::Scene& scene, example::SceneReader& file, example::Ou
     const simulation::Report report = simulator.run(loading, recorder);
 
     const observe::Snapshot settled = simulator.snapshot();
-    const simulation::Audit audit = example::audit(output, simulator, radius);
+    simulation::Audit audit = example::audit(output, simulator, radius);
+    if (!scene.textile.lattice.empty()) textile::see_images(scene.textile, assembled, settled, radius, audit);
     const textile::cloth::TopologyAudit topology = textile::cloth::audit_topology(
         scene.textile, assembled, textile::cloth::lines_of(drawn), textile::cloth::lines_of(settled));
     textile::tell(scene.textile, topology);
@@ -57,6 +58,7 @@ bool settle(const textile::Scene& scene, example::SceneReader& file, example::Ou
         coloured);
     const bool sound = report.converged && audit.clean() && topology.clean();
     if (!sound || !scene.load.wanted || example::stopped()) return sound;
+    if (scene.load.cell) return textile::run_cell(output, scene, assembled, simulator);
     return textile::run_load_case(output, scene, assembled, simulator).second;
 }
 

@@ -27,6 +27,7 @@
 #include <fibrant/compositions/textile/interlaced.hpp>
 #include <fibrant/compositions/textile/knits.hpp>
 #include <fibrant/compositions/textile/load_cases.hpp>
+#include <fibrant/compositions/textile/periodic.hpp>
 #include <fibrant/compositions/textile/plies.hpp>
 #include <fibrant/compositions/textile/settle.hpp>
 #include <fibrant/compositions/textile/strands.hpp>

@@ -51,6 +51,10 @@ stiffness() {
 stiffness tension 0.001 tension
 stiffness shear 0.002 shear
 stiffness bending 0.001 bending
+# A cell that repeats: its six stiffnesses are symmetric.
+"$program" "$scenes/cell_plain.toml" --output "$out/cell" --quiet --set output.paraview=false || fail "the cell of a plain weave"
+awk '/"asymmetry"/ { gsub(/[,"]/, ""); found = 1; if ($2 > 1e-3) { print "asymmetry", $2; exit 1 } } END { if (!found) exit 1 }' \
+  "$out/cell/loading/summary.json" || fail "the stiffness of a cell is not symmetric"
 for file in tows.yarns.stl tows.yarns.vtp tows.yarns.csv cells.vti cells.voxels.inp cells.voxels.csv cells.map.svg cells.profile.csv; do
   [ -s "$out/tension/$file" ] || fail "there is no $file"
 done
@@ -65,6 +69,8 @@ refused() {
 refused braid_flat contact.frction=1 contact.frction
 refused interlock 'levels.levels=["333333","012321"]' "comes apart"
 refused interlock levels.column_spacing=0.1 levels.column_spacing
+refused chain_mail ends.kind=periodic ends.kind
+refused cell_plain levels.columns=3 levels.columns
 refused from_csv file.path=nowhere.csv nowhere.csv
 refused knit_plain weft_knit.loop_height=0.41 "weft_knit.wale_spacing, course_spacing, loop_height"
 refused stitched stitched.row_spacing=0.7 "distance of thread"

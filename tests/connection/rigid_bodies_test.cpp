@@ -390,6 +390,43 @@ TEST_CASE("a cell that is stretched and sheared holds the force of its bar along
     CHECK((simulator.value(scene::last_end(f)) - simulator.value(scene::first_end(f)) - now).norm() < 1e-12);
 }
 
+TEST_CASE("a cell that bends stretches, bends and twists a bar off its middle plane, and bears its force and moments") {
+    // By the kinematics of a plate without shear: strain -z w,xx, curvature w,xx, twist w,xy.
+    const double z = 0.3, y = -0.7, axial = young * area(), shear = young / 2.6;
+    for (const int of : {0, 1, 2}) {
+        const double bent = of == 2 ? 1e-4 : 1e-5;  // a twist's moment is far below what forces are balanced to
+        scene::Assembly assembly;
+        const Index f = assembly.add({.from = {-0.5 * length, y, z},
+                                      .to = {0.5 * length, y, z},
+                                      .section = scene::circular(radius),
+                                      .material = {young, 0.3},
+                                      .elements = 4,
+                                      .director = Vec3::UnitY()});
+        assembly.hold_position({f, 0.5});
+        assembly.hold_axial_rotation({f, 0.5});
+        scene::PeriodicCell cell;
+        cell.curvature[core::at(of)] = scene::Coordinate::held_at(bent, "bend");
+        assembly.add(cell);
+        assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), Vec3(length, 0, 0), 0});
+        simulation::Simulator<Tied> simulator(assembly, parameters());
+        const simulation::Report report = simulator.run({.increments = 1});
+        CAPTURE(of);
+        CAPTURE(report.reason);
+        REQUIRE(report.converged);
+        const auto& ties = simulator.equilibrium().ties();
+        const Vec3 expected = of == 0   ? Vec3(bent * length * (axial * z * z + young * inertia()), 0, 0)
+                              : of == 2 ? Vec3(0, 0, bent * length * shear * 2.0 * inertia())
+                                        : Vec3(Vec3::Zero());
+        const double unit = bent * length * young * inertia();
+        CHECK((ties.cell_moment(0) - expected).norm() < 1e-3 * std::max(unit, expected.norm()));
+        CHECK(std::abs(ties.cell_force(0)(0, 0) + (of == 0 ? bent * length * axial * z : 0.0)) <
+              1e-3 * bent * length * axial * z);
+    }
+    scene::PeriodicCell loose;
+    loose.curvature[1] = scene::Coordinate::loose();
+    CHECK(test::refusal([&] { scene::Assembly().add(loose); }).find("PeriodicCell.curvature") != std::string::npos);
+}
+
 TEST_CASE("a scene that starts from the state of another one ties the means that it finds there") {
     const double stiffness = 3.0 * young * inertia() / std::pow(length, 3), given = 1e-3;
     const std::string file = "rigid_bodies_test_checkpoint.bin";

@@ -553,6 +553,24 @@ TEST_CASE("every search finds the same zones and contact elements, with an order
     }
 }
 
+TEST_CASE("fibres that cross both ways take the order of each crossing, the nearest one where they have slid") {
+    scene::Assembly assembly;
+    const Index one = assembly.add_group("one"), other = assembly.add_group("other");
+    for (const double width : {0.0, 0.05}) {  // a straight one, and one that crosses it at a quarter and at three quarters
+        scene::FibreSpecification fibre = test::curved_fibre(
+            [width](double t) { return Vec3(0.6 * (t - 0.5), width * std::cos(2.0 * std::numbers::pi * t), 0.0); }, r, 8);
+        fibre.group = width == 0.0 ? one : other;
+        assembly.add(fibre);
+    }
+    assembly.force_order({one, other, Vec3::UnitZ(), 0.2, 0.3});
+    assembly.force_order({other, one, Vec3::UnitZ(), 0.9, 0.6});
+    const Mesh mesh(assembly, Beam{});
+    const auto [elements, zones] = elements_by(assembly, mesh, proximity::GridSearch{{}}, true);
+    REQUIRE(elements.size() == 2);
+    for (const auto& element : elements) CHECK(element.normal.z() == (element.u_i < 4.0 ? -1.0 : 1.0));  // from the first one
+    CHECK(zones[core::at(elements[0].zone)].order != zones[core::at(elements[1].zone)].order);
+}
+
 TEST_CASE("a forced order gives the normal wherever fibres are, and every crossing has its element") {
     const scene::Assembly assembly = interlaced();
     const Mesh mesh(assembly, Beam{});

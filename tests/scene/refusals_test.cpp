@@ -275,6 +275,16 @@ TEST_CASE("loads, orders, rules, tools, bodies and cells are refused by what the
              a.force_order({1, 0, Vec3::UnitZ()}), a.force_order({0, 1, Vec3::UnitZ()});
          },
          {"ForcedOrder.above = 0, but it must be below: order 0 says so", "order 1"}},
+        {"a place on one of two groups",
+         [](auto& a) {
+             a.force_order({1, 0, Vec3::UnitZ(), 0.5});
+         },
+         {"ForcedOrder.at_below = nan", "order 0"}},
+        {"places in one of two orders",
+         [](auto& a) {
+             a.force_order({1, 0, Vec3::UnitZ(), 0.5, 0.5}), a.force_order({0, 1, Vec3::UnitZ()});
+         },
+         {"ForcedOrder.at_above = unset, but it must be as in order 0", "order 1"}},
         {"axes that are not parallel",
          [](auto& a) {
              a.add_group("top"), a.force_order({1, 0, Vec3::UnitZ()}), a.force_order({2, 1, Vec3::UnitX()});

@@ -78,6 +78,9 @@ void cut_fibre(const scene::FibreSpecification& fibre, Index nodes, std::vector<
     if (fibre.closed) return closed_frames<B>(fibre, nodes, starts, frames);
     frames = std::move(rest.frames);
     starts = fibre.start ? std::move(begun.frames) : frames;
+    if (!fibre.repeats) return;
+    const double closing = scene::closing_angle(starts);
+    scene::turn_along(frames, closing), scene::turn_along(starts, closing);
 }
 
 }  // namespace fibrant::beam

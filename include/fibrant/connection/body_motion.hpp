@@ -13,7 +13,8 @@
 
 namespace fibrant::connection {
 
-/// A free coordinate: of a body, 0 to 2 translations and 3 to 5 rotations; of a cell, one of the nine of its gradient.
+/// A coordinate: of a body, 0 to 2 translations and 3 to 5 rotations; of a cell, one of the nine of its gradient, or a curvature
+/// behind them, which is never free.
 struct FreeCoordinate {
     bool of_cell = false;
     Index owner = -1;
@@ -44,7 +45,8 @@ public:
                 if (coordinate.free) coordinate.value *= cell.volume;
                 add(coordinate, {true, core::count(gradients_), k, 0.0}, channels);
             }
-            gradients_.push_back(Mat3::Zero());
+            for (int k = 0; k < 3; ++k) add(cell.curvature[core::at(k)], {true, core::count(gradients_), 9 + k, 0.0}, channels);
+            gradients_.push_back(Mat3::Zero()), curvatures_.push_back(Vec3::Zero());
         }
         accept();
     }
@@ -54,7 +56,9 @@ public:
         poses_ = accepted_poses_, gradients_ = accepted_gradients_;
         for (const Driven& driven : held_) {
             const double value = amplitude(driven, amplitudes);
-            if (driven.of.of_cell)
+            if (driven.of.of_cell && driven.of.component >= 9)
+                curvatures_[core::at(driven.of.owner)][driven.of.component - 9] = value;
+            else if (driven.of.of_cell)
                 gradients_[core::at(driven.of.owner)](driven.of.component % 3, driven.of.component / 3) = value;
             else if (driven.of.component < 3)
                 poses_[core::at(driven.of.owner)].moved[driven.of.component] = value;
@@ -89,6 +93,8 @@ public:
     const Mat3& frame(Index body) const noexcept { return poses_[core::at(body)].frame; }
     Index parent(Index body) const noexcept { return poses_[core::at(body)].parent; }
     const Mat3& gradient(Index cell) const noexcept { return gradients_[core::at(cell)]; }
+    /// w,xx, w,yy, w,xy of scene::PeriodicCell [1 / length].
+    const Vec3& curvature(Index cell) const noexcept { return curvatures_[core::at(cell)]; }
     /// Greatest entry of frame^T frame - 1 over all bodies [1].
     double orthonormality_error() const {
         double most = 0.0;
@@ -191,6 +197,7 @@ private:
 
     std::vector<Pose> poses_, accepted_poses_;
     std::vector<Mat3> gradients_, accepted_gradients_;
+    std::vector<Vec3> curvatures_;  // all held: amplitudes say them
     std::vector<Driven> held_, free_;
 };
 

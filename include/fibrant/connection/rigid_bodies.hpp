@@ -19,6 +19,21 @@
 
 namespace fibrant::connection {
 
+/// By how much more the image of a vector moves than the vector, for each of the curvatures of scene::PeriodicCell, a column
+/// each.
+/// @param vector    a place [length], or a director [1]
+/// @param period    to its image, in the plane of x and y [length]
+inline Mat3 bend_jump(const Vec3& vector, const Vec3& period, bool director) noexcept {
+    const double a = period.x(), b = period.y(), x = vector.x(), y = vector.y(), z = vector.z();
+    Mat3 jump;
+    if (director)  // turned by the change of (w,y, -w,x, 0)
+        jump << Vec3(0.0, -a, 0.0).cross(vector), Vec3(b, 0.0, 0.0).cross(vector), Vec3(a, -b, 0.0).cross(vector);
+    else
+        jump << Vec3(-z * a, 0.0, a * (x + 0.5 * a)), Vec3(0.0, -z * b, b * (y + 0.5 * b)),
+            Vec3(-z * b, -z * a, x * b + y * a + a * b);
+    return jump;
+}
+
 /// Force and moment.
 struct Wrench {
     Vec3 force = Vec3::Zero();   ///< [force]
@@ -113,11 +128,13 @@ public:
         for (std::size_t k = 0; k < conditions_.size(); ++k) {
             Condition& condition = conditions_[k];
             const Vec3 sum = combination(ties_[k], state);
-            if (condition.periodic)
+            if (condition.periodic) {
                 condition.offset = sum;
-            else
+                condition.bend = bend_jump(state.segment<3>(3 * ties_[k].vectors.front()), condition.period, condition.director);
+            } else {
                 condition.offset = motion_.frame(condition.owner).transpose() *
                                    (condition.director ? sum : Vec3(sum - condition.root * motion_.position(condition.owner)));
+            }
         }
     }
 
@@ -277,6 +294,15 @@ public:
         return sum;
     }
 
+    /// The same for each of its curvatures: the moments per length of w,xx, w,yy and w,xy times the area of the cell.
+    Vec3 cell_moment(Index cell) const {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t k = 0; k < conditions_.size() && forces_.size() > 0; ++k)
+            if (conditions_[k].periodic && conditions_[k].owner == cell)
+                sum += conditions_[k].bend.transpose() * force_of(static_cast<Index>(k)) / conditions_[k].root;
+        return sum;
+    }
+
 private:
     struct Condition {
         Index owner = -1, channel = -1;
@@ -285,6 +311,7 @@ private:
         Mat3 axes = Mat3::Identity();        // in the body's frame
         Vec3 offset = Vec3::Zero();          // in the body's frame, times the root
         Vec3 displacement = Vec3::Zero(), period = Vec3::Zero();
+        Mat3 bend = Mat3::Zero();  // what a curvature of 1 adds to the difference of two images, a column each
     };
     using Group = CoordinateGroup;
 
@@ -299,9 +326,9 @@ private:
     double gap(std::size_t k, Index a) const noexcept {
         const Condition& condition = conditions_[k];
         if (condition.periodic) {
-            const double moved =
-                condition.director ? 0.0 : motion_.gradient(condition.owner).row(a).dot(condition.period) / condition.root;
-            return sums_[k][a] - condition.offset[a] - moved;
+            const double bent = condition.bend.row(a).dot(motion_.curvature(condition.owner)),
+                         moved = condition.director ? 0.0 : motion_.gradient(condition.owner).row(a).dot(condition.period);
+            return sums_[k][a] - condition.offset[a] - (moved + bent) / condition.root;
         }
         const Vec3 from = condition.director ? sums_[k] : Vec3(sums_[k] - condition.root * motion_.position(condition.owner));
         return direction(condition, a).dot(from) - offset(condition, a);

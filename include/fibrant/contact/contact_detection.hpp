@@ -39,11 +39,13 @@ public:
         const Index groups = core::count(assembly.groups());
         if (orders_.empty()) return;
         group_count_ = groups;
-        table_.assign(core::at(groups * groups), -1);
+        table_.assign(core::at(groups * groups), -1), next_.assign(orders_.size(), -1);
         std::vector<std::vector<Index>> neighbours(core::at(groups));
         for (Index k = 0; k < core::count(orders_); ++k) {
             const Index above = orders_[core::at(k)].above, below = orders_[core::at(k)].below;
-            table_[core::at(above * groups + below)] = table_[core::at(below * groups + above)] = k;
+            Index& last = table_[core::at(above * groups + below)];
+            if (orders_[core::at(k)].placed()) next_[core::at(k)] = last;
+            last = table_[core::at(below * groups + above)] = k;
             neighbours[core::at(above)].push_back(below);
             neighbours[core::at(below)].push_back(above);
         }
@@ -76,10 +78,23 @@ public:
     }
 
     bool empty() const noexcept { return orders_.empty(); }
-    /// Forced order between two fibres, or -1.
-    Index between(Index i, Index j) const noexcept {
+    /// Forced order between two fibres where they cross, or -1: of several that whose places are the nearest, of equally near
+    /// ones the last one given.
+    /// @param at_i, at_j  of the crossing along both, over their lengths [1]
+    Index between(Index i, Index j, double at_i, double at_j) const noexcept {
         if (orders_.empty() || group_[core::at(i)] < 0 || group_[core::at(j)] < 0) return -1;
-        return table_[core::at(group_[core::at(i)] * group_count_ + group_[core::at(j)])];
+        Index best = table_[core::at(group_[core::at(i)] * group_count_ + group_[core::at(j)])];
+        if (best < 0 || next_[core::at(best)] < 0) return best;
+        const auto off = [&](Index order) {
+            const scene::ForcedOrder& forced = orders_[core::at(order)];
+            const bool i_below = group_[core::at(i)] == forced.below;
+            return std::abs(at_i - (i_below ? forced.at_below : forced.at_above)) +
+                   std::abs(at_j - (i_below ? forced.at_above : forced.at_below));
+        };
+        double least = off(best);
+        for (Index k = next_[core::at(best)]; k >= 0; k = next_[core::at(k)])
+            if (const double own = off(k); own < least) best = k, least = own;
+        return best;
     }
     /// Direction from fibre i to fibre j that the order asks for, unit.
     Vec3 direction(Index order, Index i) const noexcept {
@@ -92,7 +107,7 @@ public:
 
 private:
     std::vector<scene::ForcedOrder> orders_;
-    std::vector<Index> table_, group_, family_;
+    std::vector<Index> table_, next_, group_, family_;  // next_: the order of the same groups given before
     Index group_count_ = 0;
 };
 
@@ -206,12 +221,16 @@ template <class B, proximity::ProximitySearch Search>
 std::vector<Zone> find_zones(const beam::Mesh<B>& mesh, const Vector& state, Search& search, const Detection& detection,
                              const ForcedOrders& orders, double reach, bool forced) {
     std::vector<Zone> zones;
+    const auto order_of = [&](const proximity::ProximityZone& span) {
+        return orders.between(span.fibre_i, span.fibre_j, span.closest_i / static_cast<double>(mesh.fibre(span.fibre_i).elements),
+                              span.closest_j / static_cast<double>(mesh.fibre(span.fibre_j).elements));
+    };
     SampledCentrelines<B> lines(mesh, state, detection, Mat3::Identity(), [](Index) { return true; });
     lines.widen(reach, detection.wanted);
     for (const proximity::ProximityZone& found : search.find(lines.centrelines, reach)) {
         Zone zone;
         zone.span = lines.in_elements(found);
-        zone.order = orders.between(zone.span.fibre_i, zone.span.fibre_j);
+        zone.order = order_of(zone.span);
         if (forced && zone.order >= 0) continue;
         zones.push_back(zone);
     }
@@ -226,7 +245,7 @@ std::vector<Zone> find_zones(const beam::Mesh<B>& mesh, const Vector& state, Sea
         for (const proximity::ProximityZone& found : search.find(plan.centrelines, 0.0)) {
             Zone zone;
             zone.span = plan.in_elements(found);
-            zone.order = orders.between(zone.span.fibre_i, zone.span.fibre_j);
+            zone.order = order_of(zone.span);
             if (zone.order < 0) continue;
             zone.forced = zone.crossing = true;
             zones.push_back(zone);

@@ -204,7 +204,9 @@ struct Swept {
                 if (!at.close) return;
                 const Vec3 motion_a = a.start_motion + at.s * (a.end_motion - a.start_motion),
                            motion_b = b.start_motion + at.t * (b.end_motion - b.start_motion);
-                if (may_pass(i, j, before, widths, Vec3(motion_b - motion_a), parting, contacts, forced)) return;
+                if (may_pass(i, j, before, widths, Vec3(motion_b - motion_a), parting, contacts, forced, lines.along(k, at.s),
+                             lines.along(l, at.t)))
+                    return;
                 PassedPair pair;
                 pair.fibre = i, pair.other = j, pair.along = lines.along(k, at.s), pair.along_other = lines.along(l, at.t);
                 pair.place =
@@ -243,13 +245,14 @@ struct Swept {
         /// @param before    distance of the two segments at the start [length]
         /// @param widths    sum of the smaller half widths [length]
         /// @param motion    of j against i [length]
+        /// @param at_i, at_j  where along both, over their lengths
         template <class Contacts>
         bool may_pass(Index i, Index j, double before, double widths, const Vec3& motion, const std::vector<Fibres>& parting,
-                      const Contacts& contacts, bool forced) const {
+                      const Contacts& contacts, bool forced, double at_i, double at_j) const {
             if (has(parting, i, j)) return true;
             if constexpr (requires { contacts.normal_law().limit(); })
                 if (std::isfinite(contacts.normal_law().limit()) && before < share * widths) return true;
-            const Index order = forced ? contacts.orders().between(i, j) : -1;
+            const Index order = forced ? contacts.orders().between(i, j, at_i, at_j) : -1;
             return order >= 0 && motion.dot(contacts.orders().direction(order, i)) > 0.0;
         }
 

@@ -38,6 +38,9 @@ struct FibreSpecification {
     /// The end is the start: `start`, or `curve` where there is none, closes smoothly, and so do the directors. The rest shape
     /// may be open: of a closed fibre that is given by its start alone it is straight.
     bool closed = false;
+    /// It goes on beyond both ends as its image: where it lies at first, and at rest, it is turned evenly along itself until its
+    /// last section is that of its first one.
+    bool repeats = false;
     double twist = 0.0;  ///< of a closed fibre: by which it is turned along itself before it is closed [radian]
 
     std::string law_channel{};  ///< that drives the law of its section: heat, shrinkage, growth; empty: none
@@ -55,6 +58,7 @@ struct FibreSpecification {
             core::refuse("fibre.elements", std::to_string(elements), "<= " + std::to_string(most_elements));
         require_finite("fibre.director", director);
         core::require_finite("fibre.twist", twist);
+        if (closed && repeats) core::refuse("fibre.repeats", "true", "false, of a closed fibre");
         if (closed) {
             core::require_at_least("fibre.elements, of a closed fibre", elements, 3);
             if (!start && !curve)
@@ -80,15 +84,23 @@ struct Group {
 /// Forces the normal between the fibres of two groups, whatever their present positions (Durville, section 15.3.5).
 ///
 /// Where centrelines of the two groups cross, fibres of `above` are pushed along `axis`, those of `below` against it,
-/// until they are on their sides.
+/// until they are on their sides. Groups that cross both ways have an order for each crossing, with its places: each crossing of
+/// two fibres takes the order whose places are the nearest along both, so that it may slide by half the way to the next one.
 struct ForcedOrder {
     Index above = -1, below = -1;  ///< groups
     Vec3 axis = Vec3::UnitZ();     ///< from below to above, unit; of all orders of a scene parallel
+    /// Where the crossing is along fibres of `above` and of `below`, over their lengths [1], in [0, 1]; unset, both: anywhere.
+    double at_above = core::unset, at_below = core::unset;
+
+    bool placed() const noexcept { return !std::isnan(at_above); }
 
     void validate() const {
         require_finite("ForcedOrder.axis", axis);
         core::require(std::abs(axis.norm() - 1.0) <= matrix_rounding, "ForcedOrder.axis: length", axis.norm(), "1");
         if (above == below) core::refuse("ForcedOrder.above", std::to_string(above), "another group than below");
+        if (std::isnan(at_above) && std::isnan(at_below)) return;
+        core::require_between("ForcedOrder.at_above", at_above, 0.0, 1.0);
+        core::require_between("ForcedOrder.at_below", at_below, 0.0, 1.0);
     }
 };
 
@@ -225,8 +237,12 @@ public:
         };
         core::with_place(place, [&] {
             order.validate();
-            const auto opposite = order_of_.find({order.below, order.above});
-            if (opposite != order_of_.end())
+            const auto opposite = order_of_.find({order.below, order.above}), same = order_of_.find({order.above, order.below});
+            for (const auto& other : {opposite, same})
+                if (other != order_of_.end() && orders_[core::at(other->second)].placed() != order.placed())
+                    core::refuse("ForcedOrder.at_above", order.placed() ? core::text(order.at_above) : "unset",
+                                 "as in " + label("order", other->second) + " of the same groups: given in all, or in none");
+            if (opposite != order_of_.end() && !order.placed())
                 core::refuse("ForcedOrder.above", std::to_string(order.above),
                              "below: " + label("order", opposite->second) + " says so");
             const double sine = orders_.empty() ? 0.0 : orders_.front().axis.cross(order.axis).norm();

@@ -34,7 +34,9 @@ public:
                 std::for_each(body.rotation.begin(), body.rotation.end(), drive);
         for (const AverageConnection& average : assembly.averages())
             if (!average.displacement.isZero(0.0)) names_.push_back(average.channel);
-        for (const PeriodicCell& cell : assembly.cells()) std::for_each(cell.gradient.begin(), cell.gradient.end(), drive);
+        for (const PeriodicCell& cell : assembly.cells())
+            std::for_each(cell.gradient.begin(), cell.gradient.end(), drive),
+                std::for_each(cell.curvature.begin(), cell.curvature.end(), drive);
         for (const SolidHold& hold : assembly.solid_holds()) names_.push_back(hold.channel);
         std::sort(names_.begin(), names_.end());
         names_.erase(std::unique(names_.begin(), names_.end()), names_.end());

@@ -76,10 +76,17 @@ struct PeriodicCell {
     std::string name{};                    ///< in tables and messages
     double volume = 1.0;                   ///< a force of a free component is its stress times this [length^3], > 0
     std::array<Coordinate, 9> gradient{};  ///< component (i, j) at i + 3 j [1]; free ones under a stress
+    /// Second derivatives w,xx, w,yy and w,xy of the height w = u_z of a cell that repeats in the plane of x and y, as a plate
+    /// without shear moves (Kirchhoff): u_x = -z w,x, u_y = -z w,y; small, and held [1 / length].
+    std::array<Coordinate, 3> curvature{};
 
     void validate() const {
         core::require_positive("PeriodicCell.volume", volume);
         for (const Coordinate& coordinate : gradient) core::require_finite("PeriodicCell.gradient", coordinate.value);
+        for (const Coordinate& coordinate : curvature) {
+            core::require_finite("PeriodicCell.curvature", coordinate.value);
+            if (coordinate.free) core::refuse("PeriodicCell.curvature", "a free coordinate", "held ones");
+        }
     }
     Coordinate& component(int i, int j) noexcept { return gradient[static_cast<std::size_t>(i + 3 * j)]; }
     const Coordinate& component(int i, int j) const noexcept { return gradient[static_cast<std::size_t>(i + 3 * j)]; }

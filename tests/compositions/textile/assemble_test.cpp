@@ -8,10 +8,12 @@
 #include <fibrant/compositions/textile/braids.hpp>
 #include <fibrant/compositions/textile/imported.hpp>
 #include <fibrant/compositions/textile/load_cases.hpp>
+#include <fibrant/compositions/textile/periodic.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
 #include <fibrant/compositions/textile/yarn_contacts.hpp>
 #include <fibrant/exchange/files.hpp>
+#include <fibrant/proximity/grid_search.hpp>
 
 #include <doctest/doctest.h>
 
@@ -60,7 +62,9 @@ TEST_CASE("fibres of a twisted yarn go round its path: outside ones are as long 
     }
 }
 
-TEST_CASE("tows of an interlock have one order for each pair that crosses; pairs that cross both ways have none") {
+TEST_CASE(
+    "tows of an interlock have one order for each pair that crosses; pairs that cross both ways one for each crossing, with its "
+    "place") {
     const Textile weave = woven({.levels = levels_of({"0202", "1111", "2020"}),
                                  .layers = 2,
                                  .column_spacing = 1.8,
@@ -70,8 +74,16 @@ TEST_CASE("tows of an interlock have one order for each pair that crosses; pairs
     CHECK(assemble(weave, {}).assembly.orders().size() == 3 * 4 * 2);
     const Textile braid = flat_braid({.yarns = 3, .half_width = 0.8, .period = 8.0, .type = yarn(7)});
     CHECK(assemble(braid, {}).assembly.orders().size() == 3);  // of three strands each lies above the next, for good
-    CHECK(assemble(flat_braid({.yarns = 4, .half_width = 1.2, .period = 12.0, .type = yarn(7)}), {}).assembly.orders().size() <
-          6);
+    const Textile four = flat_braid({.yarns = 4, .half_width = 1.2, .period = 12.0, .type = yarn(7)});
+    const auto placed = assemble(four, {}).assembly.orders();
+    CHECK(std::any_of(placed.begin(), placed.end(), [](const scene::ForcedOrder& order) { return order.placed(); }));
+    for (const scene::ForcedOrder& order : placed)  // groups are numbered as yarns
+        if (order.placed())
+            CHECK(std::any_of(four.crossings.begin(), four.crossings.end(), [&](const Crossing& crossing) {
+                const double length = scene::length_of(four.paths[core::at(order.above)].curve);
+                return crossing.above == order.above && crossing.below == order.below &&
+                       std::abs(crossing.at_above / length - order.at_above) < 1e-9;
+            }));
     CHECK(assemble(flat_braid({.yarns = 3, .half_width = 0.18, .period = 1.8, .type = yarn(1)}), {}).assembly.orders().empty());
 }
 
@@ -226,6 +238,68 @@ TEST_CASE("contact lengths of yarns are those of cylinders, and moves are told f
     const Moves own = moves_from({Vec3(-0.93, 0.02, 0), Vec3(0.61, 0, -0.04), Vec3(1.03, 0, 0)}, state.fibres[0]);
     CHECK(own.mean == test::near(0.03, 1e-9));
     CHECK(own.greatest == test::near(0.04, 1e-9));
+}
+
+TEST_CASE("what repeats is tied to its image under the pull of its yarns, and its gaps are seen across seams") {
+    Textile braid =
+        flat_braid({.yarns = 3, .half_width = 0.18, .period = 1.8, .periods = 1.0, .periodic = true, .type = yarn(1)});
+    CHECK(core::count(braid.crossings) == 6);
+    CHECK(refusal([&] { validate(braid); }).empty());
+    for (Path& path : braid.paths) path.tension_strain = 0.002;
+    braid.free_lengths();
+    const Assembled cell = assemble(braid, {});
+    REQUIRE(cell.assembly.cells().size() == 1);
+    CHECK(cell.assembly.pairs().size() == 3);
+    const scene::Coordinate& along = cell.assembly.cells()[0].component(1, 1);
+    CHECK(along.free);
+    CHECK(along.value == test::near(3.0 * 0.002 * 3000.0 * pi * 0.0025 * 1.8, 1e-12));  // of three yarns, over the period
+    CHECK_FALSE(cell.assembly.cells()[0].component(0, 0).free);
+    CHECK(core::count(woven({.levels = levels_of({"01", "10"}),
+                             .column_spacing = 0.4,
+                             .warp_spacing = 0.4,
+                             .periodic = true,
+                             .warp = yarn(1),
+                             .weft = yarn(1)})
+                          .crossings) == 4);
+    CHECK(refusal([] {
+              flat_braid({.yarns = 3, .half_width = 0.18, .period = 1.8, .periods = 1.5, .periodic = true, .type = yarn(1)});
+          }).find("FlatBraid.periods") == 0);
+    CHECK(refusal([] {
+              woven({.levels = levels_of({"01", "10"}),
+                     .columns = 3,
+                     .column_spacing = 0.4,
+                     .warp_spacing = 0.4,
+                     .periodic = true,
+                     .warp = yarn(1),
+                     .weft = yarn(1)});
+          }).find("LevelPlan.columns = 3") == 0);
+    // Two bars along x in a cell that is 0.3 wide, 0.12 apart: across its edge they are 0.18 apart. Then one leans to its image.
+    const double r = 0.05;
+    std::vector<std::pair<Vec3, Vec3>> ends{{Vec3(-1, 0, 0), Vec3(1, 0, 0)}, {Vec3(-1, 0.18, 0), Vec3(1, 0.18, 0)}};
+    const auto made = straight_yarns(ends, r);
+    const Assembled& assembled = made.second;
+    Textile bars = made.first;
+    for (Path& path : bars.paths) path.kind = PathKind::periodic, path.image = Vec3(2, 0, 0);
+    bars.lattice = {Vec3(2, 0, 0)};
+    const proximity::GridSearch search;
+    CHECK(image_gap(bars, assembled, straight(ends, r), search).gap == test::near(0.08, 1e-9));
+    bars.lattice.push_back(Vec3(0, 0.3, 0));
+    CHECK(refusal([&] { image_gap(bars, assembled, straight(ends, r), search); }).find("Textile.lattice") == 0);
+    bars.paths[1].image = bars.lattice[1];  // as if it went on sideways: what the bars' own ends say is 0.3 no more
+    ends[1] = {Vec3(0, -0.3, 0.14), Vec3(0, 0.0, 0.14)};
+    CHECK(image_gap(bars, assembled, straight(ends, r), search).gap == test::near(0.04, 1e-9));
+    CHECK(doubled(bars, assembled, straight(ends, r)).fibres.size() == 4);
+    CHECK(doubled(bars, assembled, straight(ends, r)).fibres[0].position.back().x() == test::near(3.0, 1e-12));
+    // Six strains: the matrix, and how far it is from symmetric.
+    CellStiffness stiffness;
+    CellMatrix given = CellMatrix::Identity();
+    given(0, 1) = 0.5, given(1, 0) = 0.4;
+    stiffness.amount.fill(1e-3);
+    stiffness.efforts.push_back(CellVector::Ones());
+    for (Index c = 0; c < 6; ++c) stiffness.efforts.push_back(CellVector::Ones() + 1e-3 * given.col(c));
+    stiffness.evaluate();
+    CHECK((stiffness.matrix - given).norm() < 1e-12);
+    CHECK(stiffness.asymmetry == test::near(0.1, 1e-9));
 }
 
 TEST_CASE("grips hold the nodes within them, and what they cannot hold is refused") {

@@ -7,6 +7,7 @@
 #include <fibrant/scene/assembly.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -22,9 +23,11 @@ inline constexpr const char* tension_channel = "tension";
 struct Fineness {
     double element_over_radius = 3.0;  ///< greatest length of an element over the radius of its fibre [1], > 0
     Index least_elements = 8;          ///< of a fibre, >= 3
+    double turn = 0.5;                 ///< greatest turn of a path along an element, in the mean of the path [radian], > 0
     void validate() const {
         core::require_positive("Fineness.element_over_radius", element_over_radius);
         core::require_at_least("Fineness.least_elements", least_elements, 3);
+        core::require_positive("Fineness.turn", turn);
     }
 };
 
@@ -58,6 +61,18 @@ inline std::vector<scene::Curve> fibre_curves(const Textile& textile, Index p) {
     return curves;
 }
 
+/// Angle by which a curve turns in all, by chords [radian].
+inline double turning(const scene::Curve& curve, Index chords) {
+    double sum = 0.0;
+    Vec3 last = curve(0.0), along = Vec3::Zero();
+    for (Index k = 1; k <= chords; ++k) {
+        const Vec3 next = curve(static_cast<double>(k) / static_cast<double>(chords)), chord = next - last;
+        if (k > 1) sum += std::atan2(along.cross(chord).norm(), along.dot(chord));
+        last = next, along = chord;
+    }
+    return sum;
+}
+
 /// Mean arc between neighbouring crossings of a path.
 inline double crossing_spacing(const Textile& textile) {
     std::vector<Index> crossings(textile.paths.size(), 0);
@@ -73,26 +88,61 @@ inline double crossing_spacing(const Textile& textile) {
 }
 }  // namespace detail
 
+/// How the cell of a textile that repeats is driven.
+struct CellDrive {
+    bool strained = false;       ///< its six strains are held, by cell_channels(); else free ones are under the yarns' tension
+    std::vector<Vec3> images{};  ///< from the start of each path to its end, as they stand now; empty: as drawn
+};
+
+/// Channels of the strains of a cell in the plane of x and y: of its lengths, and of the right angle between them, [1]; and the
+/// curvatures w,xx, w,yy and w,xy of scene::PeriodicCell.
+inline const std::array<std::string, 6>& cell_channels() {
+    static const std::array<std::string, 6> names{"strain_x", "strain_y", "shear", "bend_x", "bend_y", "twist"};
+    return names;
+}
+
+namespace detail {
+inline scene::PeriodicCell cell_of(const Textile& textile, const CellDrive& drive) {
+    scene::PeriodicCell cell;
+    cell.name = "cell";
+    if (drive.strained) {
+        const auto& names = cell_channels();
+        for (int k = 0; k < 2; ++k) cell.component(k, k) = scene::Coordinate::held_at(1.0, names[core::at(k)]);
+        cell.component(0, 1) = cell.component(1, 0) = scene::Coordinate::held_at(0.5, names[2]);
+        for (int k = 0; k < 3; ++k) cell.curvature[core::at(k)] = scene::Coordinate::held_at(1.0, names[core::at(3 + k)]);
+        return cell;
+    }
+    Mat3 pull = Mat3::Zero();  // work of the yarns' tension for each component
+    for (Index p = 0; p < core::count(textile.paths); ++p) {
+        const Path& path = textile.paths[core::at(p)];
+        const YarnType& type = textile.type_of(p);
+        if (path.kind == PathKind::periodic)
+            pull += static_cast<double>(type.fibres) * path.tension_strain * type.material.young_modulus *
+                    scene::circular(type.radius, type.inertia_factor).area() * path.image.normalized() * path.image.transpose();
+    }
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i)
+            if (textile.free_gradient[core::at(i + 3 * j)])
+                cell.component(i, j) = scene::Coordinate::under(pull(i, j), tension_channel);
+    return cell;
+}
+}  // namespace detail
+
 /// Adds what a textile is to a scene of its own. Fibres start as drawn; those of paths that are straight at rest are so, of the
 /// same length.
 ///
-/// Pairs of yarns that have several fibres are given the order of their crossing, where they cross with one order only: a forced
-/// order belongs to two groups. Yarns of one fibre keep the side on which they are drawn.
+/// Pairs of yarns that have several fibres are given the order of their crossing, and where they cross both ways that of each
+/// crossing. Yarns of one fibre keep the side on which they are drawn.
+/// What repeats keeps its mean place, which carries no force.
 /// @throws std::invalid_argument naming yarn, field and bound
-inline Assembled assemble(const Textile& textile, const Fineness& fineness) {
+inline Assembled assemble(const Textile& textile, const Fineness& fineness, const CellDrive& drive = {}) {
     validate(textile);
     fineness.validate();
     Assembled answer;
     scene::Assembly& assembly = answer.assembly;
     Index cell = -1;
-    const auto cell_of = [&] {
-        if (cell >= 0) return cell;
-        scene::PeriodicCell periodic;
-        periodic.name = "cell";
-        for (std::size_t k = 0; k < 9; ++k)
-            if (textile.free_gradient[k]) periodic.gradient[k] = scene::Coordinate::loose();
-        return cell = assembly.add(periodic);
-    };
+    const auto cell_of = [&] { return cell >= 0 ? cell : cell = assembly.add(detail::cell_of(textile, drive)); };
+    scene::AverageConnection middle;
     std::vector<Index> group;
     for (Index p = 0; p < core::count(textile.paths); ++p) {
         const Path& path = textile.paths[core::at(p)];
@@ -101,13 +151,15 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness) {
         answer.first_fibre.push_back(core::count(answer.path_of));
         const std::vector<scene::Curve> curves = detail::fibre_curves(textile, p);
         const double path_length = scene::length_of(path.curve, 128);
-        const Index elements = std::max(
-            fineness.least_elements, static_cast<Index>(std::ceil(path_length / (fineness.element_over_radius * type.radius))));
+        // Steep helices turn by more than elements of a given length can follow: their fibres would go through each other.
+        const auto by_length = static_cast<Index>(std::ceil(path_length / (fineness.element_over_radius * type.radius))),
+                   by_turn = static_cast<Index>(std::ceil(detail::turning(path.curve, 8 * by_length + 64) / fineness.turn));
+        const Index elements = std::max({fineness.least_elements, by_length, by_turn});
         for (const scene::Curve& curve : curves) {
             scene::FibreSpecification fibre;
             fibre.section = scene::circular(type.radius, type.inertia_factor), fibre.material = type.material;
             fibre.elements = elements, fibre.group = group.back(), fibre.director = path.upward;
-            fibre.closed = path.kind == PathKind::closed;
+            fibre.closed = path.kind == PathKind::closed, fibre.repeats = path.kind == PathKind::periodic;
             if (!path.straight) {
                 fibre.curve = curve;
             } else {
@@ -123,8 +175,10 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness) {
             answer.path_of.push_back(p);
             const scene::Station first = scene::first_end(f), last = scene::last_end(f);
             if (path.kind == PathKind::periodic) {
-                assembly.connect(scene::PeriodicPair{first, last, path.image, cell_of()});
+                assembly.connect(
+                    scene::PeriodicPair{first, last, drive.images.empty() ? path.image : drive.images[core::at(p)], cell_of()});
                 assembly.hold_axial_rotation({f, 0.5});
+                middle.ends.push_back({f, 0.5});
             } else if (path.kind == PathKind::closed) {
                 assembly.hold_axial_rotation(first);  // a ring that turns inside out of itself is the same ring
             } else if (path.ends != Ends::free) {
@@ -134,7 +188,8 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness) {
                     assembly.hold_position(last);
                 } else {
                     const double step = 0.25 / static_cast<double>(2 * elements);
-                    const Vec3 along = scene::detail::curve_derivative(curve, 1.0, step).normalized();
+                    const Vec3 along = path.pull.isZero() ? scene::detail::curve_derivative(curve, 1.0, step).normalized()
+                                                          : path.pull.normalized();
                     assembly.hold_position(last, Mat3::Identity() - along * along.transpose());
                     const double pull = path.tension_strain * type.material.young_modulus * fibre.section.area();
                     assembly.apply(scene::DeadForce{last, scene::NodeVector::position, pull * along, tension_channel});
@@ -143,21 +198,39 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness) {
             for (const Guide& guide : path.guides) assembly.hold_position({f, guide.at}, guide.directions);
         }
     }
+    if (!middle.ends.empty()) {
+        middle.body = assembly.add(scene::RigidBody{});
+        assembly.connect(middle);
+    }
     answer.first_fibre.push_back(core::count(answer.path_of));
     answer.longest_spacing = detail::crossing_spacing(textile);
 
-    // One order a pair; pairs that cross both ways have none.
-    std::vector<std::pair<Index, Index>> orders;
+    // One order a pair; pairs that cross both ways have one a crossing, with its places.
+    std::vector<Crossing> orders;
     for (const Crossing& crossing : textile.crossings)
-        if (crossing.above != crossing.below &&
+        if (!textile.view.radial && crossing.above != crossing.below &&
             (textile.type_of(crossing.above).fibres > 1 || textile.type_of(crossing.below).fibres > 1))
-            orders.emplace_back(crossing.above, crossing.below);
-    std::sort(orders.begin(), orders.end());
-    orders.erase(std::unique(orders.begin(), orders.end()), orders.end());
-    if (textile.view.radial) orders.clear();
-    for (const auto& [above, below] : orders)
-        if (!std::binary_search(orders.begin(), orders.end(), std::pair{below, above}))
-            assembly.force_order({group[core::at(above)], group[core::at(below)], textile.view.axis.normalized()});
+            orders.push_back(crossing);
+    const auto pair_of = [](const Crossing& crossing) { return std::pair{crossing.above, crossing.below}; };
+    std::stable_sort(orders.begin(), orders.end(), [&](const Crossing& a, const Crossing& b) { return pair_of(a) < pair_of(b); });
+    const auto crosses = [&](const std::pair<Index, Index>& pair) {
+        const auto at = std::lower_bound(orders.begin(), orders.end(), pair,
+                                         [&](const Crossing& a, const auto& wanted) { return pair_of(a) < wanted; });
+        return at != orders.end() && pair_of(*at) == pair;
+    };
+    for (std::size_t k = 0; k < orders.size(); ++k) {
+        const auto [above, below] = pair_of(orders[k]);
+        const bool both_ways = crosses({below, above});
+        if (!both_ways && k > 0 && pair_of(orders[k - 1]) == pair_of(orders[k])) continue;
+        scene::ForcedOrder order{group[core::at(above)], group[core::at(below)], textile.view.axis.normalized()};
+        if (both_ways) {
+            const auto part = [&](double at, Index path) {
+                return std::clamp(at / scene::length_of(textile.paths[core::at(path)].curve), 0.0, 1.0);
+            };
+            order.at_above = part(orders[k].at_above, above), order.at_below = part(orders[k].at_below, below);
+        }
+        assembly.force_order(order);
+    }
     return answer;
 }
 

@@ -12,11 +12,15 @@ namespace fibrant::compositions::textile {
 
 /// A flat braid: yarns that go to and fro between two edges.
 struct FlatBraid {
-    Index yarns = 3;                   ///< >= 3
-    double half_width = core::unset;   ///< from the middle to an edge [length], > 0
-    double period = core::unset;       ///< of a yarn, to and fro [length], > 0
-    double periods = 2.0;              ///< in all [1], > 0
-    Index over = 1;                    ///< yarns in turn that one passes above, then below: 1 or 2
+    Index yarns = 3;                  ///< >= 3
+    double half_width = core::unset;  ///< from the middle to an edge [length], > 0
+    double period = core::unset;      ///< of a yarn, to and fro [length], > 0
+    double periods = 2.0;             ///< in all [1], > 0
+    Index over = 1;                   ///< yarns in turn that one passes above, then below: 1 or 2
+    /// Of ends along the braid, beyond the outermost crossings [length]; 0: a yarn's way from crossing to crossing and two
+    /// diameters, so that no crossing slides off when the braid is pulled tight.
+    double overhang = 0.0;
+    bool periodic = false;             ///< goes on at both ends; whole periods
     YarnType type{};                   ///< of all yarns
     double height_over_radius = 1.05;  ///< of a yarn at a crossing out of the middle plane [1], > 0
 
@@ -25,6 +29,9 @@ struct FlatBraid {
         core::require_positive("FlatBraid.half_width", half_width);
         core::require_positive("FlatBraid.period", period);
         core::require_positive("FlatBraid.periods", periods);
+        core::require_not_negative("FlatBraid.overhang", overhang);
+        if (periodic && overhang > 0.0) core::refuse("FlatBraid.overhang", core::text(overhang), "0, of a braid that goes on");
+        if (periodic) require_whole("FlatBraid.periods, of a braid that goes on", periods);
         if (over != 1 && over != 2) core::refuse("FlatBraid.over", std::to_string(over), "1 or 2");
         core::require_positive("FlatBraid.height_over_radius", height_over_radius);
         type.validate();
@@ -40,30 +47,46 @@ inline double rounded_wave(double x, double tip) noexcept {
     if (0.5 - d < tip) return -1.0 + 2.0 * tip + 2.0 * (0.5 - d) * (0.5 - d) / tip;
     return straight;
 }
+/// x in [low, high], and beyond them what it comes to rest at over a length `turn`, half of that further on.
+inline double resting(double x, double low, double high, double turn) noexcept {
+    const auto beyond = [turn](double y) { return y >= turn ? 0.5 * turn : y * (1.0 - 0.5 * y / turn); };
+    return x < low ? low - beyond(low - x) : x > high ? high + beyond(x - high) : x;
+}
 }  // namespace detail
 
 /// Yarn k lies at x = A tri(y / P + k / N): meetings are at x_m = A (2 m / N - 1), m from 1 to N - 1, in a quincunx. The yarn
 /// that goes to the right is above where the whole part of m over `over` is even, so that each yarn alternates, across its turns
-/// as well. N (N - 1) crossings a period.
+/// as well. N (N - 1) crossings a period. Ends lie along the braid, side by side where yarns are half way between crossings.
 inline Textile flat_braid(const FlatBraid& braid) {
     braid.validate();
+    const double apart = 2.0 * braid.half_width / static_cast<double>(braid.yarns);
+    core::require(
+        apart >= 2.0 * half_width(braid.type), "FlatBraid.half_width", braid.half_width,
+        ">= " + core::text(static_cast<double>(braid.yarns) * half_width(braid.type)) + ", that of the yarns side by side");
     Textile textile;
     textile.name = "flat braid";
     textile.types = {braid.type};
     const double n = static_cast<double>(braid.yarns), length = braid.period * braid.periods;
     const double tip = 0.4 / n;  // within the outermost meetings, which are half of 1 / N from a tip
     // No end stands on a crossing: meetings are at whole multiples of 1 / (2 N) of a period.
-    const double shift = 0.25 / n;
+    const double shift = 0.25 / n, row = 0.5 * braid.period / n, turn = braid.periodic ? 0.0 : 0.8 * row;
+    const double tail = braid.periodic ? 0.0
+                        : braid.overhang > 0.0
+                            ? braid.overhang
+                            : row * std::hypot(1.0, 4.0 * braid.half_width / braid.period) + 4.0 * half_width(braid.type);
     for (Index k = 0; k < braid.yarns; ++k) {
         Path path;
         path.name = "strand " + std::to_string(k);
         path.family = k;
+        if (braid.periodic) repeat(path, length * Vec3::UnitY());
         path.curve = [=, a = braid.half_width, period = braid.period, phase = static_cast<double>(k) / n](double t) {
-            const double y = length * t;
-            return Vec3(a * detail::rounded_wave(y / period + phase + shift, tip), y, 0.0);
+            const double y = (length + 2.0 * tail) * t - tail,
+                         way = turn > 0.0 ? detail::resting(y, 0.5 * turn, length - 0.5 * turn, turn) : y;
+            return Vec3(a * detail::rounded_wave(way / period + phase + shift, tip), y, 0.0);
         };
         textile.paths.push_back(std::move(path));
     }
+    if (braid.periodic) textile.lattice = {length * Vec3::UnitY()};
     interlace(
         textile,
         [&](const PlanCrossing& crossing) {
@@ -83,6 +106,7 @@ struct TubularBraid {
     double turns = 0.5;                ///< > 0
     Index over = 1;                    ///< 1: 1x1; 2: 2x2; divides the carriers
     bool axials = false;               ///< an axial yarn at every other line of meetings, with 1x1 only
+    bool periodic = false;             ///< goes on at both ends; whole turns
     YarnType type{};                   ///< of all yarns
     double height_over_radius = 1.05;  ///< of a yarn at a crossing out of the middle of the tube [1], > 0
 
@@ -91,6 +115,7 @@ struct TubularBraid {
         core::require_positive("TubularBraid.radius", radius);
         core::require_positive("TubularBraid.pitch", pitch);
         core::require_positive("TubularBraid.turns", turns);
+        if (periodic) require_whole("TubularBraid.turns, of a braid that goes on", turns);
         core::require_at_least("TubularBraid.over", over, 1);
         if (carriers % over != 0)
             core::refuse("TubularBraid.over", std::to_string(over), "a divisor of the carriers, " + std::to_string(carriers));
@@ -121,7 +146,8 @@ inline Textile tubular_braid(const TubularBraid& braid) {
         for (Index k = 0; k < braid.carriers; ++k) {
             Path path;
             path.name = (way > 0 ? "right " : "left ") + std::to_string(k);
-            path.family = way > 0 ? 0 : 1;
+            path.family = way > 0 ? 0 : 1, path.pull = Vec3::UnitZ();
+            if (braid.periodic) repeat(path, braid.pitch * braid.turns * Vec3::UnitZ());
             path.curve = [=, radius = braid.radius, pitch = braid.pitch, start = full * static_cast<double>(k) / n](double t) {
                 const double f = first + (last - first) * t, angle = way * f + start;
                 return Vec3(radius * std::cos(angle), radius * std::sin(angle), pitch * f / full);
@@ -133,6 +159,7 @@ inline Textile tubular_braid(const TubularBraid& braid) {
             Path path;
             path.name = "axial " + std::to_string(k);
             path.family = 2;
+            if (braid.periodic) repeat(path, braid.pitch * braid.turns * Vec3::UnitZ());
             const double angle = std::numbers::pi * (2.0 * static_cast<double>(k) + 1.0) / n;
             path.curve = [=, radius = braid.radius, pitch = braid.pitch](double t) {
                 const double f = first + (last - first) * t;
@@ -140,6 +167,7 @@ inline Textile tubular_braid(const TubularBraid& braid) {
             };
             textile.paths.push_back(std::move(path));
         }
+    if (braid.periodic) textile.lattice = {braid.pitch * braid.turns * Vec3::UnitZ()};
     const Index n2 = 2 * braid.over;
     interlace(
         textile,

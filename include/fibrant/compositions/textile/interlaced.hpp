@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -80,6 +81,12 @@ inline scene::Curve raised(scene::Curve plan, std::vector<std::pair<double, doub
 }
 
 }  // namespace detail
+
+/// Makes a path go on as its image.
+inline void repeat(Path& path, const Vec3& image) { path.kind = PathKind::periodic, path.image = image; }
+inline void require_whole(const std::string& field, double count) {
+    core::require(count >= 1.0 && std::abs(count - std::round(count)) <= 1e-12 * count, field, count, "whole, and >= 1");
+}
 
 /// Gives the paths of a textile, all in one surface as yet, their heights at crossings, and finds the crossings.
 /// @param rule    of who is above

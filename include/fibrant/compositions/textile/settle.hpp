@@ -30,7 +30,7 @@ inline simulation::SettlingScales scales_of(const Textile& textile, const Assemb
     for (std::size_t f = 0; f < assembled.path_of.size(); ++f) {
         const Path& path = textile.paths[core::at(assembled.path_of[f])];
         const scene::FibreSpecification& fibre = assembled.assembly.fibres()[f];
-        const bool pulled = path.kind == PathKind::open && path.ends == Ends::pulled;
+        const bool pulled = path.kind == PathKind::periodic || (path.kind == PathKind::open && path.ends == Ends::pulled);
         const double pull = pulled ? path.tension_strain * fibre.material.young_modulus * fibre.section.area() : 0.0;
         fibres.push_back(simulation::settled_fibre(fibre, scene::length_of(path.curve, 64), assembled.longest_spacing, pull));
     }
@@ -47,8 +47,10 @@ inline simulation::SettlingScales scales_of(const Textile& textile, const Assemb
 /// @param assembled  of the textile
 template <simulation::Model M>
 simulation::Loading<M> settling(const Textile& textile, const Assembled& assembled, const SettleParameters& settle) {
-    const bool pulled = std::any_of(textile.paths.begin(), textile.paths.end(),
-                                    [](const Path& path) { return path.kind == PathKind::open && path.ends == Ends::pulled; });
+    const bool pulled = std::any_of(textile.paths.begin(), textile.paths.end(), [](const Path& path) {
+        return path.kind == PathKind::open ? path.ends == Ends::pulled
+                                           : path.kind == PathKind::periodic && path.tension_strain > 0.0;
+    });
     return simulation::settling<M>(scales_of(textile, assembled), settle, {pulled ? tension_channel : "", false});
 }
 

@@ -21,6 +21,7 @@ struct Plied {
     double strand_pitch = core::unset;  ///< of the strands, against the hand of the plies [length], > 0
     double length = core::unset;        ///< along the axis [length], > 0
     double slack = 0.05;                ///< distance of neighbours over their thickness [1], >= 0
+    bool periodic = false;              ///< goes on at both ends; one stage, whole turns
     YarnType type{};                    ///< of all yarns
 
     void validate() const {
@@ -30,6 +31,8 @@ struct Plied {
         if (strands > 1) core::require_positive("Plied.strand_pitch", strand_pitch);
         core::require_positive("Plied.length", length);
         core::require_not_negative("Plied.slack", slack);
+        if (periodic && strands > 1) core::refuse("Plied.strands", std::to_string(strands), "1, of a yarn that goes on");
+        if (periodic) require_whole("Plied.length over its pitch, of a yarn that goes on", length / pitch);
         type.validate();
     }
     /// Distance of an axis from that which it goes around, of `count` cylinders of radius r that lean by their pitch: in the
@@ -72,11 +75,14 @@ inline Textile plied(const Plied& rope) {
             const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(rope.plies);
             Path path;
             path.name = "ply " + std::to_string(s) + "." + std::to_string(k), path.family = s;
-            path.curve =
-                scene::beside(axis, a * std::cos(angle), a * std::sin(angle), along / rope.pitch, samples, Vec3::UnitX());
+            path.pull = Vec3::UnitZ();  // along its own lay an end would go round the axis, and turn the yarn
+            if (rope.periodic) repeat(path, rope.length * Vec3::UnitZ());
+            path.curve = scene::beside(axis, a * std::cos(angle), a * std::sin(angle), along / rope.pitch, samples, Vec3::UnitX(),
+                                       rope.periodic ? scene::SplineEnds::repeating : scene::SplineEnds::parabolic);
             textile.paths.push_back(std::move(path));
         }
     }
+    if (rope.periodic) textile.lattice = {rope.length * Vec3::UnitZ()};
     return textile;
 }
 

@@ -68,7 +68,8 @@ struct Path {
     Index type = 0;               ///< of YarnType
     Index family = 0;             ///< of like yarns; for measures and pictures
     Ends ends = Ends::held;       ///< of an open path
-    double tension_strain = 0.0;  ///< pull of each fibre over its E A, of ends that are pulled [1], >= 0
+    double tension_strain = 0.0;  ///< pull of each fibre over its E A, of ends that are pulled, or of a periodic path [1], >= 0
+    Vec3 pull = Vec3::Zero();     ///< direction that an end that is pulled goes in; zero: along the path
     std::vector<Guide> guides{};
     bool straight = true;        ///< at rest, as long as it is drawn; else its rest shape is what is drawn
     Vec3 upward = Vec3::Zero();  ///< thickness of the packing at the start; zero: any
@@ -96,9 +97,16 @@ struct Textile {
     std::vector<Crossing> crossings{};
     View view{};
     /// Periods of the cell that periodic paths repeat in, and which components of its gradient are free (i + 3 j as in
-    /// scene::PeriodicCell).
+    /// scene::PeriodicCell), under the tension of these paths.
     std::vector<Vec3> lattice{};
     std::array<bool, 9> free_gradient{};
+
+    /// What repeats along an axis may grow and shrink there, so that tension rules its length.
+    void free_lengths() noexcept {
+        for (const Vec3& period : lattice)
+            for (int k = 0; k < 3; ++k)
+                if (period[k] != 0.0) free_gradient[static_cast<std::size_t>(4 * k)] = true;
+    }
 
     const YarnType& type_of(Index path) const { return types[core::at(paths[core::at(path)].type)]; }
     double smallest_radius() const {
@@ -156,6 +164,7 @@ inline void validate(const Textile& textile) {
                              if (path.type < 0 || path.type >= core::count(textile.types))
                                  core::refuse("Path.type", std::to_string(path.type), "a type of the textile");
                              core::require_not_negative("Path.tension_strain", path.tension_strain);
+                             scene::require_finite("Path.pull", path.pull);
                              if (path.ends == Ends::pulled && path.kind == PathKind::open)
                                  core::require_positive("Path.tension_strain, of ends that are pulled", path.tension_strain);
                              for (const Guide& guide : path.guides) {

@@ -25,9 +25,11 @@ struct LevelPlan {
     double warp_spacing = core::unset;         ///< between neighbouring warps, > 0
     double layer_spacing = 0.0;                ///< between wefts of one column [length]; 0: of yarns that just do not touch
     double overhang = 0.0;                     ///< beyond the outermost crossings [length]; 0: as far as they are apart
-    YarnType warp{}, weft{};                   ///< of warps and of wefts
-    std::vector<Index> warp_types{};           ///< 0 the warp type, 1 the binder's, by row; empty: all 0
-    YarnType binder{};                         ///< of rows of that type
+    /// Goes on along warps and wefts: yarns end half way between crossings, and whole rows of the matrix make the columns.
+    bool periodic = false;
+    YarnType warp{}, weft{};          ///< of warps and of wefts
+    std::vector<Index> warp_types{};  ///< 0 the warp type, 1 the binder's, by row; empty: all 0
+    YarnType binder{};                ///< of rows of that type
 
     Index warps() const noexcept { return core::count(levels); }
     Index column_count() const noexcept { return columns > 0 ? columns : levels.empty() ? 0 : core::count(levels.front()); }
@@ -56,6 +58,13 @@ struct LevelPlan {
         core::require_positive("LevelPlan.warp_spacing", warp_spacing);
         core::require_not_negative("LevelPlan.layer_spacing", layer_spacing);
         core::require_not_negative("LevelPlan.overhang", overhang);
+        if (periodic && overhang != 0.0)
+            core::refuse("LevelPlan.overhang", core::text(overhang), "0, of a weave that goes on: half of the spacing");
+        for (std::size_t w = 0; periodic && w < levels.size(); ++w)
+            if (column_count() % core::count(levels[w]) != 0)
+                core::refuse("LevelPlan.columns", std::to_string(column_count()),
+                             "a multiple of the " + std::to_string(levels[w].size()) + " levels of warp " + std::to_string(w) +
+                                 ", of a weave that goes on");
         if (!warp_types.empty() && warp_types.size() != levels.size())
             core::refuse("LevelPlan.warp_types", std::to_string(warp_types.size()),
                          "one for each warp, " + std::to_string(levels.size()));
@@ -128,8 +137,12 @@ inline Textile woven(const LevelPlan& plan) {
     if (!plan.warp_types.empty()) plan.binder.validate(), textile.types.push_back(plan.binder);
     const Index warps = plan.warps(), columns = plan.column_count(), layers = plan.layers;
     const double px = plan.column_spacing, py = plan.warp_spacing, pz = plan.pitch();
-    const double beyond_x = plan.overhang > 0.0 ? plan.overhang : px, beyond_y = plan.overhang > 0.0 ? plan.overhang : py;
-    const double length = px * static_cast<double>(columns - 1) + 2.0 * beyond_x;
+    const auto beyond = [&](double spacing) {
+        return plan.periodic ? 0.5 * spacing : plan.overhang > 0.0 ? plan.overhang : spacing;
+    };
+    const double beyond_x = beyond(px), beyond_y = beyond(py);
+    const double length = px * static_cast<double>(columns - 1) + 2.0 * beyond_x,
+                 width = py * static_cast<double>(warps - 1) + 2.0 * beyond_y;
     for (Index w = 0; w < warps; ++w) {
         Path path;
         path.name = (plan.bound(w) ? "binder " : "warp ") + std::to_string(w);
@@ -140,8 +153,9 @@ inline Textile woven(const LevelPlan& plan) {
             knots.emplace_back((beyond_x + px * static_cast<double>(c)) / length,
                                pz * (static_cast<double>(plan.level(w, c)) - 0.5 * static_cast<double>(layers)));
         const double y = py * static_cast<double>(w);
-        path.curve =
-            detail::raised([=](double t) { return Vec3(length * t - beyond_x, y, 0.0); }, std::move(knots), false, textile.view);
+        if (plan.periodic) repeat(path, length * Vec3::UnitX());
+        path.curve = detail::raised([=](double t) { return Vec3(length * t - beyond_x, y, 0.0); }, std::move(knots),
+                                    plan.periodic, textile.view);
         textile.paths.push_back(std::move(path));
     }
     for (Index c = 0; c < columns; ++c)
@@ -151,10 +165,11 @@ inline Textile woven(const LevelPlan& plan) {
             path.type = 1, path.family = 1, path.upward = Vec3::UnitZ();
             const double x = px * static_cast<double>(c),
                          z = pz * (static_cast<double>(l) - 0.5 * static_cast<double>(layers - 1));
-            const double width = py * static_cast<double>(warps - 1) + 2.0 * beyond_y;
+            if (plan.periodic) repeat(path, width * Vec3::UnitY());
             path.curve = [=](double t) { return Vec3(x, width * t - beyond_y, z); };
             textile.paths.push_back(std::move(path));
         }
+    if (plan.periodic) textile.lattice = {length * Vec3::UnitX(), width * Vec3::UnitY()};
     textile.crossings = crossings_of(textile);
     return textile;
 }
