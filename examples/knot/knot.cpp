@@ -143,7 +143,7 @@ bool tie(const Asked& asked, const example::SceneReader& file, example::Output& 
     settle.name = "settle", settle.increments = 2, settle.most_increments = 200;
     const double damping = 10.0 * bending / (R * R * R) / static_cast<double>(parameters.elements);
     // A braid of more turns springs open over its own length, the root of 2 r R times a number, and not over that of the loop.
-    settle.damping = crossings > 3 ? damping * std::pow(R / (2.0 * radius), 1.5) : damping;
+    settle.damping = parameters.crossings > 3 ? damping * std::pow(R / (2.0 * radius), 1.5) : damping;
     settle.damping_decay = 0.5, settle.damping_share = 1e-3;
     settle.until = simulation::until_settled(0.05 * radius, 0.02 * radius);
     settle.friction.emplace(law::RegularisedCoulomb::Parameters{0.0, 0.02 * radius});
