@@ -72,7 +72,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     example::read_friction(file, mu, "coefficient of friction of the rod on itself");
     file.read("loading", "draw", drawn, example::not_negative(), "length", "length by which one end is drawn out");
     file.read("loading", "back", back, example::not_negative(), "length", "length by which it is let back then");
-    file.read("loading", "increments", increments, example::increments(), 
+    file.read("loading", "increments", increments, example::increments(),
               "increments of the drawing, of the way back and of the holding");
     file.read("loading", "duration", asked.duration, example::not_negative(), "time",
               "how long tying takes, and drawing likewise, for a rod that is viscoelastic");

@@ -20,12 +20,6 @@
 
 namespace fibrant::contact {
 
-/// What fibres exert on a tool.
-struct ToolReaction {
-    Vec3 force = Vec3::Zero();   ///< [force]
-    Vec3 moment = Vec3::Zero();  ///< about the tool's origin as it stands [force * length]
-};
-
 /// Contacts of all fibres with all tools: a station of a fibre each, so that histories need no transfer.
 template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
 class ToolContacts {
@@ -374,25 +368,11 @@ private:
         return element.foot - used_pose_[t].place(pose_[t].material(element.foot));
     }
 
-    /// In the tool's own axes.
-    Vec3 normal_at(const Element& element, const scene::Tool& tool, const scene::ToolPose& pose, const Vector& state) const {
-        const Vec3 centre = pose.material(mesh_->position(state, element.fibre, element.u));
-        if constexpr (beam::CentrelineOnly<B> || beam::TouchedOnCentreline<B>) {
-            return scene::tool_distance(tool, centre).normal;
-        } else {
-            const auto [g_1, g_2] =
-                beam::Mesh<B>::element_directors(state, element.first, mesh_->locate(element.fibre, element.u).second);
-            const scene::CrossSection& section = mesh_->fibre(element.fibre).section;
-            const Mat3 back = pose.turn.transpose();
-            return normal_at_section(tool, centre, {section.semi_axis_1 * (back * g_1), section.semi_axis_2 * (back * g_2)});
-        }
-    }
-
     void place_particle(Element& element, const Vector& state, const Vector& accepted,
                         [[maybe_unused]] const Normal& normal) const {
         const std::size_t t = core::at(element.tool);
         const scene::ToolPose& pose = pose_[t];
-        element.normal = pose.turn * normal_at(element, tools_[t], pose, state);
+        element.normal = pose.turn * normal_at_fibre(*mesh_, state, element.fibre, element.u, element.first, tools_[t], pose);
         // Of a section that faces the tool with its flat side, the furthest particle is now here, now there: a rounded end is
         // not.
         const bool last = element.u == 0.0 || element.u == static_cast<double>(mesh_->fibre(element.fibre).elements);

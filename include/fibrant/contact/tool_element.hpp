@@ -10,6 +10,12 @@
 
 namespace fibrant::contact {
 
+/// What fibres exert on a tool.
+struct ToolReaction {
+    Vec3 force = Vec3::Zero();   ///< [force]
+    Vec3 moment = Vec3::Zero();  ///< about the tool's origin as it stands [force * length]
+};
+
 /// A particle of a fibre that may touch a tool. Normals and the plane that stands for the tool's surface are kept while Newton
 /// iterates, as those between fibres are.
 template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>

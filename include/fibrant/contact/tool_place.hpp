@@ -2,6 +2,7 @@
 #pragma once
 /// @file Where a section that is not round is nearest to a tool that is not flat.
 
+#include <fibrant/beam/mesh.hpp>
 #include <fibrant/contact/section_gap.hpp>
 #include <fibrant/scene/tool.hpp>
 
@@ -52,6 +53,22 @@ inline Vec3 normal_at_section(const scene::Tool& tool, const Vec3& centre, const
         high = t, high_slope = here;
     }
     return normal;
+}
+
+/// The same of a fibre's section at an abscissa, in a state. Beams that are touched on their centreline have it there.
+/// @param first  first unknown of the element that holds u
+template <class B>
+Vec3 normal_at_fibre(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, [[maybe_unused]] Index first,
+                     const scene::Tool& tool, const scene::ToolPose& pose) {
+    const Vec3 centre = pose.material(mesh.position(state, fibre, u));
+    if constexpr (beam::CentrelineOnly<B> || beam::TouchedOnCentreline<B>) {
+        return scene::tool_distance(tool, centre).normal;
+    } else {
+        const auto [g_1, g_2] = beam::Mesh<B>::element_directors(state, first, mesh.locate(fibre, u).second);
+        const scene::CrossSection& section = mesh.fibre(fibre).section;
+        const Mat3 back = pose.turn.transpose();
+        return normal_at_section(tool, centre, {section.semi_axis_1 * (back * g_1), section.semi_axis_2 * (back * g_2)});
+    }
 }
 
 }  // namespace fibrant::contact
