@@ -151,7 +151,8 @@ public:
         for (std::size_t k = tied_; k < ties_.size(); ++k) {
             const Condition& condition = conditions_[k];
             const Vec3 from = condition.director ? Vec3(Vec3::Zero()) : motion_.position(condition.owner);
-            auto& [one, target] = more.emplace_back(scene::HeldVector{ties_[k].vectors.front(), Mat3::Identity()}, Vec3::Zero());
+            more.push_back({{ties_[k].vectors.front(), Mat3::Identity()}, Vec3::Zero()});
+            auto& [one, target] = more.back();
             for (Index a = 0; a < ties_[k].count; ++a) {
                 const Vec3 axis = direction(condition, a);
                 one.free -= axis * axis.transpose();
