@@ -6,8 +6,8 @@
 
 #include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/law/directed_friction.hpp>
-#include <fibrant/law/impact.hpp>
 #include <fibrant/law/linear_penalty.hpp>
+#include <fibrant/law/physical_normal.hpp>
 
 #include <doctest/doctest.h>
 
@@ -20,7 +20,7 @@ namespace seen_contact_test {
 struct Seen {
     using Beam = beam::RigidSectionRod;
     using Proximity = proximity::GridSearch;
-    using Normal = law::Adhesive<law::PowerNormal>;
+    using Normal = law::PowerNormal;
     using Friction = law::DirectedFriction;
     using Solver = solver::SparseCholesky;
 };
@@ -30,14 +30,11 @@ static_assert(sizeof(contact::ContactElement<beam::DirectorBeam<3>, law::Regular
               sizeof(contact::ContactElement<beam::DirectorBeam<3>, law::LinearPenalty, law::RegularisedCoulomb>));
 
 const double r = 0.05, length = 2.0, sink = 0.004, slide = 0.02;
-const double K = 300.0, m = 2.4, a = 0.2, across = 0.4, n = 0.8, range = 0.002;
+const double K = 300.0, m = 2.4, a = 0.2, across = 0.4, n = 0.8;
 
-simulation::ModelParameters<Seen> parameters(double points, double pull = 0.0) {
+simulation::ModelParameters<Seen> parameters(double points) {
     simulation::ModelParameters<Seen> all;
-    all.normal = {.law = {.line_stiffness = K, .line_exponent = m, .crossing_stiffness = 50.0},
-                  .line_pull = pull,
-                  .crossing_pull = 0.0,
-                  .range = range};
+    all.normal = {.line_stiffness = K, .line_exponent = m, .crossing_stiffness = 50.0};
     all.friction = {.along = a,
                     .across = across,
                     .exponent = n,
@@ -100,29 +97,6 @@ TEST_CASE("rods side by side carry what a line of their length does, in twice th
             const double bound = (sideways ? across : a) * std::pow(line, n) * length;
             CHECK((sideways ? force.x() : force.z()) / bound == test::near(sideways ? 1.0 : 0.99, sideways ? 0.02 : 1e-3));
         }
-}
-
-TEST_CASE("rods that stick pull each other, less and less up to their range, and slide by what pushes alone") {
-    const double pull = 1e-3;
-    scene::Assembly assembly;
-    led(assembly, {0, 0, 0}, {0, 0, length}, 8, false, Vec3::Zero());
-    const Index upper = led(assembly, {0, 2.0 * r, 0}, {0, 2.0 * r, length}, 8, true, Vec3(0, 0, slide));
-    simulation::Simulator<Seen> simulator(assembly, parameters(1.0, pull));
-    const auto go = [&](const char* channel, double to) {
-        simulation::Loading<Seen> all;
-        all.stages.push_back({.name = channel, .increments = 2, .ramps = {{channel, to}}});
-        const simulation::Report report = simulator.run(all);
-        REQUIRE_MESSAGE(report.converged, report.reason);
-        return force_on(simulator, upper, 8);
-    };
-    const double pressed = go("press", 1.0).y(), line = K * std::pow(sink, m);
-    CHECK(-pressed / ((line - pull) * length) == test::near(1.0, 1e-6));
-    const Vec3 slid = go("slide", 1.0);
-    CHECK(slid.z() / (a * std::pow(line, n) * length) == test::near(0.99, 1e-3));  // shorter by a hundredth
-    const double away = go("press", -0.25 * range / sink).y();
-    CHECK(away / (0.75 * pull * 0.99 * length) == test::near(1.0, 1e-3));
-    CHECK(std::abs(go("slide", 0.0).z()) < 1e-9 * pull);
-    CHECK(std::abs(go("press", -1.1 * range / sink).y()) < 1e-9 * pull);
 }
 
 TEST_CASE("a crossing sinks by the power law, and the pair's ellipse turns the force aside") {

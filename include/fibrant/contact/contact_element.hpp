@@ -36,7 +36,7 @@ struct GapShift<Normal> {
 template <law::SteppedNormal Normal>
 struct GapShift<Normal> {
     double length = 0.0;  ///< of the line of contact; 0: a crossing, or an end [length]
-    double before = 0.0;  ///< gap in the last accepted state [length]
+    double before = 0.0;  ///< gap in the last accepted state, without the cap, which may change since [length]
     double value() const noexcept { return 0.0; }
 };
 

@@ -400,7 +400,9 @@ private:
     /// Where both forces of an element act, and from where its slip counts.
     void meet(Element& element, const Vector& state, const Vector& accepted) const {
         find_meeting_point(*mesh_, state, element), see_directions(*mesh_, state, element);
-        if constexpr (law::SteppedNormal<Normal>) element.shift.before = gap_in(*mesh_, parameters_.normal, element, accepted);
+        if constexpr (law::SteppedNormal<Normal>)
+            element.shift.before =
+                apart_in(*mesh_, parameters_.normal, element, accepted) - zones_[core::at(element.zone)].unseen;
         if constexpr (core::Active<Friction>) {
             element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
             element.friction.accepted_offset = contact::accepted_offset(*mesh_, parameters_.normal, element, state, accepted);

@@ -45,10 +45,10 @@ Vec3 accepted_offset(const beam::Mesh<B>& mesh, const NormalRule& rule, const El
     return offset.dot(then.along) * now.along + offset.dot(then.across) * now.across + offset.dot(before) * element.normal;
 }
 
-/// Gap of the particles of an element in another state, by the normal of then [length].
+/// How far the particles of an element were apart in another state along the normal of then, without its cap [length].
 template <beam::BeamElement B, class Element>
-double gap_in(const beam::Mesh<B>& mesh, const NormalRule& rule, const Element& element, const Vector& other) {
-    return element.offset(other).dot(element_normal(mesh, other, element, rule, element.normal)) - element.cap;
+double apart_in(const beam::Mesh<B>& mesh, const NormalRule& rule, const Element& element, const Vector& other) {
+    return element.offset(other).dot(element_normal(mesh, other, element, rule, element.normal));
 }
 
 /// A history of friction by components between the tangents of its element, and back.

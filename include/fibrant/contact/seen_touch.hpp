@@ -79,7 +79,7 @@ law::Approach approach(const beam::Mesh<B>& mesh, const Element& element, double
         seen.reach = mesh.fibre(element.fibre_i).section.radius() + mesh.fibre(element.fibre_j).section.radius();
     else
         seen.reach = mesh.fibre(element.fibre).section.radius();
-    if constexpr (requires { element.shift.before; }) seen.before = element.shift.before;
+    if constexpr (requires { element.shift.before; }) seen.before = element.shift.before - element.cap;
     return seen;
 }
 template <law::NormalLaw Normal, beam::BeamElement B, class Element>

@@ -388,8 +388,7 @@ private:
             element.shift.before =
                 scene::tool_distance(tools_[t],
                                      accepted_pose_[t].material(beam::Mesh<B>::point(accepted, element.first, element.weights)))
-                    .distance -
-                element.cap;
+                    .distance;
         if constexpr (core::Active<Friction>) {
             element.friction.weights_j = element.weights;
             const scene::ToolPose& before = accepted_pose_[t];
