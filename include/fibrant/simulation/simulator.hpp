@@ -155,8 +155,7 @@ private:
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping / stride + position_.calming.springs,
                                position_.held_by_fibre(loading.damping_of_fibres));
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
-            solver::IterationParameters iteration = parameters_.iteration;
-            iteration.newton_limit = static_cast<Index>(stage.patience * static_cast<double>(iteration.newton_limit));
+            const solver::IterationParameters iteration = parameters_.iteration.of_attempt(stage.patience, increment.cuts);
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
                 equilibrium_, contacts_, linear_, passage_, iteration, radius_, touching, clock_);
             // A limited gap moves fibres by about the limit: the search looks that far ahead.
