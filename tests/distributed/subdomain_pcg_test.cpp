@@ -80,7 +80,7 @@ TEST_CASE("parts share the work evenly, and every node has one owner, who works 
             for (const Index v : own) ++owners[core::at(v)];
         CHECK(std::all_of(owners.begin(), owners.end(), [](int n) { return n == 1; }));
         const std::vector<Index> work = cut.work();
-        CHECK(*std::max_element(work.begin(), work.end()) <= 1.3 * *std::min_element(work.begin(), work.end()));
+        CHECK(10 * *std::max_element(work.begin(), work.end()) <= 13 * *std::min_element(work.begin(), work.end()));
         std::vector<int> worked_on(core::at(layout.vectors()), 0);
         for (const distributed::Piece& piece : cut.pieces()) {
             const scene::Chain& chain = layout.chains[core::at(piece.chain)];
@@ -189,21 +189,24 @@ TEST_CASE("held vectors keep what they are told, in whole or in part, on any num
     CHECK(solved_systems >= 2);
 }
 
+/// The system with a layout of its own.
+struct OtherLayout {
+    scene::DofLayout own;
+    const test::FabricSystem* of;
+    const scene::DofLayout& layout() const { return own; }
+    void apply(const Vector& x, Vector& y) const { of->apply(x, y); }
+    void node_blocks(Index c, Matrix& blocks) const { of->node_blocks(c, blocks); }
+    void chain_band(Index c, Matrix& blocks) const { of->chain_band(c, blocks); }
+    template <class Terms>
+    void visit(Terms& terms) const {
+        of->visit(terms);
+    }
+};
+
 TEST_CASE("what ranks cannot share yet is refused by name") {
     using Pcg = distributed::SubdomainPcg<>;
-    test::FabricSystem system(fabric);
-    struct Closed {
-        scene::DofLayout own;
-        const test::FabricSystem* of;
-        const scene::DofLayout& layout() const { return own; }
-        void apply(const Vector& x, Vector& y) const { of->apply(x, y); }
-        void node_blocks(Index c, Matrix& blocks) const { of->node_blocks(c, blocks); }
-        void chain_band(Index c, Matrix& blocks) const { of->chain_band(c, blocks); }
-        template <class Terms>
-        void visit(Terms& terms) const {
-            of->visit(terms);
-        }
-    } closed{system.layout(), &system};
+    const test::FabricSystem system(fabric);
+    OtherLayout closed{system.layout(), &system};
     closed.own.chains[1].closed = true;
     CHECK(test::refusal([&] { Pcg().analyse(closed); }).starts_with("SubdomainPcg.system"));
     closed.own = system.layout();
