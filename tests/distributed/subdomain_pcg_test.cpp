@@ -155,7 +155,7 @@ TEST_CASE("where nothing touches fibres are solved exactly, however often they a
 
 TEST_CASE("held vectors keep what they are told, in whole or in part, on any number of ranks") {
     int solved_systems = 0;
-    for (unsigned seed = 1; seed <= 12; ++seed) {
+    for (unsigned seed = 1; seed <= 12 && solved_systems < 3; ++seed) {
         const test::SyntheticSystem system =
             test::random_system({.chains = std::vector<scene::Chain>(12, {.nodes = 9, .vectors_per_node = 3, .reach = 2}),
                                  .points = 10,
