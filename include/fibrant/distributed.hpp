@@ -10,6 +10,7 @@
 #include <fibrant/distributed/pair_terms.hpp>
 #include <fibrant/distributed/part_product.hpp>
 #include <fibrant/distributed/piece_system.hpp>
+#include <fibrant/distributed/rank_use.hpp>
 #include <fibrant/distributed/routes.hpp>
 #include <fibrant/distributed/subdomain_pcg.hpp>
 #include <fibrant/distributed/subdomains.hpp>

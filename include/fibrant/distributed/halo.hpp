@@ -4,6 +4,7 @@
 
 #include <fibrant/distributed/exchange.hpp>
 #include <fibrant/distributed/routes.hpp>
+#include <fibrant/distributed/subdomains.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -66,5 +67,43 @@ private:
     std::vector<Index> sent_, received_;
     std::vector<double> out_, in_;
 };
+
+/// Who reads vectors because of bands, whatever touches.
+inline std::vector<Halo::Reader> band_readers(const scene::DofLayout& layout, const Subdomains& cut, const BlockRuns& runs) {
+    std::vector<Halo::Reader> readers;
+    const auto rank_of = [&](Index v) { return runs.rank_of(cut.owner()[core::at(v)]); };
+    for (const scene::Chain& chain : layout.chains)
+        for (Index a = 0; a < chain.nodes; ++a)
+            for (Index b = std::max<Index>(0, a - chain.reach); b <= std::min(chain.nodes - 1, a + chain.reach); ++b) {
+                const Index own = chain.first_vector + a * chain.vectors_per_node;
+                const Index other = chain.first_vector + b * chain.vectors_per_node;
+                const int reader = rank_of(own);
+                if (rank_of(other) == reader) continue;
+                for (Index v = other; v < other + chain.vectors_per_node; ++v) readers.emplace_back(reader, v);
+            }
+    std::sort(readers.begin(), readers.end());
+    readers.erase(std::unique(readers.begin(), readers.end()), readers.end());
+    return readers;
+}
+
+/// Makes x whole on all ranks.
+template <Exchange E>
+void gather_owned(const E& exchange, const Subdomains& cut, const BlockRuns& runs, Vector& x, Traffic& traffic) {
+    if (exchange.ranks() == 1) return;
+    std::vector<Index> counts;
+    std::vector<double> own, all(core::at(x.size()));
+    for (int r = 0; r < exchange.ranks(); ++r) {
+        Index sum = 0;
+        for (Index part = runs.first(r); part < runs.first(r + 1); ++part) sum += 3 * core::count(cut.owned()[core::at(part)]);
+        counts.push_back(sum);
+    }
+    for (Index part = runs.first(exchange.rank()); part < runs.first(exchange.rank() + 1); ++part)
+        for (const Index v : cut.owned()[core::at(part)]) own.insert(own.end(), x.data() + 3 * v, x.data() + 3 * v + 3);
+    traffic.gatherings += 1, traffic.gathered_bytes += 8 * core::count(own);
+    exchange.gather(own, counts, all);
+    const double* from = all.data();
+    for (const std::vector<Index>& part : cut.owned())
+        for (const Index v : part) std::copy_n(from, 3, x.data() + 3 * v), from += 3;
+}
 
 }  // namespace fibrant::distributed

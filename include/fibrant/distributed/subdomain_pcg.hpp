@@ -6,6 +6,7 @@
 #include <fibrant/distributed/halo.hpp>
 #include <fibrant/distributed/part_product.hpp>
 #include <fibrant/distributed/piece_system.hpp>
+#include <fibrant/distributed/rank_use.hpp>
 
 #include <fibrant/core/stage_clock.hpp>
 #include <fibrant/solver/chain_sweeps.hpp>
@@ -20,20 +21,6 @@
 #include <vector>
 
 namespace fibrant::distributed {
-
-/// What the ranks of a solver have done so far, seen from one of them.
-struct RankUse {
-    Index parts = 0, coarse_unknowns = 0;  ///< of the last analysis
-    Index solves = 0, iterations = 0;
-    Traffic traffic;
-    double prepare_seconds = 0.0;  ///< all of the preparations
-    double sweep_seconds = 0.0;    ///< of the iterations: chains,
-    double product_seconds = 0.0;  ///< products,
-    double joint_seconds = 0.0;    ///< joints of chains, their exchange included,
-    double coarse_seconds = 0.0;   ///< coarse space, its gathering included,
-    double waiting_seconds = 0.0;  ///< other exchanges,
-    double whole_seconds = 0.0;    ///< and all
-};
 
 /// Conjugate gradients on A x = b by all ranks of an exchange: each holds a run of subdomains. All of them know the whole system
 /// and the whole b, and get the whole x; the work of a solve is divided.
@@ -155,7 +142,6 @@ private:
     void apply(const Vector& x, Vector& y) {
         timed(work_->use.product_seconds, [&] { work_->product.apply(x, y); });
     }
-    void find_readers(const scene::DofLayout& layout);
     void find_stations(const scene::DofLayout& layout);
     void smooth(const scene::DofLayout& layout, const Vector& r, Vector& z);
     void add_coarse(const scene::DofLayout& layout, const Vector& r, Vector& z);
@@ -175,7 +161,6 @@ private:
         project(layout, x);
         find_residual(b, x, r);
     }
-    void gather_owned(Vector& x);
 
     Parameters parameters_;
     E exchange_;
@@ -200,28 +185,9 @@ void SubdomainPcg<E>::analyse(const System& system) {
     work.product = PartProduct(layout, work.cut, first_part(), last_part());
     work.joints.analyse(layout, work.cut, work.runs, rank());
     work.coarse.analyse(system, parameters_.fibres_per_cluster, parameters_.elements_per_station);
-    find_readers(layout);
+    work.fixed_readers = band_readers(layout, work.cut, work.runs);
     find_stations(layout);
     work.use.parts = work.cut.parts(), work.use.coarse_unknowns = 6 * work.coarse.stations();
-}
-
-/// Who reads vectors because of bands, whatever touches.
-template <Exchange E>
-void SubdomainPcg<E>::find_readers(const scene::DofLayout& layout) {
-    Work& work = *work_;
-    const auto rank_of = [&](Index v) { return work.runs.rank_of(work.cut.owner()[core::at(v)]); };
-    work.fixed_readers.clear();
-    for (const scene::Chain& chain : layout.chains)
-        for (Index a = 0; a < chain.nodes; ++a)
-            for (Index b = std::max<Index>(0, a - chain.reach); b <= std::min(chain.nodes - 1, a + chain.reach); ++b) {
-                const Index own = chain.first_vector + a * chain.vectors_per_node;
-                const Index other = chain.first_vector + b * chain.vectors_per_node;
-                const int reader = rank_of(own);
-                if (rank_of(other) == reader) continue;
-                for (Index v = other; v < other + chain.vectors_per_node; ++v) work.fixed_readers.emplace_back(reader, v);
-            }
-    std::sort(work.fixed_readers.begin(), work.fixed_readers.end());
-    work.fixed_readers.erase(std::unique(work.fixed_readers.begin(), work.fixed_readers.end()), work.fixed_readers.end());
 }
 
 /// Stations that the nodes of each part stand between, in rising order.
@@ -410,28 +376,6 @@ void SubdomainPcg<E>::add_coarse(const scene::DofLayout& layout, const Vector& r
     });
 }
 
-/// Makes x whole on all ranks.
-template <Exchange E>
-void SubdomainPcg<E>::gather_owned(Vector& x) {
-    Work& work = *work_;
-    if (exchange_.ranks() == 1) return;
-    std::vector<Index> counts;
-    std::vector<double> own, all(core::at(x.size()));
-    for (int r = 0; r < exchange_.ranks(); ++r) {
-        Index sum = 0;
-        for (Index part = work.runs.first(r); part < work.runs.first(r + 1); ++part)
-            sum += 3 * core::count(work.cut.owned()[core::at(part)]);
-        counts.push_back(sum);
-    }
-    for (Index part = 0; part < last_part() - first_part(); ++part)
-        for (const Index v : owned(part)) own.insert(own.end(), x.data() + 3 * v, x.data() + 3 * v + 3);
-    count_gathering(core::count(own));
-    timed(work.use.waiting_seconds, [&] { exchange_.gather(own, counts, all); });
-    const double* from = all.data();
-    for (const std::vector<Index>& part : work.cut.owned())
-        for (const Index v : part) std::copy_n(from, 3, x.data() + 3 * v), from += 3;
-}
-
 template <Exchange E>
 template <assembly::LinearSystem System>
 solver::SolveReport SubdomainPcg<E>::solve(const System& system, const Vector& b, double tolerance, Vector& x) {
@@ -522,7 +466,7 @@ solver::SolveReport SubdomainPcg<E>::solve(const System& system, const Vector& b
         if (report.status == SolveStatus::iteration_limit && report.residual <= tolerance) report.status = SolveStatus::converged;
         if (!std::isfinite(report.residual)) report.status = SolveStatus::not_finite;
     }
-    gather_owned(x);
+    timed(work.use.waiting_seconds, [&] { gather_owned(exchange_, work.cut, work.runs, x, work.use.traffic); });
     for (const scene::HeldVector& held : layout.held) {
         const Index k = 3 * held.vector;
         x.segment<3>(k) += (b.segment<3>(k) - free.segment<3>(k)) / layout.held_stiffness(held.vector);
