@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -133,7 +134,12 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
         json.add("asymmetry", stiffness.asymmetry);
     }
     example::write_summary(output, report, audit, radius, {}, json);
-    return report.converged && audit.clean();
+    // Yarns that still slide by themselves change efforts by more than strains do.
+    constexpr double symmetric = 1e-2;
+    if (report.converged && stiffness.asymmetry > symmetric)
+        std::fprintf(stderr, "textile: the stiffness of the cell is not symmetric, by %.3g: it is not at rest without friction\n",
+                     stiffness.asymmetry);
+    return report.converged && audit.clean() && stiffness.asymmetry <= symmetric;
 }
 
 /// Runs it in the folder "loading" of the results.
