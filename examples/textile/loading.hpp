@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -99,8 +100,8 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
         stiffness.amount[c] = scene.load.parameters.amount / (c < 3 ? 1.0 : radius);
         stage.name = cloth::cell_channels()[c];
         // Back, and once more: contacts adapt to what they bear, and are then as stiff as they were.
-        for (const double amount : {stiffness.amount[c], 0.0, 0.0}) {
-            stage.ramps = {{stage.name, amount, false}};
+        for (const double side : {1.0, 0.0, 0.0, -1.0, 0.0, 0.0}) {
+            stage.ramps = {{stage.name, side * stiffness.amount[c], false}};
             programme.stages.push_back(stage);
         }
     }
@@ -113,7 +114,7 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
             strained = strained || simulator.amplitude(name) != 0.0;
         }
         const cloth::CellVector efforts = cloth::cell_efforts(simulator, area);
-        if (strained || stiffness.efforts.empty()) stiffness.efforts.push_back(efforts);
+        if (strained) stiffness.efforts.push_back(efforts);
         for (std::size_t c = 0; c < 6; ++c) row.push_back({names[c], efforts[static_cast<Index>(c)]});
         return row;
     });
@@ -134,7 +135,12 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
         json.add("asymmetry", stiffness.asymmetry);
     }
     example::write_summary(output, report, audit, radius, {}, json);
-    return report.converged && audit.clean();
+    // Yarns that still slide by themselves change efforts by more than strains do.
+    constexpr double symmetric = 1e-2;
+    if (report.converged && stiffness.asymmetry > symmetric)
+        std::fprintf(stderr, "textile: the stiffness of the cell is not symmetric, by %.3g: it is not at rest without friction\n",
+                     stiffness.asymmetry);
+    return report.converged && audit.clean() && stiffness.asymmetry <= symmetric;
 }
 
 /// Runs it in the folder "loading" of the results.

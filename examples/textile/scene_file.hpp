@@ -433,6 +433,7 @@ inline Scene read_scene(SceneReader& file) {
     file.read("output", "voxel_spacing", scene.voxel_spacing, example::not_negative(), "length",
               "spacing of the voxels that are written, with an Abaqus mesh and maps of the fibre volume fraction; 0: none");
     detail::read_load(file, scene.load);
+    if (!file.describes()) example::check_transverse(file, "yarn", law);  // before a generator looks at the material
     const bool periodic = ends == "periodic";
     scene.textile = detail::generate(file, scene.generator, yarn, binder, periodic, scene.file_curves);
     if (file.describes()) file.complete();
@@ -443,7 +444,6 @@ inline Scene read_scene(SceneReader& file) {
     if (scene.load.wanted)
         file.check(scene.load.cell == periodic && (!periodic || scene.textile.lattice.size() == 2), "loading", "case",
                    periodic ? "\"cell\", of what repeats both ways, as levels do" : "another one, unless ends are periodic");
-    example::check_transverse(file, "yarn", law);
     example::check_friction_shape(file, settle.friction_shape);
     file.check(ends != "pulled" || tension > 0.0, "ends", "tension_strain", "> 0, where ends are pulled");
     file.check(!periodic || lengths != "held" || tension == 0.0, "ends", "tension_strain", "0, where lengths are held");

@@ -97,17 +97,18 @@ CellVector cell_efforts(const Simulator& simulator, double area) {
     return efforts / area;
 }
 
-/// What six small strains, one at a time from the same state, say of a cell: the change of its efforts over each.
+/// What six small strains, one at a time to both sides of the same state, say of a cell: the change of its efforts over each.
 struct CellStiffness {
     std::array<double, 6> amount{};          ///< of each strain, not 0
-    std::vector<CellVector> efforts{};       ///< without a strain, then at each of them: 7
+    std::vector<CellVector> efforts{};       ///< at each of them, and at its opposite: 12
     CellMatrix matrix = CellMatrix::Zero();  ///< of what `evaluate` found
     double asymmetry = 0.0;                  ///< greatest |K_ij - K_ji| over sqrt(K_ii K_jj) [1]
 
-    /// @throws std::invalid_argument unless there are 7 efforts
+    /// @throws std::invalid_argument unless there are 12 efforts
     void evaluate() {
-        if (efforts.size() != 7) core::refuse("CellStiffness.efforts", std::to_string(efforts.size()), "7");
-        for (Index c = 0; c < 6; ++c) matrix.col(c) = (efforts[core::at(c + 1)] - efforts[0]) / amount[core::at(c)];
+        if (efforts.size() != 12) core::refuse("CellStiffness.efforts", std::to_string(efforts.size()), "12");
+        for (Index c = 0; c < 6; ++c)
+            matrix.col(c) = 0.5 * (efforts[core::at(2 * c)] - efforts[core::at(2 * c + 1)]) / amount[core::at(c)];
         asymmetry = 0.0;
         for (Index i = 0; i < 6; ++i)
             for (Index j = 0; j < 6; ++j)
