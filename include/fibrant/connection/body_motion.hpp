@@ -13,6 +13,21 @@
 
 namespace fibrant::connection {
 
+/// By how much more the image of a vector moves than the vector, for each of the curvatures of scene::PeriodicCell, a column
+/// each.
+/// @param vector    a place [length], or a director [1]
+/// @param period    to its image, in the plane of x and y [length]
+inline Mat3 bend_jump(const Vec3& vector, const Vec3& period, bool director) noexcept {
+    const double a = period.x(), b = period.y(), x = vector.x(), y = vector.y(), z = vector.z();
+    Mat3 jump;
+    if (director)  // turned by the change of (w,y, -w,x, 0)
+        jump << Vec3(0.0, -a, 0.0).cross(vector), Vec3(b, 0.0, 0.0).cross(vector), Vec3(a, -b, 0.0).cross(vector);
+    else
+        jump << Vec3(-z * a, 0.0, a * (x + 0.5 * a)), Vec3(0.0, -z * b, b * (y + 0.5 * b)),
+            Vec3(-z * b, -z * a, x * b + y * a + a * b);
+    return jump;
+}
+
 /// A coordinate: of a body, 0 to 2 translations and 3 to 5 rotations; of a cell, one of the nine of its gradient, or a curvature
 /// behind them, which is never free.
 struct FreeCoordinate {

@@ -133,10 +133,8 @@ public:
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             if constexpr (core::Active<Friction>) {
                 slip -= slip.dot(plane(k)) * plane(k);
-                const double held = element.friction.bound;
-                const double free = held < 0.0 ? friction_bound(normal_, *mesh_, element, responses_[core::at(k)]) : held;
-                frictions_[core::at(k)] =
-                    friction_answer(friction_, *mesh_, element, slip, zone.friction_factor, none ? 0.0 : free);
+                const double bound = none ? 0.0 : standing_bound(normal_, *mesh_, element, responses_[core::at(k)]);
+                frictions_[core::at(k)] = friction_answer(friction_, *mesh_, element, slip, zone.friction_factor, bound);
             }
         });
     }

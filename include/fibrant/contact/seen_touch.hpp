@@ -118,6 +118,13 @@ double friction_bound([[maybe_unused]] const Normal& normal, [[maybe_unused]] co
         return response.reaction;
 }
 
+/// The same where none is held from passes before.
+template <law::NormalLaw Normal, beam::BeamElement B, class Element>
+double standing_bound(const Normal& normal, const beam::Mesh<B>& mesh, const Element& element, const ContactResponse& response) {
+    const double held = element.friction.bound;
+    return held < 0.0 ? friction_bound(normal, mesh, element, response) : held;
+}
+
 /// Friction of an element. The factor of a pair or a tool is one on the coefficients of the law.
 /// @param slip   in the tangent plane [length]
 /// @param bound  R_N that bounds friction, >= 0 [force]
