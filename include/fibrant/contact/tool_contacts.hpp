@@ -90,9 +90,9 @@ public:
                             const Record* record = find(last, key);
                             element.shift.multiplier = record ? record->multiplier : 0.0;
                         }
-                        const bool last = s == 0 || s == stations;  // half of a step, but of closed fibres
+                        const bool end_one = s == 0 || s == stations;  // half of a step, but of closed fibres
                         see_length(element,
-                                   (last && !mesh_->fibre(f).closed ? 0.5 : 1.0) * step_ * mesh_->fibre(f).element_length);
+                                   (end_one && !mesh_->fibre(f).closed ? 0.5 : 1.0) * step_ * mesh_->fibre(f).element_length);
                         place_particle(element, state, accepted, normal);
                         if constexpr (core::Active<Friction>) {
                             if (const Record* record = find(accepted_, key)) {

@@ -64,12 +64,12 @@ public:
         const auto of = [&](Vector& all, Index chain, double unit) {
             return ChainCouplings::Line<double>{all.data() + 3 * layout.chains[core::at(chain)].first_vector, 1, unit};
         };
-        const Index chains = core::count(layout.chains);
+        const Index count = core::count(layout.chains);
         core::parallel_for(
-            chains, [&](Index chain) { couplings_.subtract_later(chain, of(left_, chain, force)); }, grain(layout, chains));
+            count, [&](Index chain) { couplings_.subtract_later(chain, of(left_, chain, force)); }, grain(layout, count));
         correct(std::as_const(left_), motion_);
         core::parallel_for(
-            chains, [&](Index chain) { couplings_.keep_for_later(chain, of(motion_, chain, motion)); }, grain(layout, chains));
+            count, [&](Index chain) { couplings_.keep_for_later(chain, of(motion_, chain, motion)); }, grain(layout, count));
         // z = y - B^-1 (L^T z + L c)
         for (int k = classes - 1; k >= 0; --k)
             factors_.for_class(layout, k, [&](Index pack, const auto& chains, const auto& factor) {
