@@ -31,8 +31,9 @@ struct Twisted {
         }
         return scene;
     }
-    simulation::Loading<Smooth> loading() const {
-        simulation::Loading<Smooth> loading;
+    template <simulation::Model M = Smooth>
+    simulation::Loading<M> loading() const {
+        simulation::Loading<M> loading;
         loading.calmed = true;
         loading.stages.push_back({.name = "turn", .increments = 30, .ramps = {{"turn", 1.0}}, .damping = damping});
         loading.stages.push_back({.name = "slack", .increments = increments, .ramps = {{"slack", 1.0}}, .damping = damping});
@@ -44,8 +45,9 @@ struct Twisted {
         }
         return loading;
     }
-    simulation::ModelParameters<Smooth> parameters() const {
-        simulation::ModelParameters<Smooth> parameters;
+    template <simulation::Model M = Smooth>
+    simulation::ModelParameters<M> parameters() const {
+        simulation::ModelParameters<M> parameters;
         parameters.normal.regularisation_depth = 1e-3 * radius, parameters.contact.stiffness.allowed_penetration = 1e-2 * radius;
         return parameters;
     }

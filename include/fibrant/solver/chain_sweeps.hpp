@@ -94,7 +94,7 @@ public:
         if (product == nullptr) return false;
         *product = r;
         core::parallel_for(
-            chains, [&](Index chain) { couplings_.subtract_earlier(chain, of(*product, chain, force)); }, grain(layout, chains));
+            count, [&](Index chain) { couplings_.subtract_earlier(chain, of(*product, chain, force)); }, grain(layout, count));
         return true;
     }
     /// z = B^-1 r
