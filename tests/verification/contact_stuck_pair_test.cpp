@@ -113,8 +113,9 @@ void check_turning_pair(double angle_deg, Index increments) {
     CHECK(after.active == before.active);
     CHECK(std::abs(after.normal / before.normal - 1.0) < 1e-6);
     CHECK((after.reaction - turn * before.reaction).norm() < 1e-6 * before.normal);
-    CHECK(std::abs(after.size / before.size - 1.0) < 1e-6);
-    CHECK((after.friction - turn * before.friction).norm() < 1e-6 * before.size);
+    // Places slide by contact_tolerance, 1e-6 r, which is 5e-5 of what friction gives way by.
+    CHECK(std::abs(after.size / before.size - 1.0) < 2e-6);
+    CHECK((after.friction - turn * before.friction).norm() < 2e-6 * before.size);
     CHECK(turned.energy.dissipated == dissipated);
 }
 

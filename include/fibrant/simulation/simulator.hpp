@@ -121,6 +121,7 @@ private:
         IncrementReport increment;
         double effort = 0.0;  // iterations a normal pass of it, over how many it may take
         bool rehearsed = false;
+        Index astray = 0;  // attempts that have not settled
         const std::string present = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": ";
         const bool touching = mesh_.fibre_count() > 1 || parameters_.contact.detection.self_contact || HasTools<M>;
         while (true) {
@@ -155,7 +156,7 @@ private:
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping / stride + position_.calming.springs,
                                position_.held_by_fibre(loading.damping_of_fibres));
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
-            const solver::IterationParameters iteration = parameters_.iteration.of_attempt(stage.patience, increment.cuts);
+            const solver::IterationParameters iteration = parameters_.iteration.of_attempt(stage.patience, astray);
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
                 equilibrium_, contacts_, linear_, passage_, iteration, radius_, touching, clock_);
             // A limited gap moves fibres by about the limit: the search looks that far ahead.
@@ -200,7 +201,7 @@ private:
                 position_.progress = progress;
                 break;
             }
-            ++report.rejected_increments, ++increment.cuts;
+            ++report.rejected_increments, ++increment.cuts, astray += attempt.astray ? 1 : 0;
             gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, position_.fraction, position_.damping,
                                   attempt.counts.newton, attempt.reason, core::seconds_since(start)});
             contacts_.restore(), equilibrium_.restore();

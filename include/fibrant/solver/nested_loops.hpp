@@ -16,7 +16,8 @@ namespace fibrant::solver {
 /// Outcome of one attempt at an increment.
 struct AttemptReport {
     bool converged = false;
-    std::string reason;  ///< why not
+    bool astray = false;  ///< Newton's method or contact passes have not found their way
+    std::string reason;   ///< why not
     IterationCounts counts;
     double residual = 0.0;      ///< over loads, reactions and contact forces [1]
     double force_scale = 0.0;   ///< norm of those [force]
@@ -95,7 +96,7 @@ public:
         while (true) {
             if (passes >= parameters_.contact_limit || moves > most_moves) {
                 report.reason = "contact passes do not settle: last displacement " + core::text(change / radius_) + " radii";
-                report.unsettled = travel;
+                report.unsettled = travel, report.astray = true;
                 return report;
             }
             ++report.counts.contact_passes;
@@ -164,7 +165,7 @@ public:
                     continue;
                 }
                 if (last.status != NewtonStatus::converged) {
-                    report.reason = reason(last), report.unsettled = newton.last_step();
+                    report.reason = reason(last), report.unsettled = newton.last_step(), report.astray = true;
                     return report;
                 }
                 report.displacement = equilibrium_->greatest(state - accepted);
@@ -275,7 +276,7 @@ private:
             if (pass == 0) travel.resize(0);  // it holds the increment itself
             if (inner.status == NewtonStatus::moved) return false;
             if (inner.status != NewtonStatus::converged) {
-                report.reason = reason(inner);
+                report.reason = reason(inner), report.astray = true;
                 return true;
             }
             if (!contact_possible_) break;

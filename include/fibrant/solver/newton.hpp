@@ -21,8 +21,8 @@ struct IterationParameters {
     double normal_step_tolerance = 1e-3;  ///< displacement in a normal pass [radius], > 0
     double contact_tolerance = 1e-2;      ///< displacement in a contact pass [radius], > 0
     double inexact = 0.3;                 ///< inner tolerance over the last change of the loop outside [1], in [0, 1]
-    /// Slope of the energy at the end of a Newton step over that at its start, beyond which the step is cut [1], > 0. Once an
-    /// attempt at an increment has failed it is `watched_overshoot` at most.
+    /// Slope of the energy at the end of a Newton step over that at its start, beyond which the step is cut [1], > 0. Once
+    /// Newton's method has failed `most_astray` times at an increment it is `watched_overshoot` at most.
     double overshoot = std::numeric_limits<double>::infinity();
     double largest_approach = 0.5;   ///< relative motion of a contact in one Newton step [mean radius of its two fibres], > 0
     Index newton_limit = 15;         ///< iterations of one inner loop
@@ -34,15 +34,16 @@ struct IterationParameters {
     bool mixed = true;               ///< independent point stresses (falls back to the plain form)
     double linear_tolerance = 1e-4;  ///< of the last linear solves [1], in (0, 1e-2]
     static constexpr double watched_overshoot = 0.5;  ///< by trial on mats, bundles and plectonemes
+    static constexpr Index most_astray = 1;           ///< what never fails is not slowed by a watch
 
     /// Those of an attempt at an increment. Pairs that stick between two ways to slip send Newton's method to and fro: what has
     /// failed is tried again with steps that are watched.
     /// @param patience  factor on the limit of iterations
-    /// @param failed    attempts at the increment
-    IterationParameters of_attempt(double patience, Index failed) const {
+    /// @param astray    attempts at the increment in which it, or contact passes, did not settle
+    IterationParameters of_attempt(double patience, Index astray) const {
         IterationParameters own = *this;
         own.newton_limit = static_cast<Index>(patience * static_cast<double>(newton_limit));
-        if (failed > 0) own.overshoot = std::min(overshoot, watched_overshoot);
+        if (astray >= most_astray) own.overshoot = std::min(overshoot, watched_overshoot);
         return own;
     }
     void validate() const {
