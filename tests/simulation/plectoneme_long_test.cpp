@@ -67,7 +67,9 @@ double wind_up(Index increments, double friction) {
     if constexpr (core::Active<typename M::Friction>)
         parameters.friction = {.friction_coefficient = friction, .reversible_displacement = 0.02 * rod.radius};
     simulation::Simulator<M> simulator(rod.assembly(), parameters);
-    const simulation::Report report = simulator.run(rod.loading<M>());
+    simulation::Loading<M> loading = rod.loading<M>();
+    loading.smallest_fraction = 1e-7, loading.most_rejected = 1000;  // leaps are followed by small steps and hard damping
+    const simulation::Report report = simulator.run(loading);
     REQUIRE_MESSAGE(report.converged, report.reason);
     const simulation::Audit audit = simulation::audit(simulator);
     const observe::FibreSnapshot fibre = simulator.snapshot().fibres[0];
