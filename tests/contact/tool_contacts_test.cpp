@@ -191,6 +191,20 @@ TEST_CASE("an oval section touches a round tool where its contour is nearest, an
             }
 }
 
+TEST_CASE("the audit finds where a fibre is nearest to a tool, touching or not") {
+    // A fibre that comes down to a plane and goes up again, its ends higher than its middle: least in the middle, far from all.
+    for (const double height : {1.5, 20.0}) {
+        scene::FibreSpecification fibre = straight_fibre({-0.3, 0, 0}, {0.3, 0, 0}, r, 6);
+        fibre.curve = [height](double t) { return Vec3(0.6 * t, 0.0, height * r + 0.4 * r * std::cos(2.0 * pi * t)); };
+        scene::Assembly assembly;
+        assembly.add(fibre);
+        const scene::Tool tool = plane({0, 0, 0}, Vec3::UnitZ());
+        const Mesh mesh(assembly, Beam{});
+        const auto seen = observe::tool_gap(simulation::detail::curves_of(mesh, mesh.rest_state()).fibres[0], tool, {});
+        CHECK(std::abs(seen.gap - (height - 0.4 - 1.0) * r) < 1e-3 * r);  // the height of the middle, less a radius
+    }
+}
+
 TEST_CASE("what a tool feels is what its fibre feels, turned round") {
     const scene::Assembly assembly = crowded();
     const Mesh mesh(assembly, Beam{});

@@ -33,6 +33,8 @@ struct ToolGap {
 inline ToolGap tool_gap(const FibreSnapshot& fibre, const scene::Tool& tool, const scene::ToolPose& pose) {
     const NodalCurve curve(fibre);
     const int stations = 4, points = 32;
+    const double stretched = 1.5;    // half extent over that at rest: sections stretch by less than a half
+    const double rounded_off = 0.3;  // sine of the fibre's angle to the tool beyond which an end is: 17 degrees
     const double widest = fibre.section.radius(), narrowest = std::min(fibre.section.semi_axis_1, fibre.section.semi_axis_2);
     const Index last = stations * (core::count(fibre.position) - 1);
     const bool surface = !fibre.director_1.empty() && !fibre.director_1.front().isZero(0.0);  // cables have but a radius
@@ -44,7 +46,7 @@ inline ToolGap tool_gap(const FibreSnapshot& fibre, const scene::Tool& tool, con
         const double t = static_cast<double>(k) / stations;
         const Vec3 centre = curve.position(t);
         const scene::ToolDistance middle = scene::tool_distance(tool, pose.material(centre));
-        if (middle.distance - 1.5 * widest > std::min(least.gap, 0.0) && k > 0) continue;  // sections stretch by less than a half
+        if (middle.distance - stretched * widest > least.gap) continue;
         if (!surface) {
             take(middle.distance - widest, centre);
             continue;
@@ -53,7 +55,7 @@ inline ToolGap tool_gap(const FibreSnapshot& fibre, const scene::Tool& tool, con
         const Vec3 across_2 = fibre.section.semi_axis_2 * curve.interpolate(std::span<const Vec3>{fibre.director_2}, t);
         const Vec3 axis = across_1.cross(across_2).normalized();
         const bool end = !fibre.closed && (k == 0 || k == last);
-        if (end && std::abs(axis.dot(pose.turn * middle.normal)) > 0.3) {
+        if (end && std::abs(axis.dot(pose.turn * middle.normal)) > rounded_off) {
             take(middle.distance - narrowest, centre);
             continue;
         }
