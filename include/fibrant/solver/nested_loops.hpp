@@ -223,9 +223,7 @@ private:
             last = travel;
             return;
         }
-        // Travels t, -q t, q^2 t ... from where the last one began end at t / (1 + q) (Aitken 1926).
-        const double q = -along / before;
-        state -= q / (1.0 + q) * travel;
+        state += end_of_series(along / before) * travel;
         equilibrium_->reset_stresses(state);
         last.resize(0);
     }
@@ -294,11 +292,13 @@ private:
         const double ratio = along / last;
         if ((ratio > growing || ratio < -swinging) &&
             along * along > same_way * same_way * last * equilibrium_->product(travel, travel))
-            return std::max(ratio / (1.0 - ratio), -with::longest_leap * radius_ / change);
+            return std::max(end_of_series(ratio), -with::longest_leap * radius_ / change);
         if (!(ratio > with::least_ratio)) return 0.0;
-        const double series = ratio < with::largest_ratio ? ratio / (1.0 - ratio) : with::largest_series;
+        const double series = ratio < with::largest_ratio ? end_of_series(ratio) : with::largest_series;
         return std::min(series, with::longest_leap * radius_ / change);
     }
+    /// Multiple of the last travel from its end to that of a geometric series of travels (Aitken 1926).
+    static double end_of_series(double ratio) noexcept { return ratio / (1.0 - ratio); }
     static constexpr double same_way = 0.9;  ///< cosine of two travels that follow one mode
     static constexpr double growing = 1.3,
                             swinging = 0.7;  ///< ratios of two travels from which a series does not end by itself, or hardly
