@@ -51,15 +51,20 @@ on 2 1 "$weave" "$scene" --output "$out/refused" $small --set solver.linear_solv
   fail "a solver that ranks cannot share was taken"
 [ "$(grep -c 'solver.linear_solver' "$out/message")" -eq 1 ] || fail "a refusal is not said once: $(cat "$out/message")"
 
+# Sends the first rank of a run a signal once it has an increment. FOLDER SIGNAL
+signal_first_rank() {
+  waited=0
+  while [ ! -s "$out/$1/increments.csv" ] && [ $waited -lt 600 ]; do
+    sleep 0.1
+    waited=$((waited + 1))
+  done
+  kill "-$2" "$(cat "$out/$1/.lock")"
+}
+
 # One rank is told to stop: all do, after the same increment.
 on 2 1 "$weave" "$scene" --output "$out/stopped" $small 2>"$out/message" &
 run=$!
-waited=0
-while [ ! -s "$out/stopped/increments.csv" ] && [ $waited -lt 600 ]; do
-  sleep 0.1
-  waited=$((waited + 1))
-done
-kill -TERM "$(cat "$out/stopped/.lock")"
+signal_first_rank stopped TERM
 wait $run
 [ -s "$out/stopped/checkpoint.bin" ] || fail "a rank that was told to stop left no checkpoint"
 on 4 1 "$weave" "$scene" --output "$out/stopped" $small --resume || fail "the run that was told to stop did not settle in the end"
@@ -68,12 +73,7 @@ figures "$out/stopped" | cmp -s - "$out/expected" || fail "the run that was told
 # One rank is killed: the run ends, and goes on from its checkpoint.
 on 2 1 "$weave" "$scene" --output "$out/killed" $small 2>"$out/message" &
 run=$!
-waited=0
-while [ ! -s "$out/killed/increments.csv" ] && [ $waited -lt 600 ]; do
-  sleep 0.1
-  waited=$((waited + 1))
-done
-kill -KILL "$(cat "$out/killed/.lock")"
+signal_first_rank killed KILL
 wait $run && fail "a run whose rank was killed ended well"
 on 2 1 "$weave" "$scene" --output "$out/killed" $small --resume || fail "the run whose rank was killed did not settle in the end"
 figures "$out/killed" | cmp -s - "$out/expected" || fail "the run whose rank was killed has other bits"
