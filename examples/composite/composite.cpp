@@ -11,6 +11,7 @@
 #include <fibrant/law/shaped_friction.hpp>
 #include <fibrant/material/elastic.hpp>
 #include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/solver/any_solver.hpp>
 #include <fibrant/solver/solid_pcg.hpp>
 
 #include <type_traits>
@@ -28,7 +29,7 @@ struct DryOf {
     using Proximity = proximity::GridSearch;
     using Normal = law::LimitedGap<law::RegularisedPenalty>;
     using Friction = std::conditional_t<Own, law::ShapedFriction, law::RegularisedCoulomb>;
-    using Solver = solver::TwoLevelPcg;
+    using Solver = solver::AnySolver;
 };
 template <bool Own>
 struct CompositeOf : DryOf<Own> {
@@ -58,6 +59,7 @@ bool run(const composite::Scene& scene, const example::SceneReader& file, exampl
     const scene::Assembly flat = cloth::flat_fabric(fabric, scene.weave.settle.tension_strain);
     auto dry_parameters = cloth::model_parameters<Dry>(fabric, scene.weave.settle);
     dry_parameters.iteration = scene.weave.iteration;
+    dry_parameters.solver.strategy = scene.weave.linear_solver;
     simulation::Simulator<Dry> dry(flat, dry_parameters);
     settle(dry, scene, output);
 

@@ -85,6 +85,30 @@ TEST_CASE("any strategy can be chosen by name, and a name that means none is ref
           "float_block_cholesky, double_block_cholesky, sparse_cholesky");
 }
 
+TEST_CASE("what single precision calls indefinite, or finds no numbers for, is solved all the same: a doubt is no verdict") {
+    const auto told = [](auto solver, const test::SyntheticSystem& system) {
+        solver.analyse(system);
+        return solver.prepare(system);
+    };
+    // Beyond what a float tells from the chains' own stiffness of 1: a pivot is negative, or infinite.
+    for (const auto& [factor, doubt] :
+         {std::pair{3e7, solver::SolveStatus::indefinite}, std::pair{3e8, solver::SolveStatus::not_finite}}) {
+        test::SyntheticSystem stiff = touching();
+        for (auto& point : stiff.points) point.stiffness *= factor;
+        stiff.finish();
+        CHECK(told(solver::FloatBlockCholesky{}, stiff) == doubt);
+        const Vector b = test::random_load(stiff.layout(), 1);
+        for (const std::string name : {"automatic", "float_block_cholesky"}) {
+            CAPTURE(name);
+            solver::AnySolver solver{{.strategy = name}};
+            Vector x;
+            CHECK(told(solver, stiff) == solver::SolveStatus::converged);
+            CHECK(test::solve(solver, stiff, b, 1e-4, x).status == solver::SolveStatus::converged);
+            CHECK(test::residual_of(stiff, b, x) < 1.1e-4);
+        }
+    }
+}
+
 TEST_CASE("parameters of the automatic strategy that mean nothing are refused by name") {
     using Solver = solver::AutomaticSolver;
     CHECK(test::refusal([] { Solver{{.few_couplings = -1.0}}; }).starts_with("AutomaticSolver.few_couplings = -1"));

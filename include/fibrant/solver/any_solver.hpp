@@ -56,12 +56,13 @@ public:
     }
 
 private:
-    using Strategy = std::variant<Confirmed<TwoLevelPcg>, AutomaticSolver, FibreBlockPcg, FloatBlockCholesky, DoubleBlockCholesky,
-                                  SparseCholesky>;
+    // What blocks of single precision say is a doubt, whoever asks them.
+    using Strategy = std::variant<Confirmed<TwoLevelPcg>, AutomaticSolver, Confirmed<FibreBlockPcg>,
+                                  Confirmed<FloatBlockCholesky>, DoubleBlockCholesky, SparseCholesky>;
     static Strategy make(const std::string& name) {
         if (name == "automatic") return AutomaticSolver();
-        if (name == "fibre_block_pcg") return FibreBlockPcg();
-        if (name == "float_block_cholesky") return FloatBlockCholesky();
+        if (name == "fibre_block_pcg") return Confirmed<FibreBlockPcg>();
+        if (name == "float_block_cholesky") return Confirmed<FloatBlockCholesky>();
         if (name == "double_block_cholesky") return DoubleBlockCholesky();
         if (name == "sparse_cholesky") return SparseCholesky();
         return Confirmed<TwoLevelPcg>();

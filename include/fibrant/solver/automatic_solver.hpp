@@ -2,8 +2,8 @@
 #pragma once
 /// @file The cheapest strategy that does it: fibre blocks, two levels, and a factor of the whole when iterations fail.
 
+#include <fibrant/solver/confirmed.hpp>
 #include <fibrant/solver/fibre_block_pcg.hpp>
-#include <fibrant/solver/float_block_cholesky.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
 
 #include <array>
@@ -63,8 +63,8 @@ Index count_couplings(const System& system) {
 /// Starts with FibreBlockPcg where few terms couple the chains and with TwoLevelPcg elsewhere; where that reaches its
 /// limit, goes on to the next, in the end FloatBlockCholesky. What is not wanted is not prepared.
 ///
-/// The choice depends on the present system alone, so no solve depends on another. A system that is not positive
-/// definite is reported at once: that is for Newton's iteration to mend.
+/// The choice depends on the present system alone, so no solve of a small system depends on another. What a strategy calls
+/// indefinite is Confirmed first, and then reported at once: that is for Newton's iteration to mend.
 class AutomaticSolver {
 public:
     struct Parameters {
@@ -82,8 +82,9 @@ public:
     AutomaticSolver() : AutomaticSolver(Parameters{}) {}
     explicit AutomaticSolver(const Parameters& parameters)
         : parameters_{core::validated(parameters)},
-          fibres_{FibreBlockPcg::Parameters{.iteration_limit = parameters.fibre_block_limit}},
-          levels_{two_levels(parameters)} {}
+          fibres_{{.iterative = {.iteration_limit = parameters.fibre_block_limit}, .largest_fill = parameters.largest_fill}},
+          levels_{{.iterative = two_levels(parameters), .largest_fill = parameters.largest_fill}},
+          factor_{{.largest_fill = parameters.largest_fill}} {}
 
     template <assembly::LinearSystem System>
     void analyse(const System& system) {
@@ -153,7 +154,7 @@ private:
         if (prepared_[strategy + 1]) return true;
         if (strategy == 1) {
             factor_.analyse(system);
-            if (static_cast<double>(factor_.fill()) > parameters_.largest_fill) {
+            if (static_cast<double>(factor_.iterative().fill()) > parameters_.largest_fill) {
                 use_.last_fallback += ", but the factor of the whole would be larger than allowed";
                 return false;
             }
@@ -162,9 +163,9 @@ private:
     }
 
     Parameters parameters_;
-    FibreBlockPcg fibres_;
-    TwoLevelPcg levels_;
-    FloatBlockCholesky factor_;
+    Confirmed<FibreBlockPcg> fibres_;
+    Confirmed<TwoLevelPcg> levels_;
+    Confirmed<FloatBlockCholesky> factor_;
     std::array<bool, 3> prepared_{};
     std::size_t first_ = 1;
     SolveStatus status_ = SolveStatus::not_finite;

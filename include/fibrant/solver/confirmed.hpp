@@ -15,9 +15,9 @@ namespace fibrant::solver {
 /// says what it is. A larger one is from a number of such verdicts in a row on, and until the next analysis: what it does depends
 /// on what was solved since the last one.
 ///
-/// What is said of a larger one before it is solved is a doubt, for blocks of preconditioners are of single precision: it is
-/// factored at once where that costs no more than a long iteration, and else solved all the same. Conjugate gradients meet a
-/// curvature that is not positive in double precision, or none.
+/// What is said of a larger one before it is solved, that it is indefinite or has no numbers, is a doubt, for blocks of
+/// preconditioners are of single precision: it is factored at once where that costs no more than a long iteration, and else
+/// solved all the same. Conjugate gradients meet a curvature that is not positive in double precision, or none.
 template <class Iterative>
 class Confirmed {
 public:
@@ -50,11 +50,12 @@ public:
         if (small(system)) factored_ = false;
         if (factored_) return factor_.prepare(system);
         const SolveStatus status = iterative_.prepare(system);
-        if (status != SolveStatus::indefinite) return status;
+        if (status == SolveStatus::converged) return status;
         const double most =
             small(system) ? parameters_.largest_fill : std::min(parameters_.moderate_fill, parameters_.largest_fill);
         heavy_ = heavy_ || !analysed(system, most);
-        return heavy_ ? SolveStatus::converged : factor_.prepare(system);
+        if (!heavy_) return factor_.prepare(system);
+        return status == SolveStatus::indefinite ? SolveStatus::converged : status;
     }
     template <assembly::LinearSystem System>
     SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
@@ -69,6 +70,8 @@ public:
     }
     /// The present system is factored.
     bool factored() const noexcept { return factored_; }
+    /// Whose verdicts are confirmed.
+    const Iterative& iterative() const noexcept { return iterative_; }
 
 private:
     template <class System>
