@@ -16,9 +16,7 @@ struct Part {
 
     void take(double a, double b) noexcept { from = std::min(from, a), to = std::max(to, b); }
     /// Widens [a, b] by it, as numbered from `first` on.
-    void add_to(double first, double& a, double& b) const noexcept {
-        a = std::min(a, first + from), b = std::max(b, first + to);
-    }
+    void add_to(double first, double& a, double& b) const noexcept { a = std::min(a, first + from), b = std::max(b, first + to); }
 };
 
 /// Part of a segment that is no further than `threshold` from another one.

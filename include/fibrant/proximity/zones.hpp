@@ -92,7 +92,9 @@ private:
         }
     }
 
-    bool same_way(std::size_t a, std::size_t b) const { return mixed_[a] == 0 || (place_[a].sense < 0.0) == (place_[b].sense < 0.0); }
+    bool same_way(std::size_t a, std::size_t b) const {
+        return mixed_[a] == 0 || (place_[a].sense < 0.0) == (place_[b].sense < 0.0);
+    }
 
     /// Undoes the components that run clearly both ways, as where a fibre turns back along another, to be joined again
     /// by sense. A crossing near 90 degrees, whose sense is noise, stays whole. Returns whether there are any.
