@@ -15,6 +15,7 @@
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/proximity/kd_tree_search.hpp>
 #include <fibrant/proximity/moving_segments.hpp>
+#include <fibrant/proximity/near_part.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
 #include <fibrant/proximity/segment_distance.hpp>
 #include <fibrant/proximity/segment_table.hpp>

@@ -2,7 +2,8 @@
 #pragma once
 /// @file Proximity zones of closed fibres, in segment numbers that go on around them.
 
-#include <fibrant/proximity/segment_table.hpp>
+#include <fibrant/proximity/exact_filter.hpp>
+#include <fibrant/proximity/near_part.hpp>
 
 #include <algorithm>
 #include <array>
@@ -14,31 +15,6 @@
 
 namespace fibrant::proximity::detail {
 
-/// Moves `s` on towards `outside` while start + s chord stays closer than `threshold` to the other segment. The squared
-/// distance to a segment is convex and smooth, so Newton's method from outside comes down to the end without passing it.
-inline double extended(double s, double outside, const SegmentRecord& of, const SegmentRecord& other, double threshold) {
-    const double per = 1.0 / std::max(dot(other.chord, other.chord), 1.0e-300);
-    double slope = 0.0;
-    const auto excess = [&](double at) {
-        const Plain3 x{of.start.x + at * of.chord.x - other.start.x, of.start.y + at * of.chord.y - other.start.y,
-                       of.start.z + at * of.chord.z - other.start.z};
-        const double t = unit_clamped(dot(x, other.chord) * per);
-        const Plain3 w{x.x - t * other.chord.x, x.y - t * other.chord.y, x.z - t * other.chord.z};
-        slope = 2.0 * dot(w, of.chord);
-        return dot(w, w) - threshold * threshold;
-    };
-    if (s == outside || excess(s) >= 0.0) return s;  // another pair of the zone reaches as far
-    double end = outside;
-    for (int step = 0; step < 30; ++step) {
-        const double above = excess(end);
-        if (above <= 0.0) break;
-        const double before = end;
-        end = outside > s ? std::max(s, end - above / slope) : std::min(s, end - above / slope);
-        if (std::abs(end - before) < 1.0 / 4096.0) break;
-    }
-    return end;
-}
-
 /// Makes the zones of two fibres of which one is closed, or of a closed one with itself.
 ///
 /// The plane of the two segment numbers is wound up there: pairs that touch are followed from the first one on, and numbers go on
@@ -49,8 +25,9 @@ public:
     explicit ClosedZoneMaker(const SegmentTable& table) : table_(table) {}
 
     /// Appends the zones of two fibres, by which of their pairs they begin with.
-    /// @param pairs  all of these two, sorted by segment
-    void append(std::span<const SegmentPair> pairs, std::vector<ProximityZone>& zones) {
+    /// @param pairs   all of these two, sorted by segment
+    /// @param places  of these
+    void append(std::span<const SegmentPair> pairs, const PairPlace* places, std::vector<ProximityZone>& zones) {
         pairs_ = pairs;
         const std::int32_t i = table_.fibre(pairs.front().i), j = table_.fibre(pairs.front().j);
         first_ = {table_.first(i), table_.first(j)};
@@ -61,11 +38,7 @@ public:
         self_ = i == j;
         const std::size_t n = pairs.size();
         sense_.resize(n), mixed_.assign(n, 0);
-        for (std::size_t k = 0; k < n; ++k) {
-            const Plain3 a = table_.record(pairs[k].i).chord, b = table_.record(pairs[k].j).chord;
-            const double lengths = std::sqrt(dot(a, a) * dot(b, b));
-            sense_[k] = lengths > 0.0 ? dot(a, b) / lengths : 0.0;
-        }
+        for (std::size_t k = 0; k < n; ++k) sense_[k] = places[k].sense;
         follow();
         if (separate_turns()) follow();
         std::vector<ProximityZone> own(core::at(zones_));
@@ -169,10 +142,8 @@ private:
         zone.a_i = std::min(zone.a_i, s), zone.b_i = std::max(zone.b_i, s);
         zone.a_j = std::min(zone.a_j, t), zone.b_j = std::max(zone.b_j, t);
         const double threshold = i.half + j.half + table_.reach();
-        if (place.i == extent.least.i) zone.a_i = p + extended(zone.a_i - p, 0.0, i, j, threshold);
-        if (place.i == extent.most.i) zone.b_i = p + extended(zone.b_i - p, 1.0, i, j, threshold);
-        if (place.j == extent.least.j) zone.a_j = q + extended(zone.a_j - q, 0.0, j, i, threshold);
-        if (place.j == extent.most.j) zone.b_j = q + extended(zone.b_j - q, 1.0, j, i, threshold);
+        if (place.i == extent.least.i || place.i == extent.most.i) near_part(i, j, threshold).add_to(p, zone.a_i, zone.b_i);
+        if (place.j == extent.least.j || place.j == extent.most.j) near_part(j, i, threshold).add_to(q, zone.a_j, zone.b_j);
     }
 
     const SegmentTable& table_;

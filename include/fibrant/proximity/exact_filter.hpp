@@ -5,7 +5,9 @@
 #include <fibrant/core/vector_units.hpp>
 #include <fibrant/proximity/segment_table.hpp>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 #define FIBRANT_FILTER_AVX512 1
@@ -30,6 +32,7 @@ inline __m512d high_pairs(__m512d a, __m512d b) noexcept { return __builtin_shuf
 struct FilterLanes {
     static constexpr int size = 8;
     alignas(64) double w[3][size], u[3][size], v[3][size], threshold[size], squared[size];
+    alignas(64) double s[size], t[size], sense[size];  // written by `locate` alone
     alignas(64) SegmentPair pair[size];
 
     /// @param i, j  of each lane, i the first segment of the two
@@ -86,6 +89,22 @@ struct FilterLanes {
     measure() noexcept {
         for (int l = 0; l < size; ++l)
             squared[l] = least_squared({w[0][l], w[1][l], w[2][l]}, {u[0][l], u[1][l], u[2][l]}, {v[0][l], v[1][l], v[2][l]});
+    }
+
+    /// Closest points and the cosine of the two chords, 0 where one has no length.
+#if defined(__GNUC__) && !defined(__clang__)
+    __attribute__((optimize("no-trapping-math")))
+#endif
+    void
+    locate() noexcept {
+        alignas(64) double lengths[size];  // product of their squares
+        for (int l = 0; l < size; ++l) {
+            const Plain3 a{u[0][l], u[1][l], u[2][l]}, b{v[0][l], v[1][l], v[2][l]};
+            const SegmentDistance closest = segment_distance(Plain3{w[0][l], w[1][l], w[2][l]}, a, b);
+            squared[l] = closest.squared, s[l] = closest.s, t[l] = closest.t;
+            lengths[l] = dot(a, a) * dot(b, b), sense[l] = dot(a, b);
+        }
+        for (int l = 0; l < size; ++l) sense[l] /= lengths[l] > 0.0 ? std::sqrt(lengths[l]) : 1.0;  // apart: it may set errno
     }
 
     /// Writes the pairs of the first n lanes that are close; room for eight. @return the end of them
@@ -147,6 +166,34 @@ keep_close(const SegmentTable& table, const SegmentRecord* records, std::span<co
     }
     if (filled > 0) flush();
     close.insert(close.end(), found, end);
+}
+
+/// Closest points of a close pair, and how its segments run.
+struct PairPlace {
+    double squared, s, t;  ///< as of SegmentDistance
+    double sense;          ///< cosine of the two chords
+};
+
+/// Places of pairs, eight at once; compiled once, as the filter is.
+/// @param records  of all segments in order
+/// @param places   one a pair
+#if defined(__GNUC__)
+__attribute__((noinline))
+#endif
+inline void
+locate(const SegmentRecord* records, std::span<const SegmentPair> pairs, double reach, PairPlace* places) {
+    FilterLanes lanes;
+    const SegmentRecord *i[FilterLanes::size], *j[FilterLanes::size];
+    for (std::size_t k = 0; k < pairs.size(); k += FilterLanes::size) {
+        const std::size_t filled = std::min(pairs.size() - k, std::size_t{FilterLanes::size});
+        for (std::size_t l = 0; l < FilterLanes::size; ++l) {
+            const SegmentPair& pair = pairs[k + (l < filled ? l : 0)];
+            i[l] = records + pair.i, j[l] = records + pair.j;
+        }
+        lanes.load(i, j, reach);
+        lanes.locate();
+        for (std::size_t l = 0; l < filled; ++l) places[k + l] = {lanes.squared[l], lanes.s[l], lanes.t[l], lanes.sense[l]};
+    }
 }
 
 }  // namespace fibrant::proximity::detail

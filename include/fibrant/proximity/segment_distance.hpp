@@ -78,7 +78,8 @@ struct ClosestCandidates {
     return least;
 }
 
-constexpr SegmentDistance segment_distance(const Plain3& w, const Plain3& u, const Plain3& v) noexcept {
+[[gnu::always_inline]] inline constexpr SegmentDistance segment_distance(const Plain3& w, const Plain3& u,
+                                                                         const Plain3& v) noexcept {
     const ClosestCandidates c(w, u, v);
     SegmentDistance least{squared_between(w, u, v, c.s[0], c.t[0]), c.s[0], c.t[0]};
     for (int k = 1; k < 5; ++k) {

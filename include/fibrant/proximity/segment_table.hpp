@@ -2,6 +2,7 @@
 #pragma once
 /// @file Segments of all fibres under one numbering, and which of them may pair.
 
+#include <fibrant/core/parallel.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
 #include <fibrant/proximity/segment_distance.hpp>
 
@@ -61,7 +62,8 @@ public:
     /// Records of all segments in order.
     std::vector<SegmentRecord> records() const {
         std::vector<SegmentRecord> all(core::at(size()));
-        for (std::int32_t k = 0; k < size(); ++k) all[core::at(k)] = record(k);
+        core::parallel_for(
+            size(), [&](Index k) { all[core::at(k)] = record(static_cast<std::int32_t>(k)); }, 16 * core::light_items);
         return all;
     }
 

@@ -8,49 +8,36 @@
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
+#include <utility>
 
 namespace fibrant::proximity {
 namespace detail {
 
-/// Stable counting sort of pairs by key(pair) in [0, keys).
-template <class Key>
-std::vector<SegmentPair> counted_by(const std::vector<SegmentPair>& pairs, std::int32_t keys, const Key& key) {
-    std::vector<std::size_t> place(core::at(keys) + 1, 0);
-    for (const SegmentPair& pair : pairs) ++place[core::at(key(pair)) + 1];
-    std::partial_sum(place.begin(), place.end(), place.begin());
-    std::vector<SegmentPair> sorted(pairs.size());
-    for (const SegmentPair& pair : pairs) sorted[place[core::at(key(pair))]++] = pair;
-    return sorted;
-}
-
 /// Makes the zones of two fibres at a time; keeps its buffers from one to the next.
 class ZoneMaker {
 public:
-    explicit ZoneMaker(const SegmentTable& table) : table_(table) {}
+    /// @param records  of all segments in order
+    ZoneMaker(const SegmentTable& table, const SegmentRecord* records) : table_(table), records_(records) {}
 
     /// Appends the zones of two fibres.
-    /// @param pairs  all of these two, sorted by segment
-    void append(std::span<const SegmentPair> pairs, std::vector<ProximityZone>& zones) {
-        pairs_ = pairs;
+    /// @param pairs   all of these two, sorted by segment
+    /// @param places  of these
+    void append(std::span<const SegmentPair> pairs, const PairPlace* places, std::vector<ProximityZone>& zones) {
+        pairs_ = pairs, place_ = places;
         if (table_.centreline(table_.fibre(pairs.front().i)).closed || table_.centreline(table_.fibre(pairs.front().j)).closed)
-            return closed_.append(pairs, zones);
-        const std::size_t n = pairs_.size();
-        closest_.resize(n);
-        sense_.resize(n);
-        root_.resize(n);
-        SegmentRecord i{};
-        for (std::size_t k = 0; k < n; ++k) {
-            if (k == 0 || pairs_[k].i != pairs_[k - 1].i) i = table_.record(pairs_[k].i);
-            const SegmentRecord j = table_.record(pairs_[k].j);
-            closest_[k] = segment_distance(i.start - j.start, i.chord, j.chord);
-            const double lengths = std::sqrt(dot(i.chord, i.chord) * dot(j.chord, j.chord));
-            sense_[k] = lengths > 0.0 ? dot(i.chord, j.chord) / lengths : 0.0;
+            return closed_.append(pairs, places, zones);
+        const std::size_t n = pairs_.size(), before = zones.size();
+        if (n == 1) {
+            Extent extent;
+            extent.add(pairs_[0], place_[0].sense);
+            measure(0, extent, zones.emplace_back());
+            if (extent.sense < 0.0) std::swap(zones.back().a_j, zones.back().b_j);
+            return;
         }
+        root_.resize(n);
         std::iota(root_.begin(), root_.end(), std::size_t{0});
         join([](std::size_t, std::size_t) { return true; });
         if (separate_turns()) join([this](std::size_t a, std::size_t b) { return same_way(a, b); });
-        const std::size_t before = zones.size();
         zone_.assign(n, none);
         extent_.clear();
         for (std::size_t k = 0; k < n; ++k) {
@@ -60,7 +47,7 @@ public:
                 extent_.push_back({});
             }
             zone_[k] = zone_[top];
-            extent_[zone_[k]].add(pairs_[k], sense_[k]);
+            extent_[zone_[k]].add(pairs_[k], place_[k].sense);
         }
         zones.resize(before + extent_.size());
         for (std::size_t k = 0; k < n; ++k) measure(k, extent_[zone_[k]], zones[before + zone_[k]]);
@@ -105,18 +92,21 @@ private:
         }
     }
 
-    bool same_way(std::size_t a, std::size_t b) const { return mixed_[a] == 0 || (sense_[a] < 0.0) == (sense_[b] < 0.0); }
+    bool same_way(std::size_t a, std::size_t b) const {
+        return mixed_[a] == 0 || (place_[a].sense < 0.0) == (place_[b].sense < 0.0);
+    }
 
     /// Undoes the components that run clearly both ways, as where a fibre turns back along another, to be joined again
     /// by sense. A crossing near 90 degrees, whose sense is noise, stays whole. Returns whether there are any.
     bool separate_turns() {
         const std::size_t n = pairs_.size();
-        const auto [low, high] = std::minmax_element(sense_.begin(), sense_.end());
-        if (*low > -clearly || *high < clearly) return false;
+        double low = 1.0, high = -1.0;
+        for (std::size_t k = 0; k < n; ++k) low = std::min(low, place_[k].sense), high = std::max(high, place_[k].sense);
+        if (low > -clearly || high < clearly) return false;
         std::vector<char> along(n, 0), against(n, 0);
         for (std::size_t k = 0; k < n; ++k) {
-            if (sense_[k] >= clearly) along[root(k)] = 1;
-            if (sense_[k] <= -clearly) against[root(k)] = 1;
+            if (place_[k].sense >= clearly) along[root(k)] = 1;
+            if (place_[k].sense <= -clearly) against[root(k)] = 1;
         }
         mixed_.resize(n);
         for (std::size_t k = 0; k < n; ++k) mixed_[k] = along[root(k)] != 0 && against[root(k)] != 0 ? 1 : 0;
@@ -132,7 +122,7 @@ private:
     /// Takes a pair into its zone: the closest points, and the ends where the pair is at one.
     void measure(std::size_t k, const Extent& extent, ProximityZone& zone) const {
         const SegmentPair pair = pairs_[k];
-        const SegmentDistance& closest = closest_[k];
+        const PairPlace& closest = place_[k];
         const std::int32_t fibre_i = table_.fibre(pair.i), fibre_j = table_.fibre(pair.j);
         const double p = pair.i - table_.first(fibre_i), q = pair.j - table_.first(fibre_j);
         const double s = p + closest.s, t = q + closest.t;
@@ -146,57 +136,114 @@ private:
         zone.b_i = std::max(zone.b_i, s);
         zone.a_j = std::min(zone.a_j, t);
         zone.b_j = std::max(zone.b_j, t);
-        if (pair.i != extent.least.i && pair.i != extent.most.i && pair.j != extent.least.j && pair.j != extent.most.j) return;
-        const SegmentRecord i = table_.record(pair.i), j = table_.record(pair.j);
+        const bool ends_i = pair.i == extent.least.i || pair.i == extent.most.i,
+                   ends_j = pair.j == extent.least.j || pair.j == extent.most.j;
+        if (!ends_i && !ends_j) return;
+        const SegmentRecord &i = records_[pair.i], &j = records_[pair.j];
         const double threshold = i.half + j.half + table_.reach();
-        if (pair.i == extent.least.i) zone.a_i = p + extended(zone.a_i - p, 0.0, i, j, threshold);
-        if (pair.i == extent.most.i) zone.b_i = p + extended(zone.b_i - p, 1.0, i, j, threshold);
-        if (pair.j == extent.least.j) zone.a_j = q + extended(zone.a_j - q, 0.0, j, i, threshold);
-        if (pair.j == extent.most.j) zone.b_j = q + extended(zone.b_j - q, 1.0, j, i, threshold);
+        if (ends_i) near_part(i, j, threshold).add_to(p, zone.a_i, zone.b_i);
+        if (ends_j) near_part(j, i, threshold).add_to(q, zone.a_j, zone.b_j);
     }
 
     const SegmentTable& table_;
+    const SegmentRecord* records_;
     ClosedZoneMaker closed_{table_};
     std::span<const SegmentPair> pairs_;
-    std::vector<SegmentDistance> closest_;
-    std::vector<double> sense_;  // cosine of the two chords
+    const PairPlace* place_ = nullptr;
     std::vector<std::size_t> root_, zone_;
     std::vector<char> mixed_;
     std::vector<Extent> extent_;
 };
 
-}  // namespace detail
+/// The close pairs of one fibre with those after it and itself, put in order by the other fibre and then by segment.
+class PairsByFibre {
+public:
+    /// @param pairs  of the fibre, sorted
+    std::span<const SegmentPair> sorted(const SegmentTable& table, std::span<const SegmentPair> pairs) {
+        std::int32_t least = table.fibres(), most = 0;
+        fibre_.resize(pairs.size());
+        for (std::size_t k = 0; k < pairs.size(); ++k) {
+            fibre_[k] = table.fibre(pairs[k].j);
+            least = std::min(least, fibre_[k]), most = std::max(most, fibre_[k]);
+        }
+        if (least == most) return pairs;
+        sorted_.resize(pairs.size());
+        const std::size_t range = core::at(most - least) + 1;
+        if (range <= 8 * pairs.size()) {  // counted, if that is no more work than the pairs are
+            place_.assign(range, 0);
+            for (const std::int32_t f : fibre_) ++place_[core::at(f - least)];
+            std::size_t sum = 0;
+            for (std::size_t& place : place_) sum += std::exchange(place, sum);
+            for (std::size_t k = 0; k < pairs.size(); ++k) sorted_[place_[core::at(fibre_[k] - least)]++] = pairs[k];
+        } else {
+            place_.resize(pairs.size());
+            for (std::size_t k = 0; k < pairs.size(); ++k) place_[k] = core::at(fibre_[k]) << 32 | k;
+            std::sort(place_.begin(), place_.end());
+            for (std::size_t k = 0; k < pairs.size(); ++k) sorted_[k] = pairs[place_[k] & 0xffffffffU];
+        }
+        return sorted_;
+    }
 
-/// Proximity zones of close pairs of segments: for two fibres, the pairs that touch each other (8 neighbours in the plane
-/// of the two segment numbers) make one zone, split where the fibres turn from clearly along to clearly against each other
-/// (60 degrees). Its intervals end where the axes part by the pair's threshold, found from outside to some 1/1024 segment.
-/// Linear in the number of pairs.
-/// @param pairs  sorted, without repeats, as `pairs` of a search returns them
-/// @return sorted by fibre_i, fibre_j, a_i, a_j
-inline std::vector<ProximityZone> zones_from_pairs(std::span<const Centreline> fibres, double reach,
-                                                   const std::vector<SegmentPair>& pairs) {
-    const detail::SegmentTable table(fibres, reach);
-    // Stable sorts keep the order by segment inside each two fibres.
-    std::vector<SegmentPair> sorted =
-        detail::counted_by(pairs, table.fibres(), [&](const SegmentPair& pair) { return table.fibre(pair.j); });
-    sorted = detail::counted_by(sorted, table.fibres(), [&](const SegmentPair& pair) { return table.fibre(pair.i); });
-    std::vector<std::size_t> first{0};  // of the pairs of two fibres
-    for (std::size_t k = 1; k < sorted.size(); ++k)
-        if (table.fibre(sorted[k].i) != table.fibre(sorted[k - 1].i) || table.fibre(sorted[k].j) != table.fibre(sorted[k - 1].j))
-            first.push_back(k);
-    if (sorted.empty()) return {};
-    first.push_back(sorted.size());
-    constexpr std::size_t together = 64;  // a block of the loop: fixed, so that nothing depends on the threads
-    const std::size_t twos = first.size() - 1, blocks = (twos + together - 1) / together;
-    std::vector<std::vector<ProximityZone>> part(blocks);
-    core::parallel_for<core::Share::turns>(static_cast<Index>(blocks), [&](Index b) {
-        detail::ZoneMaker maker(table);
-        for (std::size_t k = core::at(b) * together; k < std::min(twos, (core::at(b) + 1) * together); ++k)
-            maker.append({sorted.data() + first[k], first[k + 1] - first[k]}, part[core::at(b)]);
+private:
+    std::vector<std::int32_t> fibre_;
+    std::vector<std::size_t> place_;
+    std::vector<SegmentPair> sorted_;
+};
+
+/// Zones of the pairs of a table. @param keep  keep(zone): whether it is wanted
+template <class Keep>
+std::vector<ProximityZone> zones_of(const SegmentTable& table, std::span<const SegmentPair> pairs, const Keep& keep) {
+    if (pairs.empty()) return {};
+    const std::vector<SegmentRecord> records = table.records();
+    constexpr Index together = 4;  // fibres of a block of the loop: fixed, so that nothing depends on the threads
+    const Index fibres = table.fibres(), blocks = (fibres + together - 1) / together;
+    std::vector<std::vector<ProximityZone>> part(core::at(blocks));
+    const auto first_of = [&](Index fibre) {
+        const std::int32_t segment = fibre < fibres ? table.first(static_cast<std::int32_t>(fibre)) : table.size();
+        return std::lower_bound(pairs.begin(), pairs.end(), SegmentPair{segment, -1});
+    };
+    core::parallel_for<core::Share::turns>(blocks, [&](Index b) {
+        ZoneMaker maker(table, records.data());
+        PairsByFibre by_fibre;
+        std::vector<PairPlace> places;
+        std::vector<ProximityZone>& zones = part[core::at(b)];
+        auto end = first_of(b * together);
+        for (Index f = b * together; f < std::min(fibres, (b + 1) * together); ++f) {
+            const auto begin = std::exchange(end, first_of(f + 1));
+            const std::span<const SegmentPair> own = by_fibre.sorted(table, {begin, end});
+            places.resize(own.size());
+            locate(records.data(), own, table.reach(), places.data());
+            for (std::size_t k = 0, last = 0; k < own.size(); k = last) {
+                for (last = k + 1; last < own.size() && table.fibre(own[last].j) == table.fibre(own[k].j);) ++last;
+                const std::size_t before = zones.size();
+                maker.append(own.subspan(k, last - k), places.data() + k, zones);
+                zones.erase(std::remove_if(zones.begin() + static_cast<std::ptrdiff_t>(before), zones.end(),
+                                           [&](const ProximityZone& zone) { return !keep(zone); }),
+                            zones.end());
+            }
+        }
     });
     std::vector<ProximityZone> zones;
     core::join(part, zones);
     return zones;
+}
+
+}  // namespace detail
+
+/// Proximity zones of close pairs of segments: for two fibres, the pairs that touch each other (8 neighbours in the plane
+/// of the two segment numbers) make one zone, split where the fibres turn from clearly along to clearly against each other
+/// (60 degrees). Its intervals end where the axes part by the pair's threshold. Linear in the number of pairs.
+/// @param pairs  sorted, without repeats, as `pairs` of a search returns them
+/// @param keep   keep(zone): whether a zone is wanted; called from several threads
+/// @return sorted by fibre_i, fibre_j, a_i, a_j
+template <class Keep>
+std::vector<ProximityZone> zones_from_pairs(std::span<const Centreline> fibres, double reach,
+                                            const std::vector<SegmentPair>& pairs, const Keep& keep) {
+    return detail::zones_of(detail::SegmentTable(fibres, reach), pairs, keep);
+}
+inline std::vector<ProximityZone> zones_from_pairs(std::span<const Centreline> fibres, double reach,
+                                                   const std::vector<SegmentPair>& pairs) {
+    return zones_from_pairs(fibres, reach, pairs, [](const ProximityZone&) { return true; });
 }
 
 namespace detail {
@@ -207,15 +254,19 @@ class InTwoHalves {
 public:
     std::vector<SegmentPair> pairs(std::span<const Centreline> fibres, double reach) {
         const SegmentTable table(fibres, reach);
-        own().build(table);
-        return own().search(table);
+        return pairs_of(table);
     }
     std::vector<ProximityZone> find(std::span<const Centreline> fibres, double reach) {
-        return zones_from_pairs(fibres, reach, pairs(fibres, reach));
+        const SegmentTable table(fibres, reach);
+        return zones_of(table, pairs_of(table), [](const ProximityZone&) { return true; });
     }
 
 private:
-    Own& own() noexcept { return static_cast<Own&>(*this); }
+    std::vector<SegmentPair> pairs_of(const SegmentTable& table) {
+        Own& own = static_cast<Own&>(*this);
+        own.build(table);
+        return own.search(table);
+    }
 };
 
 }  // namespace detail
