@@ -109,6 +109,18 @@ TEST_CASE("what single precision calls indefinite, or finds no numbers for, is s
     }
 }
 
+TEST_CASE("a verdict that double precision confirms is no doubt: the next system is solved by the strategy itself") {
+    test::SyntheticSystem indefinite = touching();
+    for (auto& point : indefinite.points) point.stiffness *= -1e3;
+    indefinite.finish();
+    const test::SyntheticSystem definite = touching();
+    solver::Confirmed<solver::FloatBlockCholesky> solver{{.small = 0}};
+    solver.analyse(indefinite);
+    CHECK(solver.prepare(indefinite) == solver::SolveStatus::indefinite);
+    CHECK(solver.prepare(definite) == solver::SolveStatus::converged);
+    CHECK(!solver.factored());
+}
+
 TEST_CASE("parameters of the automatic strategy that mean nothing are refused by name") {
     using Solver = solver::AutomaticSolver;
     CHECK(test::refusal([] { Solver{{.few_couplings = -1.0}}; }).starts_with("AutomaticSolver.few_couplings = -1"));

@@ -43,19 +43,24 @@ public:
     template <assembly::LinearSystem System>
     void analyse(const System& system) {
         iterative_.analyse(system);
-        verdicts_ = 0, factored_ = heavy_ = false;
+        verdicts_ = 0, factored_ = heavy_ = ordered_ = false;
     }
     template <assembly::LinearSystem System>
     SolveStatus prepare(const System& system) {
         if (small(system)) factored_ = false;
-        if (factored_) return factor_.prepare(system);
+        if (factored_)
+            if (const SolveStatus status = factor_.prepare(system); status != SolveStatus::not_finite) return status;
+        factored_ = false;  // it has broken down, as it may where a system is indefinite
         const SolveStatus status = iterative_.prepare(system);
         if (status == SolveStatus::converged) return status;
         const double most =
             small(system) ? parameters_.largest_fill : std::min(parameters_.moderate_fill, parameters_.largest_fill);
         heavy_ = heavy_ || !analysed(system, most);
-        if (!heavy_) return factor_.prepare(system);
-        return status == SolveStatus::indefinite ? SolveStatus::converged : status;
+        if (heavy_) return status == SolveStatus::indefinite ? SolveStatus::converged : status;
+        // A verdict that holds is no doubt: the iteration goes on with the next tangent.
+        const SolveStatus factored = factor_.prepare(system);
+        factored_ = factored == SolveStatus::converged;
+        return factored == SolveStatus::not_finite ? status : factored;
     }
     template <assembly::LinearSystem System>
     SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
@@ -85,7 +90,7 @@ private:
     /// @returns whether the system has a factor that is no larger than that
     template <class System>
     bool analysed(const System& system, double largest_fill) {
-        factor_.analyse(system);
+        if (!ordered_) factor_.analyse(system), ordered_ = true;
         return factored_ = static_cast<double>(factor_.fill()) <= largest_fill;
     }
 
@@ -94,6 +99,7 @@ private:
     DoubleBlockCholesky factor_;
     int verdicts_ = 0;
     bool factored_ = false, heavy_ = false;  // the factor of a doubt is too large
+    bool ordered_ = false;                   // the factor has been analysed
 };
 
 }  // namespace fibrant::solver
