@@ -95,7 +95,9 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
     stage.friction = hold * scene.settle.friction_coefficient;
     programme.stages = {stage};
     stage.friction.reset();
+    programme.stages.insert(programme.stages.end(), 2, stage);  // until contacts are adapted to what they bear
     cloth::CellStiffness stiffness;
+    cloth::CellVector last = cloth::CellVector::Zero();
     for (std::size_t c = 0; c < 6; ++c) {
         stiffness.amount[c] = scene.load.parameters.amount / (c < 3 ? 1.0 : radius);
         stage.name = cloth::cell_channels()[c];
@@ -114,7 +116,8 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
             strained = strained || simulator.amplitude(name) != 0.0;
         }
         const cloth::CellVector efforts = cloth::cell_efforts(simulator, area);
-        if (strained) stiffness.efforts.push_back(efforts);
+        if (strained) stiffness.before.push_back(last), stiffness.efforts.push_back(efforts);
+        last = efforts;
         for (std::size_t c = 0; c < 6; ++c) row.push_back({names[c], efforts[static_cast<Index>(c)]});
         return row;
     });
@@ -132,13 +135,14 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
             for (Index k = 0; k < 6; ++k) row.push_back({names[static_cast<std::size_t>(k)], stiffness.matrix(k, c)});
             table.row(row);
         }
-        json.add("asymmetry", stiffness.asymmetry);
+        json.add("asymmetry", stiffness.asymmetry).add("creep", stiffness.creep);
     }
     example::write_summary(output, report, audit, radius, {}, json);
-    // Yarns that still slide by themselves change efforts by more than strains do.
-    constexpr double symmetric = 1e-2;
+    // Yarns that leap as they slide by themselves, or normals in the kinks between long elements, make it differ by more.
+    constexpr double symmetric = 1e-3;
     if (report.converged && stiffness.asymmetry > symmetric)
-        std::fprintf(stderr, "textile: the stiffness of the cell is not symmetric, by %.3g: it is not at rest without friction\n",
+        std::fprintf(stderr, "textile: the stiffness of the cell is not symmetric, by %.3g: elements are too long, or it is not at rest "
+                     "without friction\n",
                      stiffness.asymmetry);
     return report.converged && audit.clean() && stiffness.asymmetry <= symmetric;
 }

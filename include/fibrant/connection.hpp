@@ -10,6 +10,7 @@
 #include <fibrant/connection/connections.hpp>
 #include <fibrant/connection/coordinate_groups.hpp>
 #include <fibrant/connection/fibre_bonds.hpp>
+#include <fibrant/connection/image_bends.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/connection/solid_places.hpp>

@@ -427,6 +427,86 @@ TEST_CASE("a cell that bends stretches, bends and twists a bar off its middle pl
     CHECK(test::refusal([&] { scene::Assembly().add(loose); }).find("PeriodicCell.curvature") != std::string::npos);
 }
 
+TEST_CASE("contact across the seams of a cell is contact: where a cell is cut changes nothing") {
+    // Two rods along x that are pressed on both sides, once inside the cell and once across its seam.
+    constexpr double depth = 0.01 * radius, width = 2.0 * (2.0 * radius);
+    const auto rod = [](scene::Assembly& assembly, const Vec3& from, const Vec3& along, Index elements) {
+        const Index f = assembly.add({.from = from,
+                                      .to = from + along,
+                                      .section = scene::circular(radius),
+                                      .material = {young, 0.3},
+                                      .elements = elements,
+                                      .director = Vec3::UnitZ()});
+        assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), along, 0});
+        assembly.hold_axial_rotation({f, 0.5});
+        return f;
+    };
+    const auto see_beside = [](scene::Assembly& assembly, const std::vector<scene::FibreImage::Shift>& shifts) {
+        for (Index f = 0; f < core::count(assembly.fibres()); ++f) assembly.add(scene::FibreImage{f, shifts});
+    };
+    const auto settle = [](simulation::Simulator<Tied>& simulator) {
+        const simulation::Report report = simulator.run({.increments = 4});
+        CAPTURE(report.reason);
+        REQUIRE(report.converged);
+    };
+    double pressed = 0.0;
+    for (const double cut : {0.1, 0.25, 0.4}) {
+        scene::Assembly assembly;
+        scene::PeriodicCell cell;
+        cell.component(1, 1) = scene::Coordinate::held_at(-depth / (2.0 * radius), "press");
+        assembly.add(cell);
+        const Vec3 x = 20.0 * radius * Vec3::UnitX(), y = width * Vec3::UnitY();
+        assembly.hold_position({rod(assembly, cut * y, x, 4), 0.5});
+        assembly.hold_position({rod(assembly, (cut + 0.5) * y, x, 4), 0.5}, Vec3(1, 0, 1).asDiagonal());  // free between the two
+        assembly.hold_position({rod(assembly, 10.0 * radius * Vec3::UnitZ(), y, 2), 0.5});  // what repeats by y
+        see_beside(assembly, {{2, 1.0}});
+        see_beside(assembly, {{0, 1.0}});
+        simulation::Simulator<Tied> simulator(assembly, parameters());
+        settle(simulator);
+        double inside = 0.0, across = 0.0;
+        const auto& contacts = simulator.contacts();
+        for (std::size_t k = 0; k < contacts.elements().size(); ++k)
+            (contacts.elements()[k].fibre_j < 3 ? inside : across) += contacts.responses()[k].reaction;
+        CAPTURE(cut);
+        REQUIRE(inside > 0.0);
+        CHECK(across == test::near(inside, 1e-9));
+        if (pressed == 0.0) pressed = inside;
+        CHECK(inside == test::near(pressed, 1e-9));
+        // Work of the strain: the pressure of one seam times the width, beside that of the rod that repeats by it.
+        const double strain = -depth / (2.0 * radius), stretch = 1.0 + strain;
+        const double bar = young * area() * 0.5 * (stretch * stretch - 1.0) * stretch;
+        CHECK(simulator.equilibrium().ties().cell_force(0)(1, 1) == test::near((bar - inside) * width, 1e-6));
+    }
+    // Two threads that cross, pressed together by forces that are alike at all nodes.
+    double energy = 0.0;
+    for (const double shift : {0.5, 1.5, 2.5, 3.5, 0.0, 2.0}) {  // elements: where they are cut; last at the crossing
+        scene::Assembly assembly;
+        assembly.add(scene::PeriodicCell{});
+        constexpr Index elements = 4;
+        const double side = 16.0 * radius;
+        const Vec3 x = side * Vec3::UnitX(), y = side * Vec3::UnitY(), z = 2.0 * radius * Vec3::UnitZ();
+        const double from = -0.5 + shift / static_cast<double>(elements);
+        rod(assembly, from * x, x, elements), rod(assembly, from * y + z, y, elements);
+        for (const Index f : {0, 1})
+            for (Index node = 0; node < 2 * elements; ++node)
+                assembly.apply(scene::DeadForce{{f, static_cast<double>(node) / (2.0 * elements)},
+                                                scene::NodeVector::position,
+                                                (f == 0 ? 1e-4 : -1e-4) * Vec3::UnitZ()});
+        const Index ground = assembly.add(scene::RigidBody{});
+        assembly.connect({.ends = {{0, 0.5}}, .body = ground});
+        assembly.connect({.ends = {{1, 0.5}}, .body = ground, .tied = {true, true, false}});
+        see_beside(assembly, {{0, 1.0}});
+        for (const double back : {-1.0, 0.0, 1.0}) see_beside(assembly, {{0, back}, {1, 1.0}});
+        simulation::Simulator<Tied> simulator(assembly, parameters());
+        settle(simulator);
+        const double own = simulator.equilibrium().elastic_energy(simulator.state());
+        CAPTURE(shift);
+        if (shift == 0.5 || shift == 0.0) energy = own;
+        // Elements that are bent have a kink between them, and at a seam both sides of it touch.
+        CHECK(own == test::near(energy, shift == 2.0 ? 1e-4 : 1e-8));
+    }
+}
+
 TEST_CASE("a scene that starts from the state of another one ties the means that it finds there") {
     const double stiffness = 3.0 * young * inertia() / std::pow(length, 3), given = 1e-3;
     const std::string file = "rigid_bodies_test_checkpoint.bin";

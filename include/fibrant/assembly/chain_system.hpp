@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -47,11 +48,13 @@ public:
         Index nodes = 0;
         for (const scene::Chain& chain : layout_.chains) {
             if (chain.closed) closed_.push_back(core::count(first_node_));
+            images_of_.emplace_back();
             first_node_.push_back(nodes);
             nodes += chain.nodes;
         }
         first_node_.push_back(nodes);
         rows_.resize(core::at(nodes), Row::Zero());
+        find_sources();
     }
 
     const scene::DofLayout& layout() const noexcept { return layout_; }
@@ -249,16 +252,15 @@ public:
         for (Index k = std::max(first, points); k < std::min(last, open); ++k) {
             const contact::SlidingStiffness& slide = slides_[core::at(k - points)];
             const Matrix dense = whole_slide(slide);
-            terms.dense(DenseTerm{slide.vectors, dense});
+            std::vector<Index> numbers(slide.vectors.begin(), slide.vectors.end());
+            replace_images(numbers);
+            terms.dense(DenseTerm{numbers, dense});
         }
         first = std::min(first, points), last = std::min(last, points);
         for (const Point& point : std::span<const Point>(points_).subspan(core::at(first), core::at(last - first))) {
             for (Index k = 0; k < weighted; ++k)
                 both[core::at(k)] = point.first_i / 3 + stride * k, both[core::at(weighted + k)] = point.first_j / 3 + stride * k;
-            if (!closed_.empty()) {
-                replace_images(point.fibre_i, std::span(both).first(core::at(weighted)));
-                replace_images(point.fibre_j, std::span(both).last(core::at(weighted)));
-            }
+            replace_images(both);
             if constexpr (beam::TurningSections<B>) {
                 visit_turning(point, both, terms);
             } else {
@@ -273,11 +275,14 @@ public:
 private:
     /// The band as if nothing were held, and the last node of a closed fibre were one of its own.
     void unheld_band(Index fibre, Matrix& blocks) const {
-        const Index size = nodes(fibre);
-        blocks.setZero(size * block, (reach + 1) * block);
-        for (Index a = 0; a < size; ++a)
+        blocks.setZero(nodes(fibre) * block, (reach + 1) * block);
+        add_band(fibre, blocks);
+        for (const Index image : images_of_[core::at(fibre)]) add_band(image, blocks);
+    }
+    void add_band(Index fibre, Matrix& blocks) const {
+        for (Index a = 0; a < nodes(fibre); ++a)
             for (Index d = 0; d <= std::min<Index>(a, reach); ++d)
-                blocks.block<block, block>(a * block, d * block) =
+                blocks.block<block, block>(a * block, d * block) +=
                     row(fibre, a).template block<block, block>(0, (reach - d) * block);
         pairs_.add_own(pairs_.sides(first_node_[core::at(fibre)], first_node_[core::at(fibre + 1)]),
                        [&](std::int32_t first, const beam::Particle<B>& weights, const Mat3& stiffness) {
@@ -287,17 +292,28 @@ private:
                            });
                        });
     }
-    /// Vectors of images become those of their sources.
-    void replace_images(Index fibre, std::span<Index> numbers) const noexcept {
-        const scene::Chain& chain = layout_.chains[core::at(fibre)];
-        if (!chain.closed) return;
-        const Index own = (chain.nodes - 1) * chain.vectors_per_node;
-        for (Index& vector : numbers)
-            if (vector - chain.first_vector >= own) vector -= own;
+    /// Vectors of images become those of their sources: what shifts them is left to products.
+    void replace_images(std::span<Index> numbers) const noexcept {
+        if (source_.empty()) return;
+        for (Index& vector : numbers) vector = source_[core::at(vector)];
+    }
+    /// Of each vector that which it is an image of, or itself; and of each chain its images beside the cell.
+    void find_sources() {
+        if (layout_.images.empty()) return;
+        source_.resize(core::at(layout_.vectors()));
+        std::iota(source_.begin(), source_.end(), Index{0});
+        for (const scene::ImageVector& one : layout_.images) source_[core::at(one.image)] = one.source;
+        for (Index c = 0; c < fibres(); ++c) {
+            const Index first = layout_.chains[core::at(c)].first_vector, source = source_[core::at(first)];
+            if (source == first) continue;
+            const auto after = std::upper_bound(layout_.chains.begin(), layout_.chains.end(), source,
+                                                [](Index v, const scene::Chain& chain) { return v < chain.first_vector; });
+            images_of_[core::at(after - layout_.chains.begin() - 1)].push_back(c);
+        }
     }
     /// x, with the values of images where there are any.
     const Vector& with_images(const Vector& x) const {
-        if (closed_.empty()) return x;
+        if (layout_.images.empty()) return x;
         whole_ = x;
         scene::copy_to_images(layout_, whole_);
         return whole_;
@@ -314,7 +330,7 @@ private:
         const Index before = std::min<Index>(a, reach), size = (before + 1) * block;
         const Index first = layout_.chains[core::at(f)].first_vector + (a - before) * B::vectors_per_node;
         for (Index k = 0; k < size / 3; ++k) numbers[core::at(k)] = first + k;
-        if (!closed_.empty()) replace_images(f, std::span(numbers).first(core::at(size / 3)));
+        replace_images(std::span(numbers).first(core::at(size / 3)));
         dense.setZero(size, size);
         const Row& own = row(f, a);
         for (Index c = 0; c < size; ++c)
@@ -397,7 +413,9 @@ private:
 
     scene::DofLayout layout_;
     std::vector<Index> first_node_;
-    std::vector<Index> closed_;  // fibres
+    std::vector<Index> closed_;                  // fibres
+    std::vector<std::vector<Index>> images_of_;  // of each chain: chains that are images of it
+    std::vector<Index> source_;                  // of each vector; empty: none is an image
     std::vector<Row> rows_;
     std::vector<Point> points_;
     std::vector<Skew> skews_;

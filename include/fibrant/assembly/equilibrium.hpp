@@ -7,6 +7,7 @@
 #include <fibrant/assembly/stiffness_sink.hpp>
 #include <fibrant/assembly/vector_measures.hpp>
 #include <fibrant/connection/connections.hpp>
+#include <fibrant/connection/image_bends.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/contact/contact_set.hpp>
 #include <fibrant/contact/learned_contacts.hpp>
@@ -54,6 +55,7 @@ public:
           contacts_{&contacts},
           motion_{assembly, mesh, channels},
           ties_{assembly, mesh, channels},
+          images_{assembly},
           solid_{taken(solid, assembly, mesh, channels)},
           system_{system(mesh, solid_)},
           terms_{term::SiteOf<B>(assembly, mesh, channels, std::as_const(system_).layout()), terms},
@@ -62,6 +64,7 @@ public:
         double solid_scale = 0.0;
         if constexpr (has_solid) solid_scale = solid_.rounding_scale(extent);
         rounding_ = rounding_of(mesh, extent, solid_scale);
+        images_.anchor(mesh.layout(), mesh.start_state());
     }
 
     Equilibrium(const Equilibrium&) = delete;  // its terms look at its layout
@@ -73,6 +76,12 @@ public:
     const connection::PrescribedMotion<B>& motion() const noexcept { return motion_; }
     const Ties& ties() const noexcept { return ties_; }
     Ties& ties() noexcept { return ties_; }
+    /// Conditions of ties count from this state from now on.
+    void anchor(const Vector& state) {
+        ties_.anchor(state), images_.anchor(system_.layout(), state);
+    }
+    /// Of contact with images beside a cell (connection::ImageBends).
+    Vec3 image_moment(Index cell) const noexcept { return images_.moment(cell); }
     const Solid& solid() const noexcept { return solid_; }
     Solid& solid() noexcept { return solid_; }
     Terms& terms() noexcept { return terms_; }
@@ -91,6 +100,7 @@ public:
         if constexpr (has_solid) solid_.hold(amplitudes, system_.layout().held, targets_);
         ties_.hold(system_.layout().held, targets_);
         scene::hold_images(system_.layout(), targets_);
+        if constexpr (core::Active<Ties>) images_.place(ties_.motion(), system_.layout());
         if constexpr (has_solid) system_.share_held();
         reset_stresses(state);
     }
@@ -158,11 +168,14 @@ public:
             step.segment<3>(3 * held[k].vector) = targets_[k] - (value - held[k].free * value);
         }
         ties_.add_closing(system_.layout(), step);
-        close_chains(step);
+        close_chains(step, state);
     }
 
-    /// Last nodes of closed fibres go where the first ones do.
-    void close_chains(Vector& step) const noexcept { scene::copy_to_images(system_.layout(), step); }
+    /// Last nodes of closed fibres go where the first ones do, and images beside a cell with their fibres.
+    void close_chains(Vector& step, const Vector& state) const {
+        scene::copy_to_images(system_.layout(), step);
+        scene::add_image_misses(system_.layout(), state, step);
+    }
 
     /// Moves tied vectors of a state whose residual is known onto their conditions: where a body turns freely, a step leaves
     /// these missed by the square of what it turned, and how far is not in the residual.
@@ -171,7 +184,7 @@ public:
             for (int pass = 0; pass < 3 && !ties_.met(); ++pass) {
                 Vector step = Vector::Zero(state.size());
                 ties_.add_closing(system_.layout(), step);
-                close_chains(step);
+                close_chains(step, state);
                 state += step;
                 ties_.place(state, system_.layout());
             }
@@ -210,6 +223,7 @@ public:
         const auto add = [&](const auto& term) { term.add_forces(state, residual); };
         contacts_->add_forces(residual);
         terms_.template of<term::Role::interaction>(add);
+        images_.see(system_.layout(), residual);
         scene::fold_images(system_.layout(), residual);
         const double contact = norm(residual);
         if constexpr (!moves) add_internal_forces(state, residual, true);
@@ -260,10 +274,11 @@ public:
         [[maybe_unused]] double share = 1.0;
         if constexpr (moves) terms_.moving([&](const auto& term) { share = term.share(); });
         core::parallel_for(
-            mesh_->fibre_count(),
+            mesh_->line_count(),
             [&](Index f) {
                 system_.clear(f);
-                for (Index e = 0; e < mesh_->fibre(f).elements; ++e) {
+                const bool own = f < mesh_->fibre_count();
+                for (Index e = 0; own && e < mesh_->fibre(f).elements; ++e) {
                     const typename B::Stresses geometric = tension_only ? B::without_compression(stress(f, e)) : stress(f, e);
                     if constexpr (moves)
                         system_.add(
@@ -276,7 +291,7 @@ public:
                 contacts_->section_stiffness_terms(f, state, [&](Index first, const auto& weights, const Mat3& stiffness) {
                     system_.add_rank_one(f, first, weights, stiffness);
                 });
-                if (const double springs = spring(f, shift); springs > 0.0)
+                if (const double springs = own ? spring(f, shift) : 0.0; springs > 0.0)
                     scene::for_own_vectors(system_.layout(), f, [&](Index v, double length) {
                         system_.add_diagonal(v, springs * length * length * Mat3::Identity());
                     });
@@ -423,6 +438,7 @@ private:
     Contacts* contacts_;
     connection::PrescribedMotion<B> motion_;
     [[no_unique_address]] Ties ties_;
+    connection::ImageBends images_;
     [[no_unique_address]] Solid solid_;
     System system_;
     Terms terms_;

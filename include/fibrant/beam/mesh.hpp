@@ -10,6 +10,7 @@
 #include <fibrant/core/rotation.hpp>
 #include <fibrant/scene/assembly.hpp>
 #include <fibrant/scene/dof_layout.hpp>
+#include <fibrant/scene/image_vectors.hpp>
 
 #include <Eigen/Geometry>
 
@@ -18,6 +19,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -35,6 +37,9 @@ struct MeshFibre {
     Index group;
     bool closed = false;  ///< its last node is the image of its first one, and abscissae count modulo `elements`
     std::string name{};   ///< what messages call it beside its number; may be empty
+    bool goes_on = false;  ///< an image of it goes on where it ends: contact there is with that
+    Index image_of = -1;   ///< the fibre that it is an image of, beside its cell
+    int joins = 0;         ///< an image: 1 if it begins where that fibre ends, -1 if it ends where that one begins
 
     double length() const noexcept { return element_length * static_cast<double>(elements); }
 };
@@ -84,6 +89,7 @@ public:
             }
             first += nodes * B::vectors_per_node;
         }
+        for (const scene::FibreImage& image : assembly.images()) add_image(assembly, image, first, start);
         // Contact elements keep the number of an unknown in 32 bits.
         if (3 * first > std::numeric_limits<std::int32_t>::max())
             core::refuse("assembly.fibres", std::to_string(3 * first) + " unknowns",
@@ -93,9 +99,10 @@ public:
         for (Index v = 0; v < first; ++v) rest_state_.segment<3>(3 * v) = layout_.value[core::at(v)];
         start_state_.resize(3 * first);
         for (Index v = 0; v < first; ++v) start_state_.segment<3>(3 * v) = start[core::at(v)];
+        find_images();
         if (assembly.start().size() > 0) begin_at(assembly.start());
         first_element_.assign(1, 0);
-        for (const MeshFibre& fibre : fibres_) first_element_.push_back(first_element_.back() + fibre.elements);
+        for (const MeshFibre& fibre : fibres()) first_element_.push_back(first_element_.back() + fibre.elements);
         rest_.resize(core::at(first_element_.back()));
         core::parallel_for(
             fibre_count(),
@@ -127,11 +134,15 @@ public:
         return node_label(f, (vector - fibre(f).first_vector) / B::vectors_per_node);
     }
 
-    Index fibre_count() const noexcept { return core::count(fibres_); }
+    Index fibre_count() const noexcept { return core::count(fibres_) - images_; }
+    /// Fibres and, behind them, their images: what contact sees.
+    Index line_count() const noexcept { return core::count(fibres_); }
+    /// The fibre itself, or that which it is an image of.
+    Index source(Index f) const noexcept { return fibre(f).image_of >= 0 ? fibre(f).image_of : f; }
     /// Of a loop over the fibres: a small mesh is left to one thread.
     Index grain() const noexcept { return scene::grain(layout_, fibre_count()); }
     Index element_count() const noexcept { return first_element_.back(); }
-    const std::vector<MeshFibre>& fibres() const noexcept { return fibres_; }
+    std::span<const MeshFibre> fibres() const noexcept { return std::span(fibres_).first(core::at(fibre_count())); }
     const MeshFibre& fibre(Index f) const noexcept { return fibres_[core::at(f)]; }
     const scene::DofLayout& layout() const noexcept { return layout_; }
     const Vector& rest_state() const noexcept { return rest_state_; }
@@ -183,7 +194,7 @@ public:
     /// Abscissae around each fibre, 0 of open ones; empty if all are open.
     std::vector<double> periods() const {
         std::vector<double> all;
-        for (Index f = 0; f < fibre_count() && !layout_.images.empty(); ++f)
+        for (Index f = 0; f < line_count() && !layout_.images.empty(); ++f)
             all.push_back(fibre(f).closed ? static_cast<double>(fibre(f).elements) : 0.0);
         return all;
     }
@@ -310,6 +321,54 @@ public:
     }
 
 private:
+    /// Adds a fibre that is an image of another one, with vectors that are images of its. @param first  its first vector, and
+    /// then that behind its last one
+    void add_image(const scene::Assembly& assembly, const scene::FibreImage& image, Index& first, std::vector<Vec3>& start) {
+        const MeshFibre source = fibres_[core::at(image.fibre)];
+        const Index vectors = node_count(image.fibre) * B::vectors_per_node;
+        scene::ImageShift shift;
+        for (const scene::FibreImage::Shift& one : image.shifts) {
+            const scene::PeriodicPair& pair = assembly.pairs()[core::at(one.pair)];
+            const auto vector = [&](const scene::Station& at) {
+                const double nodes = static_cast<double>(node_count(at.fibre) - 1);
+                return node_vector(at.fibre, static_cast<Index>(std::lround(at.fraction * nodes)));
+            };
+            shift.pairs.push_back({vector(pair.first), vector(pair.last), one.times});
+        }
+        layout_.shifts.push_back(shift);
+        fibres_.push_back(source);
+        fibres_.back().first_vector = first, fibres_.back().image_of = image.fibre;
+        layout_.chains.push_back(layout_.chains[core::at(image.fibre)]);
+        layout_.chains.back().first_vector = first, layout_.chains.back().closed = false;
+        for (Index v = 0; v < vectors; ++v) {
+            const Index of = source.first_vector + v;
+            const Index node = v / B::vectors_per_node, of_node = v % B::vectors_per_node;
+            layout_.kind.push_back(layout_.kind[core::at(of)]), layout_.length.push_back(layout_.length[core::at(of)]);
+            layout_.value.push_back(layout_.value[core::at(of)]), start.push_back(start[core::at(of)]);
+            const bool moves = layout_.kind.back() == scene::VectorKind::position;
+            layout_.images.push_back(
+                {first + v, node_vector(image.fibre, node, of_node), moves ? core::count(layout_.shifts) - 1 : -1});
+        }
+        first += vectors, ++images_;
+    }
+    /// Puts images where they belong, and finds those that go on where a fibre ends.
+    void find_images() {
+        if (images_ == 0) return;
+        scene::copy_to_images(layout_, rest_state_), scene::copy_to_images(layout_, start_state_);
+        for (Index f = fibre_count(); f < line_count(); ++f) {
+            MeshFibre &image = fibres_[core::at(f)], &source = fibres_[core::at(image.image_of)];
+            if (image.closed) continue;
+            const auto end = [&](Index fibre, bool last) {
+                return Vec3(start_state_.segment<3>(3 * node_vector(fibre, last ? node_count(fibre) - 1 : 0)));
+            };
+            const double near = 1e-6 * image.length();  // rounding of what is drawn
+            if ((end(f, false) - end(image.image_of, true)).norm() < near) image.joins = 1;
+            if ((end(f, true) - end(image.image_of, false)).norm() < near) image.joins = -1;
+            if (image.joins != 0) source.goes_on = true;
+        }
+        for (Index f = fibre_count(); f < line_count(); ++f)
+            fibres_[core::at(f)].goes_on = fibres_[core::at(fibres_[core::at(f)].image_of)].goes_on;
+    }
     /// The units of the scene: its smallest radius, and E r, the stiffness of a fibre over a length of its radius.
     void find_units() {
         if (fibres_.empty()) return;
@@ -343,7 +402,8 @@ private:
                                  [&] { core::refuse("Assembly.start", scene::text(value), "finite"); });
         start_state_ = state;
         for (const scene::ImageVector& one : layout_.images)
-            core::require(state.segment<3>(3 * one.image) == state.segment<3>(3 * one.source),
+            if (one.shift < 0)
+                core::require(state.segment<3>(3 * one.image) == state.segment<3>(3 * one.source),
                           "Assembly.start: last node of a closed fibre",
                           (state.segment<3>(3 * one.image) - state.segment<3>(3 * one.source)).norm(), "the first one");
         for (Index f = 0; f < fibre_count(); ++f)
@@ -364,6 +424,7 @@ private:
     std::vector<scene::NodeFrame> frames_;
     scene::DofLayout layout_;
     Vector rest_state_, start_state_;
+    Index images_ = 0;  // at the end of the fibres
 };
 
 }  // namespace fibrant::beam

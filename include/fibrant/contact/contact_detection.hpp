@@ -69,8 +69,9 @@ public:
                 }
             }
         }
-        for (const beam::MeshFibre& fibre : mesh.fibres()) {
-            Index group = fibre.group;  // or the nearest ancestor that is in an order
+        for (Index f = 0; f < mesh.line_count(); ++f) {
+            const beam::MeshFibre& fibre = mesh.fibre(f);
+            Index group = fibre.image_of < 0 ? fibre.group : -1;  // images keep the side on which they are  // or the nearest ancestor that is in an order
             while (group >= 0 && neighbours[core::at(group)].empty()) group = assembly.groups()[core::at(group)].parent;
             group_.push_back(group);
             family_.push_back(group >= 0 && two ? family[core::at(group)] : Index{-1});
@@ -147,7 +148,7 @@ struct SampledCentrelines {
         };
         std::vector<Piece> pieces;
         Index points_total = 0, segments_total = 0;
-        for (Index f = 0; f < mesh.fibre_count(); ++f) {
+        for (Index f = 0; f < mesh.line_count(); ++f) {
             if (!wanted(f)) continue;
             double bend = 0.0;  // greatest |x0 - 2 x1 + x2| of the fibre
             for (Index e = 0; e < mesh.fibre(f).elements; ++e) bend = std::max(bend, 0.25 * mesh.greatest_bend(state, f, e));
@@ -182,6 +183,7 @@ struct SampledCentrelines {
             line.inflation = std::span<const double>(inflation).subspan(core::at(piece.first_segment), core::at(count));
             line.radius = widest_extent(mesh, state, piece.fibre);
             line.closed = fibre_data.closed;
+            if (fibre_data.image_of >= 0) line.family = 0;  // images do not touch each other
             if (detection.self_contact) line.self_skip = self_contact_arc(fibre_data.section.radius(), fibre_data.element_length);
             centrelines.push_back(line);
             fibre.push_back(piece.fibre);
@@ -212,6 +214,16 @@ struct SampledCentrelines {
     }
 };
 
+/// A fibre meets the image that goes on where it ends: the arc between the closest points is no longer than next to each other.
+template <class B>
+bool is_joint(const beam::Mesh<B>& mesh, const proximity::ProximityZone& zone) noexcept {
+    const beam::MeshFibre& image = mesh.fibre(zone.fibre_j);
+    if (image.image_of != zone.fibre_i || image.joins == 0) return false;
+    const double end = static_cast<double>(image.elements);
+    const double arc = image.joins > 0 ? end - zone.closest_i + zone.closest_j : end - zone.closest_j + zone.closest_i;
+    return arc * image.element_length < self_contact_arc(image.section.radius(), image.element_length);
+}
+
 /// Zones of a state, sorted by fibres and abscissa.
 ///
 /// @param reach   beyond the sum of the radii [length], >= 0
@@ -232,6 +244,7 @@ std::vector<Zone> find_zones(const beam::Mesh<B>& mesh, const Vector& state, Sea
         zone.span = lines.in_elements(found);
         zone.order = order_of(zone.span);
         if (forced && zone.order >= 0) continue;
+        if (is_joint(mesh, zone.span)) continue;
         zones.push_back(zone);
     }
     if (forced && !orders.empty()) {

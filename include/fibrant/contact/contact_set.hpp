@@ -82,7 +82,7 @@ public:
         for_elements([&](Index k) {
             if (slides(k)) follow(k, state);
         });
-        sides_.build(mesh_->fibre_count(), elements_);
+        sides_.build(mesh_->line_count(), elements_);
     }
 
     /// Middle loop: normals and particles at the same stations.
@@ -219,7 +219,7 @@ public:
     /// Adds contact forces to a residual (internal minus external forces).
     void add_forces(Vector& residual) const {
         core::parallel_for(
-            mesh_->fibre_count(),
+            mesh_->line_count(),
             [&](Index f) {
                 for (const std::int32_t side : sides(f)) {
                     const Index k = side / 2;
@@ -275,7 +275,7 @@ public:
     void restore() {
         zones_ = accepted_zones_;
         elements_.clear(), responses_.clear(), frictions_.clear();
-        sides_.clear(mesh_->fibre_count());
+        sides_.clear(mesh_->line_count());
     }
 
     const std::vector<Zone>& accepted_zones() const noexcept { return accepted_zones_; }

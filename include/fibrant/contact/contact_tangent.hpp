@@ -26,7 +26,7 @@ template <class B>
 Vec3 contact_tangent(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u) noexcept {
     const auto [element, xi] = mesh.locate(fibre, u);
     Vec3 tangent = 2.0 * beam::Mesh<B>::centre(state, mesh.first_unknown(fibre, element), B::centreline_derivative_weights(xi));
-    const bool closed = mesh.fibre(fibre).closed;
+    const bool closed = mesh.fibre(fibre).closed || mesh.fibre(fibre).goes_on;
     if (element > 0 || closed) tangent -= 0.25 * (1.0 - xi) * kink(mesh, state, fibre, element);
     if (element + 1 < mesh.fibre(fibre).elements || closed) tangent += 0.25 * (1.0 + xi) * kink(mesh, state, fibre, element + 1);
     return tangent;

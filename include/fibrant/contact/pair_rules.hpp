@@ -26,6 +26,8 @@ public:
             for (Index group = fibre.group; group >= 0; group = assembly.groups()[core::at(group)].parent)
                 ancestors_.back().push_back(group);
         }
+        for (const scene::FibreImage& image : assembly.images())
+            ancestors_.push_back(std::vector<Index>(ancestors_[core::at(image.fibre)]));
     }
 
     /// Sets what the rules say of a zone: that of the innermost groups of its two fibres for which there is one.

@@ -60,6 +60,7 @@ public:
         // the other for ever.
         pair.end_i = (pair.u_i <= low_i_ || pair.u_i >= end_i_) && off_i > cap_from * r_;
         pair.end_j = (pair.u_j <= low_j_ || pair.u_j >= end_j_) && off_j > cap_from * r_;
+        if (is_beyond(i_, pair.u_i, off_i) || is_beyond(j_, pair.u_j, off_j)) return;
         pairs_.push_back(pair);
     }
 
@@ -89,11 +90,12 @@ public:
             for (const bool of_i : {true, false}) {
                 const auto [u_i, u_j] = zone_point(s);
                 const double u = of_i ? u_i : u_j, end = nearest_end(of_i, u);
-                if (std::isinf(of_i ? end_i_ : end_j_)) continue;
+                if (std::isinf(of_i ? end_i_ : end_j_) || mesh_.fibre(of_i ? i_ : j_).goes_on) continue;
                 if (std::abs(u - end) < 0.5 * step_) add_last_section(of_i, end, of_i ? u_j : u_i);
             }
         const auto begin = pairs_.begin() + static_cast<std::ptrdiff_t>(before_);
-        pairs_.erase(std::remove_if(begin, pairs_.end(), [&](const StationPair& pair) { return is_one(pair); }), pairs_.end());
+        const auto out = [&](const StationPair& pair) { return is_one(pair) || is_again(pair); };
+        pairs_.erase(std::remove_if(begin, pairs_.end(), out), pairs_.end());
         sort_along(pairs_, before_);
     }
 
@@ -101,6 +103,8 @@ private:
     /// How far beside an end the other fibre's closest point may be, along the end's fibre, before contact is with its cap: but
     /// for rounding not at all [radius].
     static constexpr double cap_from = 0.01;
+    /// The same where a fibre goes on: but for rounding a crossing is on one side of the seam [radius].
+    static constexpr double joint = 1e-9;
     /// Distance from an end's plane from which the other fibre does not come by it any more, and from which an end is beyond
     /// the other one's; splayed ends make the first, blunt ones the second [radius].
     static constexpr double left = 0.05, end_to_end = 0.25;
@@ -145,6 +149,17 @@ private:
     // In a bend the points of a fibre that are closest to each other are next to each other, or one.
     bool is_one(const StationPair& pair) const noexcept {
         return i_ == j_ && mesh_.apart(i_, pair.u_i, pair.u_j) * h_i_ < self_contact_arc(r_, h_i_);
+    }
+    // A fibre goes on beyond its end: what is beyond is another zone's.
+    bool is_beyond(Index f, double u, double off) const noexcept {
+        return mesh_.fibre(f).goes_on && (u <= 0.0 || u >= static_cast<double>(mesh_.fibre(f).elements)) && off > joint * r_;
+    }
+    // A station at the last section of a fibre that goes on is one at its first section, too.
+    bool is_again(const StationPair& pair) const noexcept {
+        const auto last = [&](Index f, double u) {
+            return mesh_.fibre(f).goes_on && u > static_cast<double>(mesh_.fibre(f).elements) - at_multiple;
+        };
+        return last(i_, pair.u_i) || (!mesh_.fibre(i_).goes_on && last(j_, pair.u_j));
     }
     double mean_abscissa(double u_i, double u_j) const noexcept {
         return 0.5 * (h_i_ * u_i + h_j_ * (zone_.b_j < zone_.a_j ? static_cast<double>(mesh_.fibre(j_).elements) - u_j : u_j)) /
@@ -236,6 +251,7 @@ private:
         if (left_i || left_j) {
             const bool of_i = left_i;
             const double u = of_i ? u_i : u_j;
+            if (mesh_.fibre(of_i ? i_ : j_).goes_on) return {u_i, u_j, sine_between(t_i, t_j)};
             if (!add_last_section(of_i, nearest_end(of_i, u), of_i ? u_j : u_i)) add_end(of_i, u);
         } else {
             pairs_.push_back({u_i, u_j, false, false, false, length});

@@ -192,6 +192,7 @@ public:
     /// Tangent on a fibre, symmetric and positive semidefinite: add(first unknown, weights, stiffness) of rank-one terms.
     template <class Add>
     void stiffness_terms(Index fibre, const Vector& state, const Add& add) const {
+        if (fibre >= mesh_->fibre_count()) return;  // images do not touch tools
         for (Index k = first_[core::at(fibre)]; k < first_[core::at(fibre + 1)]; ++k) {
             const Element& element = elements_[core::at(k)];
             const ContactResponse& response = responses_[core::at(k)];

@@ -322,6 +322,21 @@ public:
                          [&] { require_finite("PeriodicPair.period", pair.period); });
         pairs_.push_back(pair);
     }
+    /// A fibre that contact sees beside its cell, too. To be added when all fibres are.
+    void add(FibreImage image) {
+        if (image.fibre < 0 || image.fibre >= core::count(fibres_))
+            core::refuse("FibreImage.fibre", std::to_string(image.fibre), "a fibre of this assembly");
+        core::with_place([&] { return "image of " + label("fibre", image.fibre, fibres_[core::at(image.fibre)].name); },
+                         [&] {
+                             if (image.shifts.empty()) core::refuse("FibreImage.shifts", "none", "one at least");
+                             for (const FibreImage::Shift& shift : image.shifts) {
+                                 if (shift.pair < 0 || shift.pair >= core::count(pairs_))
+                                     core::refuse("FibreImage.shifts.pair", std::to_string(shift.pair), "a pair of this assembly");
+                                 core::require_finite("FibreImage.shifts.times", shift.times);
+                             }
+                         });
+        images_.push_back(std::move(image));
+    }
     /// A solid, for models that have a part `Solid`.
     /// @returns index of the solid, counted from 0
     Index add(Solid solid) {
@@ -359,6 +374,7 @@ public:
     const std::vector<AverageConnection>& averages() const noexcept { return averages_; }
     const std::vector<PeriodicCell>& cells() const noexcept { return cells_; }
     const std::vector<PeriodicPair>& pairs() const noexcept { return pairs_; }
+    const std::vector<FibreImage>& images() const noexcept { return images_; }
     const std::vector<Solid>& solids() const noexcept { return solids_; }
     const std::vector<SolidHold>& solid_holds() const noexcept { return solid_holds_; }
 
@@ -397,6 +413,7 @@ private:
     std::vector<AverageConnection> averages_;
     std::vector<PeriodicCell> cells_;
     std::vector<PeriodicPair> pairs_;
+    std::vector<FibreImage> images_;
     std::vector<Solid> solids_;
     std::vector<SolidHold> solid_holds_;
     Vector start_;

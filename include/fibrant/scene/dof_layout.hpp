@@ -21,10 +21,27 @@ struct Chain {
     bool closed = false;         ///< its last node is the image of its first one
 };
 
-/// A vector that is the same unknown as another one: the end of a closed chain in memory. It has the value of its source wherever
-/// values are read, forces on it act on its source, and a system holds it as if it were prescribed altogether.
+/// A vector that is the same unknown as another one: the end of a closed chain in memory, or a node of a fibre's image beside its
+/// cell. It has the value of its source, moved by its shift, wherever values are read, forces on it act on its source, and a
+/// system holds it as if it were prescribed altogether.
 struct ImageVector {
     Index image = -1, source = -1;
+    Index shift = -1;            ///< of the layout: what moves it; -1: nothing
+    Vec3 more = Vec3::Zero();    ///< beside its shift [of the vector]
+};
+
+/// By how much images of fibres are moved: sum of times (last - first) over pairs of vectors.
+struct ImageShift {
+    struct Pair {
+        Index first = -1, last = -1;
+        double times = 1.0;
+    };
+    std::vector<Pair> pairs;
+    Vec3 of(const Vector& x) const noexcept {
+        Vec3 sum = Vec3::Zero();
+        for (const Pair& pair : pairs) sum += pair.times * (x.segment<3>(3 * pair.last) - x.segment<3>(3 * pair.first));
+        return sum;
+    }
 };
 
 /// A rigid translation moves positions only; a rotation turns directions, and changes rotation vectors by its spin.
@@ -61,7 +78,8 @@ struct DofLayout {
     std::vector<Vec3> value;          ///< of each vector: current position [length] or director [1]
     std::vector<double> length;       ///< makes a vector a displacement: 1 for a position, the radius for a director
     std::vector<HeldVector> held;     ///< sorted by vector, each vector at most once
-    std::vector<ImageVector> images;  ///< of closed chains, sorted; each is among `held` too
+    std::vector<ImageVector> images;  ///< of closed chains and of images of fibres, sorted; each is among `held` too
+    std::vector<ImageShift> shifts;   ///< of images
     std::vector<Tie> ties;            ///< none, but for averages and periodic cells
     std::vector<TiedMotion> motions;  ///< of ties, that share no scalar
     /// Of the scene, powers of two, so that to measure by them changes no bit: a radius [length], and a stiffness of positions.

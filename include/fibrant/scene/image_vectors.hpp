@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Closed chains: their last nodes in memory are images of the first ones.
+/// @file Images: the last nodes of closed chains in memory, and fibres that are seen once more beside their cell.
 
 #include <fibrant/core/ordering.hpp>
 #include <fibrant/scene/dof_layout.hpp>
@@ -11,17 +11,36 @@
 
 namespace fibrant::scene {
 
-/// Gives images the values of their sources.
-inline void copy_to_images(const DofLayout& layout, Vector& x) noexcept {
-    for (const ImageVector& one : layout.images) x.segment<3>(3 * one.image) = x.segment<3>(3 * one.source);
+/// Gives images the values of their sources, moved by their shifts: of a state, or of a step.
+inline void copy_to_images(const DofLayout& layout, Vector& x) {
+    std::vector<Vec3> moved;
+    for (const ImageShift& shift : layout.shifts) moved.push_back(shift.of(x));
+    for (const ImageVector& one : layout.images) {
+        x.segment<3>(3 * one.image) = x.segment<3>(3 * one.source);
+        if (one.shift >= 0) x.segment<3>(3 * one.image) += moved[core::at(one.shift)];
+    }
 }
 
-/// Takes forces on images to their sources.
-inline void fold_images(const DofLayout& layout, Vector& forces) noexcept {
+/// Adds to a step what takes images of fibres from where they are in a state to where they belong.
+inline void add_image_misses(const DofLayout& layout, const Vector& state, Vector& step) {
+    if (layout.shifts.empty()) return;
+    Vector placed = state;
+    copy_to_images(layout, placed);
+    for (const ImageVector& one : layout.images)
+        step.segment<3>(3 * one.image) += placed.segment<3>(3 * one.image) + one.more - state.segment<3>(3 * one.image);
+}
+
+/// Takes forces on images to their sources, and to what shifts them.
+inline void fold_images(const DofLayout& layout, Vector& forces) {
+    std::vector<Vec3> sums(layout.shifts.size(), Vec3::Zero());
     for (const ImageVector& one : layout.images) {
         forces.segment<3>(3 * one.source) += forces.segment<3>(3 * one.image);
+        if (one.shift >= 0) sums[core::at(one.shift)] += forces.segment<3>(3 * one.image);
         forces.segment<3>(3 * one.image).setZero();
     }
+    for (std::size_t s = 0; s < sums.size(); ++s)
+        for (const ImageShift::Pair& pair : layout.shifts[s].pairs)
+            forces.segment<3>(3 * pair.last) += pair.times * sums[s], forces.segment<3>(3 * pair.first) -= pair.times * sums[s];
 }
 
 /// What is held, and where it goes.

@@ -92,6 +92,18 @@ struct PeriodicCell {
     const Coordinate& component(int i, int j) const noexcept { return gradient[static_cast<std::size_t>(i + 3 * j)]; }
 };
 
+/// A fibre seen once more beside its cell, moved from where it is by what lies between the ends of pairs: contact acts on it, and
+/// what it bears acts on the fibre and on the cell. It has no unknowns of its own. Of the two images of a fibre at opposite sides
+/// one is enough, and images do not touch each other.
+struct FibreImage {
+    struct Shift {
+        Index pair = -1;      ///< of the scene
+        double times = 1.0;   ///< its period [1]
+    };
+    Index fibre = -1;
+    std::vector<Shift> shifts{};  ///< at least one
+};
+
 /// The section `last` is the image of the section `first`: vectors keep the difference that they start with, and positions move
 /// apart by the cell's gradient times the period.
 struct PeriodicPair {

@@ -67,7 +67,7 @@ void get_fibres(CheckpointReader& file, const RunParts<Contacts, Equilibrium, Me
     });
     std::vector<typename Contacts::Memory::Record> records;
     std::vector<contact::Zone> zones;
-    get_memory(file, records, zones, run.equilibrium.mesh().fibre_count());
+    get_memory(file, records, zones, run.equilibrium.mesh().line_count());
     run.contacts.resume(std::move(records), std::move(zones));
     run.laws.take(run.mesh, get_state(file, run.laws.count(run.mesh)));
 }

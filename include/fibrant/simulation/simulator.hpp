@@ -123,7 +123,7 @@ private:
         bool rehearsed = false;
         Index astray = 0;  // attempts that have not settled
         const std::string present = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": ";
-        const bool touching = mesh_.fibre_count() > 1 || parameters_.contact.detection.self_contact || HasTools<M>;
+        const bool touching = mesh_.line_count() > 1 || parameters_.contact.detection.self_contact || HasTools<M>;
         while (true) {
             if (position_.in_stage >= stage.most_increments || position_.mends > Position::most_mends) {
                 report.reason = position_.not_ended(stage.name) + deep_;
@@ -420,7 +420,7 @@ template <Model M>
 void Simulator<M>::start_from(const std::string& checkpoint) {
     CheckpointReader file = read_from_state(checkpoint, mesh_);
     get_fibres(file, parts());
-    if constexpr (HasConnections<M>) equilibrium_.ties().anchor(state_);
+    if constexpr (HasConnections<M>) equilibrium_.anchor(state_);
     energy_.start_from_other(equilibrium_, state_);
 }
 

@@ -59,7 +59,7 @@ observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const contact::Conta
         [&](Index k) {
             const auto& element = contacts.elements()[core::at(k)];
             observe::ContactSnapshot& contact = shot.contacts[core::at(k)];
-            contact.fibre_i = element.fibre_i, contact.fibre_j = element.fibre_j;
+            contact.fibre_i = mesh.source(element.fibre_i), contact.fibre_j = mesh.source(element.fibre_j);
             contact.abscissa_i = element.u_i * mesh.fibre(element.fibre_i).element_length;
             contact.abscissa_j = element.u_j * mesh.fibre(element.fibre_j).element_length;
             contact.position = 0.5 * (Mesh::point(state, element.first_i, element.weights_i) +

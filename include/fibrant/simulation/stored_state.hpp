@@ -35,7 +35,7 @@ StoredState<M> read_state(const std::string& path, const beam::Mesh<typename M::
         else
             value = file.get<Value>();
     });
-    get_memory(file, stored.records, stored.zones, mesh.fibre_count());
+    get_memory(file, stored.records, stored.zones, mesh.line_count());
     stored.laws = file.get_vector();
     return stored;
 }

@@ -152,7 +152,7 @@ public:
             if (watched) equilibrium.learned().begin_step(*contacts_);
             const double slope = watched ? residual_.dot(step_) : 0.0;
             step_ += prescribed_;
-            equilibrium.close_chains(step_);
+            equilibrium.close_chains(step_, state);
             double scale = bounded(step_);
             step_ *= scale;
             const assembly::ResidualFigures before = report.residual;

@@ -128,6 +128,46 @@ inline scene::PeriodicCell cell_of(const Textile& textile, const CellDrive& driv
 }
 }  // namespace detail
 
+namespace detail {
+/// Images of the fibres beside a cell that come near any of its own, of opposite ones one, so that contact acts across seams.
+/// @param carrier  of each period of the lattice a pair that repeats by it
+inline void add_images(scene::Assembly& assembly, const Textile& textile, const std::vector<Index>& path_of,
+                       const std::vector<Index>& carrier) {
+    constexpr double near = 8.0;   // radii, that yarns come nearer by while a cell settles
+    constexpr Index chords = 64;   // of a path, for its box
+    constexpr int furthest = 2;    // cells, that a path leads out of its own
+    if (carrier.empty()) return;
+    using Box = Eigen::AlignedBox3d;
+    std::vector<Box> boxes;
+    for (const Path& path : textile.paths) {
+        Box box;
+        for (Index k = 0; k <= chords; ++k) box.extend(path.curve(static_cast<double>(k) / static_cast<double>(chords)));
+        boxes.push_back(box);
+    }
+    const auto reach = [&](Index p) {
+        const YarnType& type = textile.type_of(p);
+        return type.radius * (near + 2.0 * std::sqrt(static_cast<double>(type.fibres)));
+    };
+    const bool two = carrier.size() > 1;
+    for (int b = 0; b <= (two ? furthest : 0); ++b)
+        for (int a = b == 0 ? 1 : -furthest; a <= furthest; ++a) {
+            Vec3 shift = static_cast<double>(a) * textile.lattice[0];
+            if (two) shift += static_cast<double>(b) * textile.lattice[1];
+            std::vector<char> meets(textile.paths.size(), 0);
+            for (Index p = 0; p < core::count(boxes); ++p) {
+                const Vec3 grown = Vec3::Constant(2.0 * reach(p));
+                const Box box(boxes[core::at(p)].min() + shift - grown, boxes[core::at(p)].max() + shift + grown);
+                for (const Box& other : boxes) meets[core::at(p)] |= static_cast<char>(box.intersects(other));
+            }
+            scene::FibreImage image;
+            if (a != 0) image.shifts.push_back({carrier[0], static_cast<double>(a)});
+            if (b != 0) image.shifts.push_back({carrier[1], static_cast<double>(b)});
+            for (Index f = 0; f < core::count(path_of); ++f)
+                if (meets[core::at(path_of[core::at(f)])] != 0) image.fibre = f, assembly.add(image);
+        }
+}
+}  // namespace detail
+
 /// Adds what a textile is to a scene of its own. Fibres start as drawn; those of paths that are straight at rest are so, of the
 /// same length.
 ///
@@ -143,6 +183,7 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
     Index cell = -1;
     const auto cell_of = [&] { return cell >= 0 ? cell : cell = assembly.add(detail::cell_of(textile, drive)); };
     scene::AverageConnection middle;
+    std::vector<Index> carrier(textile.lattice.size(), -1);
     std::vector<Index> group;
     for (Index p = 0; p < core::count(textile.paths); ++p) {
         const Path& path = textile.paths[core::at(p)];
@@ -175,6 +216,9 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
             answer.path_of.push_back(p);
             const scene::Station first = scene::first_end(f), last = scene::last_end(f);
             if (path.kind == PathKind::periodic) {
+                for (std::size_t k = 0; k < carrier.size(); ++k)
+                    if (carrier[k] < 0 && path.image.isApprox(textile.lattice[k], 1e-9))
+                        carrier[k] = core::count(assembly.pairs());
                 assembly.connect(
                     scene::PeriodicPair{first, last, drive.images.empty() ? path.image : drive.images[core::at(p)], cell_of()});
                 assembly.hold_axial_rotation({f, 0.5});
@@ -202,6 +246,8 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
         middle.body = assembly.add(scene::RigidBody{});
         assembly.connect(middle);
     }
+    if (std::find(carrier.begin(), carrier.end(), -1) == carrier.end())
+        detail::add_images(assembly, textile, answer.path_of, carrier);
     answer.first_fibre.push_back(core::count(answer.path_of));
     answer.longest_spacing = detail::crossing_spacing(textile);
 

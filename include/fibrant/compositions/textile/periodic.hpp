@@ -93,22 +93,31 @@ CellVector cell_efforts(const Simulator& simulator, double area) {
     const auto& ties = simulator.equilibrium().ties();
     const Mat3 force = ties.cell_force(0);
     CellVector efforts;
-    efforts << force(0, 0), force(1, 1), 0.5 * (force(0, 1) + force(1, 0)), ties.cell_moment(0);
+    efforts << force(0, 0), force(1, 1), 0.5 * (force(0, 1) + force(1, 0)), ties.cell_moment(0) + simulator.equilibrium().image_moment(0);
     return efforts / area;
 }
 
 /// What six small strains, one at a time to both sides of the same state, say of a cell: the change of its efforts over each.
+/// Yarns that still creep change efforts as well, by as much an increment on either side: it falls out of the difference.
 struct CellStiffness {
     std::array<double, 6> amount{};          ///< of each strain, not 0
+    std::vector<CellVector> before{};        ///< efforts without strain, in the increment before each of those below: 12
     std::vector<CellVector> efforts{};       ///< at each of them, and at its opposite: 12
     CellMatrix matrix = CellMatrix::Zero();  ///< of what `evaluate` found
     double asymmetry = 0.0;                  ///< greatest |K_ij - K_ji| over sqrt(K_ii K_jj) [1]
+    double creep = 0.0;  ///< greatest change of an effort from before a strain to before its opposite, over what its own does [1]
 
-    /// @throws std::invalid_argument unless there are 12 efforts
+    /// @throws std::invalid_argument unless there are 12 efforts, and 12 before them
     void evaluate() {
-        if (efforts.size() != 12) core::refuse("CellStiffness.efforts", std::to_string(efforts.size()), "12");
+        for (const auto& list : {before, efforts})
+            if (list.size() != 12) core::refuse("CellStiffness.efforts", std::to_string(list.size()), "12");
+        const auto change = [&](Index k) -> CellVector { return efforts[core::at(k)] - before[core::at(k)]; };
+        for (Index c = 0; c < 6; ++c) matrix.col(c) = 0.5 * (change(2 * c) - change(2 * c + 1)) / amount[core::at(c)];
+        creep = 0.0;
         for (Index c = 0; c < 6; ++c)
-            matrix.col(c) = 0.5 * (efforts[core::at(2 * c)] - efforts[core::at(2 * c + 1)]) / amount[core::at(c)];
+            for (Index i = 0; i < 6; ++i)
+                if (const double own = std::abs(matrix(i, i) * amount[core::at(i)]); own > 0.0)
+                    creep = std::max(creep, std::abs((before[core::at(2 * c + 1)] - before[core::at(2 * c)])[i]) / own);
         asymmetry = 0.0;
         for (Index i = 0; i < 6; ++i)
             for (Index j = 0; j < 6; ++j)
