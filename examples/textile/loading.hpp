@@ -141,7 +141,8 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
     // Yarns that leap as they slide by themselves, or normals in the kinks between long elements, make it differ by more.
     constexpr double symmetric = 1e-3;
     if (report.converged && stiffness.asymmetry > symmetric)
-        std::fprintf(stderr, "textile: the stiffness of the cell is not symmetric, by %.3g: elements are too long, or it is not at rest "
+        std::fprintf(stderr,
+                     "textile: the stiffness of the cell is not symmetric, by %.3g: elements are too long, or it is not at rest "
                      "without friction\n",
                      stiffness.asymmetry);
     return report.converged && audit.clean() && stiffness.asymmetry <= symmetric;

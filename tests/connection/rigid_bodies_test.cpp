@@ -458,7 +458,7 @@ TEST_CASE("contact across the seams of a cell is contact: where a cell is cut ch
         const Vec3 x = 20.0 * radius * Vec3::UnitX(), y = width * Vec3::UnitY();
         assembly.hold_position({rod(assembly, cut * y, x, 4), 0.5});
         assembly.hold_position({rod(assembly, (cut + 0.5) * y, x, 4), 0.5}, Vec3(1, 0, 1).asDiagonal());  // free between the two
-        assembly.hold_position({rod(assembly, 10.0 * radius * Vec3::UnitZ(), y, 2), 0.5});  // what repeats by y
+        assembly.hold_position({rod(assembly, 10.0 * radius * Vec3::UnitZ(), y, 2), 0.5});                // what repeats by y
         see_beside(assembly, {{2, 1.0}});
         see_beside(assembly, {{0, 1.0}});
         simulation::Simulator<Tied> simulator(assembly, parameters());

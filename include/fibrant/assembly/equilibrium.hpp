@@ -77,9 +77,7 @@ public:
     const Ties& ties() const noexcept { return ties_; }
     Ties& ties() noexcept { return ties_; }
     /// Conditions of ties count from this state from now on.
-    void anchor(const Vector& state) {
-        ties_.anchor(state), images_.anchor(system_.layout(), state);
-    }
+    void anchor(const Vector& state) { ties_.anchor(state), images_.anchor(system_.layout(), state); }
     /// Of contact with images beside a cell (connection::ImageBends).
     Vec3 image_moment(Index cell) const noexcept { return images_.moment(cell); }
     const Solid& solid() const noexcept { return solid_; }

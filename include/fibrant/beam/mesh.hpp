@@ -35,8 +35,8 @@ struct MeshFibre {
     scene::CrossSection section;
     scene::ElasticMaterial material;
     Index group;
-    bool closed = false;  ///< its last node is the image of its first one, and abscissae count modulo `elements`
-    std::string name{};   ///< what messages call it beside its number; may be empty
+    bool closed = false;   ///< its last node is the image of its first one, and abscissae count modulo `elements`
+    std::string name{};    ///< what messages call it beside its number; may be empty
     bool goes_on = false;  ///< an image of it goes on where it ends: contact there is with that
     Index image_of = -1;   ///< the fibre that it is an image of, beside its cell
     int joins = 0;         ///< an image: 1 if it begins where that fibre ends, -1 if it ends where that one begins
@@ -404,8 +404,8 @@ private:
         for (const scene::ImageVector& one : layout_.images)
             if (one.shift < 0)
                 core::require(state.segment<3>(3 * one.image) == state.segment<3>(3 * one.source),
-                          "Assembly.start: last node of a closed fibre",
-                          (state.segment<3>(3 * one.image) - state.segment<3>(3 * one.source)).norm(), "the first one");
+                              "Assembly.start: last node of a closed fibre",
+                              (state.segment<3>(3 * one.image) - state.segment<3>(3 * one.source)).norm(), "the first one");
         for (Index f = 0; f < fibre_count(); ++f)
             for (Index a = 0; a < node_count(f); ++a) {
                 const double u = static_cast<double>(a) / static_cast<double>(B::nodes - 1);

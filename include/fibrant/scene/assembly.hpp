@@ -331,7 +331,8 @@ public:
                              if (image.shifts.empty()) core::refuse("FibreImage.shifts", "none", "one at least");
                              for (const FibreImage::Shift& shift : image.shifts) {
                                  if (shift.pair < 0 || shift.pair >= core::count(pairs_))
-                                     core::refuse("FibreImage.shifts.pair", std::to_string(shift.pair), "a pair of this assembly");
+                                     core::refuse("FibreImage.shifts.pair", std::to_string(shift.pair),
+                                                  "a pair of this assembly");
                                  core::require_finite("FibreImage.shifts.times", shift.times);
                              }
                          });

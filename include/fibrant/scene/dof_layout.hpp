@@ -26,8 +26,8 @@ struct Chain {
 /// system holds it as if it were prescribed altogether.
 struct ImageVector {
     Index image = -1, source = -1;
-    Index shift = -1;            ///< of the layout: what moves it; -1: nothing
-    Vec3 more = Vec3::Zero();    ///< beside its shift [of the vector]
+    Index shift = -1;          ///< of the layout: what moves it; -1: nothing
+    Vec3 more = Vec3::Zero();  ///< beside its shift [of the vector]
 };
 
 /// By how much images of fibres are moved: sum of times (last - first) over pairs of vectors.

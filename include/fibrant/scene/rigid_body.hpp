@@ -97,8 +97,8 @@ struct PeriodicCell {
 /// one is enough, and images do not touch each other.
 struct FibreImage {
     struct Shift {
-        Index pair = -1;      ///< of the scene
-        double times = 1.0;   ///< its period [1]
+        Index pair = -1;     ///< of the scene
+        double times = 1.0;  ///< its period [1]
     };
     Index fibre = -1;
     std::vector<Shift> shifts{};  ///< at least one

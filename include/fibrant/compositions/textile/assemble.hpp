@@ -133,9 +133,9 @@ namespace detail {
 /// @param carrier  of each period of the lattice a pair that repeats by it
 inline void add_images(scene::Assembly& assembly, const Textile& textile, const std::vector<Index>& path_of,
                        const std::vector<Index>& carrier) {
-    constexpr double near = 8.0;   // radii, that yarns come nearer by while a cell settles
-    constexpr Index chords = 64;   // of a path, for its box
-    constexpr int furthest = 2;    // cells, that a path leads out of its own
+    constexpr double near = 8.0;  // radii, that yarns come nearer by while a cell settles
+    constexpr Index chords = 64;  // of a path, for its box
+    constexpr int furthest = 2;   // cells, that a path leads out of its own
     if (carrier.empty()) return;
     using Box = Eigen::AlignedBox3d;
     std::vector<Box> boxes;

@@ -93,7 +93,8 @@ CellVector cell_efforts(const Simulator& simulator, double area) {
     const auto& ties = simulator.equilibrium().ties();
     const Mat3 force = ties.cell_force(0);
     CellVector efforts;
-    efforts << force(0, 0), force(1, 1), 0.5 * (force(0, 1) + force(1, 0)), ties.cell_moment(0) + simulator.equilibrium().image_moment(0);
+    efforts << force(0, 0), force(1, 1), 0.5 * (force(0, 1) + force(1, 0)),
+        ties.cell_moment(0) + simulator.equilibrium().image_moment(0);
     return efforts / area;
 }
 
