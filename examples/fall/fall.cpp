@@ -33,7 +33,7 @@ struct Nest {
     using Friction = law::RegularisedCoulomb;
     using Solver = solver::SparseCholesky;
     using Tools = contact::RigidTools;
-    using Acts = term::List<inertia::Inertia<>, load::Gravity>;
+    using Acts = term::List<inertia::Inertia<inertia::Midpoint>, load::Gravity>;
 };
 
 struct Shape {
@@ -143,7 +143,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
             for (const double at : {0.0, 0.5, 1.0}) most = std::max(most, simulator.value({f, at}).z());
         return most;
     };
-    const auto motion = [&] { return simulator.equilibrium().terms().get<inertia::Inertia<>>().motion(simulator.state()); };
+    const auto motion = [&] {
+        return simulator.equilibrium().terms().get<inertia::Inertia<inertia::Midpoint>>().motion(simulator.state());
+    };
     example::Recorder recorder(output, shape.radius, [&]() -> std::vector<observe::Column> {
         return {
             {"top", top()}, {"kinetic", motion().kinetic}, {"floor_force", simulator.contacts().tools().reaction(0).force.z()}};

@@ -22,6 +22,7 @@ using SectionStrains = std::array<double, 12>;
 struct Drive {
     double duration = 0.0;   ///< of the increment; 0: quasi-static, nothing has time to flow [time]
     double amplitude = 0.0;  ///< at its end, of the channel that drives the law of this fibre [1]
+    double share = 1.0;      ///< of a motion: part of the stress at the end in what acts; the rest is that at the start [1]
 };
 
 /// Who a point is, for laws that draw lots.

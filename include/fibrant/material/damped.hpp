@@ -10,8 +10,9 @@ namespace fibrant::material {
 
 /// A law, and beside it S = beta C d eps/dt, C that of Elastic, with a time beta for each group of strains (Kelvin and Voigt). A
 /// mode of the angular frequency omega is damped by the ratio beta omega/2. Strains do not change in a rigid motion of any size,
-/// so nothing resists it, under stress as well. Of backward Euler: what is dissipated is the work of a constant rate. An
-/// increment without a duration has none of it.
+/// so nothing resists it, under stress as well. What acts over an increment is the stress of a constant rate, and what is
+/// dissipated its work: where a motion takes a mean of both ends, the end has what makes that mean. An increment without a
+/// duration has none.
 template <beam::SectionMaterial Base>
     requires std::derived_from<typename Base::Section, ElasticSection>
 class Damped {
@@ -33,15 +34,18 @@ public:
     struct History {
         [[no_unique_address]] typename Base::History base{};
         SectionStrains strain{};
+        SectionStrains flow{};  ///< of the damping, at the end
         template <class Self, class See>
         static void visit(Self& h, const See& see) {
             if constexpr (!std::is_empty_v<typename Base::History>) Base::History::visit(h.base, see);
             for (auto& e : h.strain) see(e);
+            for (auto& s : h.flow) see(s);
         }
         static History between(const History& a, const History& b, double t) {
             History h;
             if constexpr (!std::is_empty_v<typename Base::History>) h.base = Base::History::between(a.base, b.base, t);
-            for (std::size_t c = 0; c < h.strain.size(); ++c) h.strain[c] = (1.0 - t) * a.strain[c] + t * b.strain[c];
+            for (std::size_t c = 0; c < h.strain.size(); ++c)
+                h.strain[c] = (1.0 - t) * a.strain[c] + t * b.strain[c], h.flow[c] = (1.0 - t) * a.flow[c] + t * b.flow[c];
             return h;
         }
     };
@@ -58,22 +62,24 @@ public:
     Section section(const beam::SectionConstants& shape, const scene::ElasticMaterial& elastic, double shear_factor) const {
         return base_.section(shape, elastic, shear_factor);
     }
-    History fresh(const Section& section, const PointPlace& place) const { return {base_.fresh(section, place), {}}; }
+    History fresh(const Section& section, const PointPlace& place) const { return {base_.fresh(section, place), {}, {}}; }
     Answer response(const Section& section, const SectionStrains& e, const History& accepted, const Drive& drive) const {
         const auto base = base_.response(section, e, accepted.base, drive);
-        Answer answer{base.stress, base.tangent, {base.history, e}, base.stored, base.dissipated, base.driven};
+        Answer answer{base.stress, base.tangent, {base.history, e, {}}, base.stored, base.dissipated, base.driven};
         if (!(drive.duration > 0.0)) return answer;
         SectionStrains rate;  // times beta: groups are not coupled by C, so that it stays symmetric
         for (std::size_t c = 0; c < e.size(); ++c) rate[c] = by_[c] / drive.duration * (e[c] - accepted.strain[c]);
+        const double s = drive.share;
         const SectionStrains more = section.stress(rate);
         const auto C = section.tangent();
         for (std::size_t c = 0; c < e.size(); ++c) {
-            answer.stress[c] += more[c];
-            answer.tangent[c] += by_[c] / drive.duration * C[c];
+            answer.history.flow[c] = (more[c] - (1.0 - s) * accepted.flow[c]) / s;
+            answer.stress[c] += answer.history.flow[c];
+            answer.tangent[c] += by_[c] / (s * drive.duration) * C[c];
             answer.dissipated += more[c] * (e[c] - accepted.strain[c]);
         }
-        answer.tangent[lateral] += by_[strain::e11] / drive.duration * C[12];
-        answer.tangent[twist] += by_[strain::c12] / drive.duration * C[13];
+        answer.tangent[lateral] += by_[strain::e11] / (s * drive.duration) * C[12];
+        answer.tangent[twist] += by_[strain::c12] / (s * drive.duration) * C[13];
         return answer;
     }
     double utilisation(const Section& section, const SectionStrains& e,

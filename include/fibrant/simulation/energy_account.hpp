@@ -86,7 +86,8 @@ public:
         Vector renewed = Vector::Zero(to.size());
         contacts.add_forces(renewed);
         if (contact_.size() != to.size()) contact_ = Vector::Zero(to.size());
-        if (!leap) balance_.rearranged -= 0.5 * way.dot(contact_ - renewed);
+        // A motion has its forces from the elements of its step alone, and bears no jump.
+        if (!leap && !Equilibrium::moves) balance_.rearranged -= 0.5 * way.dot(contact_ - renewed);
         if constexpr (requires { contacts.tools(); })
             balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(false);
         contacts.turn_forth(pairs);

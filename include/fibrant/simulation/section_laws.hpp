@@ -20,11 +20,12 @@
 namespace fibrant::simulation {
 
 /// Tells inertia and laws of contact that have a rate how long an increment lasts; in one that takes no time what flows is at
-/// rest. Where fibres move none takes no time: what follows the ramps of a stage goes on in steps of it. @returns the duration
+/// rest. Where fibres move none takes no time: what follows the ramps of a stage goes on in steps of it. @returns what laws of
+/// sections are told of it
 /// @param step  part of the stage that the increment is made for, if that is not over
 template <class Contacts, class Equilibrium>
-double let_last([[maybe_unused]] Contacts& contacts, [[maybe_unused]] Equilibrium& equilibrium, double duration,
-                [[maybe_unused]] double step) {
+beam::Drive let_last([[maybe_unused]] Contacts& contacts, [[maybe_unused]] Equilibrium& equilibrium, double duration,
+                     [[maybe_unused]] double step) {
     double share = 1.0;
     if constexpr (Equilibrium::moves) {
         if (!(duration > 0.0)) duration = step;
@@ -33,7 +34,7 @@ double let_last([[maybe_unused]] Contacts& contacts, [[maybe_unused]] Equilibriu
     if constexpr (law::SteppedNormal<std::decay_t<decltype(contacts.normal_law())>>) contacts.normal_law().last(duration, share);
     if constexpr (law::FrictionWithRate<std::decay_t<decltype(contacts.friction_law())>>)
         contacts.friction_law().last(duration > 0.0 ? duration : std::numeric_limits<double>::infinity());
-    return duration;
+    return {duration, 0.0, share};
 }
 
 /// Whether the next step of time may be longer than the last one, by a factor; without inertia any may.
@@ -56,7 +57,7 @@ public:
     }
     static constexpr bool again() noexcept { return false; }
     static constexpr bool begin(const auto&, const Mesh&, const B&, const Vector&) noexcept { return false; }
-    static void drive(const Mesh&, const std::vector<double>&, double) noexcept {}
+    static void drive(const Mesh&, const std::vector<double>&, const beam::Drive&) noexcept {}
     static std::string refusal(const Mesh&, const B&, const Vector&) { return {}; }
     static void accept(const Mesh&, const B&, const Vector&, const EnergyAccount&) noexcept {}
     static Index count(const Mesh&) noexcept { return 0; }
@@ -97,10 +98,10 @@ public:
         for_elements(mesh, [&](Index f, Index e, typename B::Rest& rest) { beam.accept(rest, mesh.element(state, f, e)); });
         return settled_ = true;
     }
-    void drive(Mesh& mesh, const std::vector<double>& amplitudes, double duration) const {
+    void drive(Mesh& mesh, const std::vector<double>& amplitudes, const beam::Drive& drive) const {
         for_elements(mesh, [&](Index f, Index, typename B::Rest& rest) {
             const Index channel = channel_[core::at(f)];
-            B::drive(rest, {duration, channel < 0 ? 0.0 : amplitudes[core::at(channel)]});
+            B::drive(rest, {drive.duration, channel < 0 ? 0.0 : amplitudes[core::at(channel)], drive.share});
         });
     }
     /// Why a state that has converged is not accepted; empty if it is.
@@ -123,7 +124,7 @@ public:
             const beam::LawFigures own = beam.figures(rest, y);
             sum.dissipated += own.dissipated, sum.driven += own.driven;
             beam.accept(rest, y);
-            B::drive(rest, {0.0, rest.memory.drive.amplitude});  // it stands there, and no time passes
+            B::drive(rest, {0.0, rest.memory.drive.amplitude, 1.0});  // it stands there, and no time passes
         });
         energy.book_laws(sum.dissipated, sum.driven);
         again_ = false;
