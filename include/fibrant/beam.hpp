@@ -14,6 +14,7 @@
 #include <fibrant/beam/kirchhoff_cable.hpp>
 #include <fibrant/beam/lagrange.hpp>
 #include <fibrant/beam/mesh.hpp>
+#include <fibrant/beam/mesh_fibre.hpp>
 #include <fibrant/beam/nodal_sums.hpp>
 #include <fibrant/beam/on_centreline.hpp>
 #include <fibrant/beam/quaternion.hpp>

@@ -4,6 +4,7 @@
 
 #include <fibrant/beam/beam_element.hpp>
 #include <fibrant/beam/followed_shape.hpp>
+#include <fibrant/beam/mesh_fibre.hpp>
 #include <fibrant/beam/nodal_sums.hpp>
 #include <fibrant/core/ordering.hpp>
 #include <fibrant/core/parallel.hpp>
@@ -26,23 +27,6 @@
 #include <vector>
 
 namespace fibrant::beam {
-
-/// A fibre of a mesh. Its unknowns are consecutive, node after node.
-struct MeshFibre {
-    Index first_vector;
-    Index elements;
-    double element_length;  ///< at rest [length]
-    scene::CrossSection section;
-    scene::ElasticMaterial material;
-    Index group;
-    bool closed = false;   ///< its last node is the image of its first one, and abscissae count modulo `elements`
-    std::string name{};    ///< what messages call it beside its number; may be empty
-    bool goes_on = false;  ///< an image of it goes on where it ends: contact there is with that
-    Index image_of = -1;   ///< the fibre that it is an image of, beside its cell
-    int joins = 0;         ///< an image: 1 if it begins where that fibre ends, -1 if it ends where that one begins
-
-    double length() const noexcept { return element_length * static_cast<double>(elements); }
-};
 
 /// All fibres of a scene in elements of one kind. Abscissae u along a fibre are counted in elements, 0 <= u <= elements;
 /// rest arc length is u * element_length.
@@ -94,7 +78,7 @@ public:
         if (3 * first > std::numeric_limits<std::int32_t>::max())
             core::refuse("assembly.fibres", std::to_string(3 * first) + " unknowns",
                          "<= " + std::to_string(std::numeric_limits<std::int32_t>::max()));
-        find_units();
+        set_units(layout_, fibres_);
         rest_state_.resize(3 * first);
         for (Index v = 0; v < first; ++v) rest_state_.segment<3>(3 * v) = layout_.value[core::at(v)];
         start_state_.resize(3 * first);
@@ -368,16 +352,6 @@ private:
         }
         for (Index f = fibre_count(); f < line_count(); ++f)
             fibres_[core::at(f)].goes_on = fibres_[core::at(fibres_[core::at(f)].image_of)].goes_on;
-    }
-    /// The units of the scene: its smallest radius, and E r, the stiffness of a fibre over a length of its radius.
-    void find_units() {
-        if (fibres_.empty()) return;
-        double radius = fibres_.front().section.radius(), stiffness = 0.0;
-        for (const MeshFibre& fibre : fibres_) {
-            radius = std::min(radius, fibre.section.radius());
-            stiffness = std::max(stiffness, fibre.material.young_modulus * fibre.section.radius());
-        }
-        layout_.unit_length = scene::power_of_two(radius), layout_.unit_stiffness = scene::power_of_two(stiffness);
     }
     /// Weighted sum of one vector of each node of an element; of all if Of < 0.
     template <int Of>
