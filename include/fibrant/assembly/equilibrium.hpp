@@ -436,7 +436,7 @@ private:
     Contacts* contacts_;
     connection::PrescribedMotion<B> motion_;
     [[no_unique_address]] Ties ties_;
-    connection::ImageBends images_;
+    [[no_unique_address]] std::conditional_t<core::Active<Ties>, connection::ImageBends, connection::NoImageBends> images_;
     [[no_unique_address]] Solid solid_;
     System system_;
     Terms terms_;

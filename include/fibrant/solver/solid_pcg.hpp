@@ -2,6 +2,7 @@
 #pragma once
 /// @file Conjugate gradients for fibres bonded to solids: two levels for the fibres, a factor for the solids that carry them.
 
+#include <fibrant/assembly/system_view.hpp>
 #include <fibrant/solid/hexahedron_map.hpp>
 #include <fibrant/solver/block_cholesky.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
