@@ -47,7 +47,7 @@ struct Bounded {
     Vector stiffness;
     const System& system() const { return own; }
     const Mesh& mesh() const { return fibres; }
-    void close_chains(Vector&) const {}
+    void close_chains(Vector&, const Vector&) const {}
     void evaluate(const Vector&) const {}
     double largest_part(const Vector&, double, double part) const { return part; }
     void prescribed_step(const Vector& x, Vector& step) const {
