@@ -190,9 +190,8 @@ private:
     std::vector<SegmentPair> sorted_;
 };
 
-/// Zones of the pairs of a table. @param keep  keep(zone): whether it is wanted
-template <class Keep>
-std::vector<ProximityZone> zones_of(const SegmentTable& table, std::span<const SegmentPair> pairs, const Keep& keep) {
+/// Zones of the pairs of a table.
+inline std::vector<ProximityZone> zones_of(const SegmentTable& table, std::span<const SegmentPair> pairs) {
     if (pairs.empty()) return {};
     const std::vector<SegmentRecord> records = table.records();
     constexpr Index together = 4;  // fibres of a block of the loop: fixed, so that nothing depends on the threads
@@ -215,11 +214,7 @@ std::vector<ProximityZone> zones_of(const SegmentTable& table, std::span<const S
             locate(records.data(), own, table.reach(), places.data());
             for (std::size_t k = 0, last = 0; k < own.size(); k = last) {
                 for (last = k + 1; last < own.size() && table.fibre(own[last].j) == table.fibre(own[k].j);) ++last;
-                const std::size_t before = zones.size();
                 maker.append(own.subspan(k, last - k), places.data() + k, zones);
-                zones.erase(std::remove_if(zones.begin() + static_cast<std::ptrdiff_t>(before), zones.end(),
-                                           [&](const ProximityZone& zone) { return !keep(zone); }),
-                            zones.end());
             }
         }
     });
@@ -234,16 +229,10 @@ std::vector<ProximityZone> zones_of(const SegmentTable& table, std::span<const S
 /// of the two segment numbers) make one zone, split where the fibres turn from clearly along to clearly against each other
 /// (60 degrees). Its intervals end where the axes part by the pair's threshold. Linear in the number of pairs.
 /// @param pairs  sorted, without repeats, as `pairs` of a search returns them
-/// @param keep   keep(zone): whether a zone is wanted; called from several threads
 /// @return sorted by fibre_i, fibre_j, a_i, a_j
-template <class Keep>
-std::vector<ProximityZone> zones_from_pairs(std::span<const Centreline> fibres, double reach,
-                                            const std::vector<SegmentPair>& pairs, const Keep& keep) {
-    return detail::zones_of(detail::SegmentTable(fibres, reach), pairs, keep);
-}
 inline std::vector<ProximityZone> zones_from_pairs(std::span<const Centreline> fibres, double reach,
                                                    const std::vector<SegmentPair>& pairs) {
-    return zones_from_pairs(fibres, reach, pairs, [](const ProximityZone&) { return true; });
+    return detail::zones_of(detail::SegmentTable(fibres, reach), pairs);
 }
 
 namespace detail {
@@ -258,7 +247,7 @@ public:
     }
     std::vector<ProximityZone> find(std::span<const Centreline> fibres, double reach) {
         const SegmentTable table(fibres, reach);
-        return zones_of(table, pairs_of(table), [](const ProximityZone&) { return true; });
+        return zones_of(table, pairs_of(table));
     }
 
 private:
