@@ -83,11 +83,12 @@ public:
         const auto pairs = contacts.turn_back(from);
         contacts.evaluate(from, true);  // the same contact elements, where the increment started
         balance_.rearranged += contacts.figures(from).work - balance_.contact;
-        Vector renewed = Vector::Zero(to.size());
-        contacts.add_forces(renewed);
         if (contact_.size() != to.size()) contact_ = Vector::Zero(to.size());
-        // A motion has its forces from the elements of its step alone, and bears no jump.
-        if (!leap && !Equilibrium::moves) balance_.rearranged -= 0.5 * way.dot(contact_ - renewed);
+        if (!leap && !Equilibrium::moves) {  // a motion has its forces from the elements of its step alone, and bears no jump
+            Vector renewed = Vector::Zero(to.size());
+            contacts.add_forces(renewed);
+            balance_.rearranged -= 0.5 * way.dot(contact_ - renewed);
+        }
         if constexpr (requires { contacts.tools(); })
             balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(false);
         contacts.turn_forth(pairs);
