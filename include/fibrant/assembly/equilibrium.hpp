@@ -7,7 +7,6 @@
 #include <fibrant/assembly/stiffness_sink.hpp>
 #include <fibrant/assembly/vector_measures.hpp>
 #include <fibrant/connection/connections.hpp>
-#include <fibrant/connection/image_bends.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/contact/contact_set.hpp>
 #include <fibrant/contact/learned_contacts.hpp>
@@ -55,7 +54,6 @@ public:
           contacts_{&contacts},
           motion_{assembly, mesh, channels},
           ties_{assembly, mesh, channels},
-          images_{assembly},
           solid_{taken(solid, assembly, mesh, channels)},
           system_{system(mesh, solid_)},
           terms_{term::SiteOf<B>(assembly, mesh, channels, std::as_const(system_).layout()), terms},
@@ -64,7 +62,6 @@ public:
         double solid_scale = 0.0;
         if constexpr (has_solid) solid_scale = solid_.rounding_scale(extent);
         rounding_ = rounding_of(mesh, extent, solid_scale);
-        images_.anchor(mesh.layout(), mesh.start_state());
     }
 
     Equilibrium(const Equilibrium&) = delete;  // its terms look at its layout
@@ -76,10 +73,6 @@ public:
     const connection::PrescribedMotion<B>& motion() const noexcept { return motion_; }
     const Ties& ties() const noexcept { return ties_; }
     Ties& ties() noexcept { return ties_; }
-    /// Conditions of ties count from this state from now on.
-    void anchor(const Vector& state) { ties_.anchor(state), images_.anchor(system_.layout(), state); }
-    /// Of contact with images beside a cell (connection::ImageBends).
-    Vec3 image_moment(Index cell) const noexcept { return images_.moment(cell); }
     const Solid& solid() const noexcept { return solid_; }
     Solid& solid() noexcept { return solid_; }
     Terms& terms() noexcept { return terms_; }
@@ -96,9 +89,8 @@ public:
         motion_.at(amplitudes, state, system_.layout().held, targets_);
         ties_.begin(amplitudes);
         if constexpr (has_solid) solid_.hold(amplitudes, system_.layout().held, targets_);
-        ties_.hold(system_.layout().held, targets_);
+        ties_.hold(system_.layout(), targets_);
         scene::hold_images(system_.layout(), targets_);
-        if constexpr (core::Active<Ties>) images_.place(ties_.motion(), system_.layout());
         if constexpr (has_solid) system_.share_held();
         reset_stresses(state);
     }
@@ -221,7 +213,7 @@ public:
         const auto add = [&](const auto& term) { term.add_forces(state, residual); };
         contacts_->add_forces(residual);
         terms_.template of<term::Role::interaction>(add);
-        images_.see(system_.layout(), residual);
+        ties_.see_images(system_.layout(), residual);
         scene::fold_images(system_.layout(), residual);
         const double contact = norm(residual);
         if constexpr (!moves) add_internal_forces(state, residual, true);
@@ -436,7 +428,6 @@ private:
     Contacts* contacts_;
     connection::PrescribedMotion<B> motion_;
     [[no_unique_address]] Ties ties_;
-    [[no_unique_address]] std::conditional_t<core::Active<Ties>, connection::ImageBends, connection::NoImageBends> images_;
     [[no_unique_address]] Solid solid_;
     System system_;
     Terms terms_;

@@ -136,6 +136,10 @@ public:
     /// Number of element e of fibre f in the whole mesh.
     Index element_index(Index f, Index e) const noexcept { return first_element_[core::at(f)] + e; }
     Index node_count(Index f) const noexcept { return fibre(f).elements * (B::nodes - 1) + 1; }
+    /// Node of a station.
+    Index node_at(const scene::Station& at) const {
+        return static_cast<Index>(std::lround(at.fraction * static_cast<double>(node_count(at.fibre) - 1)));
+    }
     /// Nodes that have unknowns of their own: all but the last one of a closed fibre.
     Index own_nodes(Index f) const noexcept { return node_count(f) - (fibre(f).closed ? 1 : 0); }
     /// A vector of a node; of the last node of a closed fibre that of its first one.
@@ -313,11 +317,8 @@ private:
         scene::ImageShift shift;
         for (const scene::FibreImage::Shift& one : image.shifts) {
             const scene::PeriodicPair& pair = assembly.pairs()[core::at(one.pair)];
-            const auto vector = [&](const scene::Station& at) {
-                const double nodes = static_cast<double>(node_count(at.fibre) - 1);
-                return node_vector(at.fibre, static_cast<Index>(std::lround(at.fraction * nodes)));
-            };
-            shift.pairs.push_back({vector(pair.first), vector(pair.last), one.times});
+            shift.pairs.push_back({node_vector(pair.first.fibre, node_at(pair.first)),
+                                   node_vector(pair.last.fibre, node_at(pair.last)), one.times});
         }
         layout_.shifts.push_back(shift);
         fibres_.push_back(source);

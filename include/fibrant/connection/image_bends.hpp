@@ -77,12 +77,4 @@ private:
     std::vector<Vec3> moments_;              // of each cell
 };
 
-/// Of a scene whose ends nothing ties: it has no cell.
-struct NoImageBends : core::Inactive {
-    explicit NoImageBends(const scene::Assembly&) noexcept {}
-    static void anchor(const scene::DofLayout&, const Vector&) noexcept {}
-    static void see(const scene::DofLayout&, const Vector&) noexcept {}
-    static Vec3 moment(Index) noexcept { return Vec3::Zero(); }
-};
-
 }  // namespace fibrant::connection

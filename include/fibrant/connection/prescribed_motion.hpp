@@ -17,19 +17,13 @@
 
 namespace fibrant::connection {
 
-/// Node of a station.
-template <class B>
-Index station_node(const beam::Mesh<B>& mesh, const scene::Station& at) {
-    return static_cast<Index>(std::lround(at.fraction * static_cast<double>(mesh.node_count(at.fibre) - 1)));
-}
-
 /// Holds of a scene, merged by nodal vector. Where two holds of a vector overlap, the one added first decides.
 template <beam::BeamElement B>
 class PrescribedMotion {
 public:
     PrescribedMotion(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const Channels& channels) {
         for (scene::Hold hold : assembly.holds()) {
-            const Index node = station_node(mesh, hold.at);
+            const Index node = mesh.node_at(hold.at);
             if constexpr (requires { B::hold(hold, Mat3()); })
                 if (!B::hold(hold, mesh.frame(hold.at.fibre, node).basis())) continue;
             if (static_cast<Index>(hold.vector) >= B::vectors_per_node)

@@ -5,6 +5,7 @@
 #include <fibrant/connection/body_motion.hpp>
 #include <fibrant/connection/connections.hpp>
 #include <fibrant/connection/coordinate_groups.hpp>
+#include <fibrant/connection/image_bends.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/connection/solid_places.hpp>
 #include <fibrant/scene/image_vectors.hpp>
@@ -36,11 +37,11 @@ template <beam::BeamElement B>
 class BodyTies {
 public:
     BodyTies(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const Channels& channels)
-        : mesh_{&mesh}, motion_{assembly, channels} {
+        : mesh_{&mesh}, motion_{assembly, channels}, images_{assembly} {
         const SolidPlaces solids(assembly, mesh.start_state());
         std::vector<char> taken(core::at(solids.state.size() / 3), 0);
         for (const scene::Hold& hold : assembly.holds())
-            taken[core::at(mesh.node_vector(hold.at.fibre, station_node(mesh, hold.at), static_cast<Index>(hold.vector)))] = 1;
+            taken[core::at(mesh.node_vector(hold.at.fibre, mesh.node_at(hold.at), static_cast<Index>(hold.vector)))] = 1;
         for (const scene::SolidHold& hold : assembly.solid_holds())
             for (const Index node : hold.nodes) taken[core::at(solids.vector({hold.solid, node}))] = 1;
         const auto take = [&](Index vector) {
@@ -78,7 +79,7 @@ public:
             }
             if (!average.displacement.isZero(0.0)) condition.channel = channels.find(average.channel);
             for (const scene::Station& at : average.ends)
-                tie.vectors.push_back(mesh.node_vector(at.fibre, station_node(mesh, at), static_cast<Index>(average.vector)));
+                tie.vectors.push_back(mesh.node_vector(at.fibre, mesh.node_at(at), static_cast<Index>(average.vector)));
             for (const scene::SolidNode& at : average.nodes) tie.vectors.push_back(solids.vector(at));
             tie.weights.assign(tie.vectors.size(), 1.0 / condition.root);
             for (const Index vector : tie.vectors) take(vector);
@@ -92,8 +93,8 @@ public:
                 Condition condition;
                 condition.periodic = true, condition.owner = pair.cell, condition.director = v > 0;
                 condition.root = std::sqrt(2.0), condition.period = pair.period;
-                tie.vectors = {mesh.node_vector(pair.first.fibre, station_node(mesh, pair.first), v),
-                               mesh.node_vector(pair.last.fibre, station_node(mesh, pair.last), v)};
+                tie.vectors = {mesh.node_vector(pair.first.fibre, mesh.node_at(pair.first), v),
+                               mesh.node_vector(pair.last.fibre, mesh.node_at(pair.last), v)};
                 tie.weights = {-1.0 / condition.root, 1.0 / condition.root};
                 for (const Index vector : tie.vectors) take(vector);
                 finish(tie, condition, fibre_support(pair.first.fibre));
@@ -110,6 +111,7 @@ public:
     /// Conditions count from this state from now on, with the bodies where they were at the start.
     void anchor(const Vector& state) {
         extent_ = scene::extent_of(mesh_->layout(), state);
+        images_.anchor(mesh_->layout(), state);
         for (std::size_t k = 0; k < conditions_.size(); ++k) {
             Condition& condition = conditions_[k];
             const Vec3 sum = combination(ties_[k], state);
@@ -130,7 +132,8 @@ public:
     }
 
     /// Adds the vectors that are held to those of other holds, whose order by vector is kept. @param targets  held parts
-    void hold(std::vector<scene::HeldVector>& held, std::vector<Vec3>& targets) const {
+    void hold(scene::DofLayout& layout, std::vector<Vec3>& targets) const {
+        images_.place(motion_, layout);
         if (tied_ == ties_.size()) return;
         std::vector<scene::HeldTarget> more;
         for (std::size_t k = tied_; k < ties_.size(); ++k) {
@@ -144,7 +147,7 @@ public:
                 target += (axis.dot(from) + offset(condition, a)) * axis;
             }
         }
-        scene::hold_more(held, targets, more);
+        scene::hold_more(layout.held, targets, more);
     }
 
     void place(const Vector& state, scene::DofLayout& layout) {
@@ -248,6 +251,7 @@ public:
     }
 
     void accept() { motion_.accept(); }
+    void see_images(const scene::DofLayout& layout, const Vector& forces) { images_.see(layout, forces); }
     const BodyMotion& motion() const noexcept { return motion_; }
     BodyMotion& motion() noexcept { return motion_; }
 
@@ -286,7 +290,7 @@ public:
         for (std::size_t k = 0; k < conditions_.size() && forces_.size() > 0; ++k)
             if (conditions_[k].periodic && conditions_[k].owner == cell)
                 sum += conditions_[k].bend.transpose() * force_of(static_cast<Index>(k)) / conditions_[k].root;
-        return sum;
+        return sum + images_.moment(cell);
     }
 
 private:
@@ -419,6 +423,7 @@ private:
 
     const beam::Mesh<B>* mesh_;
     BodyMotion motion_;
+    ImageBends images_;
     std::vector<scene::Tie> ties_;  // the first `tied_` are ties, all others hold one vector each
     std::vector<Condition> conditions_;
     std::size_t tied_ = 0;

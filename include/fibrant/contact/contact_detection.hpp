@@ -71,9 +71,8 @@ public:
         }
         for (Index f = 0; f < mesh.line_count(); ++f) {
             const beam::MeshFibre& fibre = mesh.fibre(f);
-            Index group = fibre.image_of < 0
-                              ? fibre.group
-                              : -1;  // images keep the side on which they are  // or the nearest ancestor that is in an order
+            // Or the nearest ancestor that is in an order; images keep the side on which they are.
+            Index group = fibre.image_of < 0 ? fibre.group : -1;
             while (group >= 0 && neighbours[core::at(group)].empty()) group = assembly.groups()[core::at(group)].parent;
             group_.push_back(group);
             family_.push_back(group >= 0 && two ? family[core::at(group)] : Index{-1});

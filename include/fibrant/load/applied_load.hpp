@@ -33,8 +33,7 @@ public:
     AppliedLoad(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const scene::Channels& channels) {
         const auto item = [&](const auto& load, int vector, bool there, const Vec3& value) {
             if (!there) core::refuse("load.vector", std::to_string(vector), "a vector of the beam's nodes");
-            return Item{mesh.node_vector(load.at.fibre, connection::station_node(mesh, load.at), vector),
-                        channels.find(load.channel), value};
+            return Item{mesh.node_vector(load.at.fibre, mesh.node_at(load.at), vector), channels.find(load.channel), value};
         };
         for (const scene::LinePressure& load : assembly.pressures())
             pressures_.push_back({load.fibre, channels.find(load.channel), mesh.fibre(load.fibre).elements,

@@ -69,7 +69,7 @@ std::optional<Vec3> loose_direction(const scene::Assembly& assembly, const beam:
     for (const scene::Hold& hold : assembly.holds()) {
         if (hold.vector != scene::NodeVector::position) continue;
         Mat3 axes = Mat3::Identity();
-        if (hold.axes == scene::Axes::section) axes = mesh.frame(hold.at.fibre, connection::station_node(mesh, hold.at)).basis();
+        if (hold.axes == scene::Axes::section) axes = mesh.frame(hold.at.fibre, mesh.node_at(hold.at)).basis();
         held += axes * hold.directions * axes.transpose();
     }
     for (const scene::SolidHold& hold : assembly.solid_holds()) held += hold.directions;

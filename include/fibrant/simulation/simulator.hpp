@@ -98,7 +98,7 @@ public:
 
 private:
     Index first_of(const scene::Station& at, scene::NodeVector vector) const {
-        return 3 * mesh_.node_vector(at.fibre, connection::station_node(mesh_, at), static_cast<Index>(vector));
+        return 3 * mesh_.node_vector(at.fibre, mesh_.node_at(at), static_cast<Index>(vector));
     }
     void move_tools([[maybe_unused]] const std::vector<double>& amplitudes) {
         if constexpr (HasTools<M>) {
@@ -420,7 +420,7 @@ template <Model M>
 void Simulator<M>::start_from(const std::string& checkpoint) {
     CheckpointReader file = read_from_state(checkpoint, mesh_);
     get_fibres(file, parts());
-    if constexpr (HasConnections<M>) equilibrium_.anchor(state_);
+    if constexpr (HasConnections<M>) equilibrium_.ties().anchor(state_);
     energy_.start_from_other(equilibrium_, state_);
 }
 

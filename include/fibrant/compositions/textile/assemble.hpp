@@ -126,9 +126,7 @@ inline scene::PeriodicCell cell_of(const Textile& textile, const CellDrive& driv
                 cell.component(i, j) = scene::Coordinate::under(pull(i, j), tension_channel);
     return cell;
 }
-}  // namespace detail
 
-namespace detail {
 /// Images of the fibres beside a cell that come near any of its own, of opposite ones one, so that contact acts across seams.
 /// @param carrier  of each period of the lattice a pair that repeats by it
 inline void add_images(scene::Assembly& assembly, const Textile& textile, const std::vector<Index>& path_of,
@@ -139,10 +137,11 @@ inline void add_images(scene::Assembly& assembly, const Textile& textile, const 
     if (carrier.empty()) return;
     using Box = Eigen::AlignedBox3d;
     std::vector<Box> boxes;
+    Box whole;
     for (const Path& path : textile.paths) {
         Box box;
         for (Index k = 0; k <= chords; ++k) box.extend(path.curve(static_cast<double>(k) / static_cast<double>(chords)));
-        boxes.push_back(box);
+        boxes.push_back(box), whole.extend(box);
     }
     const auto reach = [&](Index p) {
         const YarnType& type = textile.type_of(p);
@@ -157,7 +156,10 @@ inline void add_images(scene::Assembly& assembly, const Textile& textile, const 
             for (Index p = 0; p < core::count(boxes); ++p) {
                 const Vec3 grown = Vec3::Constant(2.0 * reach(p));
                 const Box box(boxes[core::at(p)].min() + shift - grown, boxes[core::at(p)].max() + shift + grown);
-                for (const Box& other : boxes) meets[core::at(p)] |= static_cast<char>(box.intersects(other));
+                if (!box.intersects(whole)) continue;
+                const bool near_one =
+                    std::any_of(boxes.begin(), boxes.end(), [&](const Box& other) { return box.intersects(other); });
+                meets[core::at(p)] = near_one ? 1 : 0;
             }
             scene::FibreImage image;
             if (a != 0) image.shifts.push_back({carrier[0], static_cast<double>(a)});

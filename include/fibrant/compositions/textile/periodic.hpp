@@ -93,8 +93,7 @@ CellVector cell_efforts(const Simulator& simulator, double area) {
     const auto& ties = simulator.equilibrium().ties();
     const Mat3 force = ties.cell_force(0);
     CellVector efforts;
-    efforts << force(0, 0), force(1, 1), 0.5 * (force(0, 1) + force(1, 0)),
-        ties.cell_moment(0) + simulator.equilibrium().image_moment(0);
+    efforts << force(0, 0), force(1, 1), 0.5 * (force(0, 1) + force(1, 0)), ties.cell_moment(0);
     return efforts / area;
 }
 
@@ -110,8 +109,8 @@ struct CellStiffness {
 
     /// @throws std::invalid_argument unless there are 12 efforts, and 12 before them
     void evaluate() {
-        for (const auto& list : {before, efforts})
-            if (list.size() != 12) core::refuse("CellStiffness.efforts", std::to_string(list.size()), "12");
+        for (const auto* list : {&before, &efforts})
+            if (list->size() != 12) core::refuse("CellStiffness.efforts", std::to_string(list->size()), "12");
         const auto change = [&](Index k) -> CellVector { return efforts[core::at(k)] - before[core::at(k)]; };
         for (Index c = 0; c < 6; ++c) matrix.col(c) = 0.5 * (change(2 * c) - change(2 * c + 1)) / amount[core::at(c)];
         creep = 0.0;
