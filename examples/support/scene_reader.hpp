@@ -81,7 +81,7 @@ public:
         const toml::node* found = find(section, key);
         if (found == nullptr) return false;
         if (!found->is_number()) refuse(section, key, *found, "a number " + bound.text());
-        value = found->value<double>().value();
+        value = as_double(*found);
         if (!bound.holds(value)) refuse(section, key, *found, bound.text());
         entry.value = fibrant::observe::shortest(value);
         return entry.given = true;
@@ -226,6 +226,10 @@ public:
     }
 
 private:
+    /// Of a node that is a number. toml++ gives no whole number as a double that it does not hold to the last digit.
+    static double as_double(const toml::node& number) {
+        return number.is_integer() ? static_cast<double>(number.as_integer()->get()) : number.as_floating_point()->get();
+    }
     void refuse_unknown() const { refuse_unknown(table_, ""); }
     /// @param above  the section that a table is in, with a dot
     void refuse_unknown(const toml::table& table, const std::string& above) const {
