@@ -257,6 +257,7 @@ def twist():
 
 
 course_spacing = 2.12  # mm, of benchmarks/validation/knit.toml
+conductor_length = 500.0  # mm, of benchmarks/validation/conductor.toml
 
 
 def knits():
@@ -299,5 +300,37 @@ def knits():
     plot.write(folder / "knits.svg")
 
 
-for part in (knots, mats, twist, knits):
+def conductor():
+    """A conductor of 61 wires that is bent under tension, between its bounds: all wires stuck, all free."""
+    data = here / "data" / "conductor"
+    measured = [(float(row["curvature_1_per_m"]), float(row["moment_N_m"])) for row in rows(data / "bending_measured.csv")]
+    layers = rows(data / "layers.csv")
+    free = sum(float(row["sum_EI_N_m2"]) for row in layers)
+    stuck = free + sum(float(row["sum_EA_y2_N_m2"]) for row in layers)
+    plot = Plot("a conductor of 61 wires, bent under 40 kN", "curvature [1/m]", "moment [N m]", (0, 0.5), (0, 100))
+    plot.points(measured, colours[1], "measured", hollow=True)
+    found = False
+    for k, path in enumerate(sorted(folder.glob("conductor*/increments.csv"))):
+        curve = [(0.0, 0.0)] + [(math.radians(float(row["angle_deg"])) / conductor_length * 1e3, float(row["moment"]) * 1e-3)
+                                for row in rows(path) if row["stage"] == "loading"]
+        found = True
+        plot.line(curve, colours[0 if k == 0 else k + 1], f"computed, {path.parent.name}")
+        print(f"\n{path.parent.name}: curvature [1/m], moment computed [N m], measured, ratio, tension [kN]")
+        tensions = [float(row["tension"]) * 1e-3 for row in rows(path) if row["stage"] == "loading"]
+        for x, y in measured:
+            for (x0, y0), (x1, y1), tension in zip(curve, curve[1:], tensions):
+                if x0 <= x <= x1 and x1 > x0:
+                    own = y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+                    print(f"{x:.4f} | {own:.2f} | {y:.2f} | {own / y:.2f} | {tension:.1f}")
+                    break
+        (x0, y0), (x1, y1) = curve[-min(5, len(curve))], curve[-1]
+        print(f"slope at the start {curve[1][1] / curve[1][0]:.0f}, at the end {(y1 - y0) / (x1 - x0):.1f} N m^2;",
+              f"bounds {stuck:.0f} and {free:.1f}")
+    if found:
+        plot.line([(0.0, 0.0), (100.0 / stuck, 100.0)], colours[3], "all wires stuck", "5 4")
+        plot.line([(0.0, 0.0), (0.5, 0.5 * free)], colours[4], "all wires free", "2 3")
+        plot.write(folder / "conductor.svg", "bottom")
+
+
+for part in (knots, mats, twist, knits, conductor):
     part()

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Computes what docs/evidence/validation.md compares with measurements, and leaves tables (printed) and plots (.svg) in a folder.
-# usage: benchmarks/validation/run.sh PROGRAMS FOLDER [knots] [mats] [knits] [closed]
+# usage: benchmarks/validation/run.sh PROGRAMS FOLDER [knots] [mats] [knits] [conductor] [closed]
 #   PROGRAMS  folder of the programs, build/release/bin after `cmake --build --preset release`
 # Without a choice all are run, one after the other, on one thread; what is in FOLDER already is computed again.
 set -eu
@@ -21,7 +21,7 @@ compute() { # PROGRAM SCENE NAME [option]...
     --set output.paraview=false --set output.pictures=false "$@" > "$folder/$name.log" 2>&1 ||
     { echo "$name: status $?, see $folder/$name.log"; status=1; }
 }
-for set in ${*:-closed knots knits mats}; do
+for set in ${*:-closed knots knits conductor mats}; do
   case $set in
     closed) "$programs/benchmark_validation_closed_forms_bench" > "$folder/closed.csv" || status=1 ;;
     knots)
@@ -44,7 +44,8 @@ for set in ${*:-closed knots knits mats}; do
         compute textile "$here/knit.toml" knit_$courses --set weft_knit.courses=$courses
       done
       ;;
-    *) echo "$set is none of closed, knots, knits, mats"; exit 2 ;;
+    conductor) compute strand_bending "$here/conductor.toml" conductor ;;
+    *) echo "$set is none of closed, knots, knits, conductor, mats"; exit 2 ;;
   esac
 done
 python3 "$here/plots.py" "$folder"

@@ -69,18 +69,20 @@ bool bend(const Asked& asked, const std::vector<typename beam::With<beam::Direct
     });
     simulation::Loading<Model> loading;
     const double full = angle * std::numbers::pi / 180.0;
-    if (asked.bending.strain != 0.0) {
+    const auto bend_to = [&](const char* name, double to) {
+        simulation::Stage<Model>& stage = loading.stages.emplace_back();
+        stage.name = name;
+        stage.ramps = {{strand::bend, to}};
+        stage.increments = asked.increments, stage.most_increments = 20 * asked.increments;
+    };
+    if (asked.bending.drawn_at > 0.0) {
+        bend_to("drawing", std::copysign(asked.bending.drawn_at, full));
+    } else if (asked.bending.strain != 0.0) {
         loading.stages.emplace_back();
         loading.stages.back().name = "drawing";
     }
-    loading.stages.emplace_back();
-    loading.stages.back().ramps = {{strand::bend, full}};
-    loading.stages.back().increments = asked.increments, loading.stages.back().most_increments = 20 * asked.increments;
-    if (!std::isnan(asked.back)) {
-        loading.stages.push_back(loading.stages.back());
-        loading.stages.back().name = "back",
-        loading.stages.back().ramps = {{strand::bend, asked.back * std::numbers::pi / 180.0}};
-    }
+    bend_to("loading", full);
+    if (!std::isnan(asked.back)) bend_to("back", asked.back * std::numbers::pi / 180.0);
     output.tell(loading);
     const simulation::Report report = simulator.run(loading, recorder);
     const strand::BendingState state = strand::measure_bending(simulator, parameters, asked.bending);
@@ -94,6 +96,7 @@ bool bend(const Asked& asked, const std::vector<typename beam::With<beam::Direct
                                 {"angle_deg", state.angle * 180.0 / std::numbers::pi},
                                 {"moment", state.moment},
                                 {"moment_at_plate", state.at_plate},
+                                {"tension", state.tension},
                                 {"moment_of_loose_wires", strand::loose_stiffness(parameters) * state.angle / parameters.length},
                                 {"moment_of_a_solid", strand::solid_stiffness(parameters) * state.angle / parameters.length},
                                 {"furthest_from_layer_over_radius", strand::furthest_from_layer(simulator, parameters) / radius},
@@ -109,12 +112,13 @@ bool solve(example::SceneReader& file, example::Output& output) {
     Index wires = 7, elements = 0, increments = 30;
     double radius = core::unset, lay_angle = core::unset, turns = 1.0, length = 0.0, angle = 90.0, mu = 0.1, depth = 0.02,
            reversible = 0.1;
-    scene::ElasticMaterial material;
+    Index inner_layers = -1;
+    scene::ElasticMaterial material, inner;
     bool alternate = true;
     std::string anchor = "both_plates", lay = "equal_pitch";
     strand::Bending bending;
     std::string kind = "elastic";
-    double back = core::unset;
+    double back = core::unset, drawn_at = 0.0;
     material::Wire::Parameters yielding;
     example::read_wires(file, wires, radius, lay_angle, "angle of the outer wires to the axis; positive is right-handed");
     file.read("strand", "lay", lay, {"equal_pitch", "equal_angle"},
@@ -126,6 +130,10 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("strand", "elements", elements, example::between(0, 10000),
               "elements along a wire; 0: sixteen a turn, and none longer than seven radii");
     example::read_material(file, "material", material);
+    file.read("inner", "layers", inner_layers, example::between(-1, 5),
+              "layers around the core that are of another material, and the core with them; -1: none, nor the core");
+    file.read("inner", "young_modulus", inner.young_modulus, example::positive(), "force/length^2", "Young's modulus of these");
+    file.read("inner", "poisson_ratio", inner.poisson_ratio, example::poisson_ratio(), "1", "Poisson's ratio of these");
     file.read("material.law", "kind", kind, {"elastic", "wire"}, "how the wires behave");
     file.read("material.law", "yield_stress", yielding.yield_stress, example::positive(), "force/length^2",
               "stress at which a wire yields");
@@ -138,6 +146,11 @@ bool solve(example::SceneReader& file, example::Output& output) {
               "which plates hold every wire; elsewhere wires slide through");
     file.read("loading", "strain", bending.strain, example::inside(-0.5, 1.0), "1",
               "strain by which the strand is drawn before it is bent");
+    file.read("loading", "drawn_at_deg", drawn_at, example::between(0.0, 3600.0), "degree",
+              "angle up to which the strain grows in proportion, in as many increments; 0: it is drawn in one");
+    file.read(
+        "loading", "guided", bending.guided,
+        "the core is led along the arc: an even curvature, where tension would draw the strand straight between its plates");
     file.read("loading", "angle_deg", angle, example::inside(-3600.0, 3600.0), "degree", "angle between the plates at the end");
     file.read("loading", "back_to_deg", back, example::inside(-3600.0, 3600.0), "degree",
               "angle to which it is bent back; left out: not at all");
@@ -145,6 +158,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.complete();
     file.check(kind == "elastic" || !std::isnan(yielding.yield_stress), "material.law", "yield_stress",
                "given, for kind = \"wire\"");
+    for (const char* key : {"young_modulus", "poisson_ratio"})
+        file.check(file.given("inner", key) == (inner_layers >= 0), "inner", key,
+                   inner_layers >= 0 ? "given, as inner.layers is" : "left out, for inner.layers = -1");
     file.check(kind == "wire" || !file.given("material.law", "yield_stress"), "material.law", "yield_stress",
                "left out, for kind = \"elastic\"");
     file.check(kind == "wire" || !file.given("material.law", "hardening"), "material.law", "hardening",
@@ -152,6 +168,13 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.check(lay_angle != 0.0, "strand", "lay_angle_deg", "other than 0: straight wires have no turns");
     file.check(elements != 1, "strand", "elements", "0 or >= 2");
     file.check(angle != 0.0, "loading", "angle_deg", "other than 0: nothing would be bent");
+    file.check(drawn_at == 0.0 || bending.strain != 0.0, "loading", "drawn_at_deg", "0, as loading.strain is");
+    file.check(drawn_at < std::abs(angle), "loading", "drawn_at_deg",
+               "< the size of loading.angle_deg = " + core::text(std::abs(angle)));
+    file.check(drawn_at == 0.0 || std::isnan(back) || std::copysign(1.0, angle) * back >= drawn_at, "loading", "back_to_deg",
+               "on the side of loading.angle_deg and at least loading.drawn_at_deg = " + core::text(drawn_at) +
+                   " from 0: nearer to 0 the strand is not drawn");
+    bending.drawn_at = drawn_at * std::numbers::pi / 180.0;
     file.check(length == 0.0 || length >= 4.0 * radius, "strand", "length",
                "0 or >= 4 strand.radius = " + core::text(4.0 * radius));
     file.check(length <= 1e5 * radius, "strand", "length", "<= 100000 strand.radius = " + core::text(1e5 * radius));
@@ -169,6 +192,12 @@ bool solve(example::SceneReader& file, example::Output& output) {
                "larger: the outer layer goes round once on " + core::text(pitch) +
                    ", and may on <= 100000 strand.radius = " + core::text(1e5 * radius));
     parameters.material = material;
+    if (inner_layers >= 0) {
+        file.check(inner_layers <= core::count(parameters.layers), "inner", "layers",
+                   "<= " + std::to_string(parameters.layers.size()) + ", the layers that strand.wires has");
+        for (std::size_t k = core::at(inner_layers); k < parameters.layers.size(); ++k) parameters.layers[k].material = material;
+        parameters.material = inner;
+    }
     parameters.length = length > 0.0 ? length : turns * pitch;
     // Sixteen a turn follow a helix; wires of opposite hands cross each other every two diameters, and hardly bend in between.
     parameters.elements =

@@ -38,7 +38,24 @@ enum class Anchor {
 /// How a strand is held and drawn while it is bent.
 struct Bending {
     Anchor anchor = Anchor::both_plates;
-    double strain = 0.0;  ///< the arc between the plates is longer than the strand by this, from the first increment on [1], > -1
+    double strain = 0.0;  ///< the arc between the plates is longer than the strand by this [1], > -1
+    /// Angle up to which the strain grows in proportion; 0: it is there from the first increment on [radian], >= 0. A wire on a
+    /// helix of angle b that nothing presses goes inwards by strain / tan(b)^2 of its distance: so a large strain takes
+    /// increments.
+    double drawn_at = 0.0;
+    /// The core is led along the arc, across it and at the ends of its elements. So the curvature is even, where tension would
+    /// draw the strand straight between its plates; a sheave or a neighbouring length does this.
+    bool guided = false;
+
+    void validate() const {
+        core::require(strain > -1.0, "Bending.strain", strain, "> -1");
+        core::require_not_negative("Bending.drawn_at", drawn_at);
+    }
+    /// Length of the arc between the plates of a strand at an angle [length].
+    double arc(double length, double angle) const noexcept {
+        const double part = std::abs(angle) < drawn_at ? std::abs(angle) / drawn_at : 1.0;
+        return (1.0 + part * strain) * length;
+    }
 };
 
 /// Wires are held in the planes of both plates, and their sections turn with them: one by half of the angle about y, the other
@@ -46,8 +63,11 @@ struct Bending {
 /// search short.
 inline scene::Assembly bent_strand(const StrandParameters& parameters, const Bending& bending = {}) {
     scene::Assembly assembly = wires_of(parameters);
-    core::require(bending.strain > -1.0, "Bending.strain", bending.strain, "> -1");
-    const double length = parameters.length, arc = (1.0 + bending.strain) * length;
+    bending.validate();
+    const double length = parameters.length;
+    const auto path = [length, bending](double part) {
+        return [=](double angle) { return Vec3(arc_point(bending.arc(length, angle), angle, part) - Vec3(0, 0, part * length)); };
+    };
     for (Index fibre = 0; fibre < parameters.wires(); ++fibre) {
         for (const double end : {0.0, 1.0}) {
             const bool slides = fibre > 0 && bending.anchor == Anchor::near_plate && end > 0.0;
@@ -56,7 +76,7 @@ inline scene::Assembly bent_strand(const StrandParameters& parameters, const Ben
             hold.at = {fibre, end}, hold.channel = bend;
             hold.rotation = [=](double angle) { return Mat3(Eigen::AngleAxisd(part * angle, Vec3::UnitY())); };
             hold.pivot = Vec3(0, 0, end * length);
-            hold.path = [=](double angle) { return Vec3(arc_point(arc, angle, part) - Vec3(0, 0, part * length)); };
+            hold.path = path(part);
             if (slides) hold.directions = Vec3(1, 1, 0).asDiagonal();
             assembly.hold(hold);
             hold.path = {};
@@ -68,14 +88,22 @@ inline scene::Assembly bent_strand(const StrandParameters& parameters, const Ben
             assembly.hold(hold);
         }
     }
+    for (Index n = 1; bending.guided && n < parameters.elements; ++n) {
+        scene::Hold guide;
+        const double at = static_cast<double>(n) / static_cast<double>(parameters.elements);
+        guide.at = {0, at}, guide.channel = bend, guide.directions = Vec3(1, 1, 0).asDiagonal();
+        guide.path = path(at - 0.5);
+        assembly.hold(guide);
+    }
     return assembly;
 }
 
 /// What bending takes.
 struct BendingState {
     double angle = 0.0;     ///< between the plates [radian]
-    double moment = 0.0;    ///< work for each radian: half of what both plates exert about y, and what the forces on them do as
-                            ///< their centres move [force * length]
+    double moment = 0.0;    ///< work for each radian: half of what both plates exert about y, and what the forces on them, and on
+                            ///< a core that is guided, do as their places move once the strand is
+                            ///< drawn [force * length]
     double at_plate = 0.0;  ///< about y, at the far plate's centre alone [force * length]
     double tension = 0.0;   ///< of the core and all wires along the far plate's normal [force]
 };
@@ -83,10 +111,10 @@ struct BendingState {
 template <simulation::Model M>
 BendingState measure_bending(const simulation::Simulator<M>& simulator, const StrandParameters& parameters,
                              const Bending& bending = {}) {
-    const double arc = (1.0 + bending.strain) * parameters.length;
     const Vec3 middle(0.0, 0.0, 0.5 * parameters.length);
     BendingState state;
     state.angle = simulator.amplitude(bend);
+    const double arc = bending.arc(parameters.length, state.angle);
     for (const double end : {0.0, 1.0}) {
         std::vector<scene::Station> sections;
         for (Index fibre = 0; fibre < parameters.wires(); ++fibre) sections.push_back({fibre, end});
@@ -96,6 +124,10 @@ BendingState measure_bending(const simulation::Simulator<M>& simulator, const St
         state.moment += part * wrench.moment.y() + wrench.force.dot(arc_velocity(arc, state.angle, part));
         state.at_plate = wrench.moment.y();
         state.tension = wrench.force.dot(Vec3(std::sin(part * state.angle), 0.0, std::cos(part * state.angle)));
+    }
+    for (Index n = 1; bending.guided && n < parameters.elements; ++n) {
+        const double at = static_cast<double>(n) / static_cast<double>(parameters.elements);
+        state.moment += simulator.reaction({0, at}).dot(arc_velocity(arc, state.angle, at - 0.5));
     }
     return state;
 }
