@@ -64,8 +64,11 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     separation.name = "separation";
     separation.forced_orders = scales.ordered, separation.gap_limit_when_cut = false, separation.damping = slack;
     separation.until = until_separated(parted);
-    // By pair: thin fibres that lie in thick ones are parted as far as fibres of their mean radius are, if that goes with ease.
-    if (scales.thickest > r) separation.largest_fraction = std::min(most_fraction, 0.5 * (1.0 + scales.thickest / r));
+    // By pair: thin fibres that lie in thick ones are parted as far as fibres of their mean radius are, and what orders part
+    // under a pull, be it many radii deep, by one radius: beyond it searches see too little of what comes.
+    const double whole_radius = pulled && pull.first && scales.ordered ? std::max(1.0, r / limit) : 1.0,
+                 mean_radius = scales.thickest > r ? 0.5 * (1.0 + scales.thickest / r) : 1.0;
+    separation.largest_fraction = std::min(most_fraction, std::max(whole_radius, mean_radius));
     separation.most_increments = settle.separation_increments;
     Stage<M> tension = common;
     tension.name = "tension";
