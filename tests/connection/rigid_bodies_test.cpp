@@ -6,6 +6,7 @@
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/simulation/part_overlaps.hpp>
 #include <fibrant/simulation/programme.hpp>
 #include <fibrant/solver/float_block_cholesky.hpp>
 #include <near.hpp>
@@ -13,8 +14,10 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -505,6 +508,76 @@ TEST_CASE("contact across the seams of a cell is contact: where a cell is cut ch
         // Elements that are bent have a kink between them, and at a seam both sides of it touch.
         CHECK(own == test::near(energy, shift == 2.0 ? 1e-4 : 1e-8));
     }
+}
+
+TEST_CASE("what is in each other across a seam parts, and what passes through another one there is seen") {
+    constexpr double r = radius, width = 40.0 * r, side = 20.0 * r;
+    const auto scene_of = [&](double off, double aside) {  // two rods along x, beside the seam, and one across: all go on
+        scene::Assembly assembly;
+        assembly.add(scene::PeriodicCell{});
+        const std::array<Vec3, 3> from{Vec3(0, off, 0), Vec3(0, width - off, 0), Vec3(-0.3 * r, 0, 10.0 * r)},
+            along{Vec3(side, 0, 0), Vec3(side, 0, 0), Vec3(0, width, 0)};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Index f = assembly.add({.from = from[k],
+                                          .to = from[k] + along[k],
+                                          .section = scene::circular(r),
+                                          .material = {young, 0.3},
+                                          .elements = 4,
+                                          .director = k < 2 ? Vec3(Vec3::UnitZ()) : Vec3(Vec3::UnitX())});
+            assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), along[k], 0});
+            assembly.hold_axial_rotation({f, 0.5});
+            assembly.hold_position({f, 0.5}, k == 1 ? Mat3(Vec3(1, aside, 1).asDiagonal()) : Mat3(Mat3::Identity()));
+        }
+        for (Index f = 0; f < 3; ++f) {
+            assembly.add(scene::FibreImage{f, {{0, 1.0}}});
+            for (const double back : {-1.0, 0.0, 1.0}) assembly.add(scene::FibreImage{f, {{0, back}, {2, 1.0}}});
+        }
+        return assembly;
+    };
+    {
+        simulation::Simulator<Tied> simulator(scene_of(3.0 * r, 1.0), parameters());
+        const auto& mesh = simulator.mesh();
+        const contact::Swept::Of<Tied::Beam> swept(mesh, contact::Detection{});
+        const auto moved = [&](std::initializer_list<Index> fibres, const Vec3& by) {
+            Vector state = simulator.state();
+            for (const Index f : fibres)
+                for (Index a = 0; a < mesh.node_count(f); ++a) state.segment<3>(3 * mesh.node_vector(f, a)) += by;
+            scene::copy_to_images(mesh.layout(), state);
+            return state;
+        };
+        const auto passed = [&](std::initializer_list<Index> fibres, const Vec3& by) {
+            return swept.first(simulator.state(), moved(fibres, by), simulator.contacts(), false, true);
+        };
+        const auto through = passed({1}, Vec3(0, 12.0 * r, 0));
+        REQUIRE(through);
+        CHECK(through->image);
+        CHECK(through->fibre + through->other == 1);
+        CHECK(contact::text(*through).find("with the image of fibre 0 across a seam at ") != std::string::npos);
+        CHECK_FALSE(passed({1}, Vec3(0, 4.0 * r, 0)));               // they touch
+        CHECK_FALSE(passed({0, 1, 2}, Vec3(7.0 * r, 30.0 * r, r)));  // all go together
+        CHECK(passed({2}, Vec3(0, 0, -20.0 * r)));                   // beyond the end of a rod, which goes on there
+        CHECK_FALSE(passed({2}, Vec3(0, 0, -7.0 * r)));
+    }
+    simulation::PartingParameters parting;
+    const auto part = [&](double aside) {
+        return simulation::part_overlaps<Tied>(scene_of(0.6 * r, aside), parameters(), parting);
+    };
+    for (const double aside : {0.0, 1.0}) {  // the second one is free to move aside, or is held and goes along
+        CAPTURE(aside);
+        const simulation::Parting found = part(aside);
+        CAPTURE(found.reason);
+        CHECK(found.before.depth == test::near(0.8 * r, 1e-9));
+        CHECK(found.before.fibre_i + found.before.fibre_j == 1);
+        CHECK(found.parted);
+        CHECK(found.after.depth <= 0.01 * r);
+        for (const Index f : found.loosened) CHECK(f < 3);
+        CHECK(found.loosened.empty() == (aside == 0.0));
+    }
+    parting.loosen_holds = false;
+    const simulation::Parting held = part(1.0);
+    CHECK_FALSE(held.parted);
+    CHECK(held.reason.find("the image of fibre") != std::string::npos);
+    CHECK(held.after.fibre_i + held.after.fibre_j == 1);
 }
 
 TEST_CASE("a scene that starts from the state of another one ties the means that it finds there") {

@@ -101,8 +101,11 @@ public:
             },
             grain());
     }
-    /// What messages call a fibre, an element with the places of its ends at rest, and a node with its place where a run begins.
-    std::string label(Index f) const { return scene::label("fibre", f, fibre(f).name); }
+    /// What messages call a fibre, an element with its ends at rest, and a node with its place at the start.
+    std::string label(Index f) const {
+        if (const Index of = fibre(f).image_of; of >= 0) return "the image of " + label(of) + " across a seam";
+        return scene::label("fibre", f, fibre(f).name);
+    }
     std::string element_label(Index f, Index e) const {
         const double u = static_cast<double>(e);
         return label(f) + ", element " + std::to_string(e) + ", from " + scene::text(position(rest_state_, f, u)) + " to " +

@@ -22,6 +22,7 @@ namespace fibrant::contact {
 struct PassedPair {
     Index fibre = -1, other = -1;  ///< fibres, the same one twice, or a fibre and a tool
     bool tool = false;
+    bool image = false;                     ///< `other` is not the fibre itself but its image across a seam of a cell
     double along = 0.0, along_other = 0.0;  ///< where on the fibres, over their rest lengths, in [0, 1]; 0 for a tool
     Vec3 place =
         Vec3::Zero();  ///< half way between the two when they are too close; of a tool, on the fibre as it is at the end [length]
@@ -36,7 +37,8 @@ struct PassedPair {
 inline std::string text(const PassedPair& pair) {
     const auto at = [](double along) { return " at " + core::text(std::round(1e4 * along) / 1e4) + " of its length"; };
     std::string what = "fibre " + std::to_string(pair.fibre) + at(pair.along) + " changes sides with ";
-    what += pair.tool                  ? "tool " + std::to_string(pair.other)
+    what += pair.tool    ? "tool " + std::to_string(pair.other)
+            : pair.image ? "the image of fibre " + std::to_string(pair.other) + " across a seam" + at(pair.along_other)
             : pair.fibre == pair.other ? "itself" + at(pair.along_other)
                                        : "fibre " + std::to_string(pair.other) + at(pair.along_other);
     what += ", near (";
@@ -65,7 +67,8 @@ struct NoPassage : core::Inactive {
 /// deep, and what creeps through in many small motions has to come by there. Straight ways cut corners: one that goes round
 /// another one by 120 degrees at once counts as having passed, and is cut. Where a fibre ends, it may slip off: within a touching
 /// distance of its ends only centrelines that meet have passed. Pairs that a law with a limited gap parts have no side yet, and
-/// those in a forced order may go the way it forces them. Owes nothing to contact elements, and what moves together costs
+/// those in a forced order may go the way it forces them. Images of fibres across the seams of a cell are fibres, which go on
+/// where another one ends. Owes nothing to contact elements, and what moves together costs
 /// nothing. The number of threads changes no bit.
 struct Swept {
     using Parameters = core::NoParameters;
@@ -93,6 +96,7 @@ struct Swept {
             PassedPair answer = passed.front();
             for (const PassedPair& pair : passed)
                 if (pair.time < answer.time) answer = pair;
+            if (answer.image) answer.other = mesh_->source(answer.other);
             for (const PassedPair& pair : passed) answer.touch = std::min(answer.touch, pair.touch);
             return answer;
         }
@@ -114,7 +118,7 @@ struct Swept {
             std::vector<double> half;  // smaller half width of each fibre
 
             Lines(const beam::Mesh<B>& of, const Vector& from, const Vector& to) : mesh{of}, first(1, 0) {
-                for (Index f = 0; f < mesh.fibre_count(); ++f) {
+                for (Index f = 0; f < mesh.line_count(); ++f) {
                     const scene::CrossSection& section = mesh.fibre(f).section;
                     half.push_back(std::min(section.semi_axis_1, section.semi_axis_2));
                     double bend = 0.0;
@@ -127,7 +131,7 @@ struct Swept {
                 }
                 segments.resize(core::at(first.back()));
                 core::parallel_for(
-                    mesh.fibre_count(),
+                    mesh.line_count(),
                     [&](Index f) {
                         Vec3 start = mesh.position(from, f, 0.0), start_motion = mesh.position(to, f, 0.0) - start;
                         for (Index k = first[core::at(f)]; k < first[core::at(f) + 1]; ++k) {
@@ -150,9 +154,21 @@ struct Swept {
             /// Is it further than `length` from the ends of its fibre, along it at rest?
             bool inside(Index k, double s, double length) const noexcept {
                 const beam::MeshFibre& fibre_of = mesh.fibre(of(k));
-                if (fibre_of.closed) return true;
+                if (fibre_of.closed || fibre_of.goes_on) return true;
                 const double arc = abscissa(k, s) * fibre_of.element_length;
                 return arc > length && fibre_of.length() - arc > length;
+            }
+            /// Segments k < l of two fibres that may touch: of a fibre and the image that goes on where it ends, those beyond an
+            /// arc; images do not touch each other.
+            bool apart(Index k, Index l) const noexcept {
+                const beam::MeshFibre& image = mesh.fibre(of(l));
+                if (image.image_of < 0) return true;
+                if (mesh.fibre(of(k)).image_of >= 0) return false;
+                if (image.image_of != of(k) || image.joins == 0) return true;
+                const double end = static_cast<double>(image.elements);
+                const double arc =
+                    image.joins > 0 ? end - abscissa(k, 1.0) + abscissa(l, 0.0) : end - abscissa(l, 1.0) + abscissa(k, 0.0);
+                return arc * image.element_length > self_contact_arc(image.section.radius(), image.element_length);
             }
             /// Segments k < l of one fibre that may touch.
             bool beyond_arc(Index k, Index l) const noexcept {
@@ -174,7 +190,7 @@ struct Swept {
 
         template <class Contacts>
         std::vector<PassedPair> between_fibres(const Lines& lines, const Contacts& contacts, bool forced) const {
-            if (mesh_->fibre_count() < 2 && !self_) return {};
+            if (mesh_->line_count() < 2 && !self_) return {};
             std::vector<double> margins(lines.segments.size());
             for (std::size_t k = 0; k < margins.size(); ++k) margins[k] = share * lines.half[core::at(lines.fibre[k])];
             proximity::MovingTree tree(lines.segments, margins);
@@ -183,7 +199,7 @@ struct Swept {
             const std::vector<Fibres> parting = pairs_that_part(contacts);
             tree.visit_pairs([&](Index task, Index k, Index l) {
                 const Index i = lines.of(k), j = lines.of(l);
-                if (i == j && (!self_ || !lines.beyond_arc(k, l))) return;
+                if (i == j ? !self_ || !lines.beyond_arc(k, l) : !lines.apart(k, l)) return;
                 const proximity::MovingSegment &a = lines.segments[core::at(k)], &b = lines.segments[core::at(l)];
                 const double widths = lines.half[core::at(i)] + lines.half[core::at(j)],
                              motion = proximity::relative_motion(a, b);
@@ -208,7 +224,8 @@ struct Swept {
                              lines.along(l, at.t)))
                     return;
                 PassedPair pair;
-                pair.fibre = i, pair.other = j, pair.along = lines.along(k, at.s), pair.along_other = lines.along(l, at.t);
+                pair.fibre = i, pair.other = j, pair.image = mesh_->fibre(j).image_of >= 0, pair.along = lines.along(k, at.s),
+                pair.along_other = lines.along(l, at.t);
                 pair.place =
                     0.5 * (a.start_at(at.time) + at.s * a.chord_at(at.time) + b.start_at(at.time) + at.t * b.chord_at(at.time));
                 pair.motion = (motion_b - motion_a).norm(), pair.time = at.time, pair.left = after / widths;

@@ -75,6 +75,55 @@ struct PartingModel : SameTools<M>, SameConnections<M> {
     using Passage = contact::NoPassage;  // where fibres lie in each other they have no sides yet
 };
 
+/// What is seen beside each other: fibres and their images across seams, those that go on where one ends as one.
+struct SeenLines {
+    observe::Snapshot shot;
+    std::vector<Index> line;  ///< of the mesh, the first of those that each is of
+};
+template <beam::BeamElement Beam>
+SeenLines seen_lines(const beam::Mesh<Beam>& mesh, const Vector& state) {
+    SeenLines seen;
+    seen.shot = snapshot_of(mesh, state);
+    for (Index f = 0; f < mesh.fibre_count(); ++f) seen.line.push_back(f);
+    if (mesh.line_count() == mesh.fibre_count()) return seen;
+    std::vector<std::vector<Index>> images(core::at(mesh.fibre_count()));  // of each fibre, and itself: few
+    for (Index f = 0; f < mesh.line_count(); ++f) images[core::at(mesh.source(f))].push_back(f);
+    std::vector<observe::FibreSnapshot> all;
+    seen.line.clear();
+    for (Index f = 0; f < mesh.fibre_count(); ++f) {
+        const observe::FibreSnapshot& own = seen.shot.fibres[core::at(f)];
+        const double near = 1e-6 * mesh.fibre(f).length();  // rounding of what is drawn
+        const std::vector<Index>& lines = images[core::at(f)];
+        const auto end = [&](Index line, bool last) {
+            return mesh.position(state, line, last ? static_cast<double>(mesh.fibre(line).elements) : 0.0);
+        };
+        const auto next = [&](Index line) {
+            for (const Index other : lines)
+                if (!own.closed && other != line && (end(line, true) - end(other, false)).norm() < near) return other;
+            return Index{-1};
+        };
+        std::vector<char> follows(lines.size(), 0);
+        for (const Index line : lines)
+            for (std::size_t k = 0; k < lines.size(); ++k)
+                if (next(line) == lines[k]) follows[k] = 1;
+        for (std::size_t k = 0; k < lines.size(); ++k) {
+            if (follows[k] != 0) continue;
+            observe::FibreSnapshot joined = own;
+            for (std::vector<Vec3>* values : {&joined.position, &joined.director_1, &joined.director_2}) values->clear();
+            for (Index line = lines[k]; line >= 0; line = next(line)) {
+                const Vec3 moved = end(line, false) - own.position.front();
+                for (std::size_t a = joined.position.empty() ? 0 : 1; a < own.position.size(); ++a) {
+                    joined.position.push_back(own.position[a] + moved);
+                    joined.director_1.push_back(own.director_1[a]), joined.director_2.push_back(own.director_2[a]);
+                }
+            }
+            all.push_back(std::move(joined)), seen.line.push_back(lines[k]);
+        }
+    }
+    seen.shot.fibres = std::move(all);
+    return seen;
+}
+
 template <Model M>
 class OverlapParter {
 public:
@@ -119,6 +168,10 @@ public:
         parting.start = simulator.state().head(mesh.start_state().size());
         parting.parted = parting.after.depth <= allowed_;
         parting.reason = parting.parted ? std::string() : contact::text(parting.after, mesh);
+        for (Index& fibre : deep) fibre = mesh.source(fibre);
+        for (contact::Overlap* overlap : {&parting.before, &parting.after})
+            for (Index* fibre : {&overlap->fibre_i, &overlap->fibre_j})
+                if (*fibre >= 0) *fibre = mesh.source(*fibre);
         return reason;
     }
 
@@ -195,10 +248,12 @@ private:
     contact::Overlap deepest(Simulator<Parted>& simulator, std::vector<Index>& deep) const {
         contact::Overlap found = overlap(simulator, false, deep);
         if constexpr (M::Beam::nodes == 3) {
-            const observe::LeastGap least = observe::least_gap(
-                simulator.snapshot(), typename M::Proximity(parameters_.proximity),
+            const SeenLines seen = seen_lines(simulator.mesh(), simulator.state());
+            observe::LeastGap least = observe::least_gap(
+                seen.shot, typename M::Proximity(parameters_.proximity),
                 parameters_.contact.detection.self_contact ? observe::OwnTurns::counted : observe::OwnTurns::left_out);
             if (-least.gap > found.depth) {
+                least.fibre_i = seen.line[core::at(least.fibre_i)], least.fibre_j = seen.line[core::at(least.fibre_j)];
                 const double radius = std::min(simulator.mesh().fibre(least.fibre_i).section.radius(),
                                                simulator.mesh().fibre(least.fibre_j).section.radius());
                 found = {least.fibre_i, least.fibre_j, 0.0, 0.0, -least.gap, radius, radius, least.position};
@@ -220,7 +275,8 @@ private:
 
 /// Parts all fibres of a scene that lie in each other where it begins: side by side, one in the other, thin in thick, on one
 /// line, in themselves where the model's contacts are searched for that. Forced orders of the scene are kept; where there is
-/// none, fibres part by least motion (contact::OverlapSides).
+/// none, fibres part by least motion (contact::OverlapSides). Images across the seams of a cell are seen as fibres; messages name
+/// them so, and fields by the fibre that they are of.
 ///
 /// Contact is shown a limited gap (Durville, section 15.3.5), without friction, and what moves is bedded in springs to its last
 /// place; then the fibres come to rest under the allowed penetration. What is held stays; fibres that do not part so take their
