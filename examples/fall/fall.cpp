@@ -73,8 +73,9 @@ scene::Assembly nest(const Shape& shape, const scene::ElasticMaterial& material)
 bool solve(example::SceneReader& file, example::Output& output) {
     Shape shape;
     scene::ElasticMaterial material;
-    double density = core::unset, damping = 0.0, mu = 0.2, depth = 0.1, line = core::unset, crossing = core::unset,
-           gravity = core::unset, duration = core::unset, error = 0.02, restraint = 0.0, missing = 1e-3, pressing = core::unset;
+    double density = core::unset, damping = 0.0, mu = 0.2, reversible = 0.02, depth = 0.1, line = core::unset,
+           crossing = core::unset, gravity = core::unset, duration = core::unset, error = 0.02, restraint = 0.0, missing = 1e-3,
+           pressing = core::unset;
     Index steps = 100;
     file.read("nest", "fibres", shape.fibres, example::between(1, 1000), "fibres, one above the other");
     file.require("nest", "radius", shape.radius, example::positive(), "length", "radius of a fibre");
@@ -91,6 +92,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("material", "damping", damping, example::not_negative(), "time",
               "time over which strains resist their rate; a mode of angular frequency w is damped by w/2 of it");
     example::read_friction(file, mu, "coefficient of friction of fibres on each other, on the floor and on the drum");
+    example::read_reversible_displacement(file, reversible);
     file.require("contact", "line_stiffness", line, example::positive(), "force/length^2",
                  "reaction over depth of fibres along each other, on the floor and on the drum, a unit of length");
     file.require("contact", "crossing_stiffness", crossing, example::positive(), "force/length",
@@ -120,7 +122,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     model.beam.laws = {{.stretch = damping, .bending = damping, .turning = damping}};
     model.normal.law = {.line_stiffness = line, .line_exponent = 1.0, .crossing_stiffness = crossing, .crossing_exponent = 1.0};
     model.normal.damping = restraint;
-    model.friction = {.friction_coefficient = mu, .reversible_displacement = 0.02 * shape.radius};
+    model.friction = {.friction_coefficient = mu, .reversible_displacement = reversible * shape.radius};
     model.contact.stiffness.allowed_penetration = depth * shape.radius;
     model.acts.inertia.density = density, model.acts.inertia.allowed_error = error * shape.radius;
     model.acts.gravity.weight = Vec3(0, 0, -density * gravity);
