@@ -73,7 +73,7 @@ scene::Assembly nest(const Shape& shape, const scene::ElasticMaterial& material)
 bool solve(example::SceneReader& file, example::Output& output) {
     Shape shape;
     scene::ElasticMaterial material;
-    double density = core::unset, damping = 0.0, mu = 0.2, depth = 0.1, reversible = 0.02, line = core::unset,
+    double density = core::unset, damping = 0.0, mu = 0.2, reversible = 0.02, depth = 0.1, line = core::unset,
            crossing = core::unset, gravity = core::unset, duration = core::unset, error = 0.02, restraint = 0.0, missing = 1e-3,
            pressing = core::unset;
     Index steps = 100;
@@ -92,13 +92,13 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("material", "damping", damping, example::not_negative(), "time",
               "time over which strains resist their rate; a mode of angular frequency w is damped by w/2 of it");
     example::read_friction(file, mu, "coefficient of friction of fibres on each other, on the floor and on the drum");
+    example::read_reversible_displacement(file, reversible);
     file.require("contact", "line_stiffness", line, example::positive(), "force/length^2",
                  "reaction over depth of fibres along each other, on the floor and on the drum, a unit of length");
     file.require("contact", "crossing_stiffness", crossing, example::positive(), "force/length",
                  "reaction over depth of fibres that cross, and of ends");
     file.read("contact", "damping", restraint, example::not_negative(), "time/length",
               "d: what closes at the speed v pushes 1 + d v times as hard, and what opens less; 0: no impact loses anything");
-    example::read_reversible_displacement(file, reversible);
     example::read_allowed_penetration(file, depth, "how deep fibres may be in each other at the end, over the radius");
     file.require("motion", "gravity", gravity, example::not_negative(), "length/time^2", "acceleration of gravity, downwards");
     file.require("motion", "duration", duration, example::positive(), "time", "how long the fibres move");
