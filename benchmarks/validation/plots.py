@@ -101,8 +101,9 @@ class Plot:
         out.append(f'<text x="16" y="{middle}" text-anchor="middle" transform="rotate(-90 16 {middle})">{self.labels[1]}</text>')
         out += self.parts
         for k, (name, colour, dash, is_point) in enumerate(self.keys):
-            b = (y1 + 16 + 18 * k) if keys_at == "top" else (y0 - 12 - 18 * (len(self.keys) - 1 - k))
-            a = x0 + 12
+            below = 18 * (len(self.keys) - 1 - k)
+            b = {"top": y1 + 16 + 18 * k, "bottom": y0 - 12 - below, "middle": middle + 60 - below}[keys_at]
+            a = middle + 100 if keys_at == "middle" else x0 + 12
             if is_point:
                 fill = "white" if dash == "hollow" else colour
                 out.append(f'<circle cx="{a + 12}" cy="{b - 4}" r="4" fill="{fill}" {self._pen(colour)}/>')
@@ -307,14 +308,14 @@ def conductor():
     layers = rows(data / "layers.csv")
     free = sum(float(row["sum_EI_N_m2"]) for row in layers)
     stuck = free + sum(float(row["sum_EA_y2_N_m2"]) for row in layers)
-    plot = Plot("a conductor of 61 wires, bent under 40 kN", "curvature [1/m]", "moment [N m]", (0, 0.5), (0, 100))
+    plot = Plot("a conductor of 61 wires, bent under 40 kN", "curvature [1/m]", "moment [N m]", (0, 0.5), (0, 90))
     plot.points(measured, colours[1], "measured", hollow=True)
     found = False
     for k, path in enumerate(sorted(folder.glob("conductor*/increments.csv"))):
         curve = [(0.0, 0.0)] + [(math.radians(float(row["angle_deg"])) / conductor_length * 1e3, float(row["moment"]) * 1e-3)
                                 for row in rows(path) if row["stage"] == "loading"]
         found = True
-        plot.line(curve, colours[0 if k == 0 else k + 1], f"computed, {path.parent.name}")
+        plot.line(curve, colours[0 if k == 0 else 2], "computed" if k == 0 else "computed, wires that do not roll")
         print(f"\n{path.parent.name}: curvature [1/m], moment computed [N m], measured, ratio, tension [kN]")
         tensions = [float(row["tension"]) * 1e-3 for row in rows(path) if row["stage"] == "loading"]
         for x, y in measured:
@@ -327,9 +328,9 @@ def conductor():
         print(f"slope at the start {curve[1][1] / curve[1][0]:.0f}, at the end {(y1 - y0) / (x1 - x0):.1f} N m^2;",
               f"bounds {stuck:.0f} and {free:.1f}")
     if found:
-        plot.line([(0.0, 0.0), (100.0 / stuck, 100.0)], colours[3], "all wires stuck", "5 4")
+        plot.line([(0.0, 0.0), (90.0 / stuck, 90.0)], colours[3], "all wires stuck", "5 4")
         plot.line([(0.0, 0.0), (0.5, 0.5 * free)], colours[4], "all wires free", "2 3")
-        plot.write(folder / "conductor.svg", "bottom")
+        plot.write(folder / "conductor.svg", "middle")
 
 
 for part in (knots, mats, twist, knits, conductor):

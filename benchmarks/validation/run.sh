@@ -44,7 +44,12 @@ for set in ${*:-closed knots knits conductor mats}; do
         compute textile "$here/knit.toml" knit_$courses --set weft_knit.courses=$courses
       done
       ;;
-    conductor) compute strand_bending "$here/conductor.toml" conductor ;;
+    conductor)
+      compute strand_bending "$here/conductor.toml" conductor
+      # A Poisson's ratio next to -1 makes wires forty times as stiff in torsion, and changes nothing else of weight: none rolls.
+      compute strand_bending "$here/conductor.toml" conductor_no_rolling --set material.poisson_ratio=-0.98 \
+        --set inner.poisson_ratio=-0.98 --set loading.angle_deg=1.0
+      ;;
     *) echo "$set is none of closed, knots, knits, conductor, mats"; exit 2 ;;
   esac
 done
