@@ -46,7 +46,7 @@ for set in ${*:-closed knots knits conductor mats}; do
       ;;
     conductor)
       compute strand_bending "$here/conductor.toml" conductor
-      # A Poisson's ratio next to -1 makes wires forty times as stiff in torsion, and changes nothing else of weight: none rolls.
+      # A Poisson's ratio next to -1 makes wires 65 times as stiff in torsion, and changes nothing else of weight: none rolls.
       compute strand_bending "$here/conductor.toml" conductor_no_rolling --set material.poisson_ratio=-0.98 \
         --set inner.poisson_ratio=-0.98 --set loading.angle_deg=1.0
       ;;
