@@ -5,7 +5,8 @@
 // search_bench [options] FILE...      prints CSV, one line a scene and search; `search_bench --help` tells the options
 // Times are of the processor for one thread (set OMP_NUM_THREADS=1 and pin it), else on the wall. Ratios are to nanoflann
 // used directly in the same run and to the floor: the vertices read once and the filter on the wanted pairs. `bytes` are those
-// that a search keeps, without the pairs, over the segments.
+// that a search keeps, without the pairs, and `peak_bytes` the most that its first call allocates at once, with the pairs; both
+// over the segments.
 
 #include "search/growth.hpp"
 #include "search/motion.hpp"
@@ -16,6 +17,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdlib>
+#include <fstream>
+#include <malloc.h>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -24,13 +29,39 @@ using namespace fibrant::benchmarks;
 
 namespace {
 
+void* allocated(void* memory) {
+    if (memory == nullptr) throw std::bad_alloc();
+    Allocations::tell(static_cast<std::int64_t>(malloc_usable_size(memory)));
+    return memory;
+}
+void given_back(void* memory) noexcept {
+    if (memory != nullptr) Allocations::tell(-static_cast<std::int64_t>(malloc_usable_size(memory)));
+    std::free(memory);
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) { return allocated(std::malloc(std::max<std::size_t>(bytes, 1))); }
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+    const auto unit = std::max(static_cast<std::size_t>(alignment), sizeof(void*));
+    return allocated(std::aligned_alloc(unit, (std::max<std::size_t>(bytes, 1) + unit - 1) / unit * unit));
+}
+void operator delete(void* memory) noexcept { given_back(memory); }
+void operator delete(void* memory, std::size_t) noexcept { given_back(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { given_back(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { given_back(memory); }
+
+namespace {
+
 struct Options {
-    bool brute = false, self = false, own = false, growth = false;
+    bool brute = false, self = false, own = false, growth = false, series = false;
     int repeats = 7, refine = 1;
     std::optional<double> motion{}, reach{};  // radii
     double radius = core::unset;
     std::size_t mat = 0;
     std::vector<std::string> files{};
+    std::vector<int> threads{core::threads()};
+    std::string plot{};
 };
 
 /// One search of the table.
@@ -72,7 +103,8 @@ void advise(const Scene& scene, const std::vector<Row>& rows, const std::vector<
         pairs_a_segment > 30.0 ? ": many, coarser segments would do" : "");
 }
 
-void print_table(const Scene& scene, const Options& options) {
+/// @return time [ms] against segments, one point a search
+std::vector<observe::PlotLine> print_table(const Scene& scene, const Options& options) {
     const std::vector<proximity::Centreline> lines = scene.centrelines(options.self);
     const double reach = scene.margin, r = *std::min_element(scene.radius.begin(), scene.radius.end());
     proximity::GridSearch grid;
@@ -100,17 +132,18 @@ void print_table(const Scene& scene, const Options& options) {
     verlet.pairs(lines, reach);
     rows.push_back({"VerletSearch listed", [&] { return Call{.pairs = verlet.pairs(lines, reach)}; }});
     const auto brute = [&] { return Call{.pairs = proximity::BruteSearch{}.pairs(lines, reach)}; };
-    const Pairs exact = options.brute ? brute().pairs : grid.pairs(lines, reach);
+    const Pairs exact = options.brute ? brute().pairs : proximity::GridSearch{}.pairs(lines, reach);
     if (options.brute) rows.push_back({"BruteSearch", brute, true});
     const double least = floor_seconds(options.repeats, lines, reach, exact);
     const auto segments = static_cast<double>(scene.segments());
     double peer = 0.0;
     const auto print = [&](const std::string& name, const Figures& f) {
         if (peer == 0.0) peer = f.total;
-        std::printf("%s,%s,%.0f,%zu,%016llx,%zu,%zu,%.3f,%.3f,%.3f,%.3f,%.3f,%.4f,%.2f,%.0f\n", scene.name.c_str(), name.c_str(),
-                    segments, f.pairs.size(), static_cast<unsigned long long>(checksum(f.pairs)), lacking(exact, f.pairs),
-                    lacking(f.pairs, exact), 1e3 * f.build, 1e3 * f.query, 1e3 * f.total, 1e3 * f.least, 1e3 * f.most,
-                    f.total / peer, f.total / least, static_cast<double>(f.bytes) / segments);
+        std::printf("%s,%s,%d,%.0f,%zu,%016llx,%zu,%zu,%.3f,%.3f,%.3f,%.3f,%.3f,%.4f,%.2f,%.0f,%.0f\n", scene.name.c_str(),
+                    name.c_str(), core::threads(), segments, f.pairs.size(), static_cast<unsigned long long>(checksum(f.pairs)),
+                    lacking(exact, f.pairs), lacking(f.pairs, exact), 1e3 * f.build, 1e3 * f.query, 1e3 * f.total, 1e3 * f.least,
+                    1e3 * f.most, f.total / peer, f.total / least, static_cast<double>(f.bytes) / segments,
+                    static_cast<double>(f.peak) / segments);
         std::fflush(stdout);
     };
     std::vector<Turn> turns;
@@ -125,13 +158,89 @@ void print_table(const Scene& scene, const Options& options) {
     print("floor", {.total = least, .least = least, .most = least, .pairs = exact});
     print("zones from the pairs", figures.back());
     advise(scene, rows, figures, static_cast<double>(exact.size()) / segments);
+    std::vector<observe::PlotLine> curves;
+    for (std::size_t m = 0; m < rows.size(); ++m) curves.push_back({rows[m].name, {{segments, 1e3 * figures[m].total}}});
+    return curves;
+}
+
+/// Lines of a plot; those of one name are one.
+void add(std::vector<observe::PlotLine>& all, const std::vector<observe::PlotLine>& lines, const std::string& prefix) {
+    for (const observe::PlotLine& line : lines) {
+        const std::string name = prefix + line.name;
+        const auto same = std::find_if(all.begin(), all.end(), [&](const auto& known) { return known.name == name; });
+        auto& points = (same == all.end() ? all.emplace_back(observe::PlotLine{name, {}}) : *same).points;
+        points.insert(points.end(), line.points.begin(), line.points.end());
+        std::sort(points.begin(), points.end());
+    }
+}
+
+void use_threads(int threads) {
+#if defined(_OPENMP)
+    omp_set_num_threads(threads);
+#else
+    if (threads > 1) throw std::invalid_argument("--threads: this build has one thread");
+#endif
+}
+
+void measure(const Options& options) {
+    std::vector<Scene> scenes;
+    for (const std::string& file : options.files) {
+        scenes.push_back(read_scene(file, options.radius));
+        if (options.series) scenes.back().require_fibres_of(scenes.front(), file);
+    }
+    if (options.series && scenes.size() < 2) throw std::invalid_argument("--series: files of two moments at least");
+    if (options.mat > 0) scenes.push_back(random_mat(options.mat));
+    if (scenes.empty() && !options.growth) throw std::invalid_argument("nothing to search: a file, --mat or --growth");
+    for (Scene& scene : scenes) {
+        if (options.reach) scene.margin = *options.reach * *std::min_element(scene.radius.begin(), scene.radius.end());
+        scene.refine(options.refine);
+        proximity::detail::SegmentTable(scene.centrelines(options.self), scene.margin);  // refuses before anything is printed
+    }
+    std::ofstream picture;
+    if (!options.plot.empty() && (picture.open(options.plot), !picture))
+        throw std::invalid_argument(options.plot + ": cannot be written");
+    const bool moves = options.series || options.motion;
+    if (options.growth)
+        print_growth_head();
+    else if (moves)
+        print_motion_head();
+    else
+        std::printf(
+            "scene,search,threads,segments,pairs,checksum,missed,extra,build_ms,query_ms,total_ms,least_ms,most_ms,"
+            "ratio_to_nanoflann,ratio_to_floor,bytes,peak_bytes\n");
+    std::vector<observe::PlotLine> curves;
+    for (const int threads : options.threads) {
+        use_threads(threads);
+        const std::string on = options.threads.size() > 1 ? std::to_string(threads) + " threads, " : "";
+        if (options.growth && scenes.empty()) add(curves, growth_of_mats(options.repeats), on);
+        if (options.series)
+            add(curves,
+                measure_motion(scenes.front(), static_cast<int>(scenes.size()) - 1, options.self,
+                               [&](Scene& scene, int call) { scene.points = scenes[static_cast<std::size_t>(call)].points; }),
+                on);
+        else
+            for (const Scene& scene : scenes) {
+                const std::string of = on + (scenes.size() > 1 && (moves || options.growth) ? scene.name + ", " : "");
+                if (options.growth)
+                    add(curves, growth_of(scene, options.repeats, options.self), of);
+                else if (options.motion)
+                    add(curves, measure_motion(scene, 50, options.self, straight_on(scene, *options.motion)), of);
+                else
+                    add(curves, print_table(scene, options), of);
+            }
+    }
+    if (options.plot.empty()) return;
+    picture << observe::log_log_svg({.title = "Contact search",
+                                     .x_label = moves && !options.growth ? "call" : "segments",
+                                     .y_label = "ms",
+                                     .lines = std::move(curves)});
+    if (!picture.flush()) throw std::runtime_error(options.plot + ": cannot be written");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
     Options options;
-    std::string kind;
     CLI::App app{
         "How long does each proximity search take on your fibres, does it find exactly the pairs of the exact search, and how "
         "does it stand to others?"};
@@ -140,42 +249,32 @@ int main(int argc, char** argv) try {
                    "pairs closer than touching and this many of the least radii; 0.5, or what a scene says")
         ->check(CLI::Range(0.0, 1e6));
     app.add_option("--radius", options.radius, "of fibres whose file has none [length]")->check(CLI::PositiveNumber);
-    app.add_option("--mat", options.mat, "a random mat of so many segments as one more scene")
-        ->check(CLI::Range(64, 100'000'000));
+    CLI::Option* mat = app.add_option("--mat", options.mat, "a random mat of so many segments as one more scene")
+                           ->check(CLI::Range(64, 100'000'000));
     app.add_option("--refine", options.refine, "each segment cut into so many")->check(CLI::Range(1, 1000));
     app.add_option("--repeats", options.repeats, "calls of each search, in turn with the others")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
-    app.add_option("--motion", options.motion, "instead: 50 calls between which each vertex moves by so many radii")
-        ->check(CLI::Range(0.0, 1e6));
+    CLI::Option* motion =
+        app.add_option("--motion", options.motion, "instead: 50 calls between which each vertex moves by so many radii")
+            ->check(CLI::Range(0.0, 1e6));
     app.add_flag("--brute", options.brute, "the exact search is brute force, which is quadratic; else GridSearch");
     app.add_flag("--own", options.own, "without the other libraries but nanoflann");
     app.add_flag("--self", options.self, "fibres pair with themselves too");
-    app.add_flag("--growth", options.growth, "instead: random mats of 1e4 to 1e6 segments, exponents");
+    CLI::Option* growth =
+        app.add_flag("--growth", options.growth,
+                     "instead: each scene and 2, 4, 8 copies side by side, or mats of 1e4 to 1e6 segments; exponents");
+    app.add_flag("--series", options.series, "instead: the files are one scene at one moment after another")
+        ->excludes(motion)
+        ->excludes(mat)
+        ->excludes(growth);
+    growth->excludes(motion);
+    app.add_option("--threads", options.threads, "numbers of threads, such as 1,2: all is measured with each")
+        ->delimiter(',')
+        ->check(CLI::Range(1, 1024));
+    app.add_option("--plot", options.plot, "an SVG file of the times");
     CLI11_PARSE(app, argc, argv);
-    if (options.growth) {
-        measure_growth(options.repeats);
-        return 0;
-    }
-    std::vector<Scene> scenes;
-    for (const std::string& file : options.files) scenes.push_back(read_scene(file, options.radius));
-    if (options.mat > 0) scenes.push_back(random_mat(options.mat));
-    if (scenes.empty()) throw std::invalid_argument("nothing to search: a file, --mat or --growth");
-    for (Scene& scene : scenes) {
-        if (options.reach) scene.margin = *options.reach * *std::min_element(scene.radius.begin(), scene.radius.end());
-        scene.refine(options.refine);
-        proximity::detail::SegmentTable(scene.centrelines(options.self), scene.margin);  // refuses before anything is printed
-    }
-    if (!options.motion)
-        std::printf(
-            "scene,search,segments,pairs,checksum,missed,extra,build_ms,query_ms,total_ms,least_ms,most_ms,ratio_to_nanoflann,"
-            "ratio_to_floor,bytes\n");
-    for (const Scene& scene : scenes) {
-        if (options.motion)
-            measure_motion(scene, *options.motion, 50, options.self);
-        else
-            print_table(scene, options);
-    }
+    measure(options);
 } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

@@ -7,6 +7,7 @@
 #include <fibrant/proximity/exact_filter.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <functional>
 #include <iterator>
 #include <string>
@@ -15,6 +16,27 @@
 namespace fibrant::benchmarks {
 
 using Pairs = std::vector<proximity::SegmentPair>;
+
+/// What is allocated while somebody watches; a program's operator new and delete tell it.
+struct Allocations {
+    inline static std::atomic<bool> watched{false};
+    inline static std::atomic<std::int64_t> held{0}, most{0};  ///< since `watch` [byte]
+
+    static void watch() noexcept { held = 0, most = 0, watched = true; }
+    /// Ends it. @return the most that was held at once beyond what there was [byte]
+    static std::size_t end() noexcept {
+        watched = false;
+        return static_cast<std::size_t>(most.load());
+    }
+    /// @param bytes  < 0 for what is given back
+    static void tell(std::int64_t bytes) noexcept {
+        if (!watched.load(std::memory_order_relaxed)) return;
+        const std::int64_t now = held.fetch_add(bytes, std::memory_order_relaxed) + bytes;
+        std::int64_t before = most.load(std::memory_order_relaxed);
+        while (now > before && !most.compare_exchange_weak(before, now, std::memory_order_relaxed)) {
+        }
+    }
+};
 
 /// One call of a search. `built` is when its structure stood; 0 if it has no such moment.
 struct Call {
@@ -28,7 +50,8 @@ struct Figures {
     double build = 0.0, query = 0.0, total = 0.0;  ///< medians [s]; halves 0 where not known
     double least = 0.0, most = 0.0;                ///< of the total [s]
     std::size_t bytes = 0;
-    Pairs pairs{};  ///< sorted
+    std::size_t peak = 0;  ///< allocated at once in the first call, pairs with it [byte]
+    Pairs pairs{};         ///< sorted
 };
 
 /// Calls methods in turn, so that all see the same machine. A method that is called once only has `once` set.
@@ -46,7 +69,9 @@ inline std::vector<Figures> measure_in_turn(int repeats, const std::vector<Turn>
         for (std::size_t m = 0; m < turns.size(); ++m) {
             if (turns[m].once && k > 0) continue;
             const double start = time_now();
+            if (k == 0) Allocations::watch();
             Call call = turns[m].method();
+            if (k == 0) all[m].peak = Allocations::end();
             const double end = time_now();
             times[m].total.push_back(end - start);
             if (call.built > 0.0) times[m].build.push_back(call.built - start), times[m].query.push_back(end - call.built);

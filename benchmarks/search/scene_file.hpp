@@ -42,6 +42,22 @@ struct Scene {
             line = fine;
         }
     }
+    /// Sets a copy beside all there is, so that boxes around both meet where they are shortest: twice as much, as dense.
+    void double_up() {
+        Vec3 low = points.front().front(), high = low;
+        for (const auto& line : points)
+            for (const Vec3& x : line) low = low.cwiseMin(x), high = high.cwiseMax(x);
+        Index axis = 0;
+        const double thickest = 2.0 * *std::max_element(radius.begin(), radius.end()),
+                     shortest = (high - low).minCoeff(&axis) + thickest;
+        const std::size_t n = points.size();
+        for (std::size_t f = 0; f < n; ++f) {
+            points.push_back(points[f]), radius.push_back(radius[f]);
+            for (Vec3& x : points.back()) x[axis] += shortest;
+        }
+    }
+    /// @throws std::invalid_argument naming the file and the first fibre that is not as in another scene
+    void require_fibres_of(const Scene& other, const std::string& file) const;
     /// @param self  fibres pair with themselves too, by self_skip
     std::vector<proximity::Centreline> centrelines(bool self) const {
         std::vector<proximity::Centreline> lines(points.size());
@@ -105,6 +121,20 @@ inline void read_binary(std::ifstream& in, const std::string& path, Scene& scene
 }
 
 }  // namespace detail
+
+inline void Scene::require_fibres_of(const Scene& other, const std::string& file) const {
+    const auto need = [&](const std::string& place, const std::string& what, auto own, auto wanted) {
+        if (own != wanted)
+            exchange::refuse_file(file, place,
+                                  what + " = " + core::text(static_cast<double>(own)) + ", but " + other.name + " has " +
+                                      core::text(static_cast<double>(wanted)));
+    };
+    need("", "fibres", points.size(), other.points.size());
+    for (std::size_t f = 0; f < points.size(); ++f) {
+        need(detail::of_fibre(f), "vertices", points[f].size(), other.points[f].size());
+        need(detail::of_fibre(f), "radius", radius[f], other.radius[f]);
+    }
+}
 
 /// A scene of any file of centrelines that the toolkit reads (.csv .vtk .vtp .obj .bcc .inp .tg3), or of a scene file.
 /// .fpl, little endian: 8 bytes FIBPOL01; u64 fibres F, vertices V; f64 margin; u64 self_skip; F f64 radii; F + 1 u64 first
