@@ -38,7 +38,7 @@ enum class Anchor {
 /// How a strand is held and drawn while it is bent.
 struct Bending {
     Anchor anchor = Anchor::both_plates;  ///< where wires are held along the strand
-    double strain = 0.0;  ///< the arc between the plates is longer than the strand by this [1], > -1
+    double strain = 0.0;                  ///< the arc between the plates is longer than the strand by this [1], > -1
     /// Angle up to which the strain grows in proportion; 0: it is there from the first increment on [radian], >= 0. A wire on a
     /// helix of angle b that nothing presses goes inwards by strain / tan(b)^2 of its distance: so a large strain takes
     /// increments.
