@@ -33,14 +33,14 @@ struct Scene {
     /// Fibres are softer across than along, or friction is not Coulomb's.
     bool own_laws() const { return transverse() || !settle.friction_shape.coulomb(); }
     fibrant::solver::IterationParameters iteration;
-    std::string linear_solver = "two_level_pcg";  ///< one of solver::AnySolver
-    int subdomains = 64;                          ///< of runs that ranks share
-    Index threads = 0;                            ///< 0: as many as the machine has
-    bool paraview = true;                         ///< write the ParaView files
-    Index paraview_every = 1;                     ///< increments
-    bool pictures = true;                         ///< write the view and the slices
-    std::string unit = "mm";                      ///< of lengths, for the pictures
-    std::string told;                             ///< what the fabric is and how it is settled, line by line
+    std::string linear_solver = "automatic";  ///< one of solver::AnySolver
+    int subdomains = 64;                      ///< of runs that ranks share
+    Index threads = 0;                        ///< 0: as many as the machine has
+    bool paraview = true;                     ///< write the ParaView files
+    Index paraview_every = 1;                 ///< increments
+    bool pictures = true;                     ///< write the view and the slices
+    std::string unit = "mm";                  ///< of lengths, for the pictures
+    std::string told;                         ///< what the fabric is and how it is settled, line by line
 };
 
 /// Sections that say what the fabric is, and those that say how it is settled as well.

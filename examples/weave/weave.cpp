@@ -123,7 +123,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
                   "parts that the scene is cut into for the ranks; results depend on it, and not on the ranks");
     });
     scene.subdomains = static_cast<int>(subdomains);
-    file.check(scene.linear_solver == "two_level_pcg", "solver", "linear_solver", "\"two_level_pcg\", which ranks can share");
+    file.check(scene.linear_solver == "two_level_pcg" || scene.linear_solver == "automatic", "solver", "linear_solver",
+               "\"two_level_pcg\", which ranks can share, or \"automatic\", which is the same here");
 #else
     const weave::Scene scene = weave::read_fabric(file, [] {});
 #endif

@@ -56,14 +56,30 @@ TEST_CASE("a strategy that reaches its limit hands over to the next, and what wa
     CHECK(solver.use().float_block_cholesky == 2);
 }
 
-TEST_CASE("no factor is made that is larger than allowed: the best that iterations gave is returned") {
+TEST_CASE("systems after a hard one begin with what took over, until the next analysis") {
     const test::SyntheticSystem system = touching();
     const Vector b = test::random_load(system.layout(), 1);
     Vector x;
-    solver::AutomaticSolver solver{{.few_couplings = 0.0, .two_level_limit = 3, .largest_fill = 10.0}};
+    solver::AutomaticSolver solver{{.few_couplings = 0.0, .two_level_limit = 3}};
+    CHECK(test::solve(solver, system, b, 1e-9, x).iterations > 3);
+    solver.prepare(system);
+    CHECK(solver.solve(system, b, 1e-9, x).iterations <= 3);  // nothing in vain
+    CHECK(test::residual_of(system, b, x) < 1.1e-9);
+    CHECK(solver.use().fallbacks == 1);
+    CHECK(test::solve(solver, system, b, 1e-9, x).iterations > 3);
+    CHECK(solver.use().fallbacks == 2);
+}
+
+TEST_CASE("no factor is made that is larger than allowed: two levels go on as long as they may, and the best is returned") {
+    const test::SyntheticSystem system = touching();
+    const Vector b = test::random_load(system.layout(), 1);
+    Vector x;
+    solver::AutomaticSolver patient{{.few_couplings = 0.0, .two_level_limit = 3, .largest_fill = 10.0}};
+    CHECK(test::solve(patient, system, b, 1e-9, x).status == solver::SolveStatus::converged);
+    solver::AutomaticSolver solver{{.few_couplings = 0.0, .two_level_limit = 3, .longest = 4, .largest_fill = 10.0}};
     const solver::SolveReport report = test::solve(solver, system, b, 1e-9, x);
     CHECK(report.status == solver::SolveStatus::iteration_limit);
-    CHECK(report.iterations == 3);
+    CHECK(report.iterations == 3 + 4);
     CHECK(report.residual == test::near(test::residual_of(system, b, x), 1e-6));
     CHECK(solver.use().two_level_pcg == 1);
     CHECK(solver.use().last_fallback.ends_with("larger than allowed"));
@@ -126,6 +142,7 @@ TEST_CASE("parameters of the automatic strategy that mean nothing are refused by
     CHECK(test::refusal([] { Solver{{.few_couplings = -1.0}}; }).starts_with("AutomaticSolver.few_couplings = -1"));
     CHECK(test::refusal([] { Solver{{.fibre_block_limit = 0}}; }).starts_with("AutomaticSolver.fibre_block_limit = 0"));
     CHECK(test::refusal([] { Solver{{.two_level_limit = 0}}; }).starts_with("AutomaticSolver.two_level_limit = 0"));
+    CHECK(test::refusal([] { Solver{{.longest = 299}}; }).starts_with("AutomaticSolver.longest = 299, but it must be >= 300"));
     CHECK(test::refusal([] { Solver{{.largest_fill = -1.0}}; }).starts_with("AutomaticSolver.largest_fill = -1"));
 }
 

@@ -6,6 +6,7 @@
 #include <fibrant/solver/fibre_block_pcg.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <span>
@@ -63,19 +64,23 @@ Index count_couplings(const System& system) {
 /// Starts with FibreBlockPcg where few terms couple the chains and with TwoLevelPcg elsewhere; where that reaches its
 /// limit, goes on to the next, in the end FloatBlockCholesky. What is not wanted is not prepared.
 ///
-/// The choice depends on the present system alone, so no solve of a small system depends on another. What a strategy calls
-/// indefinite is Confirmed first, and then reported at once: that is for Newton's iteration to mend.
+/// Systems that follow one another are alike: where iterations have failed, the systems until the next analysis begin with what
+/// took over, so a hard one pays for iterations in vain once. Where a factor would be larger than allowed, two levels may take as
+/// long as they do alone. What a strategy calls indefinite is Confirmed first, and then reported at once: that is for Newton's
+/// iteration to mend.
 class AutomaticSolver {
 public:
     struct Parameters {
         double few_couplings = 1.0;   ///< couplings over chains up to which fibre blocks come first, >= 0 [1]
         int fibre_block_limit = 200;  ///< iterations before two levels are taken, > 0
-        int two_level_limit = 600;    ///< iterations before the whole is factored, > 0
+        int two_level_limit = 300;    ///< iterations before the whole is factored, which costs about as much, > 0
+        int longest = 2000;           ///< iterations of two levels where the factor is larger than allowed, >= two_level_limit
         double largest_fill = 2.5e8;  ///< entries of a factor that is allowed (4 bytes each), >= 0
         void validate() const {
             core::require_not_negative("AutomaticSolver.few_couplings", few_couplings);
             core::require_at_least("AutomaticSolver.fibre_block_limit", fibre_block_limit, 1);
             core::require_at_least("AutomaticSolver.two_level_limit", two_level_limit, 1);
+            core::require_at_least("AutomaticSolver.longest", longest, two_level_limit);
             core::require_not_negative("AutomaticSolver.largest_fill", largest_fill);
         }
     };
@@ -83,7 +88,7 @@ public:
     explicit AutomaticSolver(const Parameters& parameters)
         : parameters_{core::validated(parameters)},
           fibres_{{.iterative = {.iteration_limit = parameters.fibre_block_limit}, .largest_fill = parameters.largest_fill}},
-          levels_{{.iterative = two_levels(parameters), .largest_fill = parameters.largest_fill}},
+          levels_{{.iterative = two_levels(parameters.two_level_limit), .largest_fill = parameters.largest_fill}},
           factor_{{.largest_fill = parameters.largest_fill}} {}
 
     template <assembly::LinearSystem System>
@@ -91,12 +96,16 @@ public:
         fibres_.analyse(system);
         levels_.analyse(system);
         prepared_.fill(false);
+        levels_.iterative().limit(parameters_.two_level_limit);
+        proven_ = 0, too_large_ = false;
     }
     template <assembly::LinearSystem System>
     SolveStatus prepare(const System& system) {
         prepared_.fill(false);
         const double couplings = static_cast<double>(count_couplings(system));
-        first_ = couplings <= parameters_.few_couplings * static_cast<double>(core::count(system.layout().chains)) ? 0 : 1;
+        const std::size_t cheapest =
+            couplings <= parameters_.few_couplings * static_cast<double>(core::count(system.layout().chains)) ? 0 : 1;
+        first_ = std::max(cheapest, proven_);
         return status_ = prepare_strategy(first_, system);
     }
     template <assembly::LinearSystem System>
@@ -110,9 +119,17 @@ public:
             SolveReport report = with(strategy, [&](auto& solver) { return solver.solve(system, b, tolerance, x); });
             report.iterations += iterations;
             const bool last = strategy == 2 || report.status != SolveStatus::iteration_limit;
+            const bool alone = too_large_;
             if (last || !fall_back(strategy, system, report, tolerance)) {
+                if (too_large_ != alone) {  // once more, for as long as it takes
+                    levels_.iterative().limit(parameters_.longest);
+                    const int before = report.iterations;
+                    report = levels_.solve(system, b, tolerance, x);
+                    report.iterations += before;
+                }
                 ++*std::array{&use_.fibre_block_pcg, &use_.two_level_pcg, &use_.float_block_cholesky}[strategy];
                 if (strategy != first_) ++use_.fallbacks;
+                proven_ = std::max(proven_, strategy);
                 return report;
             }
             iterations = report.iterations;
@@ -125,9 +142,9 @@ public:
     std::string account() const { return "automatic: " + use_.text(); }
 
 private:
-    static TwoLevelPcg::Parameters two_levels(const Parameters& parameters) {
+    static TwoLevelPcg::Parameters two_levels(int limit) {
         TwoLevelPcg::Parameters own;
-        own.iteration_limit = parameters.two_level_limit;
+        own.iteration_limit = limit;
         return own;
     }
 
@@ -152,12 +169,13 @@ private:
              << " iterations, and " << tolerance << " was asked for";
         use_.last_fallback = text.str();
         if (prepared_[strategy + 1]) return true;
-        if (strategy == 1) {
+        if (strategy == 1 && !too_large_) {
             factor_.analyse(system);
-            if (static_cast<double>(factor_.iterative().fill()) > parameters_.largest_fill) {
-                use_.last_fallback += ", but the factor of the whole would be larger than allowed";
-                return false;
-            }
+            too_large_ = static_cast<double>(factor_.iterative().fill()) > parameters_.largest_fill;
+        }
+        if (strategy == 1 && too_large_) {
+            use_.last_fallback += ", but the factor of the whole would be larger than allowed";
+            return false;
         }
         return prepare_strategy(strategy + 1, system) != SolveStatus::not_finite;
     }
@@ -167,7 +185,8 @@ private:
     Confirmed<TwoLevelPcg> levels_;
     Confirmed<FloatBlockCholesky> factor_;
     std::array<bool, 3> prepared_{};
-    std::size_t first_ = 1;
+    std::size_t first_ = 1, proven_ = 0;  // the latter since the last analysis
+    bool too_large_ = false;              // the factor of the whole is
     SolveStatus status_ = SolveStatus::not_finite;
     StrategyUse use_;
 };

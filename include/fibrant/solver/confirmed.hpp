@@ -77,6 +77,7 @@ public:
     bool factored() const noexcept { return factored_; }
     /// Whose verdicts are confirmed.
     const Iterative& iterative() const noexcept { return iterative_; }
+    Iterative& iterative() noexcept { return iterative_; }
 
 private:
     template <class System>

@@ -51,6 +51,8 @@ public:
         apply(system.layout(), work_->coarse, r, z);
     }
 
+    /// From the next solve on so many iterations at most, > 0.
+    void limit(int iterations) { parameters_.iteration_limit = iterations; }
     /// Clusters of the last analysis.
     Index clusters() const { return work_->coarse.clusters(); }
     /// Unknowns of the coarse space.
