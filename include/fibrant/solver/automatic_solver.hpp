@@ -87,8 +87,12 @@ public:
     AutomaticSolver() : AutomaticSolver(Parameters{}) {}
     explicit AutomaticSolver(const Parameters& parameters)
         : parameters_{core::validated(parameters)},
-          fibres_{{.iterative = {.iteration_limit = parameters.fibre_block_limit}, .largest_fill = parameters.largest_fill}},
-          levels_{{.iterative = two_levels(parameters.two_level_limit), .largest_fill = parameters.largest_fill}},
+          fibres_{{.iterative = {.iteration_limit = parameters.fibre_block_limit},
+                   .largest_fill = parameters.largest_fill,
+                   .moderate_fill = 0.0}},
+          levels_{{.iterative = two_levels(parameters.two_level_limit),
+                   .largest_fill = parameters.largest_fill,
+                   .moderate_fill = 0.0}},  // a doubt is not factored: iterations that fail are
           factor_{{.largest_fill = parameters.largest_fill}} {}
 
     template <assembly::LinearSystem System>

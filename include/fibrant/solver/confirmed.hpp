@@ -55,7 +55,7 @@ public:
         if (status == SolveStatus::converged) return status;
         const double most =
             small(system) ? parameters_.largest_fill : std::min(parameters_.moderate_fill, parameters_.largest_fill);
-        heavy_ = heavy_ || !analysed(system, most);
+        heavy_ = heavy_ || most == 0.0 || !analysed(system, most);
         if (heavy_) return status == SolveStatus::indefinite ? SolveStatus::converged : status;
         // A verdict that holds is no doubt: the iteration goes on with the next tangent.
         const SolveStatus factored = factor_.prepare(system);
