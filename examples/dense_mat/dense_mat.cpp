@@ -86,7 +86,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("levels", "step", levels.step, example::between(1e-4, 1e3), "radius", "motion of the plate in an increment");
     file.read("levels", "damping", levels.damping, example::above(0.0, 1e6), "1",
               "stiffness of the damping, over what bends a tenth of a fibre; it moves on with the mean motion of the mat");
-    file.read("levels", "rest_share", levels.rest_share, example::inside(0.0, 1.0), "1",
+    file.read("levels", "rest_share", levels.rest_share, example::above(0.0, 0.01), "1",
               "a level is at rest when damping holds less than this part of the forces,");
     file.read("levels", "rest_increments", levels.rest_increments, example::between(1, 100000),
               "or so many increments have gone by");
@@ -124,8 +124,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
         example::Output own = output;
         own.folder = folder_of(k);
         std::filesystem::create_directories(own.folder);
-        simulation::Simulator<Mat> simulator(mat::boxed_mat(parameters, mat::random_fibres(parameters)),
-                                             mat::model_parameters<Mat>(parameters, levels));
+        const scene::Assembly boxed = mat::boxed_mat(parameters, mat::random_fibres(parameters));
+        simulation::Simulator<Mat> simulator(boxed, mat::model_parameters<Mat>(parameters, levels));
         example::Recorder recorder(own, 1.0, [&]() -> std::vector<observe::Column> {
             const mat::MatState state = mat::measure(simulator, parameters);
             return {{"volume_fraction", state.volume_fraction},
@@ -136,7 +136,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
                     {"elastic_energy", state.elastic_energy},
                     {"sine", state.sine}};
         });
-        simulation::Loading<Mat> loading = mat::pressing_by_levels<Mat>(parameters, levels);
+        simulation::Loading<Mat> loading = mat::pressing_by_levels<Mat>(parameters, levels, boxed);
         loading.checkpoint = own.checkpoint(), loading.resume = own.resume;
         loading.scene = own.told, loading.other_scene = own.other_scene;
         loading.stop = example::stopped;

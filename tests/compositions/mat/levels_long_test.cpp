@@ -58,10 +58,11 @@ TEST_CASE(
     std::vector<double> surplus(5, 0.0);  // of contacts over those at random, mean of all mats
     for (int seed = 1; seed <= mats; ++seed) {
         const mat::MatParameters parameters = dense(static_cast<std::uint64_t>(seed));
-        const auto fibres = mat::random_fibres(parameters);
-        simulation::Simulator<Mat> simulator(mat::boxed_mat(parameters, fibres), mat::model_parameters<Mat>(parameters, levels));
+        const std::vector<mat::MatFibre> fibres = mat::random_fibres(parameters);
+        const scene::Assembly boxed = mat::boxed_mat(parameters, fibres);
+        simulation::Simulator<Mat> simulator(boxed, mat::model_parameters<Mat>(parameters, levels));
         mat::LevelRecord<Mat> record(simulator, parameters);
-        const simulation::Report report = simulator.run(mat::pressing_by_levels<Mat>(parameters, levels), record);
+        const simulation::Report report = simulator.run(mat::pressing_by_levels<Mat>(parameters, levels, boxed), record);
         REQUIRE_MESSAGE(report.converged, report.reason);
         REQUIRE(record.levels().size() == 5);
         const double pieces = static_cast<double>(fibres.size()), whole = static_cast<double>(parameters.fibres);

@@ -4,6 +4,7 @@
 /// which they come to rest.
 
 #include <fibrant/compositions/mat/compaction.hpp>
+#include <fibrant/simulation/settling.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -25,11 +26,10 @@ struct LevelParameters {
     double softest = 1e-2;
     double rest_share = 5e-4;    ///< at rest, springs hold no more than this of the forces [1], > 0;
     Index rest_increments = 20;  ///< or so many increments have gone by: a mat with friction creeps for long, >= 1
-    /// Springs from every centre to its last place while fibres part, and while they are pressed, over what bends a fibre between
-    /// supports that are a tenth of its length apart [1], > 0. The latter go along with the mean motion, and are let go at each
-    /// level.
-    double parting = 1e-2, damping = 1e-3;
-    double looseness = 20.0;  ///< on the tolerances of contact and normal passes [1], in [1, 1000]
+    /// Springs from every centre to its last place while fibres are pressed, over what bends a fibre between supports that are a
+    /// tenth of its length apart [1], > 0. They go along with the mean motion, and are let go at each level.
+    double damping = 1e-3;
+    double looseness = 20.0;  ///< on the tolerances of contact and normal passes while a mat is pressed [1], in [1, 1000]
     void validate(const MatParameters& mat) const {
         core::require(ratio > 1.0, "LevelParameters.ratio", ratio, "> 1");
         const double first = mat.volume_fraction(mat.height);
@@ -40,9 +40,8 @@ struct LevelParameters {
         core::require_not_negative("LevelParameters.friction_coefficient", friction_coefficient);
         core::require_positive("LevelParameters.allowed_penetration", allowed_penetration);
         core::require_positive("LevelParameters.softest", softest);
-        core::require_positive("LevelParameters.rest_share", rest_share);
+        core::require(rest_share > 0.0 && rest_share <= 0.01, "LevelParameters.rest_share", rest_share, "> 0 and <= 0.01");
         core::require_at_least("LevelParameters.rest_increments", rest_increments, 1);
-        core::require_positive("LevelParameters.parting", parting);
         core::require_positive("LevelParameters.damping", damping);
         core::require_between("LevelParameters.looseness", looseness, 1.0, 1000.0);
     }
@@ -66,34 +65,35 @@ simulation::ModelParameters<M> model_parameters(const MatParameters& parameters,
     return model;
 }
 
-/// Stages "separation" and "rest", then "press" and "level" as often as there are levels. What is measured is the last increment
-/// of a level.
+/// The stages that settle any assembly, then "press" and "level" as often as there are levels. What is measured is the last
+/// increment of a level.
+/// @param mat  `boxed_mat` of these parameters
 template <simulation::Model M>
-simulation::Loading<M> pressing_by_levels(const MatParameters& parameters, const LevelParameters& levels) {
+simulation::Loading<M> pressing_by_levels(const MatParameters& parameters, const LevelParameters& levels,
+                                          const scene::Assembly& mat) {
     parameters.validate(), levels.validate(parameters);
     const double r = parameters.radius, unit = 192.0 * parameters.material.young_modulus * scene::circular(r).second_moment_1() /
                                                std::pow(0.1 * parameters.length, 3);
-    simulation::Stage<M> separation;
-    separation.name = "separation", separation.increments = 1, separation.most_increments = 200;
-    separation.gap_limit = levels.gap_limit * r, separation.damping = levels.parting * unit,
-    separation.looseness = levels.looseness;
-    separation.largest_displacement = 2.0 * r,
-    separation.until = simulation::until_separated(5.0 * levels.allowed_penetration * r);
-    simulation::Stage<M> rest = separation;
-    rest.name = "rest", rest.gap_limit.reset(), rest.damping_goes_on = true;
-    if constexpr (core::Active<typename M::Friction>)
-        rest.friction.emplace(typename M::Friction::Parameters{levels.friction_coefficient, 0.05 * r});
-    rest.damping_decay = 0.5, rest.damping_share = 1.0, rest.damping_calm = 1.5 * r;
-    rest.until = [share = levels.rest_share,
-                  depth = 6.0 * levels.allowed_penetration * r](const simulation::IncrementReport& increment) {
+    simulation::SettleParameters settle{.friction_coefficient = levels.friction_coefficient,
+                                        .allowed_penetration_over_radius = levels.allowed_penetration,
+                                        .gap_limit_over_radius = levels.gap_limit,
+                                        .rest_increments = levels.rest_increments,
+                                        .rest_share = levels.rest_share};
+    simulation::Loading<M> loading = simulation::settling<M>(mat, settle);
+    loading.stages.back().enough_increments = levels.rest_increments;
+    simulation::Stage<M> level;
+    level.name = "level", level.increments = 1, level.looseness = levels.looseness;
+    level.largest_displacement = 2.0 * r, level.damping_goes_on = true;
+    level.damping_decay = 0.5, level.damping_share = 1.0, level.damping_calm = 1.5 * r;
+    level.until = [share = levels.rest_share,
+                   depth = 6.0 * levels.allowed_penetration * r](const simulation::IncrementReport& increment) {
         return increment.damping <= share && increment.contact.greatest_penetration < depth;
     };
-    rest.enough_increments = levels.rest_increments, rest.most_increments = std::max<Index>(200, levels.rest_increments);
+    level.enough_increments = levels.rest_increments, level.most_increments = std::max<Index>(200, levels.rest_increments);
     simulation::Stage<M> press;
     press.name = "press", press.damping = levels.damping * unit, press.damping_carried = true, press.looseness = levels.looseness;
     press.largest_displacement = 2.0 * r;
-    simulation::Loading<M> loading;
-    loading.stages = {separation, rest};
+    level.damping = press.damping;
     // Springs that cuts make harder are let go again at each level: attempts that fail do little harm.
     loading.most_rejected = 2000;
     double height = parameters.height;
@@ -103,8 +103,6 @@ simulation::Loading<M> pressing_by_levels(const MatParameters& parameters, const
         press.ramps = {{mat::press_channel, parameters.height - to}};
         press.increments = std::max<Index>(1, static_cast<Index>(std::ceil((height - to) / (levels.step * r)))),
         press.most_increments = 400 + 40 * press.increments;
-        simulation::Stage<M> level = rest;
-        level.name = "level", level.friction.reset(), level.damping = press.damping;
         loading.stages.push_back(press), loading.stages.push_back(level);
         height = to;
     }
