@@ -62,7 +62,8 @@ TEST_CASE("the softest spring is what a wave over a fibre bends by, over the len
         return simulation::Calming::softest(beam::Mesh<B>(assembly, B()));
     };
     const double bending = 7300.0 * std::numbers::pi / 4.0 * std::pow(r, 4), wave = 2.0 * std::numbers::pi / length;
-    const double spring = bending * std::pow(wave, 4) * length / (2.0 * elements);  // nodes are as far apart in both
+    const double spring =
+        bending * std::pow(wave, 4) * length / static_cast<double>(2 * elements);  // nodes are as far apart in both
     CHECK(mesh_of(std::type_identity<beam::DirectorBeam<3>>(), elements) == test::near(spring));
     CHECK(mesh_of(std::type_identity<beam::RigidSectionRod>(), 2 * elements) == test::near(spring));
 }
