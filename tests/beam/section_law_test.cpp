@@ -42,6 +42,21 @@ double integrated(const std::array<double, 15>& e, double a, double b) {
     return sum;
 }
 
+TEST_CASE("what warping takes away from torsion is taken from the twist: it counts by the root of the factor, shear as it is") {
+    const SectionConstants flat = section_constants(scene::elliptical(0.03, 0.01));
+    SectionConstants plane = flat;
+    plane.torsion_factor = 1.0;
+    const SectionLaw<ElasticLaw::split, QuadraticStrain::none> warped(flat, material, 1.0), stiff(plane, material, 1.0);
+    const auto strained = [](double shear, double twist) {
+        std::array<double, 12> e{};
+        e[strain::c12] = shear - twist, e[strain::c21] = shear + twist;
+        return e;
+    };
+    for (const double twist : {-0.7, 0.0, 0.4})
+        CHECK(warped.energy(strained(0.3, twist)) ==
+              test::near(stiff.energy(strained(0.3, std::sqrt(flat.torsion_factor) * twist))));
+}
+
 TEST_CASE("the full law is the three-dimensional law integrated over the section") {
     const double a = 0.03, b = 0.02;
     SectionConstants constants = section_constants(scene::elliptical(a, b));

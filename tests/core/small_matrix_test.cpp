@@ -100,6 +100,23 @@ TEST_CASE("a turn about an axis leaves the axis, and takes what is across it aro
     CHECK((turn * across - (std::cos(0.7) * across + std::sin(0.7) * axis.cross(across))).norm() < 1e-15);
 }
 
+TEST_CASE("what a moment stiffens a turn by is the derivative of its part along the turn's own coordinates, made symmetric") {
+    const Vec3 moment(0.7, -1.3, 0.4);
+    for (const double size : {1e-3, 0.5, 0.99, 1.01, 2.5, 6.0}) {  // on both sides of where the series ends
+        const Vec3 psi = size * Vec3(1.0, -2.0, 0.5).normalized();
+        const double step = 1e-4;
+        Mat3 slope;
+        for (Index c = 0; c < 3; ++c) {
+            const auto part = [&](double by) {
+                return Vec3(core::spin_matrix(Vec3(psi + by * step * Vec3::Unit(c))).transpose() * moment);
+            };
+            slope.col(c) = (8.0 * (part(1.0) - part(-1.0)) - (part(2.0) - part(-2.0))) / (12.0 * step);
+        }
+        // Differences lose 1e-16 over the step, and have an error of its fourth power.
+        CHECK((core::spin_slope(psi, moment) - 0.5 * (slope + slope.transpose())).norm() < 1e-10 * moment.norm());
+    }
+}
+
 TEST_CASE("values are sorted, and equal ones stay in their order") {
     std::mt19937 random(11);
     for (std::size_t count = 0; count < 40; ++count) {

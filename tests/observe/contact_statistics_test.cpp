@@ -28,6 +28,12 @@ TEST_CASE("statistics count all elements, and weigh those that press") {
     CHECK(figures.orientation == Mat3(Vec3(0, 0, 1).asDiagonal()));
 }
 
+TEST_CASE("a penetration is weighed by the thinner of two fibres, whichever comes first") {
+    Snapshot turned = crossing_pair();
+    for (ContactSnapshot& contact : turned.contacts) std::swap(contact.fibre_i, contact.fibre_j);
+    CHECK(contact_statistics(turned).greatest_penetration_over_radius == test::near(0.05, 1e-12));
+}
+
 TEST_CASE("a histogram holds every active element once, the strongest in the last bin") {
     Snapshot snapshot = crossing_pair();
     const ContactSnapshot closed = snapshot.contacts.front();

@@ -63,6 +63,20 @@ TEST_CASE("a contact becomes a vertex whose normal force is its reaction along t
     CHECK(array_of<std::int64_t>(file, "offsets", "<Verts") == std::vector<std::int64_t>{1, 2});
 }
 
+TEST_CASE("a contact with a tool has the tool in the place of its first fibre, below all numbers of fibres") {
+    Snapshot snapshot = crossing_pair();
+    ToolContactSnapshot held;
+    held.fibre = 1, held.tool = 0;
+    held.normal = Vec3::UnitY(), held.gap = -0.01, held.reaction = 3.0, held.friction = {0.5, 0, 0};
+    snapshot.tool_contacts = {held, held};
+    snapshot.tool_contacts.back().tool = 2;
+    const std::string file = contact_data(snapshot).text();
+    CHECK(array_of<float>(file, "fibre_i") == std::vector<float>{0, 0, -1, -3});
+    CHECK(array_of<float>(file, "fibre_j") == std::vector<float>{1, 1, 1, 1});
+    CHECK(array_of<float>(file, "normal_force") == std::vector<float>{0, 0, 2, 0, 0, 0, 0, 3, 0, 0, 3, 0});
+    CHECK(array_of<float>(file, "friction") == std::vector<float>{0.3f, 0.4f, 0, 0, 0, 0, 0.5f, 0, 0, 0.5f, 0, 0});
+}
+
 TEST_CASE("an array that is not of the length of the points is refused by name") {
     PolyData data;
     data.add_point(Vec3::Zero());

@@ -45,6 +45,27 @@ TEST_CASE("two fibres that cross make one zone, which ends where their axes part
     }
 }
 
+TEST_CASE("a fibre that ends before it crosses another one is near from its end on, whichever end that is") {
+    for (const int segments : {1, 7})
+        for (const bool last : {true, false}) {
+            CAPTURE(segments);
+            CAPTURE(last);
+            FibreSet set{.name = "tee", .reach = 0.1};
+            set.add(straight({-1, 0, 0}, {1, 0, 0}, segments), 0.1);
+            const Vec3 far(0.3, -1, 0.2), end(0.3, -0.1, 0.2);
+            set.add(straight(last ? far : end, last ? end : far, 5), 0.1);
+            const auto zones = zones_of(set);
+            REQUIRE(zones.size() == 1);
+            // Within 0.3 of that end, which is 0.1 beside the axis and 0.2 above it.
+            const double half = std::sqrt(0.3 * 0.3 - 0.2 * 0.2 - 0.1 * 0.1), known = 2.0 / segments / 1024.0;
+            const double a = 2.0 * zones[0].a_i / segments - 1.0, b = 2.0 * zones[0].b_i / segments - 1.0;
+            CHECK(a <= 0.3 - half + 1e-12);
+            CHECK(a >= 0.3 - half - known);
+            CHECK(b >= 0.3 + half - 1e-12);
+            CHECK(b <= 0.3 + half + known);
+        }
+}
+
 TEST_CASE("fibres side by side make one zone whose ends face each other, whichever way they run") {
     FibreSet set{.name = "parallel", .reach = 0.01};
     set.add(straight({0, 0, 0}, {2, 0, 0}, 20), 0.1);

@@ -36,6 +36,19 @@ TEST_CASE("area and second moments are those of the ellipse") {
     CHECK(scene::circular(0.02).torsion_factor() == test::near(1.0, 1e-12));
 }
 
+TEST_CASE("the greatest extent of a section is the greatest of all directions, also where its directors are sheared") {
+    const scene::CrossSection section = scene::elliptical(0.03, 0.02);
+    for (const Vec3& g_2 : {Vec3(0, 1, 0), Vec3(0.6, 0.9, 0), Vec3(-0.5, 1.2, 0)}) {
+        const Vec3 g_1(1.1, 0.1, 0);
+        double most = 0.0;
+        for (int k = 0; k < 10000; ++k) {
+            const double angle = pi * k / 10000;
+            most = std::max(most, section.extent(g_1, g_2, Vec3(std::cos(angle), std::sin(angle), 0)));
+        }
+        CHECK(section.greatest_extent(g_1, g_2) == test::near(most, 1e-7));  // square of half a step between directions
+    }
+}
+
 TEST_CASE("macro-fibres have the area of the fibres they stand for, and the second moment of as many thin ones") {
     // The chapter's tow: 76 fibres of 40.2 um by 19 macro-fibres (eq. 3 and 4).
     const double d = 0.0402;

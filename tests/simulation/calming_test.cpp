@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Leaps: an equilibrium ends, and the next one is far.
+#include <fibrant/beam/rigid_section_rod.hpp>
+
 #include <near.hpp>
 #include <simulation/twisted_rod.hpp>
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <numbers>
+#include <type_traits>
 
 using namespace fibrant;
 
@@ -43,6 +48,24 @@ TEST_CASE("a twisted rod that leaps is followed to the equilibrium that a rod da
     const simulation::Report cut = alone.run(stopped);
     CHECK(!cut.converged);
     CHECK(cut.reason.find("stage slack") != std::string::npos);
+}
+
+TEST_CASE("the softest spring is what a wave over a fibre bends by, over the length of a node, whatever its elements") {
+    const Index elements = 6;
+    const double r = 0.02, length = 3.0;
+    const auto mesh_of = [&]<class B>(std::type_identity<B>, Index own) {
+        scene::Assembly assembly;
+        scene::FibreSpecification fibre;
+        fibre.from = Vec3::Zero(), fibre.to = Vec3(length, 0, 0), fibre.elements = own;
+        fibre.section = scene::circular(r), fibre.material = {7300.0, 0.3};
+        assembly.add(fibre);
+        return simulation::Calming::softest(beam::Mesh<B>(assembly, B()));
+    };
+    const double bending = 7300.0 * std::numbers::pi / 4.0 * std::pow(r, 4), wave = 2.0 * std::numbers::pi / length;
+    const double spring =
+        bending * std::pow(wave, 4) * length / static_cast<double>(2 * elements);  // nodes are as far apart in both
+    CHECK(mesh_of(std::type_identity<beam::DirectorBeam<3>>(), elements) == test::near(spring));
+    CHECK(mesh_of(std::type_identity<beam::RigidSectionRod>(), 2 * elements) == test::near(spring));
 }
 
 TEST_CASE("a run that is stopped in the middle of a leap goes on to the same bits") {

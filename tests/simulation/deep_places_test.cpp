@@ -3,7 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/simulation/audit.hpp>
+
+#include <near.hpp>
 
 using namespace fibrant;
 
@@ -81,6 +84,26 @@ TEST_CASE("what cannot be reached is told: the fibres, how deep they are, the bo
     for (const char* words : {"stage loading did not reach its end in ", ": fibres 0 and 1 stay ",
                               " radii deep in each other at (", "allowed are 1e-05: more elements"})
         CHECK(ended.report.reason.find(words) != std::string::npos);
+}
+
+TEST_CASE("an audit sees a fibre to its very ends") {
+    // Crossed by another one in the last eighth of either end's element, 1.5 radii away.
+    const double r = 0.01, length = 1.0, away = 0.03;
+    for (const bool last : {false, true}) {
+        scene::Assembly assembly;
+        const double x = last ? length - away : away;
+        for (const bool across : {false, true}) {
+            scene::FibreSpecification fibre;
+            fibre.from = across ? Vec3(x, -0.4, 1.5 * r) : Vec3(0, 0, 0),
+            fibre.to = across ? Vec3(x, 0.6, 1.5 * r) : Vec3(length, 0, 0);
+            fibre.section = scene::circular(r), fibre.material = {7300.0, 0.3}, fibre.elements = 4;
+            assembly.add(fibre);
+        }
+        const beam::Mesh<beam::RigidSectionRod> mesh(assembly, beam::RigidSectionRod());
+        const observe::Snapshot curves = simulation::detail::curves_of(mesh, mesh.rest_state());
+        // rounding of a difference of lengths
+        CHECK(observe::least_gap(curves, proximity::GridSearch{}).gap == test::near(-0.5 * r, 1e-9));
+    }
 }
 
 }  // namespace deep_places_test
