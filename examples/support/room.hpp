@@ -48,8 +48,8 @@ inline void require_room(const SceneReader& file, const std::string& section, co
     if (unknowns <= most && taken <= there.bytes) return;
     file.refuse(section, key,
                 "less: the scene has " + fibrant::observe::rounded(unknowns, 0) + " unknowns, which take some " +
-                    memory_text(taken) + " of memory, and may have 50000000 and " + memory_text(there.bytes) + ", which is what " +
-                    there.said);
+                    memory_text(taken) + " of memory, and may have 50000000 and " + memory_text(there.bytes) +
+                    ", which is what " + there.said);
 }
 
 /// Refuses elements that are far shorter than a fibre is thick, whose count is a slip of the pen.

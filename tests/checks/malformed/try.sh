@@ -58,7 +58,8 @@ try() {
 }
 # No message has words of C++: names of types and functions are nothing that a user gave. Paths may have them.
 finish() {
-  sed "s,$out,OUT,g; s,$scene,SCENE,g; s,$program,PROGRAM,g; s/ParaView//g; s/TexGen//g" "$out/messages" |
+  [ "$scene" != - ] || scene=$out/none
+  sed "s,$out/,OUT/,g; s,/$(basename "$scene"):,/SCENE:,g; s,$(dirname "$scene")/,/,g; s,$program,PROGRAM,g; s/ParaView//g; s/TexGen//g; s/DataFile//g; s/VTKFile//g; s/PolyData//g" "$out/messages" |
     grep -a -E '::|(^|[^a-z])std([^a-z]|$)|basic_|fibrant|_param|bad_alloc|what\(\)|terminate|[A-Z][a-z]+[A-Z][a-z]+' |
     cut -c 1-300 | sort -u > "$out/words"
   while IFS= read -r line; do
