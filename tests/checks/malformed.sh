@@ -200,7 +200,10 @@ while IFS='|' read -r key told required; do
       esac
       ;;
     "true or false"*) each "$key" 1 True '[true]' yes ;;
-    text*) each "$key" 3 true '["text"]' '"\u0000"' ;;
+    text*)
+      each "$key" 3 true '"\u0000"'
+      with "$key=[\"text\"]" ": $key"  # some may be a list of rows as well, which are told by their own names
+      ;;
     *) each "$key" 3 '[1]' '[["text"]]' '[true]' ;;
   esac
   of keys
