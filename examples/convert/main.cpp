@@ -7,9 +7,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <new>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -42,6 +44,34 @@ std::string report(const std::vector<exchange::FileCurve>& curves) {
     json.add("low", std::vector<double>(low.begin(), low.end())).add("high", std::vector<double>(high.begin(), high.end()));
     json.add("orientation_xx_yy_zz_xy_yz_xz", std::vector<double>{a(0, 0), a(1, 1), a(2, 2), a(0, 1), a(1, 2), a(0, 2)});
     return json.text() + "\n";
+}
+
+/// A number of an option that is a length or a factor: powers of it must still be numbers.
+void require_quantity(const char* option, double value) {
+    core::require(value >= 1e-30 && value <= 1e30, option, value, "finite and > 0, in any unit from 1e-30 to 1e+30");
+}
+
+/// Refuses names whose endings no writer knows, before any of them is written.
+void require_endings(const std::vector<std::string>& outputs) {
+    std::vector<std::string> known{"csv", "vtk", "vtp", "obj", "bcc", "inp", "stl", "glb"};
+#if defined(FIBRANT_WITH_PUGIXML)
+    known.emplace_back("tg3");
+#endif
+    for (const auto& more : {exchange::voxel_kinds(), exchange::yarn_kinds()})
+        known.insert(known.end(), more.begin(), more.end());
+    std::string all;
+    for (const std::string& kind : known) all += (all.empty() ? "." : ", .") + kind;
+    for (const std::string& name : outputs)
+        if (!exchange::is_one_of(exchange::kind_of(name), known))
+            core::refuse("--output", name, "a name that ends in one of " + all);
+}
+
+/// What a check of a grid says, without the names of what checked it.
+std::string told(const std::invalid_argument& error) {
+    std::string text = error.what();
+    for (const std::string name : {"VoxelGrid.counts: ", "grid_around: ", "grid_in: "})
+        if (text.compare(0, name.size(), name) == 0) text = text.substr(name.size());
+    return text;
 }
 
 }  // namespace
@@ -81,16 +111,24 @@ int main(int argc, char** argv) {
         return app.exit(error) == 0 ? 0 : 2;
     }
     try {
-        core::require_positive("--scale", clean.scale);
-        core::require_positive("--metre", metre);
+        require_quantity("--scale", clean.scale);
+        require_quantity("--metre", metre);
+        if (app.count("--voxels") > 0) require_quantity("--voxels", spacing);
+        if (app.count("--stations") > 0) require_quantity("--stations", stations);
         core::require(clean.largest_turn_deg > 0.0 && clean.largest_turn_deg <= 180.0, "--largest-turn", clean.largest_turn_deg,
                       "> 0 and <= 180");
+        if (app.count("--radius") > 0) require_quantity("--radius", radius);
+        if (outputs.empty() && !wanted) core::refuse("--output", "not given", "given, or --report");
+        require_endings(outputs);
         std::vector<exchange::FileCurve> curves = exchange::read_curves(input, clean);
         if (app.count("--radius") > 0) {
-            core::require_positive("--radius", radius);
             for (exchange::FileCurve& curve : curves) curve.radius = radius, curve.radii.clear();
         }
-        if (outputs.empty() && !wanted) core::refuse("--output", "not given", "given, or --report");
+        double length = 0.0;
+        for (const exchange::FileCurve& curve : curves)
+            for (std::size_t k = 1; k < curve.points.size(); ++k) length += (curve.points[k] - curve.points[k - 1]).norm();
+        core::require(stations == 0.0 || length / stations <= 1e6, "--stations", stations,
+                      "larger, for at most a million sections");
         std::optional<exchange::Voxels> voxels;
         std::vector<exchange::FileYarn> yarns;
         for (const std::string& name : outputs) {
@@ -104,14 +142,16 @@ int main(int argc, char** argv) {
                 if (std::isnan(curves[c].radius) && curves[c].radii.empty())
                     core::refuse("radius of curve " + std::to_string(c), "not given", "in the file, or --radius");
             if (cells && !voxels) {
-                core::require_positive("--voxels", spacing);
+                if (app.count("--voxels") == 0) core::refuse("--voxels", "not given", "given, for ." + kind);
                 const auto grid = [&] {
-                    if (!box.empty())
-                        return exchange::grid_in(Vec3(box[0], box[1], box[2]), Vec3(box[3], box[4], box[5]), spacing);
                     try {
-                        return exchange::grid_around(curves, spacing);
+                        return box.empty()
+                                   ? exchange::grid_around(curves, spacing)
+                                   : exchange::grid_in(Vec3(box[0], box[1], box[2]), Vec3(box[3], box[4], box[5]), spacing);
                     } catch (const std::invalid_argument& error) {
-                        core::refuse("--voxels", core::text(spacing), "larger: " + std::string(error.what()));
+                        const std::string what = told(error);
+                        if (what.compare(0, 5, "cells") != 0) throw std::invalid_argument("--box: " + what);
+                        core::refuse("--voxels", core::text(spacing), "larger: " + what);
                     }
                 };
                 voxels = exchange::voxels_of(curves, grid());
@@ -129,6 +169,9 @@ int main(int argc, char** argv) {
         }
         if (wanted) std::fputs(report(curves).c_str(), stdout);
         return 0;
+    } catch (const std::bad_alloc&) {
+        std::fprintf(stderr, "convert: %s: there is not enough memory: take larger --voxels or --stations\n", input.c_str());
+        return 2;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "convert: %s\n", error.what());
         return 2;

@@ -4,6 +4,7 @@
 
 #include "scene_reader.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -11,31 +12,44 @@
 
 namespace example {
 
-/// Memory of this machine [byte]; endless where it is not told.
-inline double machine_memory() {
+/// Memory that a run may take [byte], and what says so.
+struct Room {
+    double bytes;
+    const char* said;
+};
+/// The memory of this machine, or less where the process is allowed less; endless where neither is told.
+inline Room memory_room() {
     const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
-    return pages > 0 && size > 0 ? static_cast<double>(pages) * static_cast<double>(size) : 1e300;
+    const double there = pages > 0 && size > 0 ? static_cast<double>(pages) * static_cast<double>(size) : 1e300;
+    rlimit allowed{};
+    if (getrlimit(RLIMIT_AS, &allowed) == 0 && allowed.rlim_cur != RLIM_INFINITY && static_cast<double>(allowed.rlim_cur) < there)
+        return {static_cast<double>(allowed.rlim_cur), "this process may take (ulimit -v)"};
+    return {there, "this machine has"};
 }
-inline std::string gigabytes(double bytes) { return fibrant::observe::rounded(bytes / 1e9, bytes < 1e10 ? 1 : 0) + " GB"; }
+inline std::string memory_text(double bytes) {
+    if (bytes < 1e9) return fibrant::observe::rounded(bytes / 1e6, 0) + " MB";
+    return fibrant::observe::rounded(bytes / 1e9, bytes < 1e10 ? 1 : 0) + " GB";
+}
 
 /// Unknowns of so many fibres of quadratic elements, nine a node.
 inline double unknowns_of(Index fibres, Index elements) {
     return 9.0 * static_cast<double>(fibres) * (2.0 * static_cast<double>(elements) + 1.0);
 }
 
-/// Refuses a count of which a scene has more unknowns than this machine has memory for, or than 50 million.
+/// Refuses a count of which a scene has more unknowns than there is memory for, or than 50 million.
 /// @param section,key  of the count that is to blame
 /// @param bytes_each   that a run takes an unknown, contacts and solver included: 2600 were measured on woven fabrics of 89 and
 /// 356 thousand
 inline void require_room(const SceneReader& file, const std::string& section, const std::string& key, double unknowns,
                          double bytes_each = 2600.0) {
     constexpr double most = 5e7;
-    const double taken = unknowns * bytes_each, there = machine_memory();
-    if (unknowns <= most && taken <= there) return;
+    const double taken = unknowns * bytes_each;
+    const Room there = memory_room();
+    if (unknowns <= most && taken <= there.bytes) return;
     file.refuse(section, key,
                 "less: the scene has " + fibrant::observe::rounded(unknowns, 0) + " unknowns, which take some " +
-                    gigabytes(taken) + " of memory, and may have 50000000 and " + gigabytes(there) +
-                    ", which is what this machine has");
+                    memory_text(taken) + " of memory, and may have 50000000 and " + memory_text(there.bytes) +
+                    ", which is what " + there.said);
 }
 
 /// Refuses elements that are far shorter than a fibre is thick, whose count is a slip of the pen.

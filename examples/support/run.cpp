@@ -40,6 +40,23 @@ int threads_of(const std::string& text, const std::string& name) {
     return value;
 }
 
+#if defined(_OPENMP)
+/// Starts all threads now: later, where memory has run short, OpenMP would end the program without a word of ours.
+/// @param name  of what asked for them
+/// @throws std::invalid_argument where so many cannot be had
+void take_threads(const std::string& name) {
+    const int wanted = omp_get_max_threads(), more = threads_at_once(wanted - 1);
+    if (more < wanted - 1)
+        fibrant::core::refuse(name, std::to_string(wanted),
+                              "at most " + std::to_string(more + 1) + ", for no more threads can be had: " +
+                                  std::string(memory_room().said) + " " + memory_text(memory_room().bytes) + " of memory");
+    int started = 0;
+#pragma omp parallel reduction(+ : started)
+    started += 1;
+    static_cast<void>(started);
+}
+#endif
+
 }  // namespace
 
 bool solve(const Program& program, SceneReader& scene, Output& output, const std::string& threads,
@@ -60,6 +77,7 @@ bool solve(const Program& program, SceneReader& scene, Output& output, const std
         omp_set_num_threads(count);
     else
         threads_of(std::to_string(omp_get_max_threads()), threads_name + " is not given, and OMP_NUM_THREADS");
+    if (!scene.describes()) take_threads(count > 0 && threads.empty() ? scene.file() + ": solver.threads" : threads_name);
 #else
     static_cast<void>(count);
 #endif
@@ -95,6 +113,10 @@ int run(int argc, char** argv, const Program& program) {
         return app.exit(error) == 0 ? 0 : 2;
     }
     keep_freed_memory();
+    const auto limit = [] {
+        const Room there = memory_room();
+        return there.said + (" " + memory_text(there.bytes));
+    };
     const ListeningForStops listening;
     const auto fail = [&](const std::string& message) {
         std::fprintf(stderr, "%s: %s\n", program.name, message.c_str());
@@ -117,11 +139,10 @@ int run(int argc, char** argv, const Program& program) {
             return 0;
         }
     } catch (const std::bad_alloc&) {
-        return fail(scene + ": there is not enough memory for this scene (this machine has " + gigabytes(machine_memory()) +
-                    ", and this process had " + gigabytes(static_cast<double>(peak_memory_bytes())) + ")");
+        return fail(scene + ": there is not enough memory for this scene (" + limit() + ", and this process had " +
+                    memory_text(static_cast<double>(peak_memory_bytes())) + ")");
     } catch (const std::length_error&) {
-        return fail(scene + ": a count of this scene is larger than memory can hold (this machine has " +
-                    gigabytes(machine_memory()) + ")");
+        return fail(scene + ": a count of this scene is larger than memory can hold (" + limit() + ")");
     } catch (const std::exception& error) {
         return fail(error.what());
     }

@@ -47,9 +47,11 @@ inline VoxelGrid grid_around(const std::vector<FileCurve>& curves, double spacin
             low = low.cwiseMin(curve.points[k] - r), high = high.cwiseMax(curve.points[k] + r);
         }
     VoxelGrid grid{low, spacing, {}};
-    for (int k = 0; k < 3; ++k)
-        grid.counts[static_cast<std::size_t>(k)] =
-            std::max<Index>(1, static_cast<Index>(std::ceil((high[k] - low[k]) / spacing)));
+    for (int k = 0; k < 3; ++k) {
+        const double count = std::ceil((high[k] - low[k]) / spacing);
+        core::require(count <= 1e9, "grid_around: cells along an axis", count, "<= 1e9");  // more than an index may hold
+        grid.counts[static_cast<std::size_t>(k)] = std::max<Index>(1, static_cast<Index>(count));
+    }
     grid.validate();
     return grid;
 }
