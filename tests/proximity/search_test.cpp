@@ -183,6 +183,39 @@ TEST_CASE("neither a stray fibre nor long straight ones cost the precision and t
     CHECK(search.bytes() < 2000 * 400);  // eight pieces a segment at most
 }
 
+TEST_CASE_TEMPLATE("fibres that only just touch are found however far away another one is", Search, BvhSearch, GridSearch,
+                   AutomaticSearch) {
+    FibreSet set{.name = "pairs and a stray fibre", .reach = 0.1};
+    std::mt19937 random(4);
+    for (int k = 0; k < 200; ++k) {
+        const Vec3 at = Vec3(0.0, 3.7 * k, 0.0) + test::uniform_vector(random);
+        for (const double y : {0.0, 0.3 * (1.0 - 1e-9)}) set.add({at + Vec3(0, y, 0), at + Vec3(1, y, 0)}, 0.1);
+    }
+    Search search = make_search<Search>();
+    CHECK(search.pairs(set.centrelines(), set.reach).size() == 200);
+    set.add({Vec3::Constant(1e14), Vec3(1e14, 1e14, 1e14 + 1.0)}, 0.1);
+    CHECK(search.pairs(set.centrelines(), set.reach).size() == 200);
+}
+
+TEST_CASE_TEMPLATE("fibres of two sizes, few or many of each, dense or sparse, pair as by brute force", Search, BvhSearch,
+                   GridSearch, AutomaticSearch) {
+    Search search = make_search<Search>();
+    for (const double box : {1.0, 4.0})
+        for (const double ratio : {3.0, 10.0, 100.0})
+            for (const std::size_t thick : {1u, 20u, 100u}) {
+                FibreSet set = test::random_fibres(31, 200, 8, 0.02, 0.02, box);
+                for (std::size_t f = 0; f < thick; ++f) {
+                    set.radius[f] *= ratio;
+                    for (Vec3& x : set.points[f]) x = set.points[f][0] + 0.2 * ratio * (x - set.points[f][0]);
+                }
+                CAPTURE(box);
+                CAPTURE(ratio);
+                CAPTURE(thick);
+                const auto lines = set.centrelines();
+                CHECK(search.pairs(lines, set.reach) == BruteSearch{}.pairs(lines, set.reach));
+            }
+}
+
 TEST_CASE_TEMPLATE("pairs and zones have the same bits for one thread and for three", Search, EVERY_SEARCH) {
     const FibreSet set = test::random_fibres(21, 150, 15, 0.2, 0.4, 1.0);
     const auto lines = set.centrelines();

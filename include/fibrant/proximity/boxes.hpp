@@ -8,8 +8,6 @@
 #include <fibrant/proximity/exact_filter.hpp>
 
 #include <algorithm>
-#include <array>
-#include <utility>
 #include <vector>
 
 namespace fibrant::proximity::detail {
@@ -74,20 +72,19 @@ struct BoxFrame {
         mean_thickness = 2.0 * all.half / static_cast<double>(n) + table.reach();
         selfish = table.selfish();
         middle = 0.5 * all.low + 0.5 * all.high;
-        slack = rounding * 0.5 * (all.high - all.low).norm();
-        if (slack > crude * mean_thickness) close_gaps(table);
+        const double span = (all.high - all.low).norm();
+        slack = rounding * 0.5 * span;
+        table_ = &table;
+        if (slack > crude * mean_thickness) close_gaps(span);
     }
 
     /// Box of the part [from, to] of a segment, widened by `margin`.
     Box box(const SegmentRecord& record, double from, double to, double margin) const noexcept {
-        const Vec3 start{record.start.x - middle[0], record.start.y - middle[1], record.start.z - middle[2]};
+        const Vec3& origin = origin_.empty() ? middle : origin_[core::at(table_->fibre(record.segment))];
+        const Vec3 start{record.start.x - origin[0], record.start.y - origin[1], record.start.z - origin[2]};
         const Vec3 chord{record.chord.x, record.chord.y, record.chord.z};
         const Vec3 first = start + from * chord, last = start + to * chord;
-        Vec3 a = axes * first, b = axes * last;
-        if (!intervals_[0].empty()) {
-            const Vec3 taken = shift(axes * start, axes * (start + chord));
-            a -= taken, b -= taken;
-        }
+        const Vec3 a = axes * first, b = axes * last;
         const double wide = margin * (1.0 + 1.0e-6) + slack;
         Box made;
         made.group = selfish ? record.segment : record.group;
@@ -106,56 +103,49 @@ private:
     static constexpr double rounding = 3.0e-7;  // of single precision, five times
     static constexpr double crude = 0.1;        // slack over thickness beyond which boxes overlap that segments do not
 
-    /// What stands far apart comes together: along each axis the empty spaces between the intervals that segments cover are taken
-    /// out. Segments that may be close lie in one interval along every axis and move together. Without it one stray fibre costs
-    /// all others their precision.
-    void close_gaps(const SegmentTable& table) {
-        Vec3 extent = Vec3::Zero();
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            std::vector<std::pair<double, double>> covered(core::at(table.size()));
-            core::parallel_for(
-                table.size(),
-                [&](Index k) {
-                    const SegmentRecord record = table.record(static_cast<std::int32_t>(k));
-                    const Vec3 start{record.start.x - middle[0], record.start.y - middle[1], record.start.z - middle[2]};
-                    const Vec3 chord{record.chord.x, record.chord.y, record.chord.z};
-                    const auto row = static_cast<Index>(axis);
-                    const double a = (axes * start)[row], b = (axes * (start + chord))[row],
-                                 wide = (record.half + 0.5 * table.reach()) * (1.0 + 1.0e-6);
-                    covered[core::at(k)] = {std::min(a, b) - wide, std::max(a, b) + wide};
-                },
-                core::light_items);
-            std::sort(covered.begin(), covered.end());
-            std::vector<Interval>& found = intervals_[axis];
-            double high = covered.front().first, taken = high;
-            for (const auto& [from, to] : covered) {
-                if (found.empty() || from > high + mean_thickness) {
-                    if (!found.empty()) taken += from - high - mean_thickness;
-                    found.push_back({from, taken});
+    /// What stands far apart comes together: along each axis the empty spaces between the intervals that fibres cover are taken
+    /// out. Fibres that may be close lie in one interval along every axis: they get the same origin, to the last bit, and lose
+    /// nothing to rounding however far others are. Without it one stray fibre costs all others their precision.
+    void close_gaps(double span) {
+        const Index fibres = table_->fibres();
+        std::vector<Vec3> low(core::at(fibres)), high(low.size()), taken(low.size());
+        core::parallel_for(
+            fibres,
+            [&](Index f) {
+                const Centreline& line = table_->centreline(static_cast<std::int32_t>(f));
+                const double thick =
+                                 line.inflation.empty() ? 0.0 : *std::max_element(line.inflation.begin(), line.inflation.end()),
+                             wide = (line.radius + thick + 0.5 * table_->reach()) * (1.0 + 1.0e-6);
+                Vec3 least = Vec3::Constant(1.0e300), most = -least;
+                for (const Vec3& point : line.points) {
+                    const Vec3 x = axes * (point - middle);
+                    least = least.cwiseMin(x), most = most.cwiseMax(x);
                 }
-                high = std::max(high, to);
+                low[core::at(f)] = least.array() - wide, high[core::at(f)] = most.array() + wide;
+            },
+            core::light_items);
+        const double apart = mean_thickness + 1.0e-15 * span;  // the second: of double precision, ten times
+        Vec3 extent = Vec3::Zero();
+        std::vector<std::size_t> order(low.size());
+        for (Index axis = 0; axis < 3; ++axis) {
+            for (std::size_t f = 0; f < order.size(); ++f) order[f] = f;
+            std::sort(order.begin(), order.end(), [&](std::size_t f, std::size_t g) { return low[f][axis] < low[g][axis]; });
+            const double begin = low[order.front()][axis];
+            double end = begin, gaps = begin;
+            for (const std::size_t f : order) {
+                if (low[f][axis] > end + apart) gaps += low[f][axis] - end - apart;
+                end = std::max(end, high[f][axis]);
+                taken[f][axis] = gaps;
             }
-            extent[static_cast<Index>(axis)] = high - taken;
-            for (Interval& interval : found) interval.taken += 0.5 * (high - taken);
+            extent[axis] = end - gaps;
         }
+        origin_.resize(low.size());
+        for (std::size_t f = 0; f < low.size(); ++f) origin_[f] = middle + axes.transpose() * (taken[f] + 0.5 * extent);
         slack = rounding * 0.5 * extent.norm();
     }
-    /// Of a segment with these ends.
-    Vec3 shift(const Vec3& a, const Vec3& b) const noexcept {
-        Vec3 sum;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double low = std::min(a[static_cast<Index>(axis)], b[static_cast<Index>(axis)]);
-            const auto next = std::upper_bound(intervals_[axis].begin(), intervals_[axis].end(), low,
-                                               [](double x, const Interval& one) { return x < one.from; });
-            sum[static_cast<Index>(axis)] = std::prev(next)->taken;
-        }
-        return sum;
-    }
 
-    struct Interval {
-        double from, taken;  // where it begins, and what is taken off coordinates in it [length]
-    };
-    std::array<std::vector<Interval>, 3> intervals_;  // none: nothing is taken off
+    const SegmentTable* table_ = nullptr;
+    std::vector<Vec3> origin_;  // of each fibre, where gaps are closed; else the middle
 };
 
 }  // namespace fibrant::proximity::detail

@@ -53,12 +53,23 @@ public:
             }
         }
         cell_first_.push_back(n);
+        place_.clear();
+    }
+    /// Makes `overlaps_with` look places up instead of searching for them, if there are no more cells than this, empty ones too.
+    void index(std::size_t most) {
+        const std::uint64_t cells = cells_[0] * cells_[1] * cells_[2];
+        if (cells > most) return;
+        place_.resize(cells);
+        std::uint64_t key = 0;
+        for (std::size_t c = 0; c < cell_key_.size(); ++c)
+            for (; key <= cell_key_[c]; ++key) place_[key] = cell_first_[c];
+        for (; key < cells; ++key) place_[key] = size();
     }
 
     std::int32_t size() const noexcept { return static_cast<std::int32_t>(entries_.size()); }
     std::size_t bytes() const noexcept {
         return (entries_.capacity() + spare_.capacity()) * sizeof(CellEntry) + cell_key_.capacity() * sizeof(std::uint64_t) +
-               cell_first_.capacity() * sizeof(std::int32_t) + columns_.bytes();
+               (cell_first_.capacity() + place_.capacity()) * sizeof(std::int32_t) + columns_.bytes();
     }
     std::int32_t cells() const noexcept { return static_cast<std::int32_t>(cell_key_.size()); }
     /// Number of the box at place k of the grid's order.
@@ -96,26 +107,27 @@ public:
         }
     }
 
-    /// Rows of cells that `overlaps_with` looks through for a box.
-    double rows_of(const Box& box) const noexcept {
-        const CellRange range = around(box);
-        return std::min(static_cast<double>(range.rows()), static_cast<double>(cells()));
+    /// What `overlaps_with` costs for a box with these sides along the first two axes, more or less: rows of cells to look up.
+    double rows_of(const std::array<double, 2>& sides) const noexcept {
+        if (size() <= few) return 1.0;
+        const double rows = (sides[0] / width_[0] + 2.0) * (sides[1] / width_[1] + 2.0);
+        return std::min(rows, static_cast<double>(cells())) * (place_.empty() ? searched : 1.0);
     }
     /// Hands over {of, l} for the places l of boxes that overlap `box`, which may be of any size.
     template <class Sink>
     void overlaps_with(const Box& box, std::int32_t of, Sink& sink) const {
         const CellRange range = around(box);
         const auto& [low, high] = range;
-        if (range.rows() > core::at(cells())) {
+        if (size() <= few || range.rows() > core::at(cells())) {
             sink.take(columns_.overlaps(box, 0, size(), of, sink.room(size() + BoxColumns::width)));
             return;
         }
+        std::int32_t at = 0;
         for (std::uint64_t x = low[0]; x <= high[0]; ++x)
             for (std::uint64_t y = low[1]; y <= high[1]; ++y) {
                 const std::uint64_t start = (x * cells_[1] + y) * cells_[2];
-                const std::int32_t from = cell_first_[core::at(cell_at_least(start + low[2]))];
-                const std::int32_t to = cell_first_[core::at(cell_at_least(start + high[2] + 1))];
-                sink.take(columns_.overlaps(box, from, to, of, sink.room(to - from + BoxColumns::width)));
+                const std::int32_t from = place_at_least(start + low[2], at), to = place_at_least(start + high[2] + 1, at);
+                if (from < to) sink.take(columns_.overlaps(box, from, to, of, sink.room(to - from + BoxColumns::width)));
             }
     }
 
@@ -171,11 +183,26 @@ private:
         return static_cast<std::int32_t>(std::lower_bound(cell_key_.begin(), cell_key_.end(), key) - cell_key_.begin());
     }
 
+    /// @param at  a cell not beyond the one that is asked for, and then this one: rows that follow each other are near
+    std::int32_t place_at_least(std::uint64_t key, std::int32_t& at) const noexcept {
+        if (!place_.empty()) return key < place_.size() ? place_[key] : size();
+        const auto first = cell_key_.begin() + at;
+        std::int32_t step = 1;
+        while (at + step < cells() && first[step - 1] < key) step *= 2;
+        at = static_cast<std::int32_t>(std::lower_bound(first + step / 2, first + std::min(step, cells() - at), key) -
+                                       cell_key_.begin());
+        return cell_first_[core::at(at)];
+    }
+
+    static constexpr std::int32_t few = 4 * BoxColumns::width;  // boxes that are compared sooner than looked up
+    static constexpr double searched = 3.0;                     // cost of a row that is searched for, over one that is looked up
+
     double origin_[3], width_[3], per_width_[3];
     std::uint64_t cells_[3];
     std::vector<CellEntry> entries_, spare_;
     std::vector<std::uint64_t> cell_key_;
     std::vector<std::int32_t> cell_first_;
+    std::vector<std::int32_t> place_;  // first place of each cell or after it, where indexed
     BoxColumns columns_;
 };
 

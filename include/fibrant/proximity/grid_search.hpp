@@ -52,25 +52,12 @@ private:
     void make_boxes(const detail::SegmentTable& table) {
         const detail::BoxFrame frame(table);
         const std::int32_t n = table.size();
-        const double mean = frame.mean_length, thickness = frame.mean_thickness;
-        const double piece = mean > pieces_from * thickness ? std::max(piece_length * thickness, mean / most_pieces)
-                                                            : 2.0 * std::max(mean, thickness);
-        cut_ = frame.longest > piece;
+        cut_ = count_pieces(table, frame);
         if (!cut_) {
             boxes_.resize(core::at(n));
             in_blocks(n, block,
                       [&](Index, std::int32_t k) { boxes_[core::at(k)] = frame.whole_box(table.record(k), table.reach()); });
             return;
-        }
-        first_.resize(core::at(n) + 1);
-        first_[0] = 0;
-        double all = 0.0;
-        for (std::int32_t k = 0; k < n; ++k) {
-            const detail::SegmentRecord record = table.record(k);
-            const double pieces = std::max(1.0, std::ceil(std::sqrt(detail::dot(record.chord, record.chord)) / piece));
-            all += pieces;
-            if (all >= detail::SegmentTable::at_most) core::refuse("pieces of all segments", core::text(all), "below 2^31 - 64");
-            first_[core::at(k) + 1] = static_cast<std::int32_t>(all);
         }
         boxes_.resize(core::at(first_.back()));
         owner_.resize(boxes_.size());
@@ -85,14 +72,61 @@ private:
         });
     }
 
+    /// Fills `first_` unless no segment is cut. @return whether some are
+    bool count_pieces(const detail::SegmentTable& table, const detail::BoxFrame& frame) {
+        const double mean = frame.mean_length, thickness = frame.mean_thickness;
+        const bool slender = mean > pieces_from * thickness;
+        const double piece = slender ? std::max(piece_length * thickness, mean / most_pieces) : 2.0 * std::max(mean, thickness);
+        if (frame.longest <= piece || (slender && !pays(table, frame, mean / piece))) return false;
+        first_.resize(core::at(table.size()) + 1);
+        first_[0] = 0;
+        double all = 0.0;
+        for (std::int32_t k = 0; k < table.size(); ++k) {
+            const detail::SegmentRecord record = table.record(k);
+            const double own = 2.0 * (2.0 * record.half + table.reach());  // shorter pieces have boxes hardly smaller
+            all += std::max(1.0, std::ceil(std::sqrt(detail::dot(record.chord, record.chord)) / std::max(piece, own)));
+            if (all >= detail::SegmentTable::at_most) core::refuse("pieces of all segments", core::text(all), "below 2^31 - 64");
+            first_[core::at(k) + 1] = static_cast<std::int32_t>(all);
+        }
+        return first_.back() > table.size();
+    }
+
+    /// Whether slender segments should be cut. Where they run along the axes their boxes are slender too, and smaller cells may
+    /// save less than more boxes cost: so it is in straight bundles, and in layers of them.
+    static bool pays(const detail::SegmentTable& table, const detail::BoxFrame& frame, double pieces) {
+        double across = 0.0;  // second largest sides
+        Vec3 longest = Vec3::Zero(), low = Vec3::Constant(1.0e300), high = -low;
+        for (std::int32_t k = 0; k < table.size(); ++k) {
+            const detail::SegmentRecord record = table.record(k);
+            const Vec3 chord{record.chord.x, record.chord.y, record.chord.z}, side = (frame.axes * chord).cwiseAbs();
+            const Vec3 start = frame.axes * Vec3(record.start.x, record.start.y, record.start.z);
+            across += side.sum() - side.maxCoeff() - side.minCoeff();
+            longest = longest.cwiseMax(side), low = low.cwiseMin(start), high = high.cwiseMax(start);
+        }
+        if (across > aside * frame.mean_length * table.size()) return true;
+        double part = pieces * pieces;  // comparisons of boxes with pieces over those without
+        for (Index axis = 0; axis < 3; ++axis) {
+            const auto share = [&](double side) {  // of the scene, in three cells
+                return std::min(1.0, 3.0 * (side + frame.mean_thickness) / (high[axis] - low[axis] + frame.mean_thickness));
+            };
+            part *= share(longest[axis] / pieces) / share(longest[axis]);
+        }
+        return part < 1.0;
+    }
+
     /// One grid for boxes within a factor of about 4 in size.
     void sort_into_levels() {
         std::array<std::int32_t, 256> bin{};  // by the binary exponent of the largest side
-        const auto size_of = [](const detail::Box& box) -> std::size_t {
-            const float side = std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
-            return std::bit_cast<std::uint32_t>(side) >> 23 & 0xffU;
+        std::array<float, 256> largest{};
+        const auto side_of = [](const detail::Box& box) {
+            return std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
         };
-        for (const detail::Box& box : boxes_) ++bin[size_of(box)];
+        const auto bin_of = [](float side) -> std::size_t { return std::bit_cast<std::uint32_t>(side) >> 23 & 0xffU; };
+        for (const detail::Box& box : boxes_) {
+            const float side = side_of(box);
+            ++bin[bin_of(side)];
+            largest[bin_of(side)] = std::max(largest[bin_of(side)], side);
+        }
         std::array<int, 256> level{};
         int levels = 0;
         for (std::size_t e = 0; e < 256;) {
@@ -101,7 +135,7 @@ private:
                 continue;
             }
             std::int32_t here = 0, above = 0;
-            const std::size_t end = std::min<std::size_t>(256, e + 3);
+            const std::size_t end = end_of_level(bin, largest, e);
             for (std::size_t k = e; k < 256; ++k) (k < end ? here : above) += bin[k];
             if (above > 0 && here < above / 64) {  // few small ones do no harm in larger cells
                 std::size_t next = end;
@@ -117,9 +151,24 @@ private:
         }
         std::vector<std::vector<std::int32_t>> members(core::at(levels));
         for (std::size_t k = 0; k < boxes_.size(); ++k)
-            members[core::at(level[size_of(boxes_[k])])].push_back(static_cast<std::int32_t>(k));
+            members[core::at(level[bin_of(side_of(boxes_[k]))])].push_back(static_cast<std::int32_t>(k));
         levels_.resize(core::at(levels));
         for (std::size_t k = 0; k < levels_.size(); ++k) levels_[k].build(boxes_, members[k]);
+        if (levels > 1)
+            for (detail::CellGrid& grid : levels_) grid.index(2 * boxes_.size() + 64);
+    }
+    /// Three bins from this one on, or fewer if the last have few boxes that would make the cells of the others much larger.
+    static std::size_t end_of_level(const std::array<std::int32_t, 256>& bin, const std::array<float, 256>& largest,
+                                    std::size_t first) {
+        const std::size_t end = std::min<std::size_t>(256, first + 3);
+        for (std::size_t cut = first + 1; cut < end; ++cut) {
+            std::int32_t below = 0, above = 0;
+            float small = 0.0F, large = 0.0F;
+            for (std::size_t k = first; k < cut; ++k) below += bin[k], small = std::max(small, largest[k]);
+            for (std::size_t k = cut; k < end; ++k) above += bin[k], large = std::max(large, largest[k]);
+            if (above > 0 && above < below / few_large && large > much_larger * small) return cut;
+        }
+        return end;
     }
 
     /// Records as the filter reads them. One level of whole segments: in the order of the cells. Else in that of the segments,
@@ -158,15 +207,21 @@ private:
         }
     }
 
-    /// Boxes of a level against those of a finer one. The few large ones ask the fine grid, unless they cover so many rows of its
-    /// cells that the many small ones ask the coarse grid sooner: its rows around a small box are nine at most.
+    /// Boxes of a level against those of a finer one: these or those ask, whichever look through fewer rows of the others' cells.
     std::size_t search_between(const detail::SegmentTable& table, std::size_t upper, std::size_t lower, std::size_t done) {
         constexpr Index together = 256;
-        const double enough = 9.0 * levels_[lower].size();
-        double rows = 0.0;
-        for (std::int32_t k = 0; k < levels_[upper].size() && rows <= enough; ++k)
-            rows += levels_[lower].rows_of(boxes_[core::at(levels_[upper].box(k))]);
-        const std::size_t asking = rows <= enough ? upper : lower, asked = rows <= enough ? lower : upper;
+        const auto cost = [&](std::size_t of, std::size_t in) {  // from every so many of them
+            const detail::CellGrid& asks = levels_[of];
+            const std::int32_t every = asks.size() / 1024 + 1;
+            double rows = 0.0;
+            for (std::int32_t k = 0; k < asks.size(); k += every) {
+                const detail::Box& box = boxes_[core::at(asks.box(k))];
+                rows += every * levels_[in].rows_of({box.high[0] - box.low[0], box.high[1] - box.low[1]});
+            }
+            return rows;
+        };
+        const bool large_ask = cost(upper, lower) <= cost(lower, upper);
+        const std::size_t asking = large_ask ? upper : lower, asked = large_ask ? lower : upper;
         const detail::CellGrid& grid = levels_[asking];
         const Index blocks = (grid.size() + together - 1) / together;
         reserve_blocks(done + core::at(blocks));
@@ -192,6 +247,9 @@ private:
 
     static constexpr std::int32_t cells_together = 256;
     static constexpr double pieces_from = 32.0, piece_length = 24.0;  // thicknesses: fastest on oblique mats of slender fibres
+    static constexpr double aside = 0.1;  // of the length: boxes of segments that lean less are slender
+    static constexpr std::int32_t few_large = 4;
+    static constexpr float much_larger = 2.5F;
     static constexpr double most_pieces = 8.0;  // of a segment of mean length: long straight fibres would else take all memory
 
     bool cut_ = false;                 // some segment has several boxes
