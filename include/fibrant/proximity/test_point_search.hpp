@@ -79,9 +79,10 @@ public:
         std::vector<std::int32_t> all(points.size());
         for (std::size_t k = 0; k < points.size(); ++k) {
             const detail::SegmentRecord place{
-                points[k].position, {0.0, 0.0, 0.0}, 0.0, static_cast<std::int32_t>(k), table.record(points[k].first).group};
+                points[k].position, {0.0, 0.0, 0.0}, 0.0, points[k].first, table.record(points[k].first).group};
             boxes[k] = frame.box(place, 0.0, 1.0, points[k].range + 0.5 * (reach + parameters_.spacing));
             all[k] = static_cast<std::int32_t>(k);
+            if (table.selfish()) boxes[k].group = all[k];
         }
         detail::CellGrid grid;
         grid.build(boxes, all);
