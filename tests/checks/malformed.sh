@@ -26,7 +26,7 @@ with() {
   message=
   try "$2" "$scene" --output "$out/results" --quiet --set "$1"
   case $message in
-    "" | *"$scene: "[a-z]*.[a-z]* | *"$scene: "[a-z]*"one of the sections"* | *"--set "*.*) ;;
+    "" | *"$scene: yarn "* | *"$scene: "[a-z]*.[a-z]* | *"$scene: "[a-z]*"one of the sections"* | *"--set "*.*) ;;
     *) report "does not name file and key" "$message" "--set $1" ;;
   esac
 }

@@ -103,12 +103,13 @@ CheckpointReader read_from_state(const std::string& path, const beam::Mesh<B>& m
     for (int k = 0; k < 3; ++k) file.get<std::uint64_t>();  // of the scene and the loading
     return file;
 }
-/// The next vector of numbers, all finite.
+/// The next vector of numbers, all finite, as are powers of them that lengths and curvatures are made of.
 /// @param size   that it must have
 /// @param empty  or none
 inline Vector get_state(CheckpointReader& file, Index size, bool empty = false) {
     Vector state = file.get_vector();
-    file.require((state.size() == size || (empty && state.size() == 0)) && state.allFinite());
+    const double square = state.squaredNorm();
+    file.require((state.size() == size || (empty && state.size() == 0)) && std::isfinite(square * square));
     return state;
 }
 /// The state alone; throws as `read_from_state`.
@@ -143,8 +144,8 @@ void get_memory(CheckpointReader& file, std::vector<Record>& records, std::vecto
     zones.resize(core::at(file.get_count(sizeof(contact::Zone))));
     for (contact::Zone& zone : zones) {
         auto bytes = file.get<std::array<char, sizeof(contact::Zone)>>();
-        for (const std::size_t flag :
-             {offsetof(contact::Zone, crossing), offsetof(contact::Zone, followed), offsetof(contact::Zone, forced)})
+        for (const std::size_t flag : {offsetof(contact::Zone, crossing), offsetof(contact::Zone, followed),
+                                       offsetof(contact::Zone, forced), offsetof(contact::Zone, settled)})
             bytes[flag] = static_cast<char>(bytes[flag] != 0);
         std::memcpy(static_cast<void*>(&zone), bytes.data(), bytes.size());
         const proximity::ProximityZone& span = zone.span;
