@@ -78,7 +78,8 @@ struct Output {
         }
         if (resume && std::filesystem::exists(checkpoint()) && !other_scene) require_scene_of(checkpoint(), told, "--resume");
         if (overwrite)  // what is left of an earlier run would be taken for this one's where it is stopped
-            for (const char* left : {"checkpoint.bin", "settled.bin", "summary.json", "increments.csv", "levels.csv"}) {
+            for (const char* left :
+                 {"checkpoint.bin", "checkpoint.bin.before", "settled.bin", "summary.json", "increments.csv", "levels.csv"}) {
                 std::filesystem::remove(folder / left);
                 for (const std::filesystem::path& part : parts) std::filesystem::remove(part / left);
             }
@@ -95,7 +96,7 @@ struct Output {
     template <class Loading>
     void tell(Loading& loading, double seconds = 0.0) const {
         loading.checkpoint = checkpoint(), loading.checkpoint_seconds = seconds, loading.resume = resume;
-        loading.scene = told, loading.other_scene = other_scene, loading.stop = stopped;
+        loading.resume_before_end = true, loading.scene = told, loading.other_scene = other_scene, loading.stop = stopped;
         loading.audited = true, loading.deepest_over_radius = deepest_over_radius;
     }
 };

@@ -24,7 +24,7 @@ for file in $files; do
   rm -rf "$part"
   mkdir -p "$(dirname "$part/$file")" || exit 1
   case $file in
-    *.bin) ln -s /dev/full "$part/$file.part" ;;
+    *.bin | *.before) ln -s /dev/full "$part/$file.part" ;;
     *) ln -s /dev/full "$part/$file.partial" ;;
   esac
   message=$("$program" "$scene" --output "$part" --overwrite --quiet "$@" 2>&1)

@@ -10,9 +10,9 @@ figures() {
     *) cat "$1" ;;
   esac
 }
-# What of a folder has to be the same: a checkpoint has clocks in it, a report shows them.
+# What of a folder has to be the same: checkpoints have clocks in them, a report shows them.
 results() {
-  (cd "$1" && find . -type f ! -name '*.bin' ! -name report.html | sort)
+  (cd "$1" && find . -type f ! -name '*.bin' ! -name '*.before' ! -name report.html | sort)
 }
 # usage: same_results <folder> <folder> <scratch folder>; what differs is in $difference.
 same_results() {

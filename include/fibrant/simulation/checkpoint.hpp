@@ -38,6 +38,8 @@ public:
         put(static_cast<std::uint64_t>(vector.size()));
         for (Index k = 0; k < vector.size(); ++k) put(vector[k]);
     }
+    /// What another writer wrote, as it is.
+    void put_all(const std::vector<char>& bytes) { data_.insert(data_.end(), bytes.begin(), bytes.end()); }
     /// @throws std::runtime_error if the file cannot be written
     void write(const std::filesystem::path& path) const {
         std::filesystem::path part = path;
@@ -101,6 +103,8 @@ public:
         data_.resize(data_.size() - sizeof sum);
         if (sum != CheckpointWriter::hash(data_.data(), data_.size())) fail();
     }
+    /// All that was put, without the sum.
+    const std::vector<char>& bytes() const noexcept { return data_; }
     template <class T>
         requires std::is_trivially_copyable_v<T> T get() {
             if (sizeof(T) > left()) fail();

@@ -107,6 +107,8 @@ struct Loading {
     std::string checkpoint{};         ///< file written after accepted increments; empty: none
     double checkpoint_seconds = 0.0;  ///< at least between two of them, but for the end of a stage or of the run, >= 0
     bool resume = false;              ///< start from that file, if it exists
+    bool resume_before_end =
+        false;  ///< a run that has ended resumes before its end: what is asked of contacts needs an increment
     /// The last stage is held to `Stage::deepest`, where it names none to `stated_depth`, unless penalties stay what they are.
     bool audited = true;
     double deepest_over_radius = core::unset;  ///< of the thinnest fibre: in the place of both [1], > 0

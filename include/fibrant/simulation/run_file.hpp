@@ -10,6 +10,9 @@
 #include <fibrant/simulation/state_file.hpp>
 
 #include <array>
+#include <filesystem>
+#include <string>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -107,5 +110,42 @@ void get_rest(CheckpointReader& file, const RunParts<Contacts, Equilibrium, Mesh
     });
     file.require_end();
 }
+
+/// Where a run goes on from. Contact elements are not kept; what is written of them at the end of a run would be missing in one
+/// that resumes there. So the checkpoint before the end is kept beside the last one, and a run that has ended goes on from it,
+/// to the same bits. One that had none before its end is begun again.
+class ResumedFile {
+public:
+    /// @param path        of the checkpoint; empty: none
+    /// @param before_end  keep what a run needs that is resumed at its end
+    ResumedFile(const std::string& path, bool resume, bool before_end) : path_{path}, before_end_{before_end} {
+        std::error_code none;
+        if (!resume || path.empty() || !std::filesystem::exists(path)) return;
+        const auto size = std::filesystem::file_size(before(), none);
+        if (!before_end || none)
+            from_ = path;
+        else if (size > sizeof(std::uint64_t))  // there is more than the sum
+            from_ = before();
+    }
+    /// File to begin from; empty: at the start.
+    const std::string& from() const noexcept { return from_; }
+    /// @param ends  the run does, with this increment
+    void write(const CheckpointWriter& file, bool ends) {
+        std::error_code none;
+        if (before_end_ && !ends) std::filesystem::remove(before(), none);
+        if (before_end_ && ends && from_ != before()) {
+            CheckpointWriter last;
+            if (!from_.empty()) last.put_all(CheckpointReader(from_).bytes());
+            last.write(before());
+        }
+        file.write(path_);
+        if (!ends) from_ = path_;
+    }
+
+private:
+    std::string before() const { return path_ + ".before"; }
+    std::string path_, from_;
+    bool before_end_;
+};
 
 }  // namespace fibrant::simulation

@@ -17,7 +17,6 @@
 #include <chrono>
 #include <cmath>
 #include <concepts>
-#include <filesystem>
 #include <limits>
 #include <optional>
 #include <span>
@@ -270,18 +269,18 @@ private:
         report.wall_seconds += core::seconds_since(start);
     }
 
-    /// All of a run that goes into its checkpoint.
+    /// All that goes into a checkpoint.
     auto parts() noexcept {
         return RunParts{state_, amplitudes_, energy_, contacts_, equilibrium_, position_, motion_, clock_, mesh_, laws_};
     }
-    void write_checkpoint(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Report& report) {
+    CheckpointWriter checkpoint(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Report& report) {
         CheckpointWriter file;
         put_identity<M>(file, mesh_, channels_, stages, loading.scene);
         put_run<M>(file, parts(), report);
-        file.write(loading.checkpoint);
+        return file;
     }
-    void read_checkpoint(const Loading<M>& loading, const std::vector<Stage<M>>& stages, Report& report) {
-        CheckpointReader file(loading.checkpoint);
+    void resume(const std::string& from, const Loading<M>& loading, const std::vector<Stage<M>>& stages, Report& report) {
+        CheckpointReader file(from);
         expect_identity<M>(file, mesh_, channels_, stages, loading);
         get_fibres(file, parts());
         get_rest<M>(file, parts(), core::count(stages), report, [&] {
@@ -368,8 +367,8 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
     position_.holding.assign(core::at(mesh_.fibre_count()), 1.0);
     contacts_.places().follow(position_.following);
     motion_ = MeanMotion(mesh_, amplitudes_.size());
-    if (loading.resume && !loading.checkpoint.empty() && std::filesystem::exists(loading.checkpoint))
-        read_checkpoint(loading, stages, report);
+    ResumedFile kept(loading.checkpoint, loading.resume, loading.resume_before_end);
+    if (!kept.from().empty()) resume(kept.from(), loading, stages, report);
     const StartOverlap begun(*this, stages.front(), position_.accepted == 0);
     if (begun.too_deep) {
         report.reason = begun.said;
@@ -377,7 +376,7 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
     }
     auto saved = start;
     bool unsaved = false;
-    for (Index k = 0; k < position_.stage; ++k) take_laws(stages[core::at(k)]);  // they stay in force
+    for (Index k = 0; k < position_.stage; ++k) take_laws(stages[core::at(k)]);  // which stay
     for (; position_.stage < core::count(stages); position_.next_stage(stages, amplitudes_)) {
         const Stage<M>& stage = stages[core::at(position_.stage)];
         take_laws(stage);
@@ -388,7 +387,7 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
             };
             if (!advance(loading, stages, stage, report, gave_up)) {
                 if (position_.accepted == 0) report.reason += begun.remark();
-                if (unsaved) write_checkpoint(loading, stages, report);
+                if (unsaved) kept.write(checkpoint(loading, stages, report), false);
                 finish(report, start);
                 return report;
             }
@@ -400,11 +399,12 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
                 if (!unsaved ||
                     (!position_.stage_over && std::chrono::duration<double>(now - saved).count() < loading.checkpoint_seconds))
                     return;
-                write_checkpoint(loading, stages, report);
+                const bool end = position_.stage_over && position_.stage + 1 == core::count(stages);
+                kept.write(checkpoint(loading, stages, report), end);
                 saved = now, unsaved = false;
             });
             if (loading.stop && loading.stop()) {
-                if (unsaved) write_checkpoint(loading, stages, report);
+                if (unsaved) kept.write(checkpoint(loading, stages, report), false);
                 report.reason = "stopped as asked, after increment " + std::to_string(position_.accepted);
                 finish(report, start);
                 return report;
