@@ -14,9 +14,9 @@ fail() {
   echo "weave_example: $*"
   exit 1
 }
-# All that a run found; what depends on the clock and on memory is left out.
+# All that a run found; what depends on the clock and on memory is left out, and solves, which are counted since a program began.
 figures() {
-  grep -v -e seconds -e memory -e '"[a-z]*": [0-9.e-]*,\{0,1\}$' "$1/summary.json"
+  grep -v -e seconds -e memory -e '"solver"' -e '"[a-z]*": [0-9.e-]*,\{0,1\}$' "$1/summary.json"
   grep -e crimp -e thickness -e gap -e penetration -e iterations -e increments "$1/summary.json"
 }
 

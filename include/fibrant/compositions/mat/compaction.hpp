@@ -15,6 +15,9 @@
 
 namespace fibrant::compositions::mat {
 
+/// Way that two fibres of a mat slide before friction is all there [radius].
+inline constexpr double reversible_over_radius = 0.05;
+
 /// Channel of the upper plate; its amplitude is the way that it has come down [length].
 inline const std::string press_channel = "press";
 
@@ -134,7 +137,8 @@ simulation::ModelParameters<M> model_parameters(const MatParameters& parameters,
     simulation::ModelParameters<M> model;
     model.normal.regularisation_depth = 0.25 * press.allowed_penetration * r;
     if constexpr (core::Active<typename M::Friction>)
-        model.friction = {.friction_coefficient = press.friction_coefficient, .reversible_displacement = 0.05 * r};
+        model.friction = {.friction_coefficient = press.friction_coefficient,
+                          .reversible_displacement = reversible_over_radius * r};
     model.contact.stiffness.allowed_penetration = press.allowed_penetration * r;
     // Fibres bend long before their sections give way.
     model.contact.stiffness.initial_fraction = 1e-3, model.contact.stiffness.floor_fraction = 1e-6;

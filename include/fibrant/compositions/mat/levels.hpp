@@ -56,7 +56,7 @@ simulation::ModelParameters<M> model_parameters(const MatParameters& parameters,
     model.normal.law.regularisation_depth = 0.25 * levels.allowed_penetration * r, model.normal.limit = levels.gap_limit * r;
     // While fibres part, friction would remember a path that is none.
     if constexpr (core::Active<typename M::Friction>)
-        model.friction = {.friction_coefficient = 0.0, .reversible_displacement = 0.05 * r};
+        model.friction = {.friction_coefficient = 0.0, .reversible_displacement = reversible_over_radius * r};
     model.contact.stiffness.allowed_penetration = levels.allowed_penetration * r;
     // Between contacts a few radii apart a fibre is as stiff as its contacts: softer ones let fibres into each other for many
     // increments.
@@ -81,6 +81,10 @@ simulation::Loading<M> pressing_by_levels(const MatParameters& parameters, const
                                         .rest_share = levels.rest_share};
     simulation::Loading<M> loading = simulation::settling<M>(mat, settle);
     loading.stages.back().enough_increments = levels.rest_increments;
+    if constexpr (core::Active<typename M::Friction>)
+        for (simulation::Stage<M>& stage : loading.stages)
+            if (stage.friction)
+                stage.friction.emplace(typename M::Friction::Parameters{levels.friction_coefficient, reversible_over_radius * r});
     simulation::Stage<M> level;
     level.name = "level", level.increments = 1, level.looseness = levels.looseness;
     level.largest_displacement = 2.0 * r, level.damping_goes_on = true;
