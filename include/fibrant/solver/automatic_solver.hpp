@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <concepts>
+#include <optional>
 #include <span>
 #include <sstream>
 #include <string>
@@ -90,9 +91,7 @@ public:
           fibres_{{.iterative = {.iteration_limit = parameters.fibre_block_limit},
                    .largest_fill = parameters.largest_fill,
                    .moderate_fill = 0.0}},
-          levels_{{.iterative = two_levels(parameters.two_level_limit),
-                   .largest_fill = parameters.largest_fill,
-                   .moderate_fill = 0.0}},  // a doubt is not factored: iterations that fail are
+          levels_{{.largest_fill = parameters.largest_fill, .moderate_fill = 0.0}},  // no doubt is factored: what fails is
           factor_{{.largest_fill = parameters.largest_fill}} {}
 
     template <assembly::LinearSystem System>
@@ -119,24 +118,19 @@ public:
             return {};
         }
         int iterations = 0;
-        for (std::size_t strategy = first_;; ++strategy) {
+        for (std::size_t strategy = first_;;) {
             SolveReport report = with(strategy, [&](auto& solver) { return solver.solve(system, b, tolerance, x); });
-            report.iterations += iterations;
-            const bool last = strategy == 2 || report.status != SolveStatus::iteration_limit;
-            const bool alone = too_large_;
-            if (last || !fall_back(strategy, system, report, tolerance)) {
-                if (too_large_ != alone) {  // once more, for as long as it takes
-                    levels_.iterative().limit(parameters_.longest);
-                    const int before = report.iterations;
-                    report = levels_.solve(system, b, tolerance, x);
-                    report.iterations += before;
-                }
+            iterations = report.iterations += iterations;
+            const std::optional<std::size_t> next = strategy < 2 && report.status == SolveStatus::iteration_limit
+                                                        ? after(strategy, system, report, tolerance)
+                                                        : std::nullopt;
+            if (!next) {
                 ++*std::array{&use_.fibre_block_pcg, &use_.two_level_pcg, &use_.float_block_cholesky}[strategy];
                 if (strategy != first_) ++use_.fallbacks;
                 proven_ = std::max(proven_, strategy);
                 return report;
             }
-            iterations = report.iterations;
+            strategy = *next;
         }
     }
 
@@ -146,12 +140,6 @@ public:
     std::string account() const { return "automatic: " + use_.text(); }
 
 private:
-    static TwoLevelPcg::Parameters two_levels(int limit) {
-        TwoLevelPcg::Parameters own;
-        own.iteration_limit = limit;
-        return own;
-    }
-
     template <class Body>
     auto with(std::size_t strategy, const Body& body) {
         return strategy == 0 ? body(fibres_) : strategy == 1 ? body(levels_) : body(factor_);
@@ -163,25 +151,30 @@ private:
             return solver.prepare(system);
         });
     }
-    /// Prepares the next strategy; false if there is none that could do better.
+    /// Prepares what goes on where a strategy has reached its limit; none if nothing could do better.
     template <class System>
-    bool fall_back(std::size_t strategy, const System& system, const SolveReport& report, double tolerance) {
+    std::optional<std::size_t> after(std::size_t strategy, const System& system, const SolveReport& report, double tolerance) {
         static constexpr std::array names{"FibreBlockPcg", "TwoLevelPcg"};
         std::ostringstream text;
         text.precision(1);
         text << std::scientific << names[strategy] << " reached a residual of " << report.residual << " in " << report.iterations
              << " iterations, and " << tolerance << " was asked for";
         use_.last_fallback = text.str();
-        if (prepared_[strategy + 1]) return true;
-        if (strategy == 1 && !too_large_) {
-            factor_.analyse(system);
-            too_large_ = static_cast<double>(factor_.iterative().fill()) > parameters_.largest_fill;
+        const std::size_t next = strategy + 1;
+        if (prepared_[next]) return next;
+        if (strategy == 1) {
+            const bool known = too_large_;
+            if (!known) factor_.analyse(system);
+            too_large_ = known || static_cast<double>(factor_.iterative().fill()) > parameters_.largest_fill;
+            if (too_large_) {
+                use_.last_fallback += ", but the factor of the whole would be larger than allowed";
+                if (known) return std::nullopt;
+                levels_.iterative().limit(parameters_.longest);  // once more, for as long as it takes
+                return strategy;
+            }
         }
-        if (strategy == 1 && too_large_) {
-            use_.last_fallback += ", but the factor of the whole would be larger than allowed";
-            return false;
-        }
-        return prepare_strategy(strategy + 1, system) != SolveStatus::not_finite;
+        if (prepare_strategy(next, system) == SolveStatus::not_finite) return std::nullopt;
+        return next;
     }
 
     Parameters parameters_;
