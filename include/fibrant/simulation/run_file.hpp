@@ -131,15 +131,16 @@ public:
     const std::string& from() const noexcept { return from_; }
     /// @param ends  the run does, with this increment
     void write(const CheckpointWriter& file, bool ends) {
-        std::error_code none;
-        if (before_end_ && !ends) std::filesystem::remove(before(), none);
-        if (before_end_ && ends && from_ != before()) {
+        if (ends && before_end_ && from_ != before()) {
             CheckpointWriter last;
             if (!from_.empty()) last.put_all(CheckpointReader(from_).bytes());
             last.write(before());
         }
         file.write(path_);
-        if (!ends) from_ = path_;
+        if (ends) return;
+        from_ = path_;
+        std::error_code none;
+        if (before_end_) std::filesystem::remove(before(), none);  // last: without it a run that had ended resumes at its end
     }
 
 private:
