@@ -137,9 +137,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
                     {"sine", state.sine}};
         });
         simulation::Loading<Mat> loading = mat::pressing_by_levels<Mat>(parameters, levels, boxed);
-        loading.checkpoint = own.checkpoint(), loading.resume = own.resume;
-        loading.scene = own.told, loading.other_scene = own.other_scene;
-        loading.stop = example::stopped;
+        own.tell(loading);
         const simulation::Report report = simulator.run(loading, recorder);
         const simulation::Audit audit = example::audit(own, simulator, 1.0);
         converged = converged && report.converged && audit.clean();
