@@ -53,10 +53,7 @@ void require_quantity(const char* option, double value) {
 
 /// Refuses names whose endings no writer knows, before any of them is written.
 void require_endings(const std::vector<std::string>& outputs) {
-    std::vector<std::string> known{"csv", "vtk", "vtp", "obj", "bcc", "inp", "stl", "glb"};
-#if defined(FIBRANT_WITH_PUGIXML)
-    known.emplace_back("tg3");
-#endif
+    std::vector<std::string> known = exchange::curve_kinds();
     for (const auto& more : {exchange::voxel_kinds(), exchange::yarn_kinds()})
         known.insert(known.end(), more.begin(), more.end());
     std::string all;

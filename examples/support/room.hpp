@@ -12,10 +12,15 @@
 
 namespace example {
 
+inline std::string memory_text(double bytes) {
+    if (bytes < 1e9) return fibrant::observe::rounded(bytes / 1e6, 0) + " MB";
+    return fibrant::observe::rounded(bytes / 1e9, bytes < 1e10 ? 1 : 0) + " GB";
+}
 /// Memory that a run may take [byte], and what says so.
 struct Room {
     double bytes;
     const char* said;
+    std::string text() const { return said + (" " + memory_text(bytes)); }
 };
 /// The memory of this machine, or less where the process is allowed less; endless where neither is told.
 inline Room memory_room() {
@@ -25,10 +30,6 @@ inline Room memory_room() {
     if (getrlimit(RLIMIT_AS, &allowed) == 0 && allowed.rlim_cur != RLIM_INFINITY && static_cast<double>(allowed.rlim_cur) < there)
         return {static_cast<double>(allowed.rlim_cur), "this process may take (ulimit -v)"};
     return {there, "this machine has"};
-}
-inline std::string memory_text(double bytes) {
-    if (bytes < 1e9) return fibrant::observe::rounded(bytes / 1e6, 0) + " MB";
-    return fibrant::observe::rounded(bytes / 1e9, bytes < 1e10 ? 1 : 0) + " GB";
 }
 
 /// Unknowns of so many fibres of quadratic elements, nine a node.

@@ -47,9 +47,9 @@ int threads_of(const std::string& text, const std::string& name) {
 void take_threads(const std::string& name) {
     const int wanted = omp_get_max_threads(), more = threads_at_once(wanted - 1);
     if (more < wanted - 1)
-        fibrant::core::refuse(name, std::to_string(wanted),
-                              "at most " + std::to_string(more + 1) + ", for no more threads can be had: " +
-                                  std::string(memory_room().said) + " " + memory_text(memory_room().bytes) + " of memory");
+        fibrant::core::refuse(
+            name, std::to_string(wanted),
+            "at most " + std::to_string(more + 1) + ", for no more threads can be had: " + memory_room().text() + " of memory");
     int started = 0;
 #pragma omp parallel reduction(+ : started)
     started += 1;
@@ -113,10 +113,6 @@ int run(int argc, char** argv, const Program& program) {
         return app.exit(error) == 0 ? 0 : 2;
     }
     keep_freed_memory();
-    const auto limit = [] {
-        const Room there = memory_room();
-        return there.said + (" " + memory_text(there.bytes));
-    };
     const ListeningForStops listening;
     const auto fail = [&](const std::string& message) {
         std::fprintf(stderr, "%s: %s\n", program.name, message.c_str());
@@ -139,10 +135,10 @@ int run(int argc, char** argv, const Program& program) {
             return 0;
         }
     } catch (const std::bad_alloc&) {
-        return fail(scene + ": there is not enough memory for this scene (" + limit() + ", and this process had " +
+        return fail(scene + ": there is not enough memory for this scene (" + memory_room().text() + ", and this process had " +
                     memory_text(static_cast<double>(peak_memory_bytes())) + ")");
     } catch (const std::length_error&) {
-        return fail(scene + ": a count of this scene is larger than memory can hold (" + limit() + ")");
+        return fail(scene + ": a count of this scene is larger than memory can hold (" + memory_room().text() + ")");
     } catch (const std::exception& error) {
         return fail(error.what());
     }

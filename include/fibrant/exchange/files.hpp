@@ -34,6 +34,16 @@ inline std::string kind_of(const std::filesystem::path& path) {
     const bool derived = before == "yarns" || before == "voxels" || before == "map" || before == "profile";
     return derived ? before + "." + ending(path) : ending(path);
 }
+/// Kinds of files of curves that are written.
+inline const std::vector<std::string>& curve_kinds() {
+    static const std::vector<std::string> kinds {
+        "csv", "vtk", "vtp", "obj", "bcc", "inp", "stl", "glb",
+#if defined(FIBRANT_WITH_PUGIXML)
+            "tg3"
+#endif
+    };
+    return kinds;
+}
 inline const std::vector<std::string>& voxel_kinds() {
     static const std::vector<std::string> kinds{"vti", "raw", "voxels.inp", "voxels.csv", "map.csv", "map.svg", "profile.csv"};
     return kinds;
@@ -99,7 +109,7 @@ inline std::vector<FileCurve> read_curves(const std::filesystem::path& path, con
     return cleaned(std::move(curves), name, own);
 }
 
-/// Text or bytes of a file of that ending: csv, vtk, vtp, obj, bcc, inp, tg3 (with pugixml), stl, glb.
+/// Text or bytes of a file of curves. @param kind  one of `curve_kinds()`
 /// @param metre  one metre in the unit of the curves, for glb
 inline std::string file_of(const std::vector<FileCurve>& curves, const std::string& kind, double metre = 1000.0) {
     if (kind == "csv") return csv_of(curves);
