@@ -14,11 +14,7 @@ fail() {
   echo "weave_example: $*"
   exit 1
 }
-# All that a run found; what depends on the clock and on memory is left out, and solves, which are counted since a program began.
-figures() {
-  grep -v -e seconds -e memory -e '"solver"' -e '"[a-z]*": [0-9.e-]*,\{0,1\}$' "$1/summary.json"
-  grep -e crimp -e thickness -e gap -e penetration -e iterations -e increments "$1/summary.json"
-}
+. "$(dirname "$0")/results.sh"
 
 "$weave" "$scene" --output "$out/whole" $small || fail "the small scene did not settle"
 for key in converged fibres nodes dofs contact_elements increments rejected_increments newton_iterations linear_solves \
@@ -46,8 +42,8 @@ says() {
 "$weave" "$scene" --output "$out/parts" $small --resume 2> "$out/message" && fail "a checkpoint of another scene was resumed"
 says "settle.separation_increments (6 there and 250 here)" "a checkpoint of another scene"
 "$weave" "$scene" --output "$out/parts" $small --resume --other-scene || fail "the resumed run did not settle"
-figures "$out/whole" > "$out/whole.txt"
-figures "$out/parts" > "$out/parts.txt"
+figures "$out/whole/summary.json" > "$out/whole.txt"
+figures "$out/parts/summary.json" > "$out/parts.txt"
 cmp "$out/whole.txt" "$out/parts.txt" || fail "the resumed run found another state"
 
 # A folder that holds results, one that another run is in, and a run that is stopped.
@@ -67,10 +63,10 @@ wait $run
 [ $? -eq 143 ] || fail "a run that was told to stop did not say so"
 [ -s "$out/stopped/checkpoint.bin" ] || fail "a run that was told to stop left no checkpoint"
 "$weave" "$scene" --output "$out/stopped" $small --resume || fail "the run that was told to stop did not settle in the end"
-figures "$out/stopped" > "$out/stopped.txt"
+figures "$out/stopped/summary.json" > "$out/stopped.txt"
 cmp "$out/whole.txt" "$out/stopped.txt" || fail "the run that was told to stop found another state"
 "$weave" "$out/whole/parameters.toml" --output "$out/echoed" --quiet || fail "parameters.toml is no scene that settles"
-figures "$out/echoed" > "$out/echoed.txt"
+figures "$out/echoed/summary.json" > "$out/echoed.txt"
 cmp "$out/whole.txt" "$out/echoed.txt" || fail "parameters.toml is another scene"
 
 refused() {
