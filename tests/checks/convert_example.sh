@@ -10,17 +10,7 @@ fail() {
   echo "convert_example: $*"
   exit 1
 }
-cat > "$out/given.csv" <<'END'
-fibre,x,y,z,radius,yarn,closed
-0,0,0.1,0,0.05,0,0
-0,0.3333333333333333,0.14,0.02,0.05,0,0
-0,0.7,0.11,0.03,0.05,0,0
-0,1.1,0.05,0.01,0.05,0,0
-1,0.5,-1,0.1,0.05,1,0
-1,0.52,-0.3,0.11,0.05,1,0
-1,0.51,0.4,0.12,0.05,1,0
-1,0.5,1.1,0.1,0.05,1,0
-END
+cp "$(dirname "$0")/two_curves.csv" "$out/given.csv" || exit 1
 kinds="vtk obj inp"
 "$program" "$out/given.csv" --output "$out/a.vtp" && "$program" "$out/a.vtp" --report >/dev/null 2>&1 && kinds="$kinds tg3"
 for kind in $kinds; do

@@ -2,17 +2,7 @@
 # What convert has to refuse: files that are none, cut short or of numbers that are none, and options that cannot be. Read by
 # malformed.sh.
 good=$out/good.csv
-cat > "$good" <<'END'
-fibre,x,y,z,radius,yarn,closed
-0,0,0.1,0,0.05,0,0
-0,0.3333333333333333,0.14,0.02,0.05,0,0
-0,0.7,0.11,0.03,0.05,0,0
-0,1.1,0.05,0.01,0.05,0,0
-1,0.5,-1,0.1,0.05,1,0
-1,0.52,-0.3,0.11,0.05,1,0
-1,0.51,0.4,0.12,0.05,1,0
-1,0.5,1.1,0.1,0.05,1,0
-END
+cp "$here/../two_curves.csv" "$good" || exit 1
 # It writes files and no folder: "results" is one, and must not come to be.
 # option WORDS ARGUMENT...: with a good file.
 option() {
@@ -22,7 +12,7 @@ option() {
 }
 # file NAME WORDS: a file in $out.
 file() {
-  try "$2" "$out/$1" --output "$out/results"
+  try "$2" "$out/$1" --output "$out/results.csv"
   try "$2" "$out/$1" --report
 }
 sed 's/,0.05,/,/; s/,radius//' "$good" > "$out/bare.csv"
