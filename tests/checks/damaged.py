@@ -115,8 +115,9 @@ def shortened(data):
 huge = [2**64 - 1, 2**63 - 1, 2**61, 2**40, 2**32]
 bare = [("a bit flipped", flipped), ("shortened", shortened), ("blocks swapped", swapped), ("zeroed", zeroed),
         ("nothing left", lambda data: b"")]
-summed = [("a bit flipped", lambda: flipped(body)), ("shortened", lambda: shortened(body)), ("blocks swapped", lambda: swapped(body)),
-          ("zeroed", lambda: zeroed(body)), ("a huge count", lambda: put(chance.choice([0, text, state]), "<Q", chance.choice(huge))),
+summed = [("a bit flipped", lambda: flipped(body)), ("shortened", lambda: shortened(body)),
+          ("blocks swapped", lambda: swapped(body)), ("zeroed", lambda: zeroed(body)),
+          ("a huge count", lambda: put(chance.choice([0, text, state]), "<Q", chance.choice(huge))),
           ("a huge number", lambda: put(somewhere(), "<Q", chance.choice(huge))),
           ("not a number", lambda: put(somewhere(), "<d", float("nan"))), ("infinite", lambda: put(somewhere(), "<d", float("inf"))),
           ("an index below", lambda: put(somewhere(4), "<i", -chance.randrange(1, 1000))),
