@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace fibrant::proximity::detail {
@@ -133,6 +134,7 @@ public:
     /// @param sink  sink.room(n) is where n candidates may be written, sink.take(end) hands over those before `end`
     template <class Sink>
     void overlaps_inside(std::int32_t first, std::int32_t last, Sink& sink) const {
+        const bool lonely = !cell_group_.empty();
         const std::uint64_t row = cells_[2], layer = cells_[1] * cells_[2];
         const std::uint64_t ahead[4] = {row, layer - row, layer, layer + row};
         std::int32_t from[4], to[4];
@@ -140,8 +142,9 @@ public:
         for (std::int32_t c = first; c < last; ++c) {
             const std::uint64_t key = cell_key_[core::at(c)];
             const std::int32_t next = c + 1 < cells() && cell_key_[core::at(c + 1)] == key + 1 ? c + 2 : c + 1;
-            const std::int32_t group = group_of(c, next);
-            std::int32_t run[6][2], across = 0;  // the own one, and those of the neighbours with which there is something to pair
+            const std::int32_t group = lonely ? group_of(c, next) : many;
+            std::int32_t run[6][2],
+                across = 0;  // the own one, and those of the neighbours; where groups are known, those that pair
             int runs = 1;
             run[0][1] = cell_first_[core::at(next)];
             for (int r = 0; r < 4; ++r) {
@@ -151,17 +154,20 @@ public:
                 while (to[r] < cells() && cell_key_[core::at(to[r])] <= middle + 1) ++to[r];
                 run[runs][0] = cell_first_[core::at(from[r])];
                 run[runs][1] = cell_first_[core::at(to[r])];
-                if (from[r] < to[r] && (group == many || group_of(from[r], to[r]) != group))
+                if (!lonely || (from[r] < to[r] && (group == many || group_of(from[r], to[r]) != group)))
                     across += run[runs][1] - run[runs][0], ++runs;
             }
             if (runs == 1 && group != many) continue;
-            for (std::int32_t k = cell_first_[core::at(c)]; k < cell_first_[core::at(c + 1)]; ++k) {
-                const Box box = columns_[k];
-                run[0][0] = k + 1;
-                Candidate* out = sink.room(run[0][1] - run[0][0] + across + BoxColumns::width);
-                for (int r = 0; r < runs; ++r) out = columns_.overlaps(box, run[r][0], run[r][1], k, out);
-                sink.take(out);
-            }
+            const auto compare = [&](auto number) {
+                for (std::int32_t k = cell_first_[core::at(c)]; k < cell_first_[core::at(c + 1)]; ++k) {
+                    const Box box = columns_[k];
+                    run[0][0] = k + 1;
+                    Candidate* out = sink.room(run[0][1] - run[0][0] + across + BoxColumns::width);
+                    for (int r = 0; r < number; ++r) out = columns_.overlaps(box, run[r][0], run[r][1], k, out);
+                    sink.take(out);
+                }
+            };
+            lonely ? compare(runs) : compare(std::integral_constant<int, 5>{});
         }
     }
 
@@ -194,9 +200,8 @@ public:
     }
 
 private:
-    /// The group of all boxes in up to three cells, if it is one and known.
+    /// The group of all boxes in up to three cells, if it is one.
     std::int32_t group_of(std::int32_t first, std::int32_t last) const noexcept {
-        if (cell_group_.empty()) return many;
         const std::int32_t group = cell_group_[core::at(first)];
         return cell_group_[core::at((first + last) / 2)] == group && cell_group_[core::at(last - 1)] == group ? group : many;
     }
