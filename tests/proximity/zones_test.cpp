@@ -157,7 +157,8 @@ TEST_CASE("pairs are one zone if they touch in the plane of their segment number
         return zones_from_pairs(set.centrelines(), set.reach, pairs).size();
     };
     CHECK(zones({{0, 14}, {0, 15}, {1, 13}}) == 1);
-    CHECK(zones({{0, 14}, {0, 15}, {1, 12}}) == 2);                    // the second row ends before the first one
+    CHECK(zones({{0, 14}, {0, 15}, {1, 12}}) == 2);  // the second row ends before the first one
+    CHECK(zones({{0, 14}, {0, 15}, {1, 12}, {2, 12}}) == 2);
     CHECK(zones({{0, 14}, {0, 15}, {1, 11}, {1, 12}, {1, 13}}) == 1);  // and here reaches it
     CHECK(zones({{0, 14}, {0, 15}, {1, 16}}) == 1);
     CHECK(zones({{0, 14}, {0, 15}, {1, 17}}) == 2);
