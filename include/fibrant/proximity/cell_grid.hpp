@@ -262,7 +262,7 @@ private:
     }
     /// Fills `entries_`, not yet sorted. @return how many boxes there are in the cell of a box, in the mean
     double number_and_count(const std::vector<Box>& boxes, std::span<const std::int32_t> members) {
-        const int bits = std::bit_width(members.size());
+        const auto bits = static_cast<int>(std::bit_width(members.size()));
         place_.assign(std::size_t{1} << bits, 0);
         std::uint64_t others = 0;
         for (std::size_t k = 0; k < members.size(); ++k) {
