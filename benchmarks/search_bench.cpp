@@ -54,7 +54,7 @@ void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { giv
 namespace {
 
 struct Options {
-    bool brute = false, self = false, own = false, growth = false, series = false;
+    bool brute = false, self = false, own = false, growth = false, series = false, page = false, mixtures = false;
     int repeats = 7, refine = 1;
     std::optional<double> motion{}, reach{};  // radii
     double radius = core::unset;
@@ -102,6 +102,79 @@ void advise(const Scene& scene, const std::vector<Row>& rows, const std::vector<
         scene.name.c_str(), rows[best].name.c_str(), 1e3 * figures[best].total, length / width, *thick / *thin, pairs_a_segment,
         pairs_a_segment > 30.0 ? ": many, coarser segments would do" : "");
 }
+
+/// @name The tables of docs/evidence/search.md: a line a scene.
+/// @{
+void print_page_head() {
+    std::printf(
+        "| scene | segments | pairs | GridSearch, ms | over nanoflann | over Boost's R-tree | over CGAL's boxes | over FCL's "
+        "tree "
+        "| over the floor | BvhSearch | KdTreeSearch | TestPointSearch, 4 r | VerletSearch, list alive | zones over pairs | "
+        "bytes a segment | missed, too many |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+}
+/// @param figures  of the rows, and then of zones from the pairs
+void print_page_row(const Scene& scene, const std::vector<Row>& rows, const std::vector<Figures>& figures, double floor,
+                    const Pairs& exact) {
+    const auto of = [&](const std::string& name) -> const Figures* {
+        for (std::size_t m = 0; m < rows.size(); ++m)
+            if (rows[m].name == name) return &figures[m];
+        return nullptr;
+    };
+    const Figures &grid = *of("GridSearch"), &peer = *of("nanoflann");
+    std::printf("| %s | %zu | %zu | %.1f", scene.name.c_str(), scene.segments(), exact.size(), 1e3 * grid.total);
+    for (const char* name : {"nanoflann", "Boost R-tree", "CGAL boxes", "FCL tree"})
+        if (const Figures* other = of(name))
+            std::printf(" | %.3f", grid.total / other->total);
+        else
+            std::printf(" | -");
+    std::printf(" | %.1f", grid.total / floor);
+    for (const char* name : {"BvhSearch", "KdTreeSearch", "TestPointSearch 4 r", "VerletSearch listed"})
+        std::printf(" | %.3f", of(name)->total / peer.total);
+    std::size_t missed = 0, extra = 0;
+    for (const Figures& f : figures) missed += lacking(exact, f.pairs), extra += lacking(f.pairs, exact);
+    std::printf(" | %.2f | %.0f | %zu, %zu |\n", figures.back().total / grid.total,
+                static_cast<double>(grid.bytes) / static_cast<double>(scene.segments()), missed, extra);
+    std::fflush(stdout);
+}
+
+/// Fibres of two sizes, for which the other libraries are no measure.
+void print_mixtures(const Options& options) {
+    std::printf(
+        "| fibres | pairs | GridSearch, ms | over BvhSearch | BvhSearch, ms | zones over pairs | same pairs |\n"
+        "|---|---|---|---|---|---|---|\n");
+    for (const Mixture& mixture : std::initializer_list<Mixture>{{1, 2000, 10.0, false},
+                                                                 {1, 2000, 10.0, true},
+                                                                 {1, 2000, 100.0, false},
+                                                                 {1, 2000, 100.0, true},
+                                                                 {1, 10000, 100.0, false},
+                                                                 {100, 2000, 10.0, false},
+                                                                 {100, 2000, 10.0, true},
+                                                                 {100, 2000, 100.0, false},
+                                                                 {100, 10000, 10.0, false},
+                                                                 {200, 1800, 10.0, false},
+                                                                 {200, 1800, 100.0, false},
+                                                                 {2000, 2000, 10.0, false},
+                                                                 {2000, 2000, 100.0, false},
+                                                                 {2000, 100, 10.0, false},
+                                                                 {2000, 2000, 1.0, false}}) {
+        const Scene scene = random_mixture(mixture);
+        const std::vector<proximity::Centreline> lines = scene.centrelines(options.self);
+        proximity::GridSearch grid;
+        proximity::BvhSearch tree;
+        const Pairs exact = grid.pairs(lines, scene.margin);
+        const std::vector<Figures> figures = measure_in_turn(
+            options.repeats,
+            {{halved("", grid, lines, scene.margin).method}, {halved("", tree, lines, scene.margin).method}, {[&] {
+                 proximity::zones_from_pairs(lines, scene.margin, exact);
+                 return Call{};
+             }}});
+        std::printf("| %s | %zu | %.2f | %.2f | %.2f | %.2f | %s |\n", scene.name.c_str(), exact.size(), 1e3 * figures[0].total,
+                    figures[0].total / figures[1].total, 1e3 * figures[1].total, figures[2].total / figures[0].total,
+                    figures[0].pairs == figures[1].pairs ? "yes" : "NO");
+        std::fflush(stdout);
+    }
+}
+/// @}
 
 /// @return time [ms] against segments, one point a search
 std::vector<observe::PlotLine> print_table(const Scene& scene, const Options& options) {
@@ -154,9 +227,13 @@ std::vector<observe::PlotLine> print_table(const Scene& scene, const Options& op
         return Call{.pairs = exact};
     }});
     const std::vector<Figures> figures = measure_in_turn(options.repeats, turns);
-    for (std::size_t m = 0; m < rows.size(); ++m) print(rows[m].name, figures[m]);
-    print("floor", {.total = least, .least = least, .most = least, .pairs = exact});
-    print("zones from the pairs", figures.back());
+    if (options.page) {
+        print_page_row(scene, rows, figures, least, exact);
+    } else {
+        for (std::size_t m = 0; m < rows.size(); ++m) print(rows[m].name, figures[m]);
+        print("floor", {.total = least, .least = least, .most = least, .pairs = exact});
+        print("zones from the pairs", figures.back());
+    }
     advise(scene, rows, figures, static_cast<double>(exact.size()) / segments);
     std::vector<observe::PlotLine> curves;
     for (std::size_t m = 0; m < rows.size(); ++m) curves.push_back({rows[m].name, {{segments, 1e3 * figures[m].total}}});
@@ -183,6 +260,7 @@ void use_threads(int threads) {
 }
 
 void measure(const Options& options) {
+    if (options.mixtures) return print_mixtures(options);
     std::vector<Scene> scenes;
     for (const std::string& file : options.files) {
         scenes.push_back(read_scene(file, options.radius));
@@ -200,7 +278,9 @@ void measure(const Options& options) {
     if (!options.plot.empty() && (picture.open(options.plot), !picture))
         throw std::invalid_argument(options.plot + ": cannot be written");
     const bool moves = options.series || options.motion;
-    if (options.growth)
+    if (options.page)
+        print_page_head();
+    else if (options.growth)
         print_growth_head();
     else if (moves)
         print_motion_head();
@@ -269,6 +349,11 @@ int main(int argc, char** argv) try {
         ->excludes(mat)
         ->excludes(growth);
     growth->excludes(motion);
+    app.add_flag("--page", options.page, "a table of one line a scene, as docs/evidence/search.md has it")
+        ->excludes(motion)
+        ->excludes(growth);
+    app.add_flag("--mixtures", options.mixtures,
+                 "instead: fibres of two sizes, few or many of each, by the grid and by the tree");
     app.add_option("--threads", options.threads, "numbers of threads, such as 1,2: all is measured with each")
         ->delimiter(',')
         ->check(CLI::Range(1, 1024));

@@ -170,35 +170,75 @@ inline Scene read_scene(const std::string& path, double radius) {
     return scene;
 }
 
-/// Random curved fibres of 64 segments of 4 r that fill 10 % of a cube, overlaps allowed, and turn back at its walls: as dense in
-/// any number; seed 1.
-/// @param segments  about so many
-inline Scene random_mat(std::size_t segments) {
-    const double r = 1.0, length = 4.0 * r, curl = 0.12, fraction = 0.1;
-    const std::size_t each = 64, fibres = std::max<std::size_t>(1, segments / each);
-    const double box = std::cbrt(static_cast<double>(fibres * each) * length * std::numbers::pi * r * r / fraction);
-    std::mt19937_64 random(1);
-    std::uniform_real_distribution<double> place(0.0, box);
-    std::normal_distribution<double> normal;
-    const auto vector = [](auto& draw, auto& from) {
-        const double x = draw(from), y = draw(from), z = draw(from);
-        return Vec3(x, y, z);
-    };
-    Scene scene{.name = "mat" + std::to_string(fibres * each), .margin = 0.5 * r, .self_skip = 3};
-    for (std::size_t f = 0; f < fibres; ++f) {
-        std::vector<Vec3> line{vector(place, random)};
-        Vec3 direction = vector(normal, random).normalized();
-        for (std::size_t k = 0; k < each; ++k) {
+/// Curved fibres of segments of 4 radii at random, overlaps allowed, that turn back at the walls of a cube where they then stay
+/// inside.
+class RandomFibres {
+public:
+    explicit RandomFibres(double box) : box_(box) {}
+
+    void add(Scene& scene, double r, std::size_t segments) {
+        std::uniform_real_distribution<double> place(0.0, box_);
+        const double length = 4.0 * r, curl = 0.12;
+        std::vector<Vec3> line{vector(place)};
+        Vec3 direction = vector(normal_).normalized();
+        for (std::size_t k = 0; k < segments; ++k) {
             Vec3 next = line.back() + length * direction;
-            for (Index axis = 0; axis < 3; ++axis)
-                if (next[axis] < 0.0 || next[axis] > box)
-                    direction[axis] = -direction[axis], next[axis] = line.back()[axis] + length * direction[axis];
+            for (Index axis = 0; axis < 3; ++axis) {
+                const double back = line.back()[axis] - length * direction[axis];
+                if (inside(next[axis]) || !inside(back)) continue;
+                direction[axis] = -direction[axis], next[axis] = back;
+            }
             line.push_back(next);
-            direction = (direction + curl * vector(normal, random)).normalized();
+            direction = (direction + curl * vector(normal_)).normalized();
         }
         scene.points.push_back(std::move(line));
         scene.radius.push_back(r);
     }
+
+private:
+    bool inside(double x) const { return x >= 0.0 && x <= box_; }
+    template <class Draw>
+    Vec3 vector(Draw& draw) {
+        const double x = draw(random_), y = draw(random_), z = draw(random_);
+        return Vec3(x, y, z);
+    }
+
+    double box_;
+    std::mt19937_64 random_{1};
+    std::normal_distribution<double> normal_;
+};
+
+/// Side of a cube of which fibres of segments of 4 radii fill 10 %.
+/// @param cubes  sum over segments of their radii to the third power
+inline double box_of(double cubes) { return std::cbrt(cubes * 4.0 * std::numbers::pi / 0.1); }
+
+/// Random curved fibres of 64 segments of 4 r that fill 10 % of a cube: as dense in any number.
+/// @param segments  about so many
+inline Scene random_mat(std::size_t segments) {
+    const std::size_t each = 64, fibres = std::max<std::size_t>(1, segments / each);
+    Scene scene{.name = "mat" + std::to_string(fibres * each), .margin = 0.5, .self_skip = 3};
+    RandomFibres random(box_of(static_cast<double>(fibres * each)));
+    for (std::size_t f = 0; f < fibres; ++f) random.add(scene, 1.0, each);
+    return scene;
+}
+
+/// Fibres of two sizes, of 16 segments each.
+struct Mixture {
+    std::size_t thick, thin;
+    double ratio;  ///< of their radii
+    bool dense;    ///< thin ones alone fill 10 % of a cube, else all do
+};
+inline Scene random_mixture(const Mixture& mixture) {
+    const auto& [thick, thin, ratio, dense] = mixture;
+    const std::size_t each = 16;
+    Scene scene{.name = std::to_string(thick) + " thick; " + std::to_string(thin) + " thin; " + core::text(ratio) + " : 1" +
+                        (dense ? "; dense" : ""),
+                .margin = 0.5,
+                .self_skip = 3};
+    const auto cubes = static_cast<double>(each) *
+                       (static_cast<double>(thin) + (dense ? 0.0 : static_cast<double>(thick) * ratio * ratio * ratio));
+    RandomFibres random(box_of(cubes));
+    for (std::size_t f = 0; f < thick + thin; ++f) random.add(scene, f < thick ? ratio : 1.0, each);
     return scene;
 }
 

@@ -216,6 +216,31 @@ TEST_CASE_TEMPLATE("fibres of two sizes, few or many of each, dense or sparse, p
             }
 }
 
+TEST_CASE_TEMPLATE("thin fibres far apart, each with another one along it, pair as by brute force", Search, BvhSearch, GridSearch,
+                   AutomaticSearch) {
+    // Cells are wider there than boxes, most have one fibre alone, and thick ones are asked for by cells.
+    Search search = make_search<Search>();
+    for (const double box : {10.0, 30.0})
+        for (const std::size_t thick : {0u, 1u, 40u}) {
+            FibreSet set = test::random_fibres(32, 120, 8, 0.2, 0.2, box);
+            std::mt19937 random(33);
+            for (std::size_t f = 0; f < 120; ++f) {
+                std::vector<Vec3> along = set.points[f];
+                for (Vec3& x : along) x += 0.1 * test::uniform_vector(random);
+                if (f < thick)
+                    set.radius[f] *= 20.0;
+                else
+                    set.add(along, 0.05);
+            }
+            CAPTURE(box);
+            CAPTURE(thick);
+            const auto lines = set.centrelines();
+            const auto pairs = search.pairs(lines, set.reach);
+            CHECK(pairs.size() > 500);
+            CHECK(pairs == BruteSearch{}.pairs(lines, set.reach));
+        }
+}
+
 TEST_CASE_TEMPLATE("pairs and zones have the same bits for one thread and for three", Search, EVERY_SEARCH) {
     const FibreSet set = test::random_fibres(21, 150, 15, 0.2, 0.4, 1.0);
     const auto lines = set.centrelines();

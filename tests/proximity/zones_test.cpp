@@ -149,6 +149,25 @@ TEST_CASE("pairs that touch by a corner alone in the plane of their segment numb
     }
 }
 
+TEST_CASE("pairs are one zone if they touch in the plane of their segment numbers, be there gaps or not") {
+    FibreSet set{.name = "side by side", .reach = 0.1};
+    set.add(straight({0, 0, 0}, {9, 0, 0}, 9), 0.1);
+    set.add(straight({0, 0.2, 0}, {9, 0.2, 0}, 9), 0.1);
+    const auto zones = [&](const std::vector<SegmentPair>& pairs) {
+        return zones_from_pairs(set.centrelines(), set.reach, pairs).size();
+    };
+    CHECK(zones({{0, 14}, {0, 15}, {1, 13}}) == 1);
+    CHECK(zones({{0, 14}, {0, 15}, {1, 12}}) == 2);  // the second row ends before the first one
+    CHECK(zones({{0, 14}, {0, 15}, {1, 12}, {2, 12}}) == 2);
+    CHECK(zones({{0, 14}, {0, 15}, {1, 11}, {1, 12}, {1, 13}}) == 1);  // and here reaches it
+    CHECK(zones({{0, 14}, {0, 15}, {1, 16}}) == 1);
+    CHECK(zones({{0, 14}, {0, 15}, {1, 17}}) == 2);
+    CHECK(zones({{0, 14}, {0, 16}}) == 2);
+    CHECK(zones({{0, 14}, {0, 16}, {1, 15}}) == 1);  // joined by the row after
+    CHECK(zones({{0, 14}, {2, 14}}) == 2);
+    CHECK(zones({{0, 14}, {1, 15}, {2, 13}}) == 2);
+}
+
 TEST_CASE("every close pair has its closest points in a zone of its two fibres, and every zone has a pair") {
     for (const FibreSet& set : test::search_cases()) {
         CAPTURE(set.name);

@@ -41,6 +41,17 @@ public:
         return box;
     }
 
+    /// Least box around those in [first, last), of the group of the first.
+    Box around(std::int32_t first, std::int32_t last) const noexcept {
+        Box all = (*this)[first];
+        for (std::int32_t k = first + 1; k < last; ++k)
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                all.low[axis] = std::min(all.low[axis], column_[2 * axis][core::at(k)]);
+                all.high[axis] = std::max(all.high[axis], column_[2 * axis + 1][core::at(k)]);
+            }
+        return all;
+    }
+
     /// Writes {of, k} for each box k in [first, last) of another group that overlaps `box`, in order.
     /// @param out  room for last - first + width
     /// @return the end of what was written

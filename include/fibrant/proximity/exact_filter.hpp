@@ -182,10 +182,13 @@ __attribute__((noinline))
 #endif
 inline void
 locate(const SegmentRecord* records, std::span<const SegmentPair> pairs, double reach, PairPlace* places) {
+    constexpr std::size_t ahead = 2 * FilterLanes::size;  // pairs to ask memory for in advance
     FilterLanes lanes;
     const SegmentRecord *i[FilterLanes::size], *j[FilterLanes::size];
     for (std::size_t k = 0; k < pairs.size(); k += FilterLanes::size) {
         const std::size_t filled = std::min(pairs.size() - k, std::size_t{FilterLanes::size});
+        for (std::size_t l = k + ahead; l < std::min(k + ahead + FilterLanes::size, pairs.size()); ++l)
+            core::prefetch(records + pairs[l].j);
         for (std::size_t l = 0; l < FilterLanes::size; ++l) {
             const SegmentPair& pair = pairs[k + (l < filled ? l : 0)];
             i[l] = records + pair.i, j[l] = records + pair.j;

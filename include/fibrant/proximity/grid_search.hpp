@@ -39,7 +39,8 @@ public:
     /// Memory that is kept, without the pairs [byte].
     std::size_t bytes() const noexcept {
         std::size_t sum = (first_.capacity() + owner_.capacity()) * sizeof(std::int32_t) +
-                          boxes_.capacity() * sizeof(detail::Box) + records_.capacity() * sizeof(detail::SegmentRecord);
+                          boxes_.capacity() * sizeof(detail::Box) + bin_.capacity() +
+                          records_.capacity() * sizeof(detail::SegmentRecord);
         for (const detail::CellGrid& grid : levels_) sum += grid.bytes();
         for (const auto& places : place_owner_) sum += places.capacity() * sizeof(std::int32_t);
         return sum;
@@ -52,6 +53,7 @@ private:
     void make_boxes(const detail::SegmentTable& table) {
         const detail::BoxFrame frame(table);
         const std::int32_t n = table.size();
+        per_size_ = static_cast<float>(1.0 / (1.5 * (frame.mean_length + frame.mean_thickness)));
         cut_ = count_pieces(table, frame);
         if (!cut_) {
             boxes_.resize(core::at(n));
@@ -116,16 +118,15 @@ private:
 
     /// One grid for boxes within a factor of about 4 in size.
     void sort_into_levels() {
-        std::array<std::int32_t, 256> bin{};  // by the binary exponent of the largest side
+        std::array<std::int32_t, 256> bin{};  // by the binary exponent of the largest side over that of a common segment
         std::array<float, 256> largest{};
-        const auto side_of = [](const detail::Box& box) {
-            return std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
-        };
-        const auto bin_of = [](float side) -> std::size_t { return std::bit_cast<std::uint32_t>(side) >> 23 & 0xffU; };
-        for (const detail::Box& box : boxes_) {
-            const float side = side_of(box);
-            ++bin[bin_of(side)];
-            largest[bin_of(side)] = std::max(largest[bin_of(side)], side);
+        bin_.resize(boxes_.size());
+        for (std::size_t k = 0; k < boxes_.size(); ++k) {
+            const detail::Box& box = boxes_[k];
+            const float side = std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
+            bin_[k] = static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(side * per_size_) >> 23);
+            ++bin[bin_[k]];
+            largest[bin_[k]] = std::max(largest[bin_[k]], side);
         }
         std::array<int, 256> level{};
         int levels = 0;
@@ -150,8 +151,7 @@ private:
             e = end;
         }
         std::vector<std::vector<std::int32_t>> members(core::at(levels));
-        for (std::size_t k = 0; k < boxes_.size(); ++k)
-            members[core::at(level[bin_of(side_of(boxes_[k]))])].push_back(static_cast<std::int32_t>(k));
+        for (std::size_t k = 0; k < boxes_.size(); ++k) members[core::at(level[bin_[k]])].push_back(static_cast<std::int32_t>(k));
         levels_.resize(core::at(levels));
         for (std::size_t k = 0; k < levels_.size(); ++k) levels_[k].build(boxes_, members[k]);
         if (levels > 1)
@@ -207,29 +207,23 @@ private:
         }
     }
 
-    /// Boxes of a level against those of a finer one: these or those ask, whichever look through fewer rows of the others' cells.
+    /// Boxes of a level against those of a finer one: each of these asks, or all in a cell of those together, whichever costs
+    /// less.
     std::size_t search_between(const detail::SegmentTable& table, std::size_t upper, std::size_t lower, std::size_t done) {
-        constexpr Index together = 256;
-        const auto cost = [&](std::size_t of, std::size_t in) {  // from every so many of them
-            const detail::CellGrid& asks = levels_[of];
-            const std::int32_t every = asks.size() / 1024 + 1;
-            double rows = 0.0;
-            for (std::int32_t k = 0; k < asks.size(); k += every) {
-                const detail::Box& box = boxes_[core::at(asks.box(k))];
-                rows += every * levels_[in].rows_of({box.high[0] - box.low[0], box.high[1] - box.low[1]});
-            }
-            return rows;
-        };
-        const bool large_ask = cost(upper, lower) <= cost(lower, upper);
-        const std::size_t asking = large_ask ? upper : lower, asked = large_ask ? lower : upper;
-        const detail::CellGrid& grid = levels_[asking];
-        const Index blocks = (grid.size() + together - 1) / together;
+        const detail::CellGrid &large = levels_[upper], &small = levels_[lower];
+        const bool large_ask = large.cost_of_boxes(small) <= small.cost_of_cells(large);
+        const std::int32_t asking = large_ask ? large.size() : small.cells();
+        const Index blocks = (asking + cells_together - 1) / cells_together;
         reserve_blocks(done + core::at(blocks));
         core::parallel_for<core::Share::turns>(blocks, [&](Index b) {
-            detail::CandidateSink sink(table, records_.data(), place_owner_[asking].data(), place_owner_[asked].data(),
+            detail::CandidateSink sink(table, records_.data(), place_owner_[upper].data(), place_owner_[lower].data(),
                                        close_[done + core::at(b)]);
-            for (auto k = static_cast<std::int32_t>(b * together); k < std::min<Index>(grid.size(), (b + 1) * together); ++k)
-                levels_[asked].overlaps_with(boxes_[core::at(grid.box(k))], k, sink);
+            const auto first = static_cast<std::int32_t>(b * cells_together), last = std::min(asking, first + cells_together);
+            detail::CandidateList found;
+            if (large_ask)
+                for (std::int32_t k = first; k < last; ++k) small.overlaps_with(boxes_[core::at(large.box(k))], k, sink);
+            else
+                small.overlaps_across(first, last, large, found, sink);
             sink.flush();
         });
         return done + core::at(blocks);
@@ -256,6 +250,8 @@ private:
     std::vector<std::int32_t> first_;  // first box of each segment
     std::vector<std::int32_t> owner_;  // segment of each box, where cut
     std::vector<detail::Box> boxes_;
+    std::vector<std::uint8_t> bin_;  // of each box, by its size
+    float per_size_ = 1.0F;          // bins do not depend on units
     std::vector<detail::CellGrid> levels_;
     std::vector<std::vector<std::int32_t>> place_owner_;  // of each level: segment at each place
     std::vector<detail::SegmentRecord> records_;

@@ -48,12 +48,11 @@ struct ProximityZone {
     friend bool operator==(const ProximityZone&, const ProximityZone&) = default;
 };
 
-/// Sorts zones of one pair of fibres along both. @param first  of those that are sorted
-inline void sort_along(std::vector<ProximityZone>& zones, std::size_t first = 0) {
-    std::sort(zones.begin() + static_cast<std::ptrdiff_t>(first), zones.end(),
-              [](const ProximityZone& a, const ProximityZone& b) {
-                  return std::tie(a.a_i, a.a_j, a.b_i, a.b_j) < std::tie(b.a_i, b.a_j, b.b_i, b.b_j);
-              });
+/// Sorts zones of one pair of fibres along both.
+inline void sort_along(std::span<ProximityZone> zones) {
+    std::sort(zones.begin(), zones.end(), [](const ProximityZone& a, const ProximityZone& b) {
+        return std::tie(a.a_i, a.a_j, a.b_i, a.b_j) < std::tie(b.a_i, b.a_j, b.b_i, b.b_j);
+    });
 }
 
 /// Finds every pair of segments whose axes are closer than

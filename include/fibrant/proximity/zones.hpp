@@ -5,39 +5,49 @@
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/proximity/closed_zones.hpp>
 #include <fibrant/proximity/exact_filter.hpp>
+#include <fibrant/proximity/near_part.hpp>
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <utility>
 
 namespace fibrant::proximity {
 namespace detail {
 
-/// Makes the zones of two fibres at a time; keeps its buffers from one to the next.
+/// Makes the zones of two fibres at a time; keeps its buffers from one to the next. Zones are whole once all are finished: where
+/// they end is solved for eight ends at once.
 class ZoneMaker {
 public:
-    /// @param records  of all segments in order
-    ZoneMaker(const SegmentTable& table, const SegmentRecord* records) : table_(table), records_(records) {}
+    /// @param records  of all segments in order   @param zones  to append to
+    ZoneMaker(const SegmentTable& table, const SegmentRecord* records, std::vector<ProximityZone>& zones)
+        : table_(table), records_(records), zones_(zones) {}
 
     /// Appends the zones of two fibres.
     /// @param pairs   all of these two, sorted by segment
     /// @param places  of these
-    void append(std::span<const SegmentPair> pairs, const PairPlace* places, std::vector<ProximityZone>& zones) {
+    void append(std::span<const SegmentPair> pairs, const PairPlace* places) {
         pairs_ = pairs, place_ = places;
-        if (table_.centreline(table_.fibre(pairs.front().i)).closed || table_.centreline(table_.fibre(pairs.front().j)).closed)
-            return closed_.append(pairs, places, zones);
-        const std::size_t n = pairs_.size(), before = zones.size();
-        if (n == 1) {
+        fibre_i_ = table_.fibre(pairs.front().i), fibre_j_ = table_.fibre(pairs.front().j);
+        first_i_ = table_.first(fibre_i_), first_j_ = table_.first(fibre_j_);
+        if (table_.centreline(fibre_i_).closed || table_.centreline(fibre_j_).closed)
+            return closed_.append(pairs, places, zones_);
+        const std::size_t n = pairs_.size(), before = zones_.size();
+        const auto [low, high] = range_of_senses();
+        const bool turns = low <= -clearly && high >= clearly;
+        if (!turns && in_one_piece()) {
             Extent extent;
-            extent.add(pairs_[0], place_[0].sense);
-            measure(0, extent, zones.emplace_back());
-            if (extent.sense < 0.0) std::swap(zones.back().a_j, zones.back().b_j);
+            ProximityZone zone;
+            for (std::size_t k = 0; k < n; ++k) extent.add(pairs_[k], place_[k].sense), take(k, zone);
+            zones_.push_back(zone);
+            for (std::size_t k = 0; k < n; ++k) ask_for_ends(k, extent, before);
+            if (extent.sense < 0.0) against_.push_back(before);
             return;
         }
         root_.resize(n);
         std::iota(root_.begin(), root_.end(), std::size_t{0});
         join([](std::size_t, std::size_t) { return true; });
-        if (separate_turns()) join([this](std::size_t a, std::size_t b) { return same_way(a, b); });
+        if (turns && separate_turns()) join([this](std::size_t a, std::size_t b) { return same_way(a, b); });
         zone_.assign(n, none);
         extent_.clear();
         for (std::size_t k = 0; k < n; ++k) {
@@ -49,11 +59,20 @@ public:
             zone_[k] = zone_[top];
             extent_[zone_[k]].add(pairs_[k], place_[k].sense);
         }
-        zones.resize(before + extent_.size());
-        for (std::size_t k = 0; k < n; ++k) measure(k, extent_[zone_[k]], zones[before + zone_[k]]);
+        zones_.resize(before + extent_.size());
+        for (std::size_t k = 0; k < n; ++k) take(k, zones_[before + zone_[k]]);
+        for (std::size_t k = 0; k < n; ++k) ask_for_ends(k, extent_[zone_[k]], before + zone_[k]);
         for (std::size_t z = 0; z < extent_.size(); ++z)
-            if (extent_[z].sense < 0.0) std::swap(zones[before + z].a_j, zones[before + z].b_j);
-        sort_along(zones, before);
+            if (extent_[z].sense < 0.0) against_.push_back(before + z);
+        if (extent_.size() > 1) several_.push_back({before, extent_.size()});
+    }
+
+    /// Ends all zones that were appended since the last time.
+    void finish() {
+        solve_ends();
+        for (const std::size_t z : against_) std::swap(zones_[z].a_j, zones_[z].b_j);
+        for (const auto& [first, number] : several_) sort_along(std::span(zones_).subspan(first, number));
+        against_.clear(), several_.clear();
     }
 
 private:
@@ -96,13 +115,33 @@ private:
         return mixed_[a] == 0 || (place_[a].sense < 0.0) == (place_[b].sense < 0.0);
     }
 
+    std::pair<double, double> range_of_senses() const {
+        double low = 1.0, high = -1.0;
+        for (std::size_t k = 0; k < pairs_.size(); ++k)
+            low = std::min(low, place_[k].sense), high = std::max(high, place_[k].sense);
+        return {low, high};
+    }
+    /// Whether all pairs touch each other in the simplest way: those of a row are without gaps, and so are the rows, of which
+    /// each touches the one before. What has gaps may yet be one zone, as `join` tells.
+    bool in_one_piece() const {
+        std::int32_t begin = pairs_.front().j, least = begin;  // of the row, and where it must reach to touch the one before
+        for (std::size_t k = 1; k < pairs_.size(); ++k) {
+            const auto [i, j] = pairs_[k];
+            const auto [before_i, before_j] = pairs_[k - 1];
+            if (i == before_i) {
+                if (j != before_j + 1) return false;
+                continue;
+            }
+            if (i != before_i + 1 || j > before_j + 1 || before_j < least) return false;
+            least = begin - 1, begin = j;
+        }
+        return pairs_.back().j >= least;
+    }
+
     /// Undoes the components that run clearly both ways, as where a fibre turns back along another, to be joined again
     /// by sense. A crossing near 90 degrees, whose sense is noise, stays whole. Returns whether there are any.
     bool separate_turns() {
         const std::size_t n = pairs_.size();
-        double low = 1.0, high = -1.0;
-        for (std::size_t k = 0; k < n; ++k) low = std::min(low, place_[k].sense), high = std::max(high, place_[k].sense);
-        if (low > -clearly || high < clearly) return false;
         std::vector<char> along(n, 0), against(n, 0);
         for (std::size_t k = 0; k < n; ++k) {
             if (place_[k].sense >= clearly) along[root(k)] = 1;
@@ -119,14 +158,11 @@ private:
         return any;
     }
 
-    /// Takes a pair into its zone: the closest points, and the ends where the pair is at one.
-    void measure(std::size_t k, const Extent& extent, ProximityZone& zone) const {
-        const SegmentPair pair = pairs_[k];
+    /// Takes a pair into its zone by its closest points.
+    void take(std::size_t k, ProximityZone& zone) const {
         const PairPlace& closest = place_[k];
-        const std::int32_t fibre_i = table_.fibre(pair.i), fibre_j = table_.fibre(pair.j);
-        const double p = pair.i - table_.first(fibre_i), q = pair.j - table_.first(fibre_j);
-        const double s = p + closest.s, t = q + closest.t;
-        if (zone.fibre_i < 0) zone = {fibre_i, fibre_j, s, s, t, t, s, t, std::sqrt(closest.squared)};
+        const double s = (pairs_[k].i - first_i_) + closest.s, t = (pairs_[k].j - first_j_) + closest.t;
+        if (zone.fibre_i < 0) zone = {fibre_i_, fibre_j_, s, s, t, t, s, t, std::sqrt(closest.squared)};
         if (closest.squared < zone.distance * zone.distance) {
             zone.closest_i = s;
             zone.closest_j = t;
@@ -136,23 +172,57 @@ private:
         zone.b_i = std::max(zone.b_i, s);
         zone.a_j = std::min(zone.a_j, t);
         zone.b_j = std::max(zone.b_j, t);
-        const bool ends_i = pair.i == extent.least.i || pair.i == extent.most.i,
-                   ends_j = pair.j == extent.least.j || pair.j == extent.most.j;
-        if (!ends_i && !ends_j) return;
-        const SegmentRecord &i = records_[pair.i], &j = records_[pair.j];
-        const double threshold = i.half + j.half + table_.reach();
-        if (ends_i) near_part(i, j, threshold).add_to(p, zone.a_i, zone.b_i);
-        if (ends_j) near_part(j, i, threshold).add_to(q, zone.a_j, zone.b_j);
+    }
+
+    /// Where a pair is at an end of its zone, the zone reaches as far as the two segments are near each other.
+    void ask_for_ends(std::size_t k, const Extent& extent, std::size_t zone) {
+        const auto [i, j] = pairs_[k];
+        if (i == extent.least.i || i == extent.most.i) ask({records_ + i, records_ + j, zone, i - first_i_, true});
+        if (j == extent.least.j || j == extent.most.j) ask({records_ + j, records_ + i, zone, j - first_j_, false});
+    }
+
+    struct End {
+        const SegmentRecord *of, *other;
+        std::size_t zone;
+        std::int32_t number;  // of the segment on its fibre
+        bool on_i;
+    };
+    void ask(const End& end) {
+        end_[asked_++] = end;
+        if (asked_ == FilterLanes::size) solve_ends();
+    }
+    void solve_ends() {
+        if (asked_ == 0) return;
+        const SegmentRecord *of[FilterLanes::size], *other[FilterLanes::size];
+        for (int l = 0; l < FilterLanes::size; ++l) {
+            const End& end = end_[l < asked_ ? l : 0];
+            of[l] = end.of, other[l] = end.other;
+        }
+        lanes_.load(of, other, table_.reach());
+        near_parts(lanes_);
+        for (int l = 0; l < asked_; ++l) {
+            ProximityZone& zone = zones_[end_[l].zone];
+            const Part part{lanes_.s[l], lanes_.t[l]};
+            end_[l].on_i ? part.add_to(end_[l].number, zone.a_i, zone.b_i) : part.add_to(end_[l].number, zone.a_j, zone.b_j);
+        }
+        asked_ = 0;
     }
 
     const SegmentTable& table_;
     const SegmentRecord* records_;
+    std::vector<ProximityZone>& zones_;
     ClosedZoneMaker closed_{table_};
     std::span<const SegmentPair> pairs_;
     const PairPlace* place_ = nullptr;
+    std::int32_t fibre_i_ = 0, fibre_j_ = 0, first_i_ = 0, first_j_ = 0;  // and their first segments
     std::vector<std::size_t> root_, zone_;
     std::vector<char> mixed_;
     std::vector<Extent> extent_;
+    std::vector<std::size_t> against_;                          // zones along which the fibres run against each other
+    std::vector<std::pair<std::size_t, std::size_t>> several_;  // first zone and number, of two fibres with several
+    FilterLanes lanes_;
+    End end_[FilterLanes::size];
+    int asked_ = 0;
 };
 
 /// The close pairs of one fibre with those after it and itself, put in order by the other fibre and then by segment.
@@ -193,7 +263,8 @@ private:
 /// Zones of the pairs of a table.
 inline std::vector<ProximityZone> zones_of(const SegmentTable& table, std::span<const SegmentPair> pairs) {
     if (pairs.empty()) return {};
-    const std::vector<SegmentRecord> records = table.records();
+    const auto records = std::make_unique_for_overwrite<SegmentRecord[]>(core::at(table.size()));  // not filled twice
+    table.write_records(records.get());
     constexpr Index together = 4;  // fibres of a block of the loop: fixed, so that nothing depends on the threads
     const Index fibres = table.fibres(), blocks = (fibres + together - 1) / together;
     std::vector<std::vector<ProximityZone>> part(core::at(blocks));
@@ -202,21 +273,22 @@ inline std::vector<ProximityZone> zones_of(const SegmentTable& table, std::span<
         return std::lower_bound(pairs.begin(), pairs.end(), SegmentPair{segment, -1});
     };
     core::parallel_for<core::Share::turns>(blocks, [&](Index b) {
-        ZoneMaker maker(table, records.data());
+        ZoneMaker maker(table, records.get(), part[core::at(b)]);
         PairsByFibre by_fibre;
         std::vector<PairPlace> places;
-        std::vector<ProximityZone>& zones = part[core::at(b)];
         auto end = first_of(b * together);
         for (Index f = b * together; f < std::min(fibres, (b + 1) * together); ++f) {
             const auto begin = std::exchange(end, first_of(f + 1));
             const std::span<const SegmentPair> own = by_fibre.sorted(table, {begin, end});
             places.resize(own.size());
-            locate(records.data(), own, table.reach(), places.data());
+            locate(records.get(), own, table.reach(), places.data());
             for (std::size_t k = 0, last = 0; k < own.size(); k = last) {
-                for (last = k + 1; last < own.size() && table.fibre(own[last].j) == table.fibre(own[k].j);) ++last;
-                maker.append(own.subspan(k, last - k), places.data() + k, zones);
+                const std::int32_t end_of_fibre = table.first(table.fibre(own[k].j) + 1);
+                for (last = k + 1; last < own.size() && own[last].j < end_of_fibre;) ++last;
+                maker.append(own.subspan(k, last - k), places.data() + k);
             }
         }
+        maker.finish();
     });
     std::vector<ProximityZone> zones;
     core::join(part, zones);
