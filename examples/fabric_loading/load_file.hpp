@@ -58,7 +58,8 @@ inline fibrant::simulation::ProgrammeStage read_stage(SceneReader& file, const s
     stage.name = name;
     std::vector<std::string> ramps;
     file.require(name, "increments", stage.increments, example::between(1, 100000), "increments of each ramp");
-    file.read(name, "ramps", ramps, "what is driven, as texts \"channel = value\"");
+    file.read(name, "ramps", ramps,
+              "what is driven, as texts \"channel = value\": strain, shear, bend, plates, pull or tension, as the case has them");
     file.read(name, "cycles", stage.cycles, example::between(0, 10000), "how many times there and back; 0: there only");
     file.read(name, "back", stage.back, example::between(-1e6, 1e6), "1", "value at which each cycle ends");
     file.read(name, "rest", stage.rest, "after its ramps, go on until the fabric is at rest");
