@@ -21,6 +21,8 @@ BOUNDS = {
     "require_between": lambda a: f"in [{a[0]}, {a[1]}]",
 }
 
+CHECKED_ELSEWHERE = ("Stage", "Ramp")  # by the run that they are stages of
+
 
 def masked(text):
     """The same with texts and comments blanked out, so that brackets in them do not count."""
@@ -49,18 +51,20 @@ def parts(text):
     return [part.strip() for part in found]
 
 
-def bounds(validate, field):
-    """What validate() asks of a field, in its words."""
+def bounds(validate, field, others):
+    """What validate() asks of a field, in its words; not what it asks of fields of that name in the other ones."""
     said = []
     for call in re.finditer(r"(?:core::)?(require\w*)\s*\(", validate):
         arguments = parts(validate[call.end():closing(validate, call.end() - 1) - 1])
         named = next((a for a in arguments if re.fullmatch(r'"[\w.\[\]]*\b' + field + '"', a)), None)
-        if named is None:
+        if named is None or set(named.strip('"').split(".")[1:-1]) & set(others):
             continue
         if call[1] in BOUNDS:
             said.append(BOUNDS[call[1]](arguments[arguments.index(named) + 2:]))
         elif arguments[-1].startswith('"'):
-            said.append(arguments[-1].strip('"'))
+            # Texts that are put together: the name of the value stands in the place of its text, once.
+            text = re.sub(r'" \+ (?:core::)?text\(([^()]*)\)(?: \+ "|$)', r"\1", arguments[-1]).strip('"')
+            said.append(re.sub(r"\b(\w+)(?:,| =) \1\b", r"\1", re.sub(r'" \+ \w+ \+ "', "...", text)))
     return "; ".join(dict.fromkeys(said))
 
 
@@ -84,7 +88,8 @@ def fields(body):
     flat = body[1:-1]
     # Functions and structures within are cut out, what stands before them stays.
     place, kept = 0, ""
-    while (brace := re.compile(r"\)[^;{}\n]*(?:\n[^;{}\n]*)?\{|(?:struct|enum class) [^;{\n]*\{").search(flat, place)):
+    plain = masked(flat)
+    while (brace := re.compile(r"\)[^;{}>_\n]*(?:\n[^;{}>_\n]*)?\{|(?:struct|enum class) [^;{\n]*\{").search(plain, place)):
         kept += flat[place:flat.rfind("\n", 0, brace.start()) + 1]
         place = closing(flat, brace.end() - 1)
     kept += flat[place:]
@@ -118,17 +123,18 @@ def page():
             source = header.read_text()
             for found, body in structures(source):
                 validate = re.search(r"void validate\(\) const \{", body)
-                if not validate:
+                if not validate and found[2] not in CHECKED_ELSEWHERE:
                     continue
-                checks = body[validate.end() - 1:closing(body, validate.end() - 1)]
-                rows = []
-                for kind, rest, comment in fields(body):
+                checks = body[validate.end() - 1:closing(body, validate.end() - 1)] if validate else ""
+                rows, members = [], list(fields(body))
+                names = [re.match(r"\w+", one)[0] for _, rest, _ in members for one in parts(rest)]
+                for kind, rest, comment in members:
                     for one in parts(rest):
                         name, _, default = one.partition("=")
                         name, brace, inside = name.partition("{")
                         default = default.strip() or (inside.rstrip("}") if brace else "")
                         unit = re.search(r"\[([^\]]*)\](?=[,.;]?(?: |$)|$)", comment)
-                        said = bounds(checks, name.strip())
+                        said = bounds(checks, name.strip(), names)
                         whole = f"{found[2]}.{name.strip()}"
                         if not comment and re.search(r"(Parameters|Detection|Spacing|Rule|Adaptation|Material)$", kind):
                             comment = "a structure of its own"

@@ -58,7 +58,8 @@ inline fibrant::simulation::ProgrammeStage read_stage(SceneReader& file, const s
     stage.name = name;
     std::vector<std::string> ramps;
     file.require(name, "increments", stage.increments, example::between(1, 100000), "increments of each ramp");
-    file.read(name, "ramps", ramps, "what is driven, as texts \"channel = value\"");
+    file.read(name, "ramps", ramps,
+              "what is driven, as texts \"channel = value\": strain, shear, bend, plates, pull or tension, as the case has them");
     file.read(name, "cycles", stage.cycles, example::between(0, 10000), "how many times there and back; 0: there only");
     file.read(name, "back", stage.back, example::between(-1e6, 1e6), "1", "value at which each cycle ends");
     file.read(name, "rest", stage.rest, "after its ramps, go on until the fabric is at rest");
@@ -86,7 +87,10 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     file.read("settled", "parts", load.parts, example::between(1, 8), "how many parts each element is cut into");
     file.require("loading", "case", load.name, cloth::load_case_names(), "what is done to the fabric");
     std::string ends = cloth::tow_ends_names().front();
-    file.read("loading", "tow_ends", ends, cloth::tow_ends_names(), "what tow ends do along their edge");
+    file.read(
+        "loading", "tow_ends", ends, cloth::tow_ends_names(),
+        "what tow ends do along their edge: keep their places, spread as the fabric does, go where they like, or spread with "
+        "every fibre end at its place");
     file.require("loading", "stages", stages, "names of the stages, in order; each has a section");
     auto& programme = load.programme;
     double friction = fibrant::core::unset, rest_motion = fibrant::core::unset, rest_share = fibrant::core::unset, largest = 1.0,

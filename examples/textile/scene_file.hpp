@@ -156,8 +156,9 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.require("tubular_braid", "pitch", braid.pitch, positive, "length", "length of a full turn along the axis");
         file.read("tubular_braid", "turns", braid.turns, example::above(0.0, 1e4), "1", "number of turns");
         file.read("tubular_braid", "over", braid.over, example::between(1, 100),
-                  "how many yarns in turn a yarn passes outside: 1 for 1x1, 2 for 2x2");
-        file.read("tubular_braid", "axials", braid.axials, "add straight yarns along the axis, one for each yarn of one way");
+                  "how many yarns in turn a yarn passes outside, a divisor of the carriers: 1 for 1x1, 2 for 2x2");
+        file.read("tubular_braid", "axials", braid.axials,
+                  "add straight yarns along the axis, one for each yarn of one way, where over is 1");
         read_height(file, "tubular_braid", braid.height_over_radius);
         if (!all) file.complete(), made = cloth::tubular_braid(braid);
     }

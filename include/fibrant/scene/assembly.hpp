@@ -27,7 +27,7 @@ namespace fibrant::scene {
 struct FibreSpecification {
     Vec3 from = Vec3::Constant(core::unset);  ///< centre of the first section [length]
     Vec3 to = Vec3::Constant(core::unset);    ///< centre of the last section [length]
-    Curve curve{};                            ///< rest shape of a curved fibre; takes the place of from and to
+    Curve curve{};                            ///< rest shape of a curved fibre, over [0, 1]; takes the place of from and to
     /// Where the fibre lies when a run begins, if not at rest: of the same length as its rest shape. Conditions count from there.
     Curve start{};
     CrossSection section{};  ///< at rest

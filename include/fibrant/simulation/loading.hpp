@@ -16,7 +16,7 @@ namespace fibrant::simulation {
 
 /// Takes the amplitude of a channel to a value over a stage.
 struct Ramp {
-    std::string channel{};
+    std::string channel{};   ///< that it moves
     double to = 1.0;         ///< amplitude at the end of the stage
     bool geometric = false;  ///< by equal factors instead of equal steps; both ends must be > 0
     bool at_once = false;    ///< from the first increment of the stage on, as a weight that nothing holds any more
@@ -44,8 +44,8 @@ inline constexpr double most_fraction = 1e3;
 /// Part of a loading. Laws that are set replace the model's from this stage on.
 template <Model M>
 struct Stage {
-    std::string name = "loading";
-    Index increments = 10;  ///< that its ramps take when none is cut, >= 1
+    std::string name = "loading";  ///< in tables and messages
+    Index increments = 10;         ///< that its ramps take when none is cut, >= 1
     /// Of its ramps, for laws with a rate and for inertia, >= 0; what follows them takes no time, with inertia steps of it
     /// [time].
     double duration = 0.0;
@@ -83,9 +83,9 @@ struct Stage {
     /// says so.
     std::optional<double> deepest{};
     double patience = 1.0;  ///< on the limit of Newton's iterations: what hardly resists bending converges slowly [1], in [1, 10]
-    double looseness = 1.0;  ///< on the tolerances of contact and normal passes, >= 1
-    std::optional<typename M::Normal> normal{};
-    std::optional<typename M::Friction> friction{};
+    double looseness = 1.0;                          ///< on the tolerances of contact and normal passes, >= 1
+    std::optional<typename M::Normal> normal{};      ///< law from this stage on, for the model's
+    std::optional<typename M::Friction> friction{};  ///< likewise
     /// Once the ramps are over: goes on, all else constant, until this is true. None: ends with the ramps.
     std::function<bool(const IncrementReport&)> until{};
     /// Increments after which a stage whose ramps are over ends, be its `until` true or not, >= 1: what creeps for ever may do so
