@@ -452,7 +452,7 @@ TEST_CASE("fibres that slide around each other, in a drum, or tip over keep thei
         const auto tip = run(assembly, {{.velocity = {0, 0, -0.2}, .spin = {0, 1.0, 0}}}, 50.0, 50.0, 0.3, 100);
         const double all = tip->report.energy.external;
         std::printf("tips over: gained %.1e\n", gained(*tip, all));
-        CHECK(std::abs(gained(*tip, all)) < 3e-5);
+        CHECK(std::abs(gained(*tip, all)) < 4e-6);  // 5.5e-6 with directors of the end in what turns their mass
     }
 }
 
