@@ -2,6 +2,7 @@
 #pragma once
 /// @file Contact elements between fibres and with tools.
 
+#include <fibrant/contact/acting_state.hpp>
 #include <fibrant/contact/allowed_depth.hpp>
 #include <fibrant/contact/closest_places.hpp>
 #include <fibrant/contact/contact_detection.hpp>

@@ -19,9 +19,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <numbers>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 using namespace fibrant;
@@ -31,6 +33,7 @@ namespace inertia_test {
 const double pi = std::numbers::pi;
 
 struct Falling {
+    using Motion = inertia::Inertia<>;
     using Beam = beam::DirectorBeam<3>;
     using Proximity = proximity::GridSearch;
     using Normal = law::RegularisedPenalty;
@@ -38,12 +41,26 @@ struct Falling {
     using Solver = solver::SparseCholesky;
     using Acts = term::List<inertia::Inertia<>, load::Gravity>;
 };
+/// The usual scheme, or the one that keeps energy.
+struct EitherScheme {
+    struct Parameters {
+        bool midpoint = false;
+        void validate() const {}
+    };
+    explicit EitherScheme(const Parameters& parameters) : midpoint{parameters.midpoint} {}
+    inertia::TimeStep step(double dt) const {
+        return midpoint ? inertia::Midpoint{}.step(dt) : inertia::GeneralisedAlpha({}).step(dt);
+    }
+    bool midpoint;
+};
 /// Rods that damp their strains, and a contact whose stiffness is a property, on a floor too.
 struct Hitting : Falling {
     using Beam = beam::With<beam::RigidSectionRod, material::Damped<material::Elastic>>;
     using Normal = law::Impact<law::PowerNormal>;
     using Friction = law::RegularisedCoulomb;
     using Tools = contact::RigidTools;
+    using Motion = inertia::Inertia<EitherScheme>;
+    using Acts = term::List<Motion, load::Gravity>;
 };
 struct Still : Falling {
     using Acts = term::List<load::Gravity>;
@@ -94,7 +111,7 @@ struct Moved {
 
     Moved(const scene::Assembly& assembly, const simulation::ModelParameters<M>& with) : simulator(assembly, with) {}
     inertia::Motion motion() const {
-        return simulator.equilibrium().terms().template get<inertia::Inertia<>>().motion(simulator.state());
+        return simulator.equilibrium().terms().template get<typename M::Motion>().motion(simulator.state());
     }
     void reported(const simulation::IncrementReport& increment) {
         motions.push_back(motion());
@@ -366,6 +383,77 @@ TEST_CASE("two rods that meet exchange their velocities in the time of the close
                 turn.report.energy.lost / before);
     CHECK(turn.report.energy.lost < 1e-5 * before);  // of the stretch that the turn begins with
     CHECK(turn.motion().kinetic == test::near(before, 1e-3));
+}
+
+/// What a motion has at its end more than it was given, over that.
+template <class M>
+double gained(const Moved<M>& moved, double given) {
+    const simulation::EnergyBalance& energy = moved.report.energy;
+    return (energy.kinetic + energy.elastic + energy.contact + energy.dissipated + energy.lost - energy.external) / given;
+}
+
+TEST_CASE("fibres that slide around each other, in a drum, or tip over keep their energy to the second order of the step") {
+    // With normals and arms of the end of a step the pair gains 1.7e-3 in 40 steps and half of it in 80, the fibre in the drum
+    // loses 0.19 and 0.11, what scheme and contact make of those that cross is 2e-4, and that which tips over gains 3.3e-4.
+    const double L = 1.0, r = 0.02, density = 1.0, v = 0.4, mass = density * pi * r * r * L, given = 0.5 * mass * v * v;
+    const auto rod = [&](const Vec3& from, const Vec3& to, double young = 1e4, Index elements = 2) {
+        auto one = along_x(L, r, young, elements);
+        one.from = from, one.to = to;
+        return one;
+    };
+    auto with = parameters<Hitting>(r, density);
+    with.acts.inertia.integrator.midpoint = true;
+    const auto run = [&](const scene::Assembly& assembly, std::vector<inertia::Start> starts, double line, double crossing,
+                         double T, Index steps) {
+        with.normal.law.line_stiffness = line, with.normal.law.crossing_stiffness = crossing;
+        with.acts.inertia.starts = std::move(starts);
+        auto moved = std::make_unique<Moved<Hitting>>(assembly, with);
+        moved->run(T, steps);
+        return moved;
+    };
+    {  // two that meet a quarter of their thickness off centre turn about each other
+        scene::Assembly assembly;
+        assembly.add(rod({0, 0, 0}, {L, 0, 0})), assembly.add(rod({0, 0.02, 0.036}, {L, 0.02, 0.036}));
+        const auto hit = run(assembly, {{.fibre = 0, .velocity = {0, 0, v}}}, 50.0, 1.0, 0.03, 40);
+        std::printf("off centre: gained %.1e\n", gained(*hit, given));
+        CHECK(std::abs(gained(*hit, given)) < 1e-5);
+        CHECK((hit->motion().momentum - mass * Vec3(0, 0, v)).norm() < 1e-8 * mass * v);
+    }
+    double lost[2];
+    for (const int fine : {0, 1}) {  // half a turn in a drum: what pushes turns with the fibre and does no work
+        const double way = 0.5 - r, K = 1e3 * mass / L, low = -way - mass * v * v / (K * L * way);
+        scene::Assembly assembly;
+        assembly.add(rod({0, 0, low}, {L, 0, low}));
+        scene::Tool drum;
+        drum.shape = scene::ToolShape::cylinder, drum.radius = 0.5, drum.hollow = true, drum.axis = Vec3::UnitX();
+        assembly.add(drum);
+        const auto slide = run(assembly, {{.velocity = {0, v, 0}}}, K, 1.0, pi * way / v, fine == 0 ? 40 : 80);
+        lost[fine] = -gained(*slide, given);
+        CHECK(slide->tips.back().z() == test::near(way, 0.01));
+    }
+    std::printf("in a drum: lost %.1e in 40 steps, %.1e in 80\n", lost[0], lost[1]);
+    CHECK(std::abs(lost[0]) < 0.01);
+    CHECK(std::abs(lost[1]) < 0.35 * std::abs(lost[0]));
+    {  // two that cross, one of which turns in all directions
+        scene::Assembly assembly;
+        assembly.add(rod({0, 0, 0}, {L, 0, 0})), assembly.add(rod({0.6, -0.2, 0.05}, {0.9, 0.7, 0.05}));
+        const auto hit = run(assembly, {{.fibre = 0, .velocity = {0.3, 0.2, v}, .spin = {0.5, 0.3, 1.0}, .centre = {0.5, 0, 0}}},
+                             50.0, 5.0, 0.2, 40);
+        const simulation::EnergyBalance& energy = hit->report.energy;
+        std::printf("crossed: missing %.1e, put in by renewed contact %.1e of %.1e\n", energy.numerical, energy.rearranged,
+                    energy.external);
+        CHECK(std::abs(energy.numerical) < 2e-5 * energy.external);
+        CHECK(std::abs(energy.rearranged) < 1e-3 * energy.external);
+    }
+    {  // one that leans falls on its end and tips over: its sections turn on the floor
+        scene::Assembly assembly;
+        assembly.add(rod({0, 0, r + 0.005}, {L, 0, r + 0.105}, 1e6));
+        assembly.add(scene::Tool{});
+        const auto tip = run(assembly, {{.velocity = {0, 0, -0.2}, .spin = {0, 1.0, 0}}}, 50.0, 50.0, 0.3, 100);
+        const double all = tip->report.energy.external;
+        std::printf("tips over: gained %.1e\n", gained(*tip, all));
+        CHECK(std::abs(gained(*tip, all)) < 4e-6);  // 5.5e-6 with directors of the end in what turns their mass
+    }
 }
 
 TEST_CASE("a cantilever that is let go under its weight comes to rest at its deflection, and all of its energy is told") {

@@ -126,10 +126,12 @@ public:
             return share_[0] * (y.segment<3>(0) + core::rotation(y.segment<3>(3)) * arm_) +
                    share_[1] * (y.segment<3>(6) + core::rotation(y.segment<3>(9)) * arm_);
         }
-        void follow(const Eigen::Ref<const ElementVector>& y) noexcept {
+        void follow(const Eigen::Ref<const ElementVector>& y) noexcept { follow(y, y); }
+        /// @param arms  unknowns of a state between, whose arms forces have
+        void follow(const Eigen::Ref<const ElementVector>& y, const Eigen::Ref<const ElementVector>& arms) noexcept {
             for (int node = 0; node < 2; ++node) {
                 const Vec3 psi = y.segment<3>(6 * node + 3);
-                const Vec3 arm = core::rotation(psi) * arm_;
+                const Vec3 arm = core::rotation(arms.segment<3>(6 * node + 3)) * arm_;
                 turn_[core::at(node)] = -share_[core::at(node)] * core::cross_matrix(arm) * core::spin_matrix(psi);
             }
         }

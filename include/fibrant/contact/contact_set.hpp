@@ -2,19 +2,17 @@
 #pragma once
 /// @file All contact elements of a mesh, through the three loops.
 
+#include <fibrant/contact/acting_state.hpp>
 #include <fibrant/contact/contact_detection.hpp>
 #include <fibrant/contact/contact_element.hpp>
 #include <fibrant/contact/contact_figures.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
-#include <fibrant/contact/element_directions.hpp>
 #include <fibrant/contact/followed_places.hpp>
-#include <fibrant/contact/meeting_point.hpp>
 #include <fibrant/contact/pair_rules.hpp>
 #include <fibrant/contact/seen_touch.hpp>
 #include <fibrant/contact/side_index.hpp>
 #include <fibrant/contact/station_pairs.hpp>
-#include <fibrant/contact/support.hpp>
 #include <fibrant/contact/watched_places.hpp>
 
 #include <algorithm>
@@ -77,7 +75,7 @@ public:
     void regenerate(const Vector& state, const Vector& accepted) {
         const Memory last(accepted_.periods(), records(state));
         const Memory& memory = last.records().empty() ? accepted_ : last;
-        generate(state, accepted, memory);
+        generate(state, accepted, memory, acting(state, accepted));
         places_.number(elements_, zones_, accepted);
         for_elements([&](Index k) {
             if (slides(k)) follow(k, state);
@@ -89,10 +87,11 @@ public:
     /// @returns the largest turn of a normal that carries force [radian]
     double refresh(const Vector& state, const Vector& accepted) {
         std::vector<double> turned(elements_.size(), 0.0);
+        const Vector& acting = this->acting(state, accepted);
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
             const Vec3 before = element.normal;
-            if (!slides(k)) place_particles(element, state, accepted, before);
+            if (!slides(k)) place_particles(element, acting, state, accepted, before);
             const double turn = slides(k) ? follow(k, state) : turn_between(before, element.normal);
             if (k < core::count(responses_) && responses_[core::at(k)].reaction != 0.0) turned[core::at(k)] = turn;
         });
@@ -115,6 +114,7 @@ public:
     void evaluate(const Vector& state, bool start = false) {
         responses_.resize(elements_.size());
         if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
+        const Vector& acting = acting_.of(normal_, state);
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
             if (slides(k) && !start) places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
@@ -131,6 +131,7 @@ public:
             const double gap = (none ? 0.0 : apart) + element.shift.value();
             const law::NormalResponse response = normal_answer(normal_, *mesh_, element, gap, zone.stiffness);
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
+            act_within(*mesh_, normal_, state, acting, element);
             if constexpr (core::Active<Friction>) {
                 slip -= slip.dot(plane(k)) * plane(k);
                 const double bound = none ? 0.0 : standing_bound(normal_, *mesh_, element, responses_[core::at(k)]);
@@ -145,7 +146,7 @@ public:
         for (const Element& element : elements_) present.emplace_back(element.normal, element.meeting);
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
-            if (element.crossing) return;
+            if (element.crossing || acting_.within(normal_)) return;
             element.normal = element_normal(*mesh_, start, element, parameters_.normal, element.normal);
             find_meeting_point(*mesh_, start, element);
         });
@@ -237,6 +238,8 @@ public:
             mesh_->grain());
     }
 
+    const Vector& acting(const auto&... states) { return acting_.of(normal_, states...); }
+
     /// Of elements, in order.
     std::span<const std::int32_t> sides(Index fibre) const noexcept { return sides_.of(fibre); }
 
@@ -302,7 +305,7 @@ private:
         zone.crossing = angle > places_.angle_share(zone) * (parameters_.spacing.crossing_angle_deg + shift);
     }
 
-    void generate(const Vector& state, const Vector& accepted, const Memory& memory) {
+    void generate(const Vector& end, const Vector& accepted, const Memory& memory, const Vector& state) {
         constexpr Index block = 64;  // zones
         const Index blocks = (core::count(zones_) + block - 1) / block;
         std::vector<std::vector<Element>> made(core::at(blocks));
@@ -325,7 +328,7 @@ private:
                         Vec3 remembered = record ? record->normal : Vec3(Vec3::Zero());
                         if (zone.order >= 0 && (zone.forced || !record))
                             remembered = orders_.direction(zone.order, zone.span.fibre_i);
-                        place_particles(element, state, accepted, remembered);
+                        place_particles(element, state, end, accepted, remembered);
                         if (zone.forced && element.gap(state) > forced_keep * mesh_->fibre(zone.span.fibre_i).section.radius())
                             continue;
                         if constexpr (core::Active<Friction>) recall_friction(element, state);
@@ -355,7 +358,7 @@ private:
         Element& element = elements_[core::at(k)];
         places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
         places_.host(*mesh_, element);
-        meet(element, state, places_.accepted());
+        meet(element, state, state, places_.accepted());
         if constexpr (core::Active<Friction>) recall_friction(element, state);
         return places_.renew(*mesh_, state, element, core::Active<Friction>);
     }
@@ -384,9 +387,10 @@ private:
     }
 
     /// Normal, particles, gap shift and accepted offset of an element whose stations stand.
-    void place_particles(Element& element, const Vector& state, const Vector& accepted, const Vec3& remembered) const {
+    void place_particles(Element& element, const Vector& state, const Vector& end, const Vector& accepted,
+                         const Vec3& remembered) const {
         element.normal = element_normal(*mesh_, state, element, parameters_.normal, remembered);
-        meet(element, state, accepted);
+        meet(element, state, end, accepted);
         if constexpr (law::GapShifting<Normal>) element.shift.shift = normal_.gap_shift(element.gap(accepted));
         if constexpr (law::Augmenting<Normal>)
             element.shift.shift = -normal_.penetration(element.shift.multiplier, stiffness(element));
@@ -396,15 +400,9 @@ private:
         }
     }
     /// Where both forces of an element act, and from where its slip counts.
-    void meet(Element& element, const Vector& state, const Vector& accepted) const {
+    void meet(Element& element, const Vector& state, const Vector& end, const Vector& accepted) const {
         find_meeting_point(*mesh_, state, element), see_directions(*mesh_, state, element);
-        if constexpr (law::SteppedNormal<Normal>)
-            element.shift.before =
-                apart_in(*mesh_, parameters_.normal, element, accepted) - zones_[core::at(element.zone)].unseen;
-        if constexpr (core::Active<Friction>) {
-            element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
-            element.friction.accepted_offset = contact::accepted_offset(*mesh_, parameters_.normal, element, state, accepted);
-        }
+        count_from(*mesh_, parameters_.normal, normal_, element, end, accepted, zones_[core::at(element.zone)].unseen);
     }
 
     void recall_friction(Element& element, const Vector& state) const requires core::Active<Friction> {
@@ -444,6 +442,7 @@ private:
     SideIndex sides_;
     Memory accepted_;
     FollowedPlaces<B> places_;
+    [[no_unique_address]] ActingState<Normal> acting_;
 };
 
 }  // namespace fibrant::contact

@@ -33,14 +33,15 @@ public:
     void detect(const Vector& state, const Vector& accepted, double reach, bool forced) {
         Base::detect(state, accepted, reach, forced);
         reach_ = reach;
-        tools_.detect(state, accepted, reach, this->normal_law());
+        tools_.detect(this->acting(state, accepted), accepted, reach, this->normal_law());
     }
     void regenerate(const Vector& state, const Vector& accepted) {
         Base::regenerate(state, accepted);
-        tools_.detect(state, accepted, reach_, this->normal_law());
+        tools_.detect(this->acting(state, accepted), accepted, reach_, this->normal_law());
     }
     double refresh(const Vector& state, const Vector& accepted) {
-        return std::max(Base::refresh(state, accepted), tools_.refresh(state, accepted, this->normal_law()));
+        const double turn = Base::refresh(state, accepted);
+        return std::max(turn, tools_.refresh(this->acting(state, accepted), accepted, this->normal_law()));
     }
     void hold_reactions() {
         Base::hold_reactions();
@@ -48,7 +49,7 @@ public:
     }
     void evaluate(const Vector& state, bool start = false) {
         Base::evaluate(state, start);
-        tools_.evaluate(state, this->normal_law(), this->friction_law());
+        tools_.evaluate(state, this->acting(state), this->normal_law(), this->friction_law());
     }
     template <class Add>
     void section_stiffness_terms(Index fibre, const Vector& state, const Add& add) const {

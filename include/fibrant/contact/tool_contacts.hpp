@@ -2,11 +2,10 @@
 #pragma once
 /// @file Contact elements between fibres and rigid tools, with the laws and the histories of contact between fibres.
 
+#include <fibrant/contact/acting_state.hpp>
 #include <fibrant/contact/contact_tangent.hpp>
 #include <fibrant/contact/normal_direction.hpp>
 #include <fibrant/contact/seen_touch.hpp>
-#include <fibrant/contact/support.hpp>
-#include <fibrant/contact/tool_element.hpp>
 #include <fibrant/contact/tool_place.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
 #include <fibrant/core/parallel.hpp>
@@ -144,6 +143,10 @@ public:
 
     /// Inner loop: gaps, reactions and friction of a state.
     void evaluate(const Vector& state, const Normal& normal, const Friction& friction) {
+        evaluate(state, state, normal, friction);
+    }
+    /// @param acting  where in the increment contact acts
+    void evaluate(const Vector& state, const Vector& acting, const Normal& normal, const Friction& friction) {
         responses_.resize(elements_.size());
         if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
         if constexpr (law::PullingNormal<Normal>) pushes_.resize(elements_.size());
@@ -156,10 +159,11 @@ public:
                 if constexpr (core::Active<Friction>)
                     slip += beam::Mesh<B>::point(state, element.first, element.friction.weights_j) - element.foot -
                             element.friction.accepted_offset;
-                follow_support(element, state);
+                follow_particles(*mesh_, state, element);
                 const double gap = element.gap(state) + element.normal.dot(back) + element.shift.value();
                 const law::NormalResponse response = normal_answer(normal, *mesh_, element, gap, stiffness(element));
                 responses_[core::at(k)] = {gap, response.reaction, response.slope};
+                act_within(*mesh_, normal, state, acting, element);
                 if constexpr (law::PullingNormal<Normal>)
                     pushes_[core::at(k)] = friction_bound(normal, *mesh_, element, responses_[core::at(k)]);
                 if constexpr (core::Active<Friction>) {
@@ -359,10 +363,6 @@ private:
     Vec3 tangent(const Element& element, const Vector& state) const {
         return contact_tangent(*mesh_, state, element.fibre, element.u).normalized();
     }
-    void follow_support(Element& element, const Vector& state) const {
-        element.cap = support_weights(*mesh_, state, element.fibre, element.u, element.first, Vec3(-element.normal), element.end,
-                                      element.weights);
-    }
     /// How far the tool's point stood from its present place, where the last evaluation is of the accepted state.
     Vec3 back_step(const Element& element) const {
         const std::size_t t = core::at(element.tool);
@@ -378,18 +378,19 @@ private:
         // not.
         const bool last = element.u == 0.0 || element.u == static_cast<double>(mesh_->fibre(element.fibre).elements);
         element.end = last && std::abs(tangent(element, state).dot(element.normal)) > slanted;
-        follow_support(element, state);
+        follow_particles(*mesh_, state, element);
         const Vec3 particle = beam::Mesh<B>::point(state, element.first, element.weights);
         element.foot = particle - scene::tool_distance(tools_[t], pose.material(particle)).distance * element.normal;
         if constexpr (law::GapShifting<Normal>) element.shift.shift = normal.gap_shift(element.gap(accepted));
         if constexpr (law::Augmenting<Normal>)
             element.shift.shift = -normal.penetration(element.shift.multiplier, stiffness(element));
         see_directions(*mesh_, state, element);
-        if constexpr (law::SteppedNormal<Normal>)
-            element.shift.before =
-                scene::tool_distance(tools_[t],
-                                     accepted_pose_[t].material(beam::Mesh<B>::point(accepted, element.first, element.weights)))
-                    .distance;
+        if constexpr (law::SteppedNormal<Normal>) {
+            Element then = element;
+            follow_particles(*mesh_, accepted, then);
+            then.foot = accepted_pose_[t].place(pose.material(element.foot));
+            element.shift.before = then.normal.dot(then.offset(accepted));
+        }
         if constexpr (core::Active<Friction>) {
             element.friction.weights_j = element.weights;
             const scene::ToolPose& before = accepted_pose_[t];

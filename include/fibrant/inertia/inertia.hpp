@@ -126,15 +126,18 @@ public:
         }
         if constexpr (Own::turn)
             each_turning([&](Index vector, const std::array<double, 2>& mass) {
-                // A dead force J p/c^2 on a director g has the moment g x that; forces of the accepted state have theirs.
+                // The moment of J (g - p)/c^2 about a director's arm is one of a dead force on it; forces of the accepted state
+                // have theirs.
                 const Vec3 psi = state.segment<3>(3 * vector);
                 const Mat3 R = core::rotation(psi), T = core::spin_matrix(psi);
                 Mat3 sum = (1.0 - step_.share) * core::spin_slope(psi, force_.segment<3>(3 * vector));
                 for (Index k = 0; k < 2; ++k) {
-                    const Vec3 g = R.col(k), pull = mass[core::at(k)] / step_.c2 * place_of(vector, k);
+                    const double stiffness = mass[core::at(k)] / step_.c2;
+                    const Vec3 g = R.col(k), arm = arm_of(vector, k, g), place = place_of(vector, k),
+                               pull = stiffness * (arm - step_.share * (g - place));
                     Mat3 bend = 0.5 * (g * pull.transpose() + pull * g.transpose());
                     bend.diagonal().array() -= g.dot(pull);
-                    sum -= T.transpose() * bend * T + core::spin_slope(psi, g.cross(pull));
+                    sum -= T.transpose() * bend * T - core::spin_slope(psi, stiffness * arm.cross(g - place));
                 }
                 bands.diagonal(vector, sum);
             });
@@ -220,6 +223,11 @@ private:
         }
         return most;
     }
+    /// A director as it is when the scheme has its forces: those of its mass turn a section by that.
+    Vec3 arm_of(Index vector, Index k, const Vec3& g) const {
+        const Vec3 from = from_.segment<3>(9 * (vector / 2) + 3 * (k + 1));
+        return from + step_.share * (g - from);
+    }
     Vec3 place_of(Index vector, Index k) const { return place_.segment<3>(9 * (vector / 2) + 3 * (k + 1)); }
     /// see(rotation vector, masses of its two directors), images left out.
     template <class See>
@@ -257,7 +265,8 @@ private:
                 const Mat3 R = core::rotation(psi);
                 Vec3 moment = Vec3::Zero();
                 for (Index k = 0; k < 2; ++k)
-                    moment += mass[core::at(k)] * Vec3(R.col(k)).cross(Vec3(q.segment<3>(9 * (vector / 2) + 3 * (k + 1))));
+                    moment +=
+                        mass[core::at(k)] * arm_of(vector, k, R.col(k)).cross(Vec3(q.segment<3>(9 * (vector / 2) + 3 * (k + 1))));
                 sum.segment<3>(3 * vector) += core::spin_matrix(psi).transpose() * moment;
             });
     }

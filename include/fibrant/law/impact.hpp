@@ -31,6 +31,7 @@ public:
     /// From now on increments are of this duration [time], 0: none, and contact acts at this part of them, in [1/2, 1].
     void last(double duration, double share) noexcept { duration_ = duration, end_ = 2.0 * share - 1.0; }
     void rest(bool still) noexcept { still_ = still; }
+    double acts() const noexcept { return 0.5 + 0.5 * end_; }
 
     NormalResponse response(const Approach& a, double = 0.0) const noexcept {
         const NormalResponse now = law_.response(a, 0.0);

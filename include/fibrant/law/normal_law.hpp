@@ -19,7 +19,8 @@ struct Approach {
     double gap = 0.0;     ///< < 0 in penetration [length]
     double length = 0.0;  ///< of the line of contact that the element stands for; 0: a crossing, or an end [length]
     double reach = 0.0;   ///< sum of both radii; of a tool that of the fibre [length]
-    double before = 0.0;  ///< gap of the same particles in the last accepted state, for a SteppedNormal [length]
+    double before = 0.0;  ///< gap in the last accepted state, for a SteppedNormal; along the same normal where contact acts
+                          ///< within an increment [length]
 };
 
 namespace detail {
@@ -57,6 +58,7 @@ template <class L>
 concept SteppedNormal = SeeingNormal<L> && requires(L law, const L seen, const Approach& approach, double number) {
     law.last(number, number);
     law.rest(true);                                         // from now on as in an increment that takes no time; false: as it was
+    { seen.acts() } -> std::same_as<double>;                // the part of an increment at which contact acts, as it was told
     { seen.dissipated(approach) } -> std::same_as<double>;  // of an increment, >= 0 [force length]
 };
 
