@@ -21,8 +21,8 @@ class SubdomainPcg {
 
 public:
     struct Parameters {
-        typename SubdomainLevels<E>::Parameters levels{};
-        int iteration_limit = 2000;  ///< > 0
+        typename SubdomainLevels<E>::Parameters levels{};  ///< of the preconditioner
+        int iteration_limit = 2000;                        ///< > 0
         void validate() const {
             levels.validate();
             core::require_at_least("SubdomainPcg.iteration_limit", iteration_limit, 1);
