@@ -118,6 +118,9 @@ public:
         return std::visit([&](auto& solver) { return solver.solve(system, b, tolerance, x); }, strategy_);
     }
 
+    /// Which strategy it is.
+    std::string account() const { return strategy_.index() == 0 ? "two_level_pcg" : "petsc"; }
+
 private:
     static Strategy make(const Parameters& parameters) {
 #ifdef FIBRANT_WITH_PETSC

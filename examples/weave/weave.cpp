@@ -121,6 +121,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
         file.read("solver", "subdomains", subdomains, example::between(1, 4096),
                   "parts that the scene is cut into for the ranks; results depend on it, and not on the ranks");
 #ifdef FIBRANT_WITH_PETSC
+        file.names({{"PetscKrylov.options", "solver.petsc_options"}});
         file.read("solver", "petsc_options", petsc_options, {},
                   "of PETSc where linear_solver is \"petsc\", as \"-ksp_type fgmres -ksp_monitor\"");
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Methods of PETSc on ranks of MPI: what is solved, by whom, and what is told. Run as mpirun -n N test_petsc_krylov.
 #define DOCTEST_CONFIG_IMPLEMENT
+#include "refusal.hpp"
 #include "support/fabric_system.hpp"
 
 #include <fibrant/distributed/petsc_krylov.hpp>
@@ -115,6 +116,11 @@ TEST_CASE("a system that is not positive is told, and what comes back descends")
         CHECK(report.status == SolveStatus::indefinite);
         CHECK(b.dot(x) > 0.0);
     }
+}
+
+TEST_CASE("a method that PETSc does not know is refused at once") {
+    CHECK(test::refusal([] { distributed::PetscKrylov(by("-ksp_type nonsense")); }).starts_with("PetscKrylov.options"));
+    distributed::PetscKrylov(by("-ksp_type cg"));  // what holds from now on
 }
 
 }  // namespace petsc_krylov_test

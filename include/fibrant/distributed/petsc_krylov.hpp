@@ -60,7 +60,8 @@ public:
         }
     };
     PetscKrylov() : PetscKrylov(Parameters{}) {}
-    /// @throws std::runtime_error where PETSc has not been begun (PetscSession), or refuses an option
+    /// @throws std::runtime_error where PETSc has not been begun (PetscSession)
+    /// @throws std::invalid_argument for options of which PETSc refuses one
     explicit PetscKrylov(const Parameters& parameters) : parameters_{core::validated(parameters)}, levels_{parameters.levels} {
         PetscBool begun = PETSC_FALSE;
         PetscInitialized(&begun);
