@@ -35,7 +35,7 @@ template <class E>
 void solve(const solver::SavedSystem& system, double tolerance, const distributed::Subdomains::Parameters& cut,
            const typename E::Parameters& exchange) {
     typename distributed::SubdomainPcg<E>::Parameters parameters;
-    parameters.cut = cut, parameters.exchange = exchange;
+    parameters.levels.cut = cut, parameters.levels.exchange = exchange;
     distributed::SubdomainPcg<E> pcg(parameters);
     pcg.analyse(system);
     pcg.prepare(system);

@@ -4,6 +4,10 @@
 
 #include <fibrant/distributed/mpi_exchange.hpp>
 
+#ifdef FIBRANT_WITH_PETSC
+#include <fibrant/distributed/petsc_krylov.hpp>
+#endif
+
 #include <cstdio>
 
 example::Program FIBRANT_PROGRAM();
@@ -14,5 +18,10 @@ int main(int argc, char** argv) {
         static_cast<void>(std::freopen("/dev/null", "w", stdout));
         static_cast<void>(std::freopen("/dev/null", "w", stderr));
     }
+#ifdef FIBRANT_WITH_PETSC
+    const fibrant::distributed::PetscSession petsc;
+    return session.end(example::run(argc, argv, FIBRANT_PROGRAM()), 5.0, fibrant::distributed::PetscSession::end);
+#else
     return session.end(example::run(argc, argv, FIBRANT_PROGRAM()));
+#endif
 }

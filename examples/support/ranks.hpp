@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file A program that ranks of MPI run together: one of them writes and speaks, and all stop together.
+/// @file A program that ranks of MPI run together: one of them writes and speaks, all stop together, and share linear systems.
 
 #include "example.hpp"
 
 #include <fibrant/distributed/mpi_exchange.hpp>
+#include <fibrant/distributed/subdomain_pcg.hpp>
+#include <fibrant/solver/confirmed.hpp>
+#ifdef FIBRANT_WITH_PETSC
+#include <fibrant/distributed/petsc_krylov.hpp>
+#endif
 
 #include <unistd.h>
 
@@ -14,6 +19,8 @@
 #include <filesystem>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace example {
@@ -65,5 +72,69 @@ inline bool stopped_together() {
     if (all && !stopped()) detail::stop_signal = SIGTERM;
     return all;
 }
+
+/// How ranks solve a linear system together, by name.
+class RankSolver {
+    using Gradients = fibrant::solver::Confirmed<fibrant::distributed::SubdomainPcg<fibrant::distributed::MpiExchange>>;
+#ifdef FIBRANT_WITH_PETSC
+    using Krylov = fibrant::solver::Confirmed<fibrant::distributed::PetscKrylov>;
+    using Strategy = std::variant<Gradients, Krylov>;
+#else
+    using Strategy = std::variant<Gradients>;
+#endif
+
+public:
+    /// Names of strategies, as texts list them.
+    static constexpr const char* names =
+#ifdef FIBRANT_WITH_PETSC
+        "\"two_level_pcg\", \"petsc\", which ranks can share, or \"automatic\", which is the first here";
+#else
+        "\"two_level_pcg\", which ranks can share, or \"automatic\", which is the same here";
+#endif
+    static bool knows(const std::string& name) {
+        return name == "two_level_pcg" || name == "automatic" || (std::variant_size_v<Strategy> > 1 && name == "petsc");
+    }
+    struct Parameters {
+        std::string strategy = "two_level_pcg";  ///< one that `knows` takes
+        int subdomains = 64;                     ///< in [1, 4096]
+        std::string petsc_options{};             ///< of "petsc"
+        void validate() const {
+            if (!knows(strategy)) fibrant::core::refuse("RankSolver.strategy", "\"" + strategy + "\"", names);
+        }
+    };
+    RankSolver() : RankSolver(Parameters{}) {}
+    explicit RankSolver(const Parameters& parameters) : strategy_{make(fibrant::core::validated(parameters))} {}
+
+    template <class System>
+    void analyse(const System& system) {
+        std::visit([&](auto& solver) { solver.analyse(system); }, strategy_);
+    }
+    template <class System>
+    fibrant::solver::SolveStatus prepare(const System& system) {
+        return std::visit([&](auto& solver) { return solver.prepare(system); }, strategy_);
+    }
+    template <class System>
+    fibrant::solver::SolveReport solve(const System& system, const fibrant::Vector& b, double tolerance, fibrant::Vector& x) {
+        return std::visit([&](auto& solver) { return solver.solve(system, b, tolerance, x); }, strategy_);
+    }
+
+    /// Which strategy it is.
+    std::string account() const { return strategy_.index() == 0 ? "two_level_pcg" : "petsc"; }
+
+private:
+    static Strategy make(const Parameters& parameters) {
+#ifdef FIBRANT_WITH_PETSC
+        if (parameters.strategy == "petsc") {
+            Krylov::Parameters own;
+            own.iterative.levels.cut.parts = parameters.subdomains, own.iterative.options = parameters.petsc_options;
+            return Krylov(own);
+        }
+#endif
+        Gradients::Parameters own;
+        own.iterative.levels.cut.parts = parameters.subdomains;
+        return Gradients(own);
+    }
+    Strategy strategy_;
+};
 
 }  // namespace example

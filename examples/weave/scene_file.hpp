@@ -35,6 +35,7 @@ struct Scene {
     fibrant::solver::IterationParameters iteration;
     std::string linear_solver = "automatic";  ///< one of solver::AnySolver
     int subdomains = 64;                      ///< of runs that ranks share
+    std::string petsc_options{};              ///< of those that PETSc iterates for
     Index threads = 0;                        ///< 0: as many as the machine has
     bool paraview = true;                     ///< write the ParaView files
     Index paraview_every = 1;                 ///< increments
@@ -98,10 +99,19 @@ inline void read_tow(SceneReader& file, const std::string& section, bool require
 
 /// Tolerances and limits of the iteration; what a program takes otherwise stands in `iteration`.
 inline void read_iteration(SceneReader& file, std::string& linear_solver, fibrant::solver::IterationParameters& iteration) {
-    file.read(
-        "solver", "linear_solver", linear_solver,
-        {"automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"},
-        "how linear systems are solved");
+    file.read("solver", "linear_solver", linear_solver,
+              {
+                  "automatic",
+                  "two_level_pcg",
+                  "fibre_block_pcg",
+                  "float_block_cholesky",
+                  "double_block_cholesky",
+                  "sparse_cholesky",
+#ifdef FIBRANT_WITH_PETSC
+                  "petsc",
+#endif
+              },
+              "how linear systems are solved");
     file.read("solver", "step_tolerance", iteration.step_tolerance, example::above(0.0, 1.0), "1",
               "largest last step of Newton's method, over the radius");
     file.read("solver", "residual_tolerance", iteration.residual_tolerance, example::above(0.0, 1.0), "1",

@@ -17,8 +17,6 @@
 #include <fibrant/solver/any_solver.hpp>
 #ifdef FIBRANT_WITH_MPI  // weave_mpi: the same program, whose linear systems are solved by all ranks
 #include "../support/ranks.hpp"
-
-#include <fibrant/distributed/subdomain_pcg.hpp>
 #endif
 
 #include <cmath>
@@ -39,7 +37,7 @@ struct Weave {
     using Normal = law::LimitedGap<law::RegularisedPenalty>;
     using Friction = Law;
 #ifdef FIBRANT_WITH_MPI
-    using Solver = solver::Confirmed<distributed::SubdomainPcg<distributed::MpiExchange>>;
+    using Solver = example::RankSolver;
 #else
     using Solver = solver::AnySolver;
 #endif
@@ -51,7 +49,7 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     auto parameters = weave::cloth::model_parameters<M>(scene.fabric, scene.settle);
     parameters.iteration = scene.iteration;
 #ifdef FIBRANT_WITH_MPI
-    parameters.solver.iterative.cut.parts = scene.subdomains;
+    parameters.solver = {scene.linear_solver, scene.subdomains, scene.petsc_options};
     const example::RankFolder own(output);
     const bool paraview = scene.paraview && own.shown(), pictures = scene.pictures && own.shown();
 #else
@@ -118,13 +116,18 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
 bool solve(example::SceneReader& file, example::Output& output) {
 #ifdef FIBRANT_WITH_MPI
     Index subdomains = 64;
+    std::string petsc_options;
     weave::Scene scene = weave::read_fabric(file, [&] {
         file.read("solver", "subdomains", subdomains, example::between(1, 4096),
                   "parts that the scene is cut into for the ranks; results depend on it, and not on the ranks");
+#ifdef FIBRANT_WITH_PETSC
+        file.names({{"PetscKrylov.options", "solver.petsc_options"}});
+        file.read("solver", "petsc_options", petsc_options, {},
+                  "of PETSc where linear_solver is \"petsc\", as \"-ksp_type fgmres -ksp_monitor\"");
+#endif
     });
-    scene.subdomains = static_cast<int>(subdomains);
-    file.check(scene.linear_solver == "two_level_pcg" || scene.linear_solver == "automatic", "solver", "linear_solver",
-               "\"two_level_pcg\", which ranks can share, or \"automatic\", which is the same here");
+    scene.subdomains = static_cast<int>(subdomains), scene.petsc_options = petsc_options;
+    file.check(example::RankSolver::knows(scene.linear_solver), "solver", "linear_solver", example::RankSolver::names);
 #else
     const weave::Scene scene = weave::read_fabric(file, [] {});
 #endif

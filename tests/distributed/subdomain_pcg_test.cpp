@@ -41,7 +41,7 @@ template <class E>
 Solved solve(const test::FabricSystem& system, const distributed::Subdomains::Parameters& cut, double tolerance,
              const typename E::Parameters& exchange = {}) {
     typename distributed::SubdomainPcg<E>::Parameters parameters;
-    parameters.cut = cut, parameters.exchange = exchange;
+    parameters.levels.cut = cut, parameters.levels.exchange = exchange;
     distributed::SubdomainPcg<E> pcg(parameters);
     pcg.analyse(system);
     Solved solved;
@@ -163,7 +163,7 @@ TEST_CASE("held vectors keep what they are told, in whole or in part, on any num
                                  .seed = seed});
         Vector b(system.layout().unknowns()), left(b.size());
         for (Index k = 0; k < b.size(); ++k) b[k] = 0.001 * static_cast<double>((7919 * k) % 1000) - 0.5;
-        distributed::SubdomainPcg<> alone({.cut = {.parts = 6}});
+        distributed::SubdomainPcg<> alone({.levels = {.cut = {.parts = 6}}});
         alone.analyse(system);
         try {
             alone.prepare(system);
@@ -178,7 +178,7 @@ TEST_CASE("held vectors keep what they are told, in whole or in part, on any num
         left = b - left;
         CHECK(solver::scaled_norm(system.layout(), left) <= 1.001e-8 * solver::scaled_norm(system.layout(), b));
         distributed::run_on_threads(3, [&](const auto& own) {
-            distributed::SubdomainPcg<distributed::ThreadRank> shared({.cut = {.parts = 6}, .exchange = own});
+            distributed::SubdomainPcg<distributed::ThreadRank> shared({.levels = {.cut = {.parts = 6}, .exchange = own}});
             Vector same;
             shared.analyse(system);
             shared.prepare(system);
@@ -208,12 +208,12 @@ TEST_CASE("what ranks cannot share yet is refused by name") {
     const test::FabricSystem system(fabric);
     OtherLayout closed{system.layout(), &system};
     closed.own.chains[1].closed = true;
-    CHECK(test::refusal([&] { Pcg().analyse(closed); }).starts_with("SubdomainPcg.system"));
+    CHECK(test::refusal([&] { Pcg().analyse(closed); }).starts_with("SubdomainLevels.system"));
     closed.own = system.layout();
     closed.own.ties.push_back({});
-    CHECK(test::refusal([&] { Pcg().analyse(closed); }).starts_with("SubdomainPcg.system"));
-    CHECK(test::refusal([] { Pcg({.cut = {.parts = 0}}); }).starts_with("Subdomains.parts"));
-    CHECK(test::refusal([] { Pcg({.cut = {.parts = 4097}}); }).starts_with("Subdomains.parts"));
+    CHECK(test::refusal([&] { Pcg().analyse(closed); }).starts_with("SubdomainLevels.system"));
+    CHECK(test::refusal([] { Pcg({.levels = {.cut = {.parts = 0}}}); }).starts_with("Subdomains.parts"));
+    CHECK(test::refusal([] { Pcg({.levels = {.cut = {.parts = 4097}}}); }).starts_with("Subdomains.parts"));
 }
 
 }  // namespace subdomain_pcg_test

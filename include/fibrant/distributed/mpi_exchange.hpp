@@ -78,7 +78,8 @@ public:
     }
     /// Waits for the others, not longer than `seconds` where this rank has failed: then they are ended, and the program too.
     /// @param status  of the program, returned
-    int end(int status, double seconds = 5.0) const {
+    /// @param last    what has to end before MPI does, by all ranks
+    int end(int status, double seconds = 5.0, void (*last)() = nullptr) const {
         MPI_Request all_here = MPI_REQUEST_NULL;
         MPI_Ibarrier(MPI_COMM_WORLD, &all_here);
         const double start = MPI_Wtime();
@@ -88,6 +89,7 @@ public:
             if (done != 0) break;
             if (status > 1 && MPI_Wtime() - start > seconds) MPI_Abort(MPI_COMM_WORLD, status);
         }
+        if (last != nullptr) last();
         MPI_Finalize();
         return status;
     }

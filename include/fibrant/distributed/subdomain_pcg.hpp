@@ -1,413 +1,92 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Conjugate gradients shared by ranks: pieces of chains in subdomains, and the rigid motions of clusters of chains.
+/// @file Conjugate gradients shared by ranks.
 
-#include <fibrant/distributed/chain_joints.hpp>
-#include <fibrant/distributed/halo.hpp>
-#include <fibrant/distributed/part_product.hpp>
-#include <fibrant/distributed/piece_system.hpp>
-#include <fibrant/distributed/rank_use.hpp>
+#include <fibrant/distributed/subdomain_levels.hpp>
 
-#include <fibrant/core/stage_clock.hpp>
-#include <fibrant/solver/chain_sweeps.hpp>
-#include <fibrant/solver/rigid_coarse_space.hpp>
-
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <span>
-#include <utility>
-#include <vector>
 
 namespace fibrant::distributed {
 
-/// Conjugate gradients on A x = b by all ranks of an exchange: each holds a run of subdomains. All of them know the whole system
-/// and the whole b, and get the whole x; the work of a solve is divided.
+/// Conjugate gradients on A x = b by all ranks of an exchange, preconditioned by SubdomainLevels, from x = Q b. All ranks know
+/// the whole system and the whole b, and get the whole x; the work of a solve is divided.
 ///
-/// Two levels, by A-DEF2 of Tang, Nabben, Vuik and Erlangga (Journal of Scientific Computing 39, 2009): z = N r, then z += Q (r -
-/// A z), from x = Q b. N adds up the sweeps forth and back of each subdomain over its pieces of chains (ChainSweeps), and the
-/// motions of whole chains that are cut (ChainJoints); Q = P (P^T A P)^-1 P^T with P a RigidCoarseSpace of the whole scene, whose
-/// system is gathered and factored by all.
-///
-/// The number of subdomains belongs to the scene. Every sum is one of subdomains, added in their order: the bits of x depend on
-/// the system and on that number, not on ranks and threads. A system that is not symmetric is taken as its symmetric part.
+/// The bits of x depend on the system and on the number of subdomains, not on ranks and threads. A system that is not symmetric
+/// is taken as its symmetric part.
 template <Exchange E = OneRank>
 class SubdomainPcg {
+    using Levels = SubdomainLevels<E>;
+
 public:
     struct Parameters {
-        Subdomains::Parameters cut{};
-        typename E::Parameters exchange{};
-        int fibres_per_cluster = 19;   ///< about, > 0
-        int elements_per_station = 2;  ///< along the chains, > 0
-        int iteration_limit = 2000;    ///< > 0
+        typename SubdomainLevels<E>::Parameters levels{};  ///< of the preconditioner
+        int iteration_limit = 2000;                        ///< > 0
         void validate() const {
-            cut.validate();
-            core::require_at_least("SubdomainPcg.fibres_per_cluster", fibres_per_cluster, 1);
-            core::require_at_least("SubdomainPcg.elements_per_station", elements_per_station, 1);
+            levels.validate();
             core::require_at_least("SubdomainPcg.iteration_limit", iteration_limit, 1);
         }
     };
     SubdomainPcg() : SubdomainPcg(Parameters{}) {}
-    explicit SubdomainPcg(const Parameters& parameters)
-        : parameters_{core::validated(parameters)}, exchange_{parameters.exchange} {}
+    explicit SubdomainPcg(const Parameters& parameters) : parameters_{core::validated(parameters)}, levels_{parameters.levels} {}
 
     /// @throws std::invalid_argument for closed chains and ties, which are not shared among ranks yet
     template <assembly::LinearSystem System>
-    void analyse(const System& system);
+    void analyse(const System& system) {
+        levels_.analyse(system);
+    }
     /// @throws std::invalid_argument for terms that PairTerms refuses
     template <assembly::LinearSystem System>
-    solver::SolveStatus prepare(const System& system);
+    solver::SolveStatus prepare(const System& system) {
+        return levels_.prepare(system);
+    }
     template <assembly::LinearSystem System>
     solver::SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x);
 
-    const RankUse& use() const noexcept { return work_->use; }
-    const Subdomains& cut() const noexcept { return work_->cut; }
-    const E& exchange() const noexcept { return exchange_; }
+    const RankUse& use() const noexcept { return levels_.use(); }
+    const Subdomains& cut() const noexcept { return levels_.cut(); }
+    const E& exchange() const noexcept { return levels_.exchange(); }
 
 private:
     struct Work {
-        Subdomains cut;
-        BlockRuns runs;
-        PieceSystem pieces;
-        solver::ChainSweeps sweeps;
-        solver::RigidCoarseSpace<> coarse;
-        PairTerms terms;
-        std::vector<Matrix> bands;  // of chains that own parts have elements of
-        PartProduct product;
-        ChainJoints joints;
-        Halo halo;
-        std::vector<Halo::Reader> fixed_readers;  // of bands
-        std::vector<std::vector<int>> stations;   // of each part, own or not
-        std::vector<std::vector<int>> places;     // of each own part: place of a station in its list
-        std::vector<Index> station_counts;        // numbers that each rank gives
-        Vector free, r, z, p, product_of_p, left, slots, moved, station_values;
-        std::vector<double> own_values, all_values, sums;
-        solver::SolveStatus status = solver::SolveStatus::not_finite;
-        RankUse use;
+        Vector free, r, z, p, product_of_p;
     };
-    int rank() const noexcept { return exchange_.rank(); }
-    Index first_part() const { return work_->runs.first(rank()); }
-    Index last_part() const { return work_->runs.first(rank() + 1); }
-
-    template <class Body>
-    static void timed(double& seconds, const Body& body) {
-        const auto start = std::chrono::steady_clock::now();
-        body();
-        seconds += core::seconds_since(start);
-    }
-    /// Sum over all parts of what body(part) is of each.
-    template <class Body>
-    double sum_of_parts(const Body& body) {
-        Work& work = *work_;
-        const Index first = first_part();
-        work.sums.resize(core::at(last_part() - first));
-        core::parallel_for(core::count(work.sums), [&](Index part) { work.sums[core::at(part)] = body(part); });
-        count_gathering(core::count(work.sums));
-        double sum = 0.0;
-        timed(work.use.waiting_seconds, [&] { sum = ordered_sum(exchange_, work.runs, work.sums); });
-        return sum;
-    }
-    void count_gathering(Index numbers) noexcept {
-        if (exchange_.ranks() == 1) return;
-        work_->use.traffic.gatherings += 1, work_->use.traffic.gathered_bytes += 8 * numbers;
-    }
-    const std::vector<Index>& owned(Index part) const noexcept { return work_->cut.owned()[core::at(first_part() + part)]; }
-    double dot(const Vector& a, const Vector& b) {
-        return sum_of_parts([&](Index part) {
-            double sum = 0.0;
-            for (const Index v : owned(part)) sum += a.segment<3>(3 * v).dot(b.segment<3>(3 * v));
-            return sum;
-        });
-    }
-    double scaled_norm(const scene::DofLayout& layout, const Vector& r) {
-        return std::sqrt(sum_of_parts([&](Index part) {
-            double sum = 0.0;
-            for (const Index v : owned(part)) {
-                const double length = layout.length[core::at(v)];
-                sum += r.segment<3>(3 * v).squaredNorm() / (length * length);
-            }
-            return sum;
-        }));
-    }
-    template <class Body>
-    void for_owned(const Body& body) {
-        core::parallel_for(core::count(work_->sums), [&](Index part) {
-            for (const Index v : owned(part)) body(3 * v);
-        });
-    }
-    void refresh(Vector& x) {
-        timed(work_->use.waiting_seconds, [&] { work_->halo.refresh(exchange_, x, work_->use.traffic); });
-    }
-    void apply(const Vector& x, Vector& y) {
-        timed(work_->use.product_seconds, [&] { work_->product.apply(x, y); });
-    }
-    void find_stations(const scene::DofLayout& layout);
-    void smooth(const scene::DofLayout& layout, const Vector& r, Vector& z);
-    void add_coarse(const scene::DofLayout& layout, const Vector& r, Vector& z);
-    static void project(const scene::DofLayout& layout, Vector& z) {
-        for (const scene::HeldVector& held : layout.held)
-            z.segment<3>(3 * held.vector) = (held.free * z.segment<3>(3 * held.vector)).eval();
-    }
-    /// r = b - A x in own vectors; x is refreshed.
-    void find_residual(const Vector& b, Vector& x, Vector& r) {
-        refresh(x);
-        apply(x, r);
-        for_owned([&](Index k) { r.segment<3>(k) = b.segment<3>(k) - r.segment<3>(k); });
-    }
-    /// x += Q r, and r with it: conjugate gradients with this preconditioner begin where r has no coarse part.
-    void start(const scene::DofLayout& layout, const Vector& b, Vector& x, Vector& r) {
-        add_coarse(layout, r, x);
-        project(layout, x);
-        find_residual(b, x, r);
-    }
-
     Parameters parameters_;
-    E exchange_;
+    Levels levels_;
     solver::Workspace<Work> work_;
 };
 
 template <Exchange E>
 template <assembly::LinearSystem System>
-void SubdomainPcg<E>::analyse(const System& system) {
-    Work& work = *work_;
-    const scene::DofLayout& layout = system.layout();
-    for (const scene::Chain& chain : layout.chains)
-        if (chain.closed)
-            core::refuse("SubdomainPcg.system", "a closed chain", "of open ones: rings are not shared among ranks yet");
-    if (!layout.ties.empty())
-        core::refuse("SubdomainPcg.system", "ties of vectors",
-                     "without averages and periodic cells: they are not shared among ranks yet");
-    work.cut = Subdomains(system, parameters_.cut);
-    work.runs = BlockRuns(work.cut.parts(), exchange_.ranks());
-    work.pieces.analyse(layout, work.cut, first_part(), last_part());
-    work.sweeps.analyse(work.pieces.layout());
-    work.product = PartProduct(layout, work.cut, first_part(), last_part());
-    work.joints.analyse(layout, work.cut, work.runs, rank());
-    work.coarse.analyse(system, parameters_.fibres_per_cluster, parameters_.elements_per_station);
-    work.fixed_readers = band_readers(layout, work.cut, work.runs);
-    find_stations(layout);
-    work.use.parts = work.cut.parts(), work.use.coarse_unknowns = 6 * work.coarse.stations();
-}
-
-/// Stations that the nodes of each part stand between, in rising order.
-template <Exchange E>
-void SubdomainPcg<E>::find_stations(const scene::DofLayout& layout) {
-    Work& work = *work_;
-    const PartProduct all(layout, work.cut, 0, work.cut.parts());
-    const Vector one = Vector::Ones(layout.unknowns());  // a force everywhere
-    work.coarse.begin(layout);
-    work.stations.assign(core::at(work.cut.parts()), {});
-    for (Index part = 0; part < work.cut.parts(); ++part) {
-        std::vector<int>& own = work.stations[core::at(part)];
-        for (const PartProduct::Run& run : all.runs(part))
-            work.coarse.restrict_nodes(layout, one, run.chain, run.first_node, run.last_node + 1,
-                                       [&](int station, const auto&) { own.push_back(station); });
-        std::sort(own.begin(), own.end());
-        own.erase(std::unique(own.begin(), own.end()), own.end());
-    }
-    work.places.assign(core::at(last_part() - first_part()), {});
-    for (std::size_t part = 0; part < work.places.size(); ++part) {
-        const std::vector<int>& own = work.stations[core::at(first_part()) + part];
-        work.places[part].assign(core::at(work.coarse.stations()), -1);
-        for (std::size_t k = 0; k < own.size(); ++k) work.places[part][core::at(own[k])] = static_cast<int>(k);
-    }
-    work.station_counts.clear();
-    for (int r = 0; r < exchange_.ranks(); ++r) {
-        Index sum = 0;
-        for (Index part = work.runs.first(r); part < work.runs.first(r + 1); ++part)
-            sum += 6 * core::count(work.stations[core::at(part)]);
-        work.station_counts.push_back(sum);
-    }
-}
-
-template <Exchange E>
-template <assembly::LinearSystem System>
-solver::SolveStatus SubdomainPcg<E>::prepare(const System& system) {
-    Work& work = *work_;
-    const scene::DofLayout& layout = system.layout();
-    timed(work.use.prepare_seconds, [&] {
-        // Terms that own parts have to do with; who reads what because of terms that ranks share.
-        std::vector<Halo::Reader> readers = work.fixed_readers;
-        const auto rank_of = [&](Index v) { return work.runs.rank_of(work.cut.owner()[core::at(v)]); };
-        work.terms.take(system, [&](std::span<const Index> vectors) {
-            bool own = false, shared = false;
-            const int first = rank_of(vectors.front());
-            for (const Index v : vectors) {
-                const int rank_here = rank_of(v);
-                own = own || rank_here == rank();
-                shared = shared || rank_here != first;
-            }
-            if (shared)
-                for (const Index v : vectors)
-                    for (const Index w : vectors)
-                        if (rank_of(v) != rank_of(w)) readers.emplace_back(rank_of(v), w);
-            return own;
-        });
-        work.halo = Halo(rank(), work.runs, work.cut.owner(), std::move(readers));
-
-        // Bands: of own pieces for the sweeps, and of a share of all chains for the coarse space.
-        work.bands.resize(layout.chains.size());
-        std::vector<char> needed(layout.chains.size(), 0), here(layout.chains.size(), 0);
-        for (Index c = 0; c < core::count(layout.chains); ++c)
-            for (const Subdomains::Run& run : work.cut.runs(layout, c))
-                if (run.part >= first_part() && run.part < last_part()) needed[core::at(c)] = 1;
-        const BlockRuns chains(core::count(layout.chains), exchange_.ranks());
-        for (Index c = chains.first(rank()); c < chains.first(rank() + 1); ++c) here[core::at(c)] = 1;
-        const assembly::HeldProjector held(layout);
-        work.coarse.begin(layout);
-        std::vector<char> finite(layout.chains.size(), 1);
-        core::parallel_for(
-            core::count(layout.chains),
-            [&](Index c) {
-                Matrix& band = work.bands[core::at(c)];
-                if (needed[core::at(c)] != 0 || here[core::at(c)] != 0) system.chain_band(c, band);
-                if (here[core::at(c)] != 0)
-                    work.coarse.add_chain(layout, held, c, band);
-                else
-                    work.coarse.expect_chain(layout, c);
-                finite[core::at(c)] = band.allFinite();
-                if (needed[core::at(c)] == 0) band.resize(0, 0);
-            },
-            solver::grain(layout, core::count(layout.chains)));
-        if (exchange_.ranks() > 1) {
-            std::vector<Index> counts;
-            for (int r = 0; r < exchange_.ranks(); ++r) {
-                Index sum = 0;
-                for (Index c = chains.first(r); c < chains.first(r + 1); ++c) sum += core::count(work.coarse.chain_values(c));
-                counts.push_back(sum);
-            }
-            std::vector<double> own, all;
-            for (Index c = chains.first(rank()); c < chains.first(rank() + 1); ++c) {
-                const auto values = work.coarse.chain_values(c);
-                own.insert(own.end(), values.begin(), values.end());
-            }
-            Index whole = 0;
-            for (const Index n : counts) whole += n;
-            all.resize(core::at(whole));
-            count_gathering(core::count(own));
-            exchange_.gather(own, counts, all);
-            auto from = all.begin();
-            for (Index c = 0; c < core::count(layout.chains); ++c) {
-                const auto values = work.coarse.chain_values(c);
-                std::copy_n(from, values.size(), values.begin());
-                from += static_cast<std::ptrdiff_t>(values.size());
-            }
-        }
-        work.pieces.take(layout, work.bands, work.terms);
-        work.product.take(layout, work.cut, work.bands, work.terms);
-        work.joints.prepare(exchange_, layout, work.bands, work.use.traffic);
-        const solver::SolveStatus coarse = work.coarse.finish(system);
-        work.status = std::find(finite.begin(), finite.end(), 0) != finite.end()
-                          ? solver::SolveStatus::not_finite
-                          : work.sweeps.prepare(
-                                work.pieces, [](Index, const Matrix&) {}, true);
-        if (coarse != solver::SolveStatus::converged && work.status != solver::SolveStatus::not_finite) work.status = coarse;
-
-        // The worst of all ranks, so that all go on alike.
-        const double own = static_cast<double>(static_cast<int>(work.status));
-        std::vector<double> all(core::at(exchange_.ranks()));
-        exchange_.gather(std::span(&own, 1), std::vector<Index>(all.size(), 1), all);
-        work.status = static_cast<solver::SolveStatus>(static_cast<int>(*std::max_element(all.begin(), all.end())));
-    });
-    return work.status;
-}
-static_assert(solver::SolveStatus::converged < solver::SolveStatus::indefinite &&
-              solver::SolveStatus::indefinite < solver::SolveStatus::not_finite);
-
-/// z = N r in own vectors.
-template <Exchange E>
-void SubdomainPcg<E>::smooth(const scene::DofLayout& layout, const Vector& r, Vector& z) {
-    Work& work = *work_;
-    timed(work.use.sweep_seconds, [&] {
-        Vector& slots = work.slots;
-        slots.resize(3 * work.pieces.slots()), work.moved.resize(slots.size());
-        core::parallel_for(
-            work.pieces.slots(), [&](Index s) { slots.segment<3>(3 * s) = r.segment<3>(3 * work.pieces.vector()[core::at(s)]); },
-            core::light_items);
-        project(work.pieces.layout(), slots);
-        work.sweeps.apply(work.pieces.layout(), work.slots, work.moved, [](const Vector&, Vector&) {});
-    });
-    for_owned([&](Index k) { z.segment<3>(k).setZero(); });
-    const Vector& moved = work.moved;
-    core::parallel_for(
-        work.pieces.slots(), [&](Index s) { z.segment<3>(3 * work.pieces.vector()[core::at(s)]) = moved.segment<3>(3 * s); },
-        core::light_items);
-    timed(work.use.joint_seconds, [&] { work.joints.add_correction(exchange_, layout, r, z, work.use.traffic); });
-    project(layout, z);
-}
-
-/// z += Q r in own vectors.
-template <Exchange E>
-void SubdomainPcg<E>::add_coarse(const scene::DofLayout& layout, const Vector& r, Vector& z) {
-    Work& work = *work_;
-    timed(work.use.coarse_seconds, [&] {
-        const Index first = first_part(), parts = last_part() - first;
-        work.own_values.assign(core::at(work.station_counts[core::at(rank())]), 0.0);
-        std::vector<Index> begin{0};
-        for (Index part = 0; part < parts; ++part)
-            begin.push_back(begin.back() + 6 * core::count(work.stations[core::at(first + part)]));
-        core::parallel_for(parts, [&](Index part) {
-            for (const PartProduct::Run& run : work.product.runs(part))
-                work.coarse.restrict_nodes(layout, r, run.chain, run.first_node, run.last_node + 1,
-                                           [&](int station, const auto& sum) {
-                                               const int place = work.places[core::at(part)][core::at(station)];
-                                               double* to = work.own_values.data() + begin[core::at(part)] + 6 * place;
-                                               for (Index i = 0; i < 6; ++i) to[i] += sum[i];
-                                           });
-        });
-        Index whole = 0;
-        for (const Index n : work.station_counts) whole += n;
-        work.all_values.resize(core::at(whole));
-        count_gathering(core::count(work.own_values));
-        exchange_.gather(work.own_values, work.station_counts, work.all_values);
-        work.station_values.setZero(6 * work.coarse.stations());
-        const double* from = work.all_values.data();
-        for (const std::vector<int>& stations : work.stations)
-            for (const int station : stations) {
-                for (Index i = 0; i < 6; ++i) work.station_values[6 * Index{station} + i] += from[i];
-                from += 6;
-            }
-        work.coarse.solve_stations(work.station_values);
-        core::parallel_for(parts, [&](Index part) {
-            for (const PartProduct::Run& run : work.product.runs(part))
-                work.coarse.prolong_to_nodes(layout, work.station_values, run.chain, run.first_node, run.last_node + 1, z);
-        });
-    });
-}
-
-template <Exchange E>
-template <assembly::LinearSystem System>
 solver::SolveReport SubdomainPcg<E>::solve(const System& system, const Vector& b, double tolerance, Vector& x) {
     using solver::SolveStatus;
-    Work& work = *work_;
     const scene::DofLayout& layout = system.layout();
     x.setZero(b.size());
-    if (work.status == SolveStatus::not_finite || !b.allFinite()) return {};
+    if (levels_.status() == SolveStatus::not_finite || !b.allFinite()) return {};
     const double norm = solver::scaled_norm(layout, b);
     if (norm == 0.0) return {SolveStatus::converged, 0, 0.0, core::unset};
     const auto begun = std::chrono::steady_clock::now();
-    work.sums.resize(core::at(last_part() - first_part()));
-    for (Vector* own : {&work.z, &work.p, &work.product_of_p, &work.left}) own->setZero(b.size());
+    Work& work = *work_;
+    for (Vector* own : {&work.z, &work.p, &work.product_of_p}) own->setZero(b.size());
     work.free = b;
-    project(layout, work.free);
+    Levels::project(layout, work.free);
     const Vector& free = work.free;
     Vector& r = work.r;
     Vector& z = work.z;
     Vector& p = work.p;
     Vector& product = work.product_of_p;
-    Vector& left = work.left;
     r = free;
-    start(layout, free, x, r);
-    solver::SolveReport report{SolveStatus::iteration_limit, 0, scaled_norm(layout, r) / norm, core::unset};
+    levels_.start(layout, free, x, r);
+    solver::SolveReport report{SolveStatus::iteration_limit, 0, levels_.scaled_norm(layout, r) / norm, core::unset};
     double before = 0.0, weight = 0.0;                         // r.z of the iteration before, and p.M p
     bool exact = true;                                         // whether the residual is that of x, not the recursive one
     double reached = std::numeric_limits<double>::infinity();  // true residual at the last restart
     while (report.iterations < parameters_.iteration_limit) {
         if (report.residual <= tolerance) {
             if (!exact) {
-                find_residual(free, x, r);
-                report.residual = scaled_norm(layout, r) / norm;
+                levels_.find_residual(free, x, r);
+                report.residual = levels_.scaled_norm(layout, r) / norm;
             }
             if (report.residual <= tolerance) {
                 report.status = SolveStatus::converged;
@@ -415,23 +94,18 @@ solver::SolveReport SubdomainPcg<E>::solve(const System& system, const Vector& b
             }
             if (report.residual > 0.5 * reached) break;  // rounding allows no less
             reached = report.residual;
-            start(layout, free, x, r);
+            levels_.start(layout, free, x, r);
             exact = true;
             before = 0.0;
         }
-        smooth(layout, r, z);
-        refresh(z);
-        apply(z, left);
-        for_owned([&](Index k) { left.segment<3>(k) = r.segment<3>(k) - left.segment<3>(k); });
-        add_coarse(layout, left, z);
-        project(layout, z);
-        const double rz = dot(r, z);
+        levels_.precondition(layout, r, z);
+        const double rz = levels_.dot(r, z);
         const double beta = before > 0.0 ? rz / before : 0.0;
-        for_owned([&](Index k) { p.segment<3>(k) = z.segment<3>(k) + beta * p.segment<3>(k); });
+        levels_.for_owned([&](Index k) { p.segment<3>(k) = z.segment<3>(k) + beta * p.segment<3>(k); });
         weight = rz + beta * beta * weight;  // r is orthogonal to the directions before
-        refresh(p);
-        apply(p, product);
-        const double curvature = dot(p, product);
+        levels_.refresh(p);
+        levels_.apply(p, product);
+        const double curvature = levels_.dot(p, product);
         if (!std::isfinite(curvature) || !std::isfinite(rz)) {
             report.status = SolveStatus::not_finite;
             break;
@@ -442,37 +116,31 @@ solver::SolveReport SubdomainPcg<E>::solve(const System& system, const Vector& b
             report.status = SolveStatus::indefinite;
             if (report.iterations == 0) {  // x = (N + Q) b: both are positive, and so is b.x
                 r = free;
-                smooth(layout, r, z);
+                levels_.smooth(layout, r, z);
                 x.setZero();
-                add_coarse(layout, r, x);
-                for_owned([&](Index k) { x.segment<3>(k) += z.segment<3>(k); });
-                project(layout, x);
+                levels_.add_coarse(layout, r, x);
+                levels_.for_owned([&](Index k) { x.segment<3>(k) += z.segment<3>(k); });
+                Levels::project(layout, x);
             }
             break;
         }
         const double alpha = rz / curvature;
-        for_owned([&](Index k) {
+        levels_.for_owned([&](Index k) {
             x.segment<3>(k) += alpha * p.segment<3>(k);
             r.segment<3>(k) -= alpha * product.segment<3>(k);
         });
-        report.residual = scaled_norm(layout, r) / norm;
+        report.residual = levels_.scaled_norm(layout, r) / norm;
         exact = false;
         before = rz;
         ++report.iterations;
     }
     if (report.status != SolveStatus::converged && report.status != SolveStatus::not_finite) {
-        find_residual(free, x, r);
-        report.residual = scaled_norm(layout, r) / norm;
+        levels_.find_residual(free, x, r);
+        report.residual = levels_.scaled_norm(layout, r) / norm;
         if (report.status == SolveStatus::iteration_limit && report.residual <= tolerance) report.status = SolveStatus::converged;
         if (!std::isfinite(report.residual)) report.status = SolveStatus::not_finite;
     }
-    timed(work.use.waiting_seconds, [&] { gather_owned(exchange_, work.cut, work.runs, x, work.use.traffic); });
-    for (const scene::HeldVector& held : layout.held) {
-        const Index k = 3 * held.vector;
-        x.segment<3>(k) += (b.segment<3>(k) - free.segment<3>(k)) / layout.held_stiffness(held.vector);
-    }
-    work.use.solves += 1, work.use.iterations += report.iterations;
-    work.use.whole_seconds += core::seconds_since(begun);
+    levels_.finish(layout, b, free, x, report.iterations, begun);
     return report;
 }
 
