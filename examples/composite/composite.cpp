@@ -53,6 +53,7 @@ void settle(simulation::Simulator<Dry>& dry, const composite::Scene& scene, cons
     loading.checkpoint = settled_of(scene, output);
     loading.checkpoint_seconds = 1e9, loading.resume = output.resume || !scene.settled.empty();
     loading.scene = scene.weave.told, loading.other_scene = output.other_scene, loading.stop = example::stopped;
+    loading.resume_before_end = scene.settled.empty();  // the account of energy goes on from contacts
     auto progress = example::progress_printer(cloth::smallest_radius(scene.weave.fabric), 0, output.quiet);
     const simulation::Report report = dry.run(loading, progress);
     if (!report.converged) throw std::runtime_error("the fabric did not settle: " + report.reason);

@@ -91,8 +91,8 @@ struct Output {
                 require_scene_of(checkpoint(), told, "--resume");
         }
         if (overwrite || begins)  // what is left of an earlier run would be taken for this one's where it is stopped
-            for (const char* left :
-                 {"checkpoint.bin", "checkpoint.bin.before", "settled.bin", "summary.json", "increments.csv", "levels.csv"}) {
+            for (const char* left : {"checkpoint.bin", "checkpoint.bin.before", "settled.bin", "settled.bin.before",
+                                     "summary.json", "increments.csv", "levels.csv"}) {
                 std::filesystem::remove(folder / left);
                 for (const std::filesystem::path& part : parts) std::filesystem::remove(part / left);
             }
