@@ -14,6 +14,9 @@
 #include <fibrant/solver/any_solver.hpp>
 #include <fibrant/solver/solid_pcg.hpp>
 
+#include <filesystem>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 
 using namespace fibrant;
@@ -38,13 +41,19 @@ struct CompositeOf : DryOf<Own> {
     using Solver = solver::SolidPcg;
 };
 
+/// File of the settled fabric.
+std::string settled_of(const composite::Scene& scene, const example::Output& output) {
+    return scene.settled.empty() ? (output.folder / "settled.bin").string() : scene.settled;
+}
+
 /// Settles the fabric, or takes it from where an earlier run left it.
 template <simulation::Model Dry>
 void settle(simulation::Simulator<Dry>& dry, const composite::Scene& scene, const example::Output& output) {
     auto loading = cloth::settling<Dry>(scene.weave.fabric, scene.weave.settle);
-    loading.checkpoint = scene.settled.empty() ? (output.folder / "settled.bin").string() : scene.settled;
+    loading.checkpoint = settled_of(scene, output);
     loading.checkpoint_seconds = 1e9, loading.resume = output.resume || !scene.settled.empty();
     loading.scene = scene.weave.told, loading.other_scene = output.other_scene, loading.stop = example::stopped;
+    loading.resume_before_end = scene.settled.empty();  // the account of energy goes on from contacts
     auto progress = example::progress_printer(cloth::smallest_radius(scene.weave.fabric), 0, output.quiet);
     const simulation::Report report = dry.run(loading, progress);
     if (!report.converged) throw std::runtime_error("the fabric did not settle: " + report.reason);
@@ -55,6 +64,11 @@ bool run(const composite::Scene& scene, const example::SceneReader& file, exampl
     using Dry = DryOf<Own>;
     using Composite = CompositeOf<Own>;
     const cloth::FabricParameters& fabric = scene.weave.fabric;
+    // The layers are made of the settled fabric: those of another scene go on from no other fabric than theirs.
+    if (output.resume && output.other_scene && std::filesystem::exists(output.checkpoint()) &&
+        !std::filesystem::exists(settled_of(scene, output)))
+        throw std::invalid_argument("--other-scene: " + output.checkpoint() + " goes on from the settled fabric in " +
+                                    settled_of(scene, output) + ", which is missing: --overwrite begins anew");
     output.open(file);
     const scene::Assembly flat = cloth::flat_fabric(fabric, scene.weave.settle.tension_strain);
     auto dry_parameters = cloth::model_parameters<Dry>(fabric, scene.weave.settle);

@@ -56,30 +56,43 @@ struct Output {
     std::function<void(const observe::Snapshot&, const observe::JsonObject&)> ended{};
 
     /// Takes the folder, once the scene is known to be sound, and writes parameters.toml. Results of an earlier run that are
-    /// neither resumed nor overwritten on purpose are left, as is a checkpoint of another scene.
+    /// neither resumed nor overwritten on purpose are left, as is a checkpoint of another scene. A run that was ended before its
+    /// first checkpoint, and one that never began, begin.
     /// @param more  of what the scene is, beside what the file says
     /// @throws std::invalid_argument
     void open(const SceneReader& file, const std::string& more = {}) {
         told = file.scene() + more;
         locked = std::make_shared<const ResultsFolder>(folder);
         const std::string found = earlier_results(folder), name = "--output " + folder.string();
-        const bool goes_on = std::filesystem::exists(checkpoint()) || std::filesystem::exists(folder / "settled.bin") ||
-                             std::any_of(parts.begin(), parts.end(),
-                                         [](const auto& part) { return std::filesystem::exists(part / "checkpoint.bin"); });
+        const auto anywhere = [&](const char* file_name) {
+            return std::filesystem::exists(folder / file_name) || std::any_of(parts.begin(), parts.end(), [&](const auto& part) {
+                       return std::filesystem::exists(part / file_name);
+                   });
+        };
+        const bool goes_on = anywhere("checkpoint.bin") || std::filesystem::exists(folder / "settled.bin");
         if (!found.empty() && !resume && !overwrite)
             throw std::invalid_argument(name + ": holds results of an earlier run (" + found +
                                         "): " + (goes_on ? "--resume goes on from its last increment, " : "") +
                                         "--overwrite begins anew, or name another folder");
-        if (resume && !goes_on) {
-            if (!found.empty() && !hardly_begun(folder))
+        const bool begins = resume && !goes_on;
+        if (begins) {
+            if (anywhere("summary.json"))
                 throw std::invalid_argument(name + ": holds results (" + found +
                                             ") but no checkpoint.bin to resume from: --overwrite begins anew");
-            if (!quiet) std::fprintf(stderr, "%s: there is nothing to resume from, so the run begins\n", name.c_str());
+            if (!quiet)
+                std::fprintf(stderr, "%s: there is nothing to resume from%s, so the run begins\n", name.c_str(),
+                             found.empty() ? "" : (", for a run was ended before its first checkpoint (" + found + ")").c_str());
+            resume = false;
         }
-        if (resume && std::filesystem::exists(checkpoint()) && !other_scene) require_scene_of(checkpoint(), told, "--resume");
-        if (overwrite)  // what is left of an earlier run would be taken for this one's where it is stopped
-            for (const char* left :
-                 {"checkpoint.bin", "checkpoint.bin.before", "settled.bin", "summary.json", "increments.csv", "levels.csv"}) {
+        if (resume && std::filesystem::exists(checkpoint())) {
+            if (other_scene)
+                scene_of(checkpoint(), "--resume");  // a damaged one is told before any work
+            else
+                require_scene_of(checkpoint(), told, "--resume");
+        }
+        if (overwrite || begins)  // what is left of an earlier run would be taken for this one's where it is stopped
+            for (const char* left : {"checkpoint.bin", "checkpoint.bin.before", "settled.bin", "settled.bin.before",
+                                     "summary.json", "increments.csv", "levels.csv"}) {
                 std::filesystem::remove(folder / left);
                 for (const std::filesystem::path& part : parts) std::filesystem::remove(part / left);
             }

@@ -13,7 +13,6 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -97,20 +96,6 @@ private:
     std::filesystem::path lock_;
     int file_ = -1;
 };
-
-/// Whether a run in the folder was ended before its first checkpoint: there is no summary, and no more than the first
-/// row of a table.
-inline bool hardly_begun(const std::filesystem::path& folder) {
-    if (std::filesystem::exists(folder / "summary.json")) return false;
-    for (const char* name : {"increments.csv", "levels.csv"}) {
-        std::ifstream table(folder / name);
-        std::string line;
-        int lines = 0;
-        while (lines < 3 && std::getline(table, line)) ++lines;
-        if (lines > 2) return false;
-    }
-    return true;
-}
 
 /// Files of an earlier run in the folder, by name, a few of them; empty: none.
 inline std::string earlier_results(const std::filesystem::path& folder) {

@@ -106,25 +106,41 @@ with "output.nonsense=1" "output.nonsense = 1, but it must be one of the keys"
 with "solver.threads=100000" "solver.threads = 100000, but it must be a whole number from 0"
 
 # Results of another program are neither gone on from nor written over. Some are not made by increments and leave no checkpoint.
+# A scene that begins from results of weave is given some.
 of results
-earlier=$out/earlier
-mkdir -p "$earlier" && echo "{}" > "$earlier/summary.json"
-try "--output $earlier: holds results of an earlier run (summary.json): --overwrite begins anew" "$scene" --output "$earlier" --quiet
-try "--output $earlier: holds results (summary.json) but no checkpoint.bin to resume from" "$scene" --output "$earlier" --quiet --resume
-head -c 5000 "$program" > "$earlier/checkpoint.bin"
-try "--resume: " "$scene" --output "$earlier" --quiet --resume
-try "checkpoint.bin" "$scene" --output "$earlier" --quiet --resume --other-scene
-other=yarn
-[ "$name" != yarn ] || other=tow
-foreign=$(dirname "$program")/$other
-if [ -x "$foreign" ] && [ "$step" -eq 1 ]; then
-  "$foreign" "$(dirname "$scene")/../$other/$other.toml" --output "$out/foreign" --quiet --set "$other.fibres=7" --set loading.increments=1 > /dev/null 2>&1
-  if [ -f "$out/foreign/checkpoint.bin" ]; then
-    try "--output $out/foreign: holds results of an earlier run" "$scene" --output "$out/foreign" --quiet
-    try "checkpoint.bin is of another scene: " "$scene" --output "$out/foreign" --quiet --resume
-    try "checkpoint.bin" "$scene" --output "$out/foreign" --quiet --resume --other-scene
-  else
-    report "left no checkpoint" "" "$foreign"
+ready=$scene
+if [ "$name" = fabric_loading ]; then
+  ready=
+  weave=$(dirname "$program")/weave
+  woven=$(dirname "$scene")/../weave/plain.toml
+  small="fabric.warp_tows=2 fabric.weft_tows=2 fabric.elements=20 warp.fibres=3 warp.real_fibres=60 warp.aspect=1"
+  if [ -x "$weave" ] && [ "$step" -eq 1 ]; then
+    "$weave" "$woven" --output "$out/woven" --quiet $(printf -- ' --set %s' $small) > /dev/null 2>&1
+    ready=$out/ready.toml
+    sed "s|^set = [^#]*|set = [$(printf '"%s", ' $small)] |; s|^scene = [^#]*|scene = \"$woven\" |
+      s|^checkpoint = [^#]*|checkpoint = \"$out/woven/checkpoint.bin\" |" "$scene" > "$ready"
+  fi
+fi
+if [ -n "$ready" ]; then
+  earlier=$out/earlier
+  mkdir -p "$earlier" && echo "{}" > "$earlier/summary.json"
+  try "--output $earlier: holds results of an earlier run (summary.json): --overwrite begins anew" "$ready" --output "$earlier" --quiet
+  try "--output $earlier: holds results (summary.json) but no checkpoint.bin to resume from" "$ready" --output "$earlier" --quiet --resume
+  head -c 5000 "$program" > "$earlier/checkpoint.bin"
+  try "--resume: " "$ready" --output "$earlier" --quiet --resume
+  try "checkpoint.bin" "$ready" --output "$earlier" --quiet --resume --other-scene
+  other=yarn
+  [ "$name" != yarn ] || other=tow
+  foreign=$(dirname "$program")/$other
+  if [ -x "$foreign" ] && [ "$step" -eq 1 ]; then
+    "$foreign" "$(dirname "$scene")/../$other/$other.toml" --output "$out/foreign" --quiet --set "$other.fibres=7" --set loading.increments=1 > /dev/null 2>&1
+    if [ -f "$out/foreign/checkpoint.bin" ]; then
+      try "--output $out/foreign: holds results of an earlier run" "$ready" --output "$out/foreign" --quiet
+      try "checkpoint.bin is of another scene: " "$ready" --output "$out/foreign" --quiet --resume
+      try "checkpoint.bin" "$ready" --output "$out/foreign" --quiet --resume --other-scene
+    else
+      report "left no checkpoint" "" "$foreign"
+    fi
   fi
 fi
 
