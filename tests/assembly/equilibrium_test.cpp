@@ -182,4 +182,18 @@ TEST_CASE("prescribed components step onto their targets, the others stay") {
     CHECK(step.isZero(0.0));
 }
 
+TEST_CASE("residuals are measured by what presses and what holds, steps by their displacements") {
+    Smooth fibres(true);
+    fibres.contacts.evaluate(fibres.state);
+    Vector r, pressing = Vector::Zero(fibres.state.size()), turn = pressing;
+    const assembly::ResidualFigures figures = fibres.equilibrium.residual(fibres.state, r);
+    fibres.contacts.add_forces(pressing);
+    const double pressed = fibres.equilibrium.norm(pressing), held = fibres.equilibrium.norm(fibres.equilibrium.reaction());
+    CHECK(held > 0.1 * pressed);
+    CHECK(figures.scale == test::near(std::hypot(pressed, held), 1e-9));
+    turn.segment<3>(3) = Vec3(1, 2, 2);  // of one director
+    CHECK(fibres.equilibrium.greatest(turn) < 3.0);
+    CHECK(fibres.equilibrium.product(turn, turn) == test::near(std::pow(fibres.equilibrium.greatest(turn), 2), 1e-12));
+}
+
 }  // namespace equilibrium_test

@@ -3,6 +3,7 @@
 #include "refusal.hpp"
 
 #include <fibrant/beam/director_beam.hpp>
+#include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/connection/prescribed_motion.hpp>
 
 #include <near.hpp>
@@ -178,6 +179,39 @@ TEST_CASE("a channel that no condition uses is refused, with the names of those 
     CHECK(channels.find("load") == 0);
     CHECK(channels.find("pull") == 1);
     CHECK(refusal([&] { channels.find("pul"); }) == "channel = pul, but it must be one that the scene uses (load, pull)");
+}
+
+TEST_CASE("a rod's section that is held about its tangent does not spin about it from wherever it stands") {
+    using Rod = beam::RigidSectionRod;
+    Scene scene;
+    scene.assembly.hold_axial_rotation(scene::last_end(scene.fibre));
+    const connection::Channels channels(scene.assembly);
+    const beam::Mesh<Rod> mesh(scene.assembly, Rod());
+    const connection::PrescribedMotion<Rod> motion(scene.assembly, mesh, channels);
+    Vector state = mesh.rest_state();
+    const Index vector = mesh.node_vector(scene.fibre, mesh.node_count(scene.fibre) - 1, 1);
+    state.segment<3>(3 * vector) += Vec3(0.3, -0.5, 0.2);
+    motion.at(std::vector<double>(channels.names().size(), 0.0), state, scene.held, scene.target);
+    REQUIRE(scene.held.size() == 1);
+    CHECK(scene.held[0].vector == vector);
+    CHECK(Scene::projector(scene.held[0].free, 2));
+    // A step of the rotation vector is the spin T step; free steps have none along x.
+    const Mat3 T = core::spin_matrix(state.segment<3>(3 * vector));
+    CHECK((Vec3::UnitX().transpose() * T * scene.held[0].free).norm() < 1e-12);
+}
+
+TEST_CASE("how far a section is turned counts whole turns") {
+    Scene scene;
+    scene::Hold condition;
+    condition.at = scene::first_end(scene.fibre), condition.vector = scene::NodeVector::director_1;
+    condition.rotation = [](double a) { return core::rotation(Vec3(0, 0, 5.0 * std::numbers::pi * a)); };
+    scene.assembly.hold(condition);
+    const connection::Channels channels(scene.assembly);
+    const beam::Mesh<Beam> mesh(scene.assembly, Beam());
+    const connection::PrescribedMotion<Beam> motion(scene.assembly, mesh, channels);
+    const auto [turn, vector] = motion.greatest_turn(std::vector<double>{0.2}, std::vector<double>{1.0});
+    CHECK(turn == test::near(4.0 * std::numbers::pi, 1e-9));
+    CHECK(vector == mesh.node_vector(scene.fibre, 0, 1));
 }
 
 }  // namespace prescribed_motion_test

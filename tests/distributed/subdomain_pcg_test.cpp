@@ -216,4 +216,27 @@ TEST_CASE("what ranks cannot share yet is refused by name") {
     CHECK(test::refusal([] { Pcg({.levels = {.cut = {.parts = 4097}}}); }).starts_with("Subdomains.parts"));
 }
 
+TEST_CASE("what is sent arrives where it is wanted, and is told in bytes") {
+    distributed::run_on_threads(2, [](const auto& own) {
+        const distributed::ThreadRank rank(own);
+        const bool first = rank.rank() == 0;
+        distributed::Traffic traffic;
+        distributed::Routes routes(rank.rank(), {{0, 1, 1, 0, 3}, {1, 0, 0, 2, 2}, {0, 0, 3, 0, 1}});
+        const std::vector<double> from{1.0, 2.0, 3.0, first ? 4.0 : 5.0};
+        std::vector<double> to(4, 0.0);
+        routes.move(rank, from, to, traffic);
+        CHECK(to == (first ? std::vector<double>{4, 0, 1, 2} : std::vector<double>{2, 3, 4, 0}));
+        CHECK(traffic.messages == 1);
+        CHECK(traffic.bytes == (first ? 24 : 16));
+        // Vector 0 is of the first rank and read by the second, vector 2 the other way round.
+        distributed::Halo halo(rank.rank(), distributed::BlockRuns(2, 2), {0, 0, 1}, {{1, 0}, {0, 2}, {0, 1}});
+        Vector x = Vector::Constant(9, first ? 1.0 : 2.0);
+        halo.refresh(rank, x, traffic);
+        CHECK(x[0] == 1.0);
+        CHECK(x[8] == 2.0);
+        CHECK(x[3] == (first ? 1.0 : 2.0));
+        CHECK(traffic.bytes == (first ? 48 : 40));
+    });
+}
+
 }  // namespace subdomain_pcg_test

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Loads as terms: their contract, and one closed form each.
-#include <near.hpp>
-#include <term/term_contract.hpp>
+// Loads that simulations move fibres with, against closed forms.
+#include "load_scene.hpp"
 
-#include <fibrant/beam/director_beam.hpp>
+#include <near.hpp>
+
 #include <fibrant/beam/kirchhoff_cable.hpp>
 #include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
@@ -12,60 +12,16 @@
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
 
+#include <doctest/doctest.h>
+
 #include <refusal.hpp>
 
 using namespace fibrant;
 
 namespace loads_test {
 
+using test::fibre;
 using Cable = beam::KirchhoffCable;
-
-scene::FibreSpecification fibre(const Vec3& from, const Vec3& to, Index elements) {
-    scene::FibreSpecification one;
-    one.from = from, one.to = to, one.section = scene::circular(0.01), one.material = {1000.0, 0.3}, one.elements = elements;
-    return one;
-}
-
-template <class B>
-void check_loads() {
-    scene::Assembly assembly;
-    assembly.add(fibre({0, 0, 0}, {2, 0, 0}, 2));
-    assembly.add(fibre({0, 1, 0}, {1, 2, 0.5}, 3));
-    const beam::Mesh<B> mesh(assembly, B());
-    const Vector state = mesh.rest_state() + 0.05 * Vector::LinSpaced(mesh.rest_state().size(), -1.0, 1.0).array().sin().matrix();
-    load::Gravity::Parameters gravity;
-    gravity.weight = Vec3(0.0, 30.0, -900.0);
-    test::check_term<B, load::Gravity>(assembly, gravity, state);
-    load::LineLoads::Parameters lines;
-    lines.loads.push_back({.fibre = 1, .force = {0.3, 0.1, -0.2}, .from = 0.2, .to = 0.7});
-    test::check_term<B, load::LineLoads>(assembly, lines, state);
-    load::FollowerForces::Parameters followers;
-    followers.forces.push_back({.at = scene::last_end(0), .along = 0.7});
-    followers.forces.push_back({.at = {1, 0.4}, .along = -0.2});
-    test::check_term<B, load::FollowerForces>(assembly, followers, state);
-}
-
-TEST_CASE("loads keep the contract of a term, on cables and on beams with directors") {
-    check_loads<Cable>();
-    check_loads<beam::DirectorBeam<3>>();
-}
-
-TEST_CASE("a line load has the resultant and the moment of its force over its length") {
-    scene::Assembly assembly;
-    assembly.add(fibre({0, 0, 0}, {2, 0, 0}, 3));
-    const Vec3 q(0.3, 0.1, -0.2);
-    load::LineLoads::Parameters lines;
-    lines.loads.push_back({.fibre = 0, .force = q, .from = 0.25, .to = 0.8});
-    test::TermScene<beam::DirectorBeam<3>, load::LineLoads> scene(assembly, lines);
-    const Vector force = scene.forces(scene.mesh.rest_state());
-    Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
-    for (Index a = 0; a < scene.mesh.node_count(0); ++a) {
-        const Vec3 one = force.segment<3>(9 * a), at = scene.mesh.rest_state().segment<3>(9 * a);
-        sum += one, moment += at.cross(one);
-    }
-    CHECK((sum - 1.1 * q).norm() < 1e-14);  // 2 (0.8 - 0.25)
-    CHECK((moment - Vec3(1.05, 0, 0).cross(1.1 * q)).norm() < 1e-14);
-}
 
 struct Weighted {
     using Beam = Cable;

@@ -204,4 +204,27 @@ TEST_CASE("what iterations call indefinite is factored: it is solved if it is no
     test::check_linear_solver(solver::Confirmed<solver::TwoLevelPcg>{});
 }
 
+// Says so of two systems in three.
+struct Moody : Doubting {
+    using Doubting::Doubting;
+    int solves = 0;
+    solver::SolveReport solve(const auto&, const Vector& b, double, Vector& x) {
+        x = b;
+        return {++solves % 3 == 0 ? solver::SolveStatus::converged : solver::SolveStatus::indefinite, 0, 1.0, 0.0};
+    }
+};
+
+TEST_CASE("verdicts are counted in a row: one that is solved in between begins anew") {
+    const test::SyntheticSystem system = touching();
+    const Vector b = test::random_load(system.layout(), 1);
+    Vector x;
+    solver::Confirmed<Moody> moody{{.small = 0, .patience = 3}};
+    moody.analyse(system);
+    REQUIRE(moody.prepare(system) == solver::SolveStatus::converged);
+    for (int k = 0; k < 9; ++k) {
+        moody.solve(system, b, 1e-9, x);
+        CHECK_FALSE(moody.factored());
+    }
+}
+
 }  // namespace automatic_solver_test

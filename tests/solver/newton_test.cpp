@@ -367,4 +367,30 @@ TEST_CASE(
     CHECK(learned.stiffness(start, 0).norm() == 0.0);
 }
 
+struct Touched : Untouched {
+    struct Element {
+        Vec3 normal = Vec3::UnitX();
+        Index fibre_i = 0, fibre_j = 1;
+        Vec3 motion(const Vector& step) const { return step.head<3>(); }
+    };
+    std::vector<Element> one{{}};
+    const std::vector<Element>& elements() const { return one; }
+    bool forced(const Element&) const { return false; }
+};
+
+TEST_CASE("a step brings two fibres nearer by half of their own radius, not of the smallest in the scene") {
+    Bounded problem;
+    problem.fibres.only.section.semi_axis_1 = problem.fibres.only.section.semi_axis_2 = 4.0;
+    Touched contacts;
+    Exact linear{&problem};
+    solver::IterationParameters parameters;
+    parameters.mixed = false, parameters.newton_limit = 1, parameters.largest_approach = 0.5;
+    core::StageClock clock;
+    solver::Newton<Bounded, Touched, Exact> newton(problem, contacts, linear, parameters, 1.0, clock);
+    solver::IterationCounts counts;
+    Vector x = Vec3(4.0, 0.0, 0.0);  // from where a whole step is 22 long
+    newton.solve(x, 1e-4, x, std::numeric_limits<double>::infinity(), counts);
+    CHECK(x[0] == test::near(2.0));
+}
+
 }  // namespace newton_test

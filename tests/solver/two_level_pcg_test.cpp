@@ -173,4 +173,20 @@ TEST_CASE("parameters of two levels that mean nothing are refused by name") {
     CHECK(test::refusal([] { Solver{{.iteration_limit = 0}}; }).starts_with("TwoLevelPcg.iteration_limit = 0"));
 }
 
+TEST_CASE(
+    "the least curvature that conjugate gradients tell is that of their directions over what these are to the preconditioner") {
+    const test::SyntheticSystem system = test::solvable_systems()[1];
+    const Vector b = test::random_load(system.layout(), 2);
+    const auto double_it = [](const Vector& r, Vector& z) { z = 0.5 * r; };  // of a preconditioner 2
+    double least = std::numeric_limits<double>::infinity();
+    for (int limit = 1; limit <= 6; ++limit) {
+        solver::ConjugateGradientVectors cg;
+        Vector x;
+        const solver::SolveReport report = solver::conjugate_gradient(system, double_it, b, 1e-14, limit, cg, x);
+        REQUIRE(report.iterations == limit);
+        least = std::min(least, cg.p.dot(cg.product) / (2.0 * cg.p.squaredNorm()));
+        CHECK(report.curvature == test::near(least, 1e-8));  // directions lose their right angles to rounding
+    }
+}
+
 }  // namespace two_level_pcg_test

@@ -70,6 +70,29 @@ struct TermScene {
     }
 };
 
+/// What a term keeps, as a checkpoint has it.
+std::vector<double> numbers_of(auto& term) {
+    std::vector<double> all;
+    term.each([&]<class Value>(Value& value) {
+        if constexpr (std::is_same_v<Value, Vector>)
+            all.insert(all.end(), value.begin(), value.end());
+        else
+            all.push_back(static_cast<double>(value));
+    });
+    return all;
+}
+void copy_numbers(auto& from, auto& to) {
+    const std::vector<double> all = numbers_of(from);
+    std::size_t next = 0;
+    to.each([&]<class Value>(Value& value) {
+        if constexpr (std::is_same_v<Value, Vector>)
+            for (double& entry : value) entry = all[next++];
+        else
+            value = static_cast<Value>(all[next++]);
+    });
+    CHECK(next == all.size());
+}
+
 /// @param state  in which the term acts and is smooth; what it looks for is looked for there
 template <class B, class T>
 void check_term(const scene::Assembly& assembly, const typename T::Parameters& parameters, const Vector& state) {
@@ -103,17 +126,7 @@ void check_term(const scene::Assembly& assembly, const typename T::Parameters& p
 
     // What is not accepted is forgotten, and the same numbers are the same term.
     term.accept(state);
-    const auto numbers = [](auto& of) {
-        std::vector<double> all;
-        of.each([&]<class Value>(Value& value) {
-            if constexpr (std::is_same_v<Value, Vector>)
-                all.insert(all.end(), value.begin(), value.end());
-            else
-                all.push_back(static_cast<double>(value));
-        });
-        return all;
-    };
-    const std::vector<double> accepted = numbers(term);
+    const std::vector<double> accepted = numbers_of(term);
     scene.begin(1.0);
     const Vector before = scene.forces(state);
     const Vector other = state + 0.01 * Vector::LinSpaced(state.size(), -1.0, 1.0);
@@ -122,16 +135,9 @@ void check_term(const scene::Assembly& assembly, const typename T::Parameters& p
     term.restore();
     scene.begin(1.0);
     CHECK(scene.forces(state) == before);
-    CHECK(numbers(term) == accepted);
+    CHECK(numbers_of(term) == accepted);
     TermScene<B, T> again(assembly, parameters);
-    std::size_t next = 0;
-    again.term.each([&]<class Value>(Value& value) {
-        if constexpr (std::is_same_v<Value, Vector>)
-            for (double& entry : value) entry = accepted[next++];
-        else
-            value = static_cast<Value>(accepted[next++]);
-    });
-    CHECK(next == accepted.size());
+    copy_numbers(term, again.term);
     again.term.restore();
     again.term.detect(state, state, 1.0);
     again.begin(1.0);

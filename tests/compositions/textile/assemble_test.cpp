@@ -366,4 +366,70 @@ TEST_CASE("grips hold the nodes within them, and what they cannot hold is refuse
     CHECK(initial_slope({{0.0, 1.0}, {1.0, 3.0}, {2.0, 5.0}, {3.0, 100.0}}) == test::near(2.0, 1e-12));
 }
 
+TEST_CASE("a yarn of several fibres repeats by their mean") {
+    Textile textile;
+    textile.types = {yarn(7)};
+    Path path;
+    path.kind = PathKind::periodic, path.image = Vec3(2, 0, 0);
+    path.curve = [](double t) { return Vec3(2.0 * t, 0, 0); };
+    textile.paths = {path}, textile.lattice = {path.image};
+    const Assembled assembled = assemble(textile, {});
+    observe::Snapshot state;
+    for (const Line& line : drawn_lines(assembled)) {
+        state.fibres.emplace_back();
+        state.fibres.back().position = line.points;
+    }
+    REQUIRE(state.fibres.size() == 7);
+    CHECK((images_of(textile, assembled, state)[0] - path.image).norm() < 1e-9);
+}
+
+TEST_CASE("a cell sees beside itself each of its yarns that comes near one of them, once and where it is") {
+    const Textile weave = woven({.levels = levels_of({"01", "10"}),
+                                 .column_spacing = 2.0,
+                                 .warp_spacing = 1.5,
+                                 .periodic = true,
+                                 .warp = yarn(1),
+                                 .weft = yarn(1)});
+    const Assembled cell = assemble(weave, {});
+    const std::vector<Line> own = drawn_lines(cell);
+    const auto near_one = [&](Index f, const Vec3& shift) {
+        for (const Line& line : own)
+            for (const Vec3& point : line.points)
+                for (const Vec3& other : own[core::at(f)].points)
+                    if ((other + shift - point).norm() < 0.15) return true;  // three radii
+        return false;
+    };
+    const auto seen = [&](Index f, const Vec3& shift) {
+        Index times = 0;
+        for (const scene::FibreImage& image : cell.assembly.images()) {
+            Vec3 by = Vec3::Zero();
+            for (const auto& one : image.shifts) by += one.times * cell.assembly.pairs()[core::at(one.pair)].period;
+            times += image.fibre == f && (by - shift).norm() < 1e-9;
+        }
+        return times;
+    };
+    Index wanted = 0;
+    for (const auto& [a, b] : {std::pair{1, 0}, std::pair{-1, 1}, std::pair{0, 1}, std::pair{1, 1}})
+        for (Index f = 0; f < core::count(own); ++f) {
+            const Vec3 shift = static_cast<double>(a) * weave.lattice[0] + static_cast<double>(b) * weave.lattice[1];
+            if (!near_one(f, shift)) continue;
+            ++wanted;
+            CAPTURE(shift.transpose());
+            CHECK(seen(f, shift) == 1);
+        }
+    CHECK(wanted == 4);  // each goes on where it ends
+}
+
+TEST_CASE("a yarn that goes aside and back is longer than its chord, and leans by the mean of its angle") {
+    const std::vector<std::pair<Vec3, Vec3>> ends{{Vec3(-1, 0, 0), Vec3(1, 0, 0)}};
+    const auto made = straight_yarns(ends, 0.1);
+    observe::Snapshot state = straight(ends, 0.1);
+    for (Vec3& point : state.fibres[0].position) point.y() = 1.0 - std::abs(point.x());
+    const YarnFigures figures = yarn_figures(made.first, made.second, state).front();
+    CHECK(figures.length == test::near(std::sqrt(8.0), 1e-9));
+    CHECK(figures.strain == test::near(std::sqrt(2.0) - 1.0, 1e-9));
+    CHECK(figures.crimp == test::near(std::sqrt(2.0) - 1.0, 1e-9));
+    CHECK(figures.mean_angle == test::near(0.25 * pi, 1e-9));
+}
+
 }  // namespace textile_assemble_test

@@ -186,4 +186,12 @@ TEST_CASE("a snapshot of another fabric is refused") {
           "Snapshot.fibres[3].position = 33 nodes, but it must be of 65 nodes");
 }
 
+TEST_CASE("the woven part lies between the middles of the outermost tows of either family") {
+    FabricParameters fabric = small_fabric(4, 7);
+    fabric.weft_tows = 2;
+    const Outline part = outline(woven_snapshot(fabric, 0.1), fabric);
+    CHECK(part.x_to - part.x_from == test::near(fabric.weft_spacing, 1e-9));
+    CHECK(part.y_to - part.y_from == test::near(3.0 * fabric.warp_spacing, 1e-9));
+}
+
 }  // namespace measures_test
