@@ -306,6 +306,7 @@ public:
     /// What couples what, for a solver's analysis: the points of a state whose contacts have been evaluated. Bands keep the
     /// values of an earlier state, and products wait for `linearise`.
     void outline(const Vector& state) {
+        ties_.place(state, system_.layout());
         system_.place(state);
         gather_points(state);
         gather_slides(false);

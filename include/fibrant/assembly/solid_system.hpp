@@ -45,6 +45,8 @@ public:
         for (Index v = 0; v < layout_.vectors(); ++v) layout_.value[core::at(v)] = state.segment<3>(3 * v);
         fibres_.place(state);
         if (fibres_.layout().ties.size() != layout_.ties.size()) share_ties();
+        // Bodies turn: what a solver is told depends on the state, not on the one where ties were shared.
+        for (std::size_t k = 0; k < layout_.ties.size(); ++k) fibres_.layout().ties[k].axes = layout_.ties[k].axes;
     }
 
     // The fibres' bands and points.

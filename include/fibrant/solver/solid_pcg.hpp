@@ -234,11 +234,11 @@ private:
         });
         return pairs;
     }
+    /// Where nodes were at the start: the order of a factor, and with it its last bits, are those of any run of the scene.
     template <class System>
     static std::vector<Vec3> solid_places(const System& system) {
         std::vector<Vec3> places;
-        for (Index n = 0; n < system.solid().nodes(); ++n)
-            places.push_back(system.layout().value[core::at(system.solid().first_vector() + n)]);
+        for (Index n = 0; n < system.solid().nodes(); ++n) places.push_back(system.solid().start(n));
         return places;
     }
     template <class System>

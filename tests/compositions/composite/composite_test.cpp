@@ -239,6 +239,18 @@ TEST_CASE("a strip tied to bodies by averages bends as a beam whose ends are fre
     CHECK(report.energy.external == test::near(0.5 * angle * curvature * stiffness, 0.03));
     const connection::Wrench other = simulator.equilibrium().ties().wrench(scene.west_body, motion.position(1));
     CHECK((other.moment + wrench.moment).norm() <= 1e-3 * wrench.moment.norm());
+
+    // Stopped half way, where its ends have turned, and resumed: the same bits.
+    loading.checkpoint =
+        (std::filesystem::temp_directory_path() / ("fibrant_composite_tied_" + std::to_string(::getpid()))).string();
+    Index done = 0;
+    loading.stop = [&done] { return ++done == 2; };
+    Simulator half(scene.assembly, parameters(1e6)), rest(scene.assembly, parameters(1e6));
+    CHECK_FALSE(half.run(loading).converged);
+    loading.stop = nullptr, loading.resume = true;
+    REQUIRE(rest.run(loading).converged);
+    CHECK(rest.state() == simulator.state());
+    std::remove(loading.checkpoint.c_str());
 }
 
 /// A square bar of 16 x n x n cells around one fibre, its faces tied in four quarters to two bodies, the fibre's ends to them
