@@ -8,7 +8,6 @@
 #include <fibrant/proximity/near_part.hpp>
 
 #include <algorithm>
-#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -263,8 +262,7 @@ private:
 /// Zones of the pairs of a table.
 inline std::vector<ProximityZone> zones_of(const SegmentTable& table, std::span<const SegmentPair> pairs) {
     if (pairs.empty()) return {};
-    const auto records = std::make_unique_for_overwrite<SegmentRecord[]>(core::at(table.size()));  // not filled twice
-    table.write_records(records.get());
+    const std::vector<SegmentRecord> records = table.records();
     constexpr Index together = 4;  // fibres of a block of the loop: fixed, so that nothing depends on the threads
     const Index fibres = table.fibres(), blocks = (fibres + together - 1) / together;
     std::vector<std::vector<ProximityZone>> part(core::at(blocks));
@@ -273,7 +271,7 @@ inline std::vector<ProximityZone> zones_of(const SegmentTable& table, std::span<
         return std::lower_bound(pairs.begin(), pairs.end(), SegmentPair{segment, -1});
     };
     core::parallel_for<core::Share::turns>(blocks, [&](Index b) {
-        ZoneMaker maker(table, records.get(), part[core::at(b)]);
+        ZoneMaker maker(table, records.data(), part[core::at(b)]);
         PairsByFibre by_fibre;
         std::vector<PairPlace> places;
         auto end = first_of(b * together);
@@ -281,7 +279,7 @@ inline std::vector<ProximityZone> zones_of(const SegmentTable& table, std::span<
             const auto begin = std::exchange(end, first_of(f + 1));
             const std::span<const SegmentPair> own = by_fibre.sorted(table, {begin, end});
             places.resize(own.size());
-            locate(records.get(), own, table.reach(), places.data());
+            locate(records.data(), own, table.reach(), places.data());
             for (std::size_t k = 0, last = 0; k < own.size(); k = last) {
                 const std::int32_t end_of_fibre = table.first(table.fibre(own[k].j) + 1);
                 for (last = k + 1; last < own.size() && own[last].j < end_of_fibre;) ++last;
