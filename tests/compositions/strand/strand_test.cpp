@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A strand of a core and six wires, stretched and turned. Reference: the uniform state of the same rods (strand_1_6.json).
-#include <fibrant/beam/director_beam.hpp>
-#include <fibrant/compositions/strand/strand.hpp>
-#include <fibrant/law/augmented.hpp>
-#include <fibrant/law/frictionless.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/sparse_cholesky.hpp>
+#include "stretched_strand.hpp"
 
 #include <near.hpp>
 #include <refusal.hpp>
@@ -20,58 +14,6 @@
 using namespace fibrant;
 
 namespace strand_test {
-
-namespace strand = compositions::strand;
-
-struct Frictionless {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::Augmented<law::RegularisedPenalty>;
-    using Friction = law::Frictionless;
-    using Solver = solver::SparseCholesky;
-};
-
-/// strand_1_6.json, results.director.
-struct Case {
-    double lay_angle_deg, core_radius, gap, pitch;
-    double k11, k12, k22;
-    double force, torque;  ///< at a strain of 0.002 without rotation
-};
-const Case cases[] = {
-    {5, 0.0215, 0.0012808799, 2.98759288626, 65.30866018, 0.1993268143, 0.006043605099, 0.13100943348, 0.00039856740643},
-    {10, 0.0215, 0.00091974097, 1.48236252744, 62.70465544, 0.3838470411, 0.008310736385, 0.12578578517, 0.00076749851545},
-    {15, 0.022, 0.00079252128, 0.98720992227, 59.03860839, 0.5461006516, 0.01206550296, 0.11843163927, 0.0010918674471},
-    {20, 0.0225, 0.00037451152, 0.735399955509, 54.09721363, 0.6704171521, 0.01689073587, 0.10851900842, 0.0013403574948}};
-
-strand::StrandParameters strand_of(const Case& c) {
-    strand::StrandParameters parameters;
-    parameters.core_radius = c.core_radius;
-    parameters.layers = {{.wires = 6, .radius = 0.0201, .lay_angle_deg = c.lay_angle_deg}};
-    parameters.material = {7300.0, 0.3};
-    return parameters;
-}
-
-simulation::ModelParameters<Frictionless> model(double r) {
-    simulation::ModelParameters<Frictionless> parameters;
-    parameters.normal = {.law = {.regularisation_depth = 1e-4 * r}, .largest_penetration = 1e-6 * r};
-    parameters.contact.stiffness.allowed_penetration = 1e-3 * r;
-    parameters.contact.stiffness.initial_fraction = 0.2;
-    parameters.iteration.step_tolerance = 1e-6;
-    parameters.iteration.residual_tolerance = 1e-6;
-    parameters.iteration.normal_tolerance = 1e-5;
-    parameters.iteration.normal_step_tolerance = 1e-5;
-    parameters.iteration.contact_tolerance = 1e-4;
-    return parameters;
-}
-
-simulation::Loading<Frictionless> to(double strain, double rotation, Index increments) {
-    simulation::Stage<Frictionless> stage;
-    stage.ramps = {{strand::stretch, strain}, {strand::twist, rotation}};
-    stage.increments = increments;
-    simulation::Loading<Frictionless> loading;
-    loading.stages = {stage};
-    return loading;
-}
 
 /// Tension over E A strain cos^2 of a wire at a lay, on points it crosses and may not sink below: a beam under its own tension,
 /// whose curvature kappa presses it on, T = E A (strain cos^2 - kappa mean sink). No helix but through kappa, no contact but the
@@ -152,39 +94,6 @@ TEST_CASE("a strand of one core and six wires is as stiff as the reference says"
         CHECK(std::abs(k12 / c.k12 - 1.0) < 5e-3);
         CHECK(std::abs(k21 / c.k12 - 1.0) < 5e-3);
         CHECK(std::abs(k22 / c.k22 - 1.0) < 1.5e-2);  // near the ends wires turn more than in the middle, a part of a radius far
-    }
-}
-
-TEST_CASE("the ends of a strand take off its stiffness what falls with its length, and every stiffness is the reference's") {
-    // Wires that the ends hold turn less there than in the middle, or more: a share of the piece, not an error of contact or of
-    // the mesh.
-    struct Piece {
-        std::size_t of;
-        double pitches;
-        Index elements;
-    };
-    for (const auto& [of, pitches, elements] :
-         {Piece{0, 1, 48}, Piece{1, 2, 48}, Piece{2, 3, 72}, Piece{3, 2, 48}, Piece{3, 4, 96}}) {
-        const Case& c = cases[of];
-        strand::StrandParameters parameters = strand_of(c);
-        parameters.length = pitches * c.pitch, parameters.elements = elements;
-        simulation::Simulator<Frictionless> simulator(strand::straight_strand(parameters), model(0.0201));
-        const auto run = [&](double rotation, Index increments) {
-            const simulation::Report report = simulator.run(to(2e-4, rotation, increments));
-            REQUIRE_MESSAGE(report.converged, report.reason);
-            return strand::measure(simulator, parameters);
-        };
-        const strand::StrandState still = run(0.0, 2), on = run(0.001, 1), back = run(-0.001, 1);
-        const double rotation = on.rotation - back.rotation, strain = on.strain - back.strain;
-        const double k11 = (still.force - c.k12 * still.rotation) / still.strain,
-                     k21 = (still.torque - c.k22 * still.rotation) / still.strain;
-        const double k12 = (on.force - back.force - c.k11 * strain) / rotation, k22 = (on.torque - back.torque) / 0.002;
-        std::printf("lay %2.0f, %.0f pitches: k11 %+.2e, k12 %+.2e, k21 %+.2e, k22 %+.2e\n", c.lay_angle_deg, pitches,
-                    k11 / c.k11 - 1.0, k12 / c.k12 - 1.0, k21 / c.k12 - 1.0, k22 / c.k22 - 1.0);
-        const double bar =
-            of == 3 && pitches < 3 ? 1e-2 : 5e-3;  // 20 degrees: 1.1e-2 with one pitch, half of it with two, a quarter with four
-        for (const double error : {k11 / c.k11 - 1.0, k12 / c.k12 - 1.0, k21 / c.k12 - 1.0, k22 / c.k22 - 1.0})
-            CHECK(std::abs(error) < bar);
     }
 }
 
