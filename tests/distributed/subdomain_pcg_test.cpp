@@ -22,17 +22,6 @@ namespace subdomain_pcg_test {
 
 const test::Fabric fabric{.bundles = 2, .fibres = 7, .elements = 16, .length = 2.2};
 
-/// A force in the middle of every third fibre.
-Vector load_of(const test::FabricSystem& system) {
-    const scene::DofLayout& layout = system.layout();
-    Vector b = Vector::Zero(layout.unknowns());
-    for (std::size_t c = 0; c < layout.chains.size(); c += 3) {
-        const scene::Chain& chain = layout.chains[c];
-        b.segment<3>(3 * (chain.first_vector + (chain.nodes / 2) * chain.vectors_per_node)) = Vec3(0.1, -0.2, 0.3);
-    }
-    return b;
-}
-
 struct Solved {
     Vector x;
     solver::SolveReport report;
@@ -46,7 +35,7 @@ Solved solve(const test::FabricSystem& system, const distributed::Subdomains::Pa
     pcg.analyse(system);
     Solved solved;
     if (pcg.prepare(system) != solver::SolveStatus::converged) return solved;
-    solved.report = pcg.solve(system, load_of(system), tolerance, solved.x);
+    solved.report = pcg.solve(system, test::pulled_middles(system.layout()), tolerance, solved.x);
     return solved;
 }
 
@@ -128,7 +117,7 @@ TEST_CASE("the bits of a solution depend on the subdomains, not on ranks or thre
 
 TEST_CASE("the solution is that of the whole system, however many subdomains, with less than twice the iterations") {
     const test::FabricSystem system(fabric);
-    const Vector b = load_of(system);
+    const Vector b = test::pulled_middles(system.layout());
     Vector left(b.size());
     int whole = 0;
     for (const int parts : {1, 4, 32}) {

@@ -360,4 +360,14 @@ Vector contact_load(const System& system) {
     return load.b;
 }
 
+/// A force in the middle of every third fibre.
+inline Vector pulled_middles(const scene::DofLayout& layout) {
+    Vector b = Vector::Zero(layout.unknowns());
+    for (std::size_t c = 0; c < layout.chains.size(); c += 3) {
+        const scene::Chain& chain = layout.chains[c];
+        b.segment<3>(3 * (chain.first_vector + (chain.nodes / 2) * chain.vectors_per_node)) = Vec3(0.1, -0.2, 0.3);
+    }
+    return b;
+}
+
 }  // namespace fibrant::test

@@ -11,7 +11,6 @@
 
 #include <petscksp.h>
 
-#include <chrono>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -116,28 +115,24 @@ public:
     /// @throws std::runtime_error with what PETSc says
     template <assembly::LinearSystem System>
     solver::SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
+        return levels_.solve(system.layout(), b, x,
+                             [&](const Vector& free, double norm) { return iterate(system.layout(), free, norm, tolerance, x); });
+    }
+    const RankUse& use() const noexcept { return levels_.use(); }
+
+private:
+    /// @param free  part of b that nothing holds   @param norm  of b
+    solver::SolveReport iterate(const scene::DofLayout& layout, const Vector& free, double norm, double tolerance, Vector& x) {
         using detail::petsc_check;
         using solver::SolveStatus;
-        const scene::DofLayout& layout = system.layout();
-        x.setZero(b.size());
-        if (levels_.status() == SolveStatus::not_finite || !b.allFinite()) return {};
-        const double norm = solver::scaled_norm(layout, b);
-        if (norm == 0.0) return {SolveStatus::converged, 0, 0.0, core::unset};
-        const auto begun = std::chrono::steady_clock::now();
         Work& work = *work_;
         work.levels = &levels_, work.layout = &layout;
-        Vector free = b;
-        Levels::project(layout, free);
         Vector r = free;
         levels_.start(layout, free, x, r);
         solver::SolveReport report{SolveStatus::iteration_limit, 0, levels_.scaled_norm(layout, r) / norm, core::unset};
         double reached = std::numeric_limits<double>::infinity();  // true residual before the last start
-        while (report.status == SolveStatus::iteration_limit && report.iterations < parameters_.iteration_limit) {
-            if (report.residual <= tolerance) {
-                report.status = SolveStatus::converged;
-                break;
-            }
-            if (report.residual > 0.5 * reached) break;  // rounding allows no less
+        while (report.status == SolveStatus::iteration_limit && report.residual > tolerance && report.residual <= 0.5 * reached &&
+               report.iterations < parameters_.iteration_limit) {  // rounding allows no less
             reached = report.residual;
             work.put(free, work.b, false), work.put(x, work.x, true);
             petsc_check(KSPSetTolerances(work.method, 0.0, tolerance * norm, PETSC_DEFAULT,
@@ -149,23 +144,16 @@ public:
             petsc_check(KSPGetIterationNumber(work.method, &iterations));
             petsc_check(KSPGetConvergedReason(work.method, &reason));
             report.iterations += static_cast<int>(iterations);
-            if (reason == KSP_DIVERGED_INDEFINITE_MAT || reason == KSP_DIVERGED_INDEFINITE_PC || turned_back())
+            if (turned_back() || reason == KSP_DIVERGED_INDEFINITE_MAT || reason == KSP_DIVERGED_INDEFINITE_PC)
                 report.status = SolveStatus::indefinite;
-            if (reason == KSP_DIVERGED_NANORINF) report.status = SolveStatus::not_finite;
             levels_.find_residual(free, x, r);  // of x, not the recursive one
             report.residual = levels_.scaled_norm(layout, r) / norm;
-            if (!std::isfinite(report.residual)) report.status = SolveStatus::not_finite;
+            if (reason == KSP_DIVERGED_NANORINF || !std::isfinite(report.residual)) report.status = SolveStatus::not_finite;
         }
-        if (report.status == SolveStatus::indefinite && !(levels_.dot(free, x) > 0.0)) {
-            x.setZero();  // a descent direction: both levels are positive
-            levels_.smooth(layout, free, x), levels_.add_coarse(layout, free, x), Levels::project(layout, x);
-        }
-        levels_.finish(layout, b, free, x, report.iterations, begun);
+        if (report.status == SolveStatus::iteration_limit && report.residual <= tolerance) report.status = SolveStatus::converged;
+        if (report.status == SolveStatus::indefinite && !(levels_.dot(free, x) > 0.0)) levels_.descend(layout, free, x);
         return report;
     }
-    const RankUse& use() const noexcept { return levels_.use(); }
-
-private:
     /// Whether a vector that was multiplied since the last call has p.Ap < 0; by all ranks.
     bool turned_back() {
         std::vector<double>& own = work_->curvatures;

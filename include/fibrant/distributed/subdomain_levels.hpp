@@ -136,18 +136,40 @@ public:
         add_coarse(layout, left, z);
         project(layout, z);
     }
-    /// Gathers x from all ranks; held directions take what b says. What a solve took is counted.
-    /// @param begun  when the solve began
-    void finish(const scene::DofLayout& layout, const Vector& b, const Vector& free, Vector& x, Index iterations,
-                std::chrono::steady_clock::time_point begun) {
+    /// x = (N + Q) b in own vectors: both are positive, and so is b.x.
+    void descend(const scene::DofLayout& layout, const Vector& b, Vector& x) {
+        Vector& motion = work_->left;
+        if (motion.size() != b.size()) motion.setZero(b.size());
+        smooth(layout, b, motion);
+        x.setZero(b.size());
+        add_coarse(layout, b, x);
+        for_owned([&](Index k) { x.segment<3>(k) += motion.segment<3>(k); });
+        project(layout, x);
+    }
+
+    /// What every iteration begins and ends with. Its sums are of own vectors; held directions take what b says, and all ranks
+    /// get all of x.
+    /// @param iterate  (free part of b, norm of b) -> SolveReport; begins with x = 0, and leaves x in own vectors
+    template <class Iterate>
+    solver::SolveReport solve(const scene::DofLayout& layout, const Vector& b, Vector& x, const Iterate& iterate) {
+        x.setZero(b.size());
+        if (status() == solver::SolveStatus::not_finite || !b.allFinite()) return {};
+        const double norm = solver::scaled_norm(layout, b);
+        if (norm == 0.0) return {solver::SolveStatus::converged, 0, 0.0, core::unset};
+        const auto begun = std::chrono::steady_clock::now();
         Work& work = *work_;
+        work.free = b;
+        project(layout, work.free);
+        const Vector& free = work.free;
+        const solver::SolveReport report = iterate(free, norm);
         timed(work.use.waiting_seconds, [&] { gather_owned(exchange_, work.cut, work.runs, x, work.use.traffic); });
         for (const scene::HeldVector& held : layout.held) {
             const Index k = 3 * held.vector;
             x.segment<3>(k) += (b.segment<3>(k) - free.segment<3>(k)) / layout.held_stiffness(held.vector);
         }
-        work.use.solves += 1, work.use.iterations += iterations;
+        work.use.solves += 1, work.use.iterations += report.iterations;
         work.use.whole_seconds += core::seconds_since(begun);
+        return report;
     }
 
 private:
@@ -166,7 +188,7 @@ private:
         std::vector<std::vector<int>> stations;   // of each part, own or not
         std::vector<std::vector<int>> places;     // of each own part: place of a station in its list
         std::vector<Index> station_counts;        // numbers that each rank gives
-        Vector slots, moved, left, station_values;
+        Vector free, slots, moved, left, station_values;
         std::vector<double> own_values, all_values, sums;
         solver::SolveStatus status = solver::SolveStatus::not_finite;
         RankUse use;

@@ -4,7 +4,6 @@
 
 #include <fibrant/distributed/subdomain_levels.hpp>
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -42,7 +41,10 @@ public:
         return levels_.prepare(system);
     }
     template <assembly::LinearSystem System>
-    solver::SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x);
+    solver::SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
+        return levels_.solve(system.layout(), b, x,
+                             [&](const Vector& free, double norm) { return iterate(system.layout(), free, norm, tolerance, x); });
+    }
 
     const RankUse& use() const noexcept { return levels_.use(); }
     const Subdomains& cut() const noexcept { return levels_.cut(); }
@@ -50,28 +52,22 @@ public:
 
 private:
     struct Work {
-        Vector free, r, z, p, product_of_p;
+        Vector r, z, p, product_of_p;
     };
+    solver::SolveReport iterate(const scene::DofLayout& layout, const Vector& free, double norm, double tolerance, Vector& x);
+
     Parameters parameters_;
     Levels levels_;
     solver::Workspace<Work> work_;
 };
 
+/// @param free  part of b that nothing holds   @param norm  of b
 template <Exchange E>
-template <assembly::LinearSystem System>
-solver::SolveReport SubdomainPcg<E>::solve(const System& system, const Vector& b, double tolerance, Vector& x) {
+solver::SolveReport SubdomainPcg<E>::iterate(const scene::DofLayout& layout, const Vector& free, double norm, double tolerance,
+                                             Vector& x) {
     using solver::SolveStatus;
-    const scene::DofLayout& layout = system.layout();
-    x.setZero(b.size());
-    if (levels_.status() == SolveStatus::not_finite || !b.allFinite()) return {};
-    const double norm = solver::scaled_norm(layout, b);
-    if (norm == 0.0) return {SolveStatus::converged, 0, 0.0, core::unset};
-    const auto begun = std::chrono::steady_clock::now();
     Work& work = *work_;
-    for (Vector* own : {&work.z, &work.p, &work.product_of_p}) own->setZero(b.size());
-    work.free = b;
-    Levels::project(layout, work.free);
-    const Vector& free = work.free;
+    for (Vector* own : {&work.z, &work.p, &work.product_of_p}) own->setZero(free.size());
     Vector& r = work.r;
     Vector& z = work.z;
     Vector& p = work.p;
@@ -114,14 +110,7 @@ solver::SolveReport SubdomainPcg<E>::solve(const System& system, const Vector& b
         if (curvature <= 0.0 || rz <= 0.0) {
             if (rz <= 0.0 && report.curvature > 0.0) report.curvature = 0.0;
             report.status = SolveStatus::indefinite;
-            if (report.iterations == 0) {  // x = (N + Q) b: both are positive, and so is b.x
-                r = free;
-                levels_.smooth(layout, r, z);
-                x.setZero();
-                levels_.add_coarse(layout, r, x);
-                levels_.for_owned([&](Index k) { x.segment<3>(k) += z.segment<3>(k); });
-                Levels::project(layout, x);
-            }
+            if (report.iterations == 0) levels_.descend(layout, free, x);
             break;
         }
         const double alpha = rz / curvature;
@@ -140,7 +129,6 @@ solver::SolveReport SubdomainPcg<E>::solve(const System& system, const Vector& b
         if (report.status == SolveStatus::iteration_limit && report.residual <= tolerance) report.status = SolveStatus::converged;
         if (!std::isfinite(report.residual)) report.status = SolveStatus::not_finite;
     }
-    levels_.finish(layout, b, free, x, report.iterations, begun);
     return report;
 }
 
