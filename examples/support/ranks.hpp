@@ -7,6 +7,7 @@
 #include <fibrant/distributed/mpi_exchange.hpp>
 #include <fibrant/distributed/subdomain_pcg.hpp>
 #include <fibrant/solver/confirmed.hpp>
+#include <fibrant/solver/one_of.hpp>
 #ifdef FIBRANT_WITH_PETSC
 #include <fibrant/distributed/petsc_krylov.hpp>
 #endif
@@ -19,7 +20,6 @@
 #include <filesystem>
 #include <string>
 #include <system_error>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -73,50 +73,36 @@ inline bool stopped_together() {
     return all;
 }
 
-/// How ranks solve a linear system together, by name.
-class RankSolver {
-    using Gradients = fibrant::solver::Confirmed<fibrant::distributed::SubdomainPcg<fibrant::distributed::MpiExchange>>;
+using RankGradients = fibrant::solver::Confirmed<fibrant::distributed::SubdomainPcg<fibrant::distributed::MpiExchange>>;
 #ifdef FIBRANT_WITH_PETSC
-    using Krylov = fibrant::solver::Confirmed<fibrant::distributed::PetscKrylov>;
-    using Strategy = std::variant<Gradients, Krylov>;
+using RankKrylov = fibrant::solver::Confirmed<fibrant::distributed::PetscKrylov>;
+using RankStrategies = fibrant::solver::OneOf<RankGradients, RankKrylov>;
 #else
-    using Strategy = std::variant<Gradients>;
+using RankStrategies = fibrant::solver::OneOf<RankGradients>;
 #endif
 
+/// How ranks solve a linear system together, by name; what is automatic in a program of one rank is the first here.
+class RankSolver : public RankStrategies {
 public:
-    /// Names of strategies, as texts list them.
-    static constexpr const char* names =
-#ifdef FIBRANT_WITH_PETSC
-        "\"two_level_pcg\", \"petsc\", which ranks can share, or \"automatic\", which is the first here";
-#else
-        "\"two_level_pcg\", which ranks can share, or \"automatic\", which is the same here";
-#endif
-    static bool knows(const std::string& name) {
-        return name == "two_level_pcg" || name == "automatic" || (std::variant_size_v<Strategy> > 1 && name == "petsc");
+    static const std::vector<std::string>& strategies() {
+        static const std::vector<std::string> names = [] {
+            std::vector<std::string> all{"automatic", "two_level_pcg"};
+            if (std::variant_size_v<Strategy> == 2) all.emplace_back("petsc");
+            return all;
+        }();
+        return names;
     }
     struct Parameters {
-        std::string strategy = "two_level_pcg";  ///< one that `knows` takes
+        std::string strategy = "two_level_pcg";  ///< one of `strategies`
         int subdomains = 64;                     ///< in [1, 4096]
         std::string petsc_options{};             ///< of "petsc"
         void validate() const {
-            if (!knows(strategy)) fibrant::core::refuse("RankSolver.strategy", "\"" + strategy + "\"", names);
+            if (std::find(strategies().begin(), strategies().end(), strategy) == strategies().end())
+                fibrant::core::refuse("RankSolver.strategy", "\"" + strategy + "\"", "one that ranks can share");
         }
     };
     RankSolver() : RankSolver(Parameters{}) {}
-    explicit RankSolver(const Parameters& parameters) : strategy_{make(fibrant::core::validated(parameters))} {}
-
-    template <class System>
-    void analyse(const System& system) {
-        std::visit([&](auto& solver) { solver.analyse(system); }, strategy_);
-    }
-    template <class System>
-    fibrant::solver::SolveStatus prepare(const System& system) {
-        return std::visit([&](auto& solver) { return solver.prepare(system); }, strategy_);
-    }
-    template <class System>
-    fibrant::solver::SolveReport solve(const System& system, const fibrant::Vector& b, double tolerance, fibrant::Vector& x) {
-        return std::visit([&](auto& solver) { return solver.solve(system, b, tolerance, x); }, strategy_);
-    }
+    explicit RankSolver(const Parameters& parameters) : RankStrategies{make(fibrant::core::validated(parameters))} {}
 
     /// Which strategy it is.
     std::string account() const { return strategy_.index() == 0 ? "two_level_pcg" : "petsc"; }
@@ -125,16 +111,15 @@ private:
     static Strategy make(const Parameters& parameters) {
 #ifdef FIBRANT_WITH_PETSC
         if (parameters.strategy == "petsc") {
-            Krylov::Parameters own;
+            RankKrylov::Parameters own;
             own.iterative.levels.cut.parts = parameters.subdomains, own.iterative.options = parameters.petsc_options;
-            return Krylov(own);
+            return RankKrylov(own);
         }
 #endif
-        Gradients::Parameters own;
+        RankGradients::Parameters own;
         own.iterative.levels.cut.parts = parameters.subdomains;
-        return Gradients(own);
+        return RankGradients(own);
     }
-    Strategy strategy_;
 };
 
 }  // namespace example

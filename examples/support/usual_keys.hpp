@@ -8,6 +8,7 @@
 #include <fibrant/scene/elastic_material.hpp>
 
 #include <string>
+#include <vector>
 
 namespace example {
 
@@ -19,6 +20,18 @@ inline constexpr bool has_own_laws = true;
 inline constexpr bool has_own_laws = false;
 #endif
 inline constexpr const char* no_own_laws = "that of a build with -DFIBRANT_OWN_LAWS=ON; without it this program has no such law";
+
+/// Strategies of solver::AnySolver, whose header is not for those who only read a scene.
+inline const std::vector<std::string>& linear_solvers() {
+    static const std::vector<std::string> names{
+        "automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"};
+    return names;
+}
+/// @param strategies  that the program has
+inline void read_linear_solver(SceneReader& file, std::string& strategy,
+                               const std::vector<std::string>& strategies = linear_solvers()) {
+    file.read("solver", "linear_solver", strategy, strategies, "how linear systems are solved");
+}
 
 /// Young's modulus and Poisson's ratio; both must be given.
 inline void read_material(SceneReader& file, const std::string& section, fibrant::scene::ElasticMaterial& material) {

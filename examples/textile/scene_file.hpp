@@ -419,10 +419,7 @@ inline Scene read_scene(SceneReader& file) {
               "factor on the tolerances of passes on the way to rest");
     file.read("settle", "damping", settle.damping, example::between(1e-6, 1e6), "1",
               "factor on the damping that follows from tension, bending and the distance of crossings");
-    file.read(
-        "solver", "linear_solver", scene.linear_solver,
-        {"automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"},
-        "how linear systems are solved");
+    example::read_linear_solver(file, scene.linear_solver);
     if (scene.generator.empty() && !file.describes()) {
         for (const std::string& name : generators)  // nobody has asked for its section yet
             if (file.has_section(name))

@@ -98,20 +98,10 @@ inline void read_tow(SceneReader& file, const std::string& section, bool require
 }  // namespace detail
 
 /// Tolerances and limits of the iteration; what a program takes otherwise stands in `iteration`.
-inline void read_iteration(SceneReader& file, std::string& linear_solver, fibrant::solver::IterationParameters& iteration) {
-    file.read("solver", "linear_solver", linear_solver,
-              {
-                  "automatic",
-                  "two_level_pcg",
-                  "fibre_block_pcg",
-                  "float_block_cholesky",
-                  "double_block_cholesky",
-                  "sparse_cholesky",
-#ifdef FIBRANT_WITH_PETSC
-                  "petsc",
-#endif
-              },
-              "how linear systems are solved");
+/// @param strategies  of linear solution that the program has
+inline void read_iteration(SceneReader& file, std::string& linear_solver, fibrant::solver::IterationParameters& iteration,
+                           const std::vector<std::string>& strategies = example::linear_solvers()) {
+    example::read_linear_solver(file, linear_solver, strategies);
     file.read("solver", "step_tolerance", iteration.step_tolerance, example::above(0.0, 1.0), "1",
               "largest last step of Newton's method, over the radius");
     file.read("solver", "residual_tolerance", iteration.residual_tolerance, example::above(0.0, 1.0), "1",
@@ -127,10 +117,11 @@ inline void read_iteration(SceneReader& file, std::string& linear_solver, fibran
 }
 
 /// Reads and checks what a file says of a fabric, before any work.
-/// @param more  reads what else the file may say
+/// @param more        reads what else the file may say
+/// @param strategies  of linear solution that the program has
 /// Throws std::invalid_argument, "file: section.key = value, but it must be bound".
 template <class More>
-Scene read_fabric(SceneReader& file, const More& more) {
+Scene read_fabric(SceneReader& file, const More& more, const std::vector<std::string>& strategies = example::linear_solvers()) {
     file.names({{"FabricParameters.warp.fibre_radius", "warp.radius"},
                 {"FabricParameters.weft.fibre_radius", "weft.radius"},
                 {"FabricParameters.warp.material", "material"},
@@ -216,7 +207,7 @@ Scene read_fabric(SceneReader& file, const More& more) {
     example::read_friction_shape(file, settle.friction_shape);
     example::read_allowed_penetration(file, settle.allowed_penetration_over_radius,
                                       "how deep a contact may be at the end, over the radius");
-    read_iteration(file, scene.linear_solver, scene.iteration);
+    read_iteration(file, scene.linear_solver, scene.iteration, strategies);
     file.read("solver", "threads", scene.threads, example::between(0, 100000), "0: as many as the machine has");
     file.read("output", "paraview", scene.paraview, "files for ParaView");
     file.read("output", "paraview_every", scene.paraview_every, example::increments(),

@@ -117,7 +117,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
 #ifdef FIBRANT_WITH_MPI
     Index subdomains = 64;
     std::string petsc_options;
-    weave::Scene scene = weave::read_fabric(file, [&] {
+    const auto more = [&] {
         file.read("solver", "subdomains", subdomains, example::between(1, 4096),
                   "parts that the scene is cut into for the ranks; results depend on it, and not on the ranks");
 #ifdef FIBRANT_WITH_PETSC
@@ -125,9 +125,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
         file.read("solver", "petsc_options", petsc_options, {},
                   "of PETSc where linear_solver is \"petsc\", as \"-ksp_type fgmres -ksp_monitor\"");
 #endif
-    });
+    };
+    weave::Scene scene = weave::read_fabric(file, more, example::RankSolver::strategies());
     scene.subdomains = static_cast<int>(subdomains), scene.petsc_options = petsc_options;
-    file.check(example::RankSolver::knows(scene.linear_solver), "solver", "linear_solver", example::RankSolver::names);
 #else
     const weave::Scene scene = weave::read_fabric(file, [] {});
 #endif

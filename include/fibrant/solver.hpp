@@ -23,6 +23,7 @@
 #include <fibrant/solver/linear_solver.hpp>
 #include <fibrant/solver/nested_loops.hpp>
 #include <fibrant/solver/newton.hpp>
+#include <fibrant/solver/one_of.hpp>
 #include <fibrant/solver/recording_solver.hpp>
 #include <fibrant/solver/rigid_coarse_space.hpp>
 #include <fibrant/solver/saved_system.hpp>

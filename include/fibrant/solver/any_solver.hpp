@@ -4,18 +4,19 @@
 
 #include <fibrant/solver/automatic_solver.hpp>
 #include <fibrant/solver/confirmed.hpp>
+#include <fibrant/solver/one_of.hpp>
 #include <fibrant/solver/sparse_cholesky.hpp>
 
 #include <algorithm>
 #include <array>
 #include <string>
-#include <utility>
 #include <variant>
 
 namespace fibrant::solver {
 
-/// One of the strategies, dispatched once a call.
-class AnySolver {
+/// One of the strategies. What blocks of single precision say is a doubt, whoever asks them.
+class AnySolver : public OneOf<Confirmed<TwoLevelPcg>, AutomaticSolver, Confirmed<FibreBlockPcg>, Confirmed<FloatBlockCholesky>,
+                               DoubleBlockCholesky, SparseCholesky> {
 public:
     static constexpr std::array strategies{
         "automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"};
@@ -29,20 +30,8 @@ public:
         }
     };
     AnySolver() : AnySolver(Parameters{}) {}
-    explicit AnySolver(const Parameters& parameters) : name_{core::validated(parameters).strategy}, strategy_{make(name_)} {}
-
-    template <class System>
-    void analyse(const System& system) {
-        std::visit([&](auto& solver) { solver.analyse(system); }, strategy_);
-    }
-    template <class System>
-    SolveStatus prepare(const System& system) {
-        return std::visit([&](auto& solver) { return solver.prepare(system); }, strategy_);
-    }
-    template <class System>
-    SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x) {
-        return std::visit([&](auto& solver) { return solver.solve(system, b, tolerance, x); }, strategy_);
-    }
+    explicit AnySolver(const Parameters& parameters)
+        : OneOf{make(core::validated(parameters).strategy)}, name_{parameters.strategy} {}
 
     /// What the automatic strategy has used and why; null if another one was chosen.
     const StrategyUse* use() const noexcept {
@@ -56,9 +45,6 @@ public:
     }
 
 private:
-    // What blocks of single precision say is a doubt, whoever asks them.
-    using Strategy = std::variant<Confirmed<TwoLevelPcg>, AutomaticSolver, Confirmed<FibreBlockPcg>,
-                                  Confirmed<FloatBlockCholesky>, DoubleBlockCholesky, SparseCholesky>;
     static Strategy make(const std::string& name) {
         if (name == "automatic") return AutomaticSolver();
         if (name == "fibre_block_pcg") return Confirmed<FibreBlockPcg>();
@@ -68,7 +54,6 @@ private:
         return Confirmed<TwoLevelPcg>();
     }
     std::string name_;
-    Strategy strategy_;
 };
 
 }  // namespace fibrant::solver
