@@ -92,13 +92,14 @@ void count_from(const beam::Mesh<B>& mesh, const NormalRule& rule, const Normal&
     }
     if constexpr (core::Active<Friction>) {
         element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
-        ContactElement<B, Normal, Friction> const* now = &element;
-        ContactElement<B, Normal, Friction> turned;
-        if (within) {
-            turned = element, now = &turned;
-            turned.normal = element_normal(mesh, state, element, rule, element.normal);
+        const auto offset = [&](const auto& seen) { return accepted_offset(mesh, rule, seen, state, accepted); };
+        if (!within) {
+            element.friction.accepted_offset = offset(element);
+            return;
         }
-        element.friction.accepted_offset = contact::accepted_offset(mesh, rule, *now, state, accepted);
+        ContactElement<B, Normal, Friction> turned = element;
+        turned.normal = element_normal(mesh, state, element, rule, element.normal);
+        element.friction.accepted_offset = offset(turned);
     }
 }
 
