@@ -62,13 +62,9 @@ public:
     /// Records of all segments in order.
     std::vector<SegmentRecord> records() const {
         std::vector<SegmentRecord> all(core::at(size()));
-        write_records(all.data());
-        return all;
-    }
-    /// The same to where there is room for them.
-    void write_records(SegmentRecord* all) const {
         core::parallel_for(
-            size(), [&](Index k) { all[k] = record(static_cast<std::int32_t>(k)); }, 16 * core::light_items);
+            size(), [&](Index k) { all[core::at(k)] = record(static_cast<std::int32_t>(k)); }, 16 * core::light_items);
+        return all;
     }
 
     /// Whether segments i < j of one group may pair: only on one fibre, far enough along it.
