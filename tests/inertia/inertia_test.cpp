@@ -385,6 +385,73 @@ TEST_CASE("two rods that meet exchange their velocities in the time of the close
     CHECK(turn.motion().kinetic == test::near(before, 1e-3));
 }
 
+/// Mean velocity of a fibre along x over the next `duration`, in which nothing touches.
+template <class M>
+double drift(Moved<M>& moved, Index fibre, double duration, Index steps) {
+    const auto centre = [&] {
+        const Index elements = moved.simulator.mesh().fibre(fibre).elements;
+        double sum = 0.0;
+        for (Index k = 0; k <= elements; ++k)
+            sum += (k == 0 || k == elements ? 0.5 : 1.0) *
+                   moved.simulator.value({fibre, static_cast<double>(k) / static_cast<double>(elements)}).x();
+        return sum / static_cast<double>(elements);
+    };
+    const double before = centre();
+    moved.run(duration, steps);
+    return (centre() - before) / duration;
+}
+
+TEST_CASE("bars that meet end to end, or a wall, part as waves in them say") {
+    // Saint-Venant 1867: equal sections, the first bar of length 1 with speed v against one of length L at rest. They push by
+    // rho c A v/2 until t = 2/c, when the first is at rest; the other goes at v/L, and what it has not as a whole it keeps as
+    // vibration. On a wall the force is twice that, and what comes back is all of v. Contact is as soft as an element, so that
+    // all is of first order in its length: waves are as steep as elements let them be.
+    const double r = 0.02, young = 1.0, density = 1.0, v = 0.01, area = pi * r * r, early = 0.05, wall = 0.0;  // c = 1
+    for (const double other : {1.0, 2.0, wall}) {
+        double off[2][3];
+        for (const int fine : {0, 1}) {
+            const Index n = fine == 0 ? 10 : 20;
+            const double h = 1.0 / static_cast<double>(n), share = other == wall ? 1.0 : 0.5;
+            scene::Assembly assembly;
+            auto bar = along_x(1.0, r, young, n);
+            assembly.add(bar);
+            if (other == wall) {
+                scene::Tool plate;
+                plate.origin = Vec3(1.0 + r + early * v, 0, 0), plate.axis = -Vec3::UnitX();
+                assembly.add(plate);
+            } else {
+                bar.from.x() = 1.0 + 2.0 * r + early * v, bar.to.x() = bar.from.x() + other;
+                bar.elements = static_cast<Index>(other) * n;
+                assembly.add(bar);
+            }
+            auto with = parameters<Hitting>(r, density);
+            const double stiffness = 2.0 * share * young * area / h;
+            with.normal.law.crossing_stiffness = stiffness;  // on a tool an end is as stiff as half of the spacing that it has
+            with.normal.law.line_stiffness = stiffness * 2.0 * with.contact.spacing.points_per_element / h;
+            with.acts.inertia.integrator.midpoint = true;
+            with.acts.inertia.starts = {{.fibre = 0, .velocity = {v, 0, 0}}};
+            Moved<Hitting> hit(assembly, with);
+            const double T = 2.0 * std::max(1.0, other) + 0.5, dt = 0.5 * h;
+            hit.run(T, static_cast<Index>(std::round(T / dt)));
+            double push = 0.0, until = 0.0;  // mean force between a quarter and three quarters of the contact
+            for (std::size_t k = 0; k < hit.contact.size(); ++k) {
+                const double force = std::sqrt(2.0 * hit.contact[k] * stiffness), t = static_cast<double>(k + 1) * dt - early;
+                if (t > 0.5 && t <= 1.5) push += force * dt;
+                if (until == 0.0 && t > 1.0 && force < 0.5 * share * area * v) until = t;
+            }
+            CHECK(hit.motion().momentum.x() == test::near((other == wall ? -1.0 : 1.0) * area * v, other == wall ? 0.02 : 1e-8));
+            CHECK(std::abs(hit.report.energy.error()) < 1e-4 * hit.report.energy.external);
+            const double first = drift(hit, 0, 0.25, 10) / v, expected = other == wall ? -1.0 : 0.0;
+            std::printf("bar of 1 on %g, %td elements: pushes %.4f of its force until %.3f of 2, then at %.4f of v\n", other, n,
+                        push / (share * area * v), until, first);
+            off[fine][0] = push / (share * area * v) - 1.0, off[fine][1] = until - 2.0, off[fine][2] = first - expected;
+            CHECK(std::abs(off[fine][0]) < 0.05 * h);
+            CHECK(std::abs(off[fine][1]) < 1.1 * h);
+            CHECK(std::abs(off[fine][2]) < 0.6 * h);
+        }
+    }
+}
+
 /// What a motion has at its end more than it was given, over that.
 template <class M>
 double gained(const Moved<M>& moved, double given) {
