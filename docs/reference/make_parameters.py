@@ -93,6 +93,7 @@ def fields(body):
         kept += flat[place:flat.rfind("\n", 0, brace.start()) + 1]
         place = closing(flat, brace.end() - 1)
     kept += flat[place:]
+    kept = re.sub(r"^( +[A-Za-z_][\w:]*<[^;=\n(){}]*>)\n +(?=\w+\{)", r"\1 ", kept, flags=re.M)  # a type that fills its line
     lines, pending = re.sub(r" =\n *", " = ", kept).split("\n"), []
     for number, line in enumerate(lines):
         stripped = line.strip()

@@ -10,6 +10,7 @@
 
 namespace fibrant::assembly {
 
+/// What terms add their stiffness to: bands of fibres and pairs of particles.
 /// @tparam scaled  bands are multiplied by a factor: terms that act by a mean over a step of time
 template <class System, beam::BeamElement B, bool scaled>
 struct StiffnessSink {

@@ -16,6 +16,7 @@ struct InsideOut {
     double ratio = 0.0;  ///< of det(g_1, g_2, x_0') to that at rest, at the point where it is least [1]
 };
 
+/// What is said of a fibre whose sections are flat or inside out.
 inline std::string text(const InsideOut& found) {
     return "fibre " + std::to_string(found.fibre) + ", element " + std::to_string(found.element) +
            ": its sections are flat or inside out, with " + core::text(found.ratio) + " of their volume at rest";

@@ -71,6 +71,7 @@ void add_form(Eigen::Matrix<double, n, n>& sum, const Eigen::Matrix2d& form, con
 /// material out of it, by both directors (2). What the section's normal turns of second order is left out, of a normal that
 /// leans only.
 using ExtentBending = Eigen::Matrix<double, 8, 8>;
+/// Second derivatives of a section's extent by what turns and presses it.
 template <class Seen>
 ExtentBending extent_bending(const Seen& seen, const Vec3& e, const Vec3& f) noexcept {
     using Form = Eigen::Matrix<double, 8, 1>;
@@ -136,6 +137,7 @@ struct OvalGap {
     Eigen::Vector2d across(const Vec3& vector) const noexcept { return {vector.dot(e), vector.dot(f)}; }
 };
 
+/// Side of a place where sections are not round, or are pressed flat.
 template <class B>
 PatchSide<B> oval_side(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, const StandingSection& section_at,
                        double half, double speed, const SeenSection& seen, const Vec3& normal) noexcept {

@@ -23,6 +23,7 @@ struct SlidPair {
     double gap;                 ///< [length]
 };
 
+/// Where two sections touch now, from a place nearby.
 /// @param at      in: nearby
 /// @param normal  of sections that are not round; in: of the side that they are on
 template <class B>

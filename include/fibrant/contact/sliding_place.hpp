@@ -92,6 +92,7 @@ struct FacingSection {
     }
 };
 
+/// A fibre's section as it stands at a place, pressed by what it touches.
 /// @param normal  from this fibre to the other one, unit
 template <class B>
 StandingSection standing_section(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, double half,
@@ -143,6 +144,7 @@ PatchSide<B> line_side(const beam::Mesh<B>& mesh, const Vector& state, Index fib
     return side;
 }
 
+/// Side of a place where fibres touch: what its gap depends on, of one fibre.
 template <class B>
 PatchSide<B> patch_side(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, const StandingSection& section_at,
                         double half, double speed) noexcept {
@@ -179,6 +181,7 @@ struct SlidingPlace {
     Eigen::Matrix<double, 16, 16> bending = Eigen::Matrix<double, 16, 16>::Zero();  ///< then its second derivative by these
 };
 
+/// Where two fibres cross, with the derivatives of its gap.
 /// @param at_i, at_j  sections that stand
 /// @param normal      from i to j, along the line of both centres
 template <class B>

@@ -31,6 +31,7 @@ inline bool holds(const proximity::ProximityZone& span, double u_i, double u_j) 
     const auto [low, high] = std::minmax(span.a_j, span.b_j);
     return u_i >= span.a_i && u_i <= span.b_i && u_j >= low && u_j <= high;
 }
+/// Whether one of the stations stands at these places [element].
 template <class Stations>
 bool has_station(const Stations& stations, double u_i, double u_j) noexcept {
     return std::any_of(stations.begin(), stations.end(), [&](const auto& one) {

@@ -36,14 +36,17 @@ inline void require(bool holds, std::string_view field, double value, std::strin
     if (!holds) refuse(field, text(value), bound);
 }
 
+/// Throws unless the value is finite and > 0.
 inline void require_positive(std::string_view field, double value) {
     require(std::isfinite(value) && value > 0.0, field, value, "finite and > 0");
 }
 
+/// Throws unless the value is finite and >= 0.
 inline void require_not_negative(std::string_view field, double value) {
     require(std::isfinite(value) && value >= 0.0, field, value, "finite and >= 0");
 }
 
+/// Throws unless the value is finite.
 inline void require_finite(std::string_view field, double value) { require(std::isfinite(value), field, value, "finite"); }
 
 /// Throws unless low <= value <= high.

@@ -12,6 +12,7 @@
 
 namespace fibrant::core {
 
+/// Matrix of the cross product: cross_matrix(v) w = v x w.
 inline Mat3 cross_matrix(const Vec3& v) noexcept {
     return columns(Vec3(0, v.z(), -v.y()), Vec3(-v.z(), 0, v.x()), Vec3(v.y(), -v.x(), 0));
 }

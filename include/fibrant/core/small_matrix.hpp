@@ -18,6 +18,7 @@ using TwoByTwo = std::array<Two, 2>;  ///< rows
 using Four = std::array<double, 4>;
 using FourByFour = std::array<Four, 4>;  ///< rows
 
+/// Sums and products of vectors and matrices of two rows.
 inline double dot(const Two& a, const Two& b) noexcept { return a[0] * b[0] + a[1] * b[1]; }
 inline double norm(const Two& a) noexcept { return std::sqrt(dot(a, a)); }
 inline Two times(const TwoByTwo& m, const Two& a) noexcept { return {dot(m[0], a), dot(m[1], a)}; }

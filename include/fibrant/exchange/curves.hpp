@@ -50,6 +50,7 @@ struct CleanParameters {
     }
 };
 
+/// Refuses curves that turn too sharply.
 /// @throws std::invalid_argument naming curve and point, where neighbouring chords turn by more than an angle [degree]
 inline void require_turns(const std::vector<FileCurve>& curves, const std::string& file, double largest_deg) {
     for (std::size_t c = 0; c < curves.size(); ++c) {

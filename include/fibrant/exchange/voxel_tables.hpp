@@ -22,6 +22,7 @@ inline void put_set(std::string& text, const std::string& keyword, const std::ve
     for (std::size_t k = 0; k < members.size(); ++k)
         text += std::to_string(members[k]) + (k + 1 == members.size() ? "\n" : k % most == most - 1 ? ",\n" : ", ");
 }
+/// A line of a table, numbers between commas.
 inline std::string row(std::initializer_list<double> values) {
     std::string text;
     for (const double value : values) text += (text.empty() ? "" : ", ") + observe::shortest(value);
@@ -132,6 +133,7 @@ struct VolumeMap {
     std::vector<double> mean;            ///< of the columns, the first of `across` fastest [1]
 };
 
+/// Mean fibre volume fraction of the columns of a grid of voxels.
 /// @param axis  0, 1 or 2
 inline VolumeMap volume_map(const Voxels& voxels, int axis = 2) {
     core::require_between("volume_map.axis", static_cast<double>(axis), 0.0, 2.0);
@@ -155,6 +157,7 @@ inline VolumeMap volume_map(const Voxels& voxels, int axis = 2) {
     return map;
 }
 
+/// A map of volume fraction as CSV: two coordinates [length], fraction [1], thickness [length].
 inline std::string map_csv_of(const VolumeMap& map) {
     static constexpr std::array names{"x", "y", "z"};
     std::string text = std::string(names[static_cast<std::size_t>(map.across[0])]) + "," +

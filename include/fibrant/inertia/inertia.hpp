@@ -31,6 +31,7 @@ struct Motion {
     Vec3 angular_momentum = Vec3::Zero();  ///< about the origin [force length time]
 };
 
+/// Density of fibres, and how finely motion is resolved.
 template <TimeIntegrator Integrator>
 struct InertiaParameters {
     double density = core::unset;     ///< of all fibres [mass / length^3], > 0
@@ -40,6 +41,7 @@ struct InertiaParameters {
     typename Integrator::Parameters integrator{};
     std::vector<Start> starts{};  ///< the last that is said of a fibre counts
 };
+/// What parameters of a model with inertia have beside the others.
 template <TimeIntegrator Integrator>
 struct InertiaSlot {
     InertiaParameters<Integrator> inertia{};

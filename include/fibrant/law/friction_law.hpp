@@ -72,6 +72,7 @@ concept SeeingFriction = core::Policy<L> && std::default_initializable<typename 
     { law.response(touch, history) } -> std::same_as<SeenFriction<typename L::History>>;
 };
 
+/// A law of friction has one of two contracts.
 template <class L>
 concept FrictionLaw = SlipFriction<L> || SeeingFriction<L>;
 

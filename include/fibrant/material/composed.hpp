@@ -34,6 +34,7 @@ concept BendingLaw = core::Policy<L> && beam::Memory<typename L::History> &&
     { law.response(stiffness, b, accepted) } -> std::same_as<BendingAnswer<typename L::History>>;
 };
 
+/// Axial force of an elastic section.
 struct LinearStretch {
     using Parameters = core::NoParameters;
     explicit LinearStretch(const Parameters& = {}) {}
@@ -67,6 +68,7 @@ private:
     Parameters p_;
 };
 
+/// Bending moments of an elastic section.
 struct LinearBending {
     using Parameters = core::NoParameters;
     using History = beam::NoMemory;

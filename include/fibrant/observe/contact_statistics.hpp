@@ -40,6 +40,7 @@ struct ContactStatistics {
     Mat3 orientation = Mat3::Zero();  ///< mean of N N^T over active elements, trace 1; zero if there are none
 };
 
+/// Number, forces, depths and directions of the contacts of a snapshot.
 /// @param bins  of each histogram, >= 1
 inline ContactStatistics contact_statistics(const Snapshot& snapshot, Index bins = 20) {
     core::require_at_least("contact_statistics.bins", bins, 1);

@@ -56,6 +56,7 @@ inline std::string point_text(const Eigen::Vector2d& p, int decimals = 1) {
     return rounded(p.x(), decimals) + " " + rounded(p.y(), decimals);
 }
 
+/// A text of a picture, its place in pixels.
 inline std::string svg_text(double x, double y, std::string_view text, std::string_view more = "") {
     return "<text x=\"" + rounded(x, 1) + "\" y=\"" + rounded(y, 1) + "\"" + std::string{more} + ">" + xml_escaped(text) +
            "</text>\n";

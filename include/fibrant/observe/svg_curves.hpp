@@ -29,6 +29,7 @@ inline double round_step(double range) {
         if (range / (factor * power) >= 4.0) return factor * power;
     return power;
 }
+/// Number at a tick of an axis, with as many digits as its step asks for.
 inline std::string tick_text(double value, double step) {
     const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9);
     return rounded(std::abs(value) < 1e-9 * step ? 0.0 : value, digits);

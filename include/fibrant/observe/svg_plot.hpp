@@ -58,6 +58,7 @@ struct PlotFrame {
     bool names;         ///< of the lines, beside the plot
 };
 
+/// A plot as SVG, its axes, curves and legend.
 inline std::string plot_svg(const PlotFrame& plot) {
     const double left = plot.left, right = plot.width - plot.right_margin, top = 46.0, bottom = plot.height - 56.0;
     const auto place_x = [&](double x) { return left + plot.x.share(x) * (right - left); };

@@ -19,6 +19,7 @@
 
 namespace fibrant::observe {
 
+/// Plane, size and colours of the picture of a slice.
 struct SliceParameters {
     Index axis = 0;                 ///< across which the plane lies: 0 for x, 1 for y, 2 for z
     double position = core::unset;  ///< of the plane on that axis [length]

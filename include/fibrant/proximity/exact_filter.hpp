@@ -21,7 +21,7 @@ struct Candidate {
 };
 
 #if defined(FIBRANT_FILTER_AVX512)
-// Steps of a transposition.
+/// Steps of a transposition.
 inline __m512d even(__m512d a, __m512d b) noexcept { return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14); }
 inline __m512d odd(__m512d a, __m512d b) noexcept { return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15); }
 inline __m512d low_pairs(__m512d a, __m512d b) noexcept { return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13); }

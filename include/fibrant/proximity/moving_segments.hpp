@@ -23,6 +23,7 @@ struct MovingSegment {
     Vec3 chord_at(double time) const noexcept { return end - start + time * (end_motion - start_motion); }
 };
 
+/// Distance of two moving segments at a time in [0, 1] [length].
 inline SegmentDistance segment_distance(const MovingSegment& a, const MovingSegment& b, double time) {
     return segment_distance(a.start_at(time), a.chord_at(time), b.start_at(time), b.chord_at(time));
 }

@@ -23,6 +23,7 @@ struct Plain3 {
         return {a.x - b.x, a.y - b.y, a.z - b.z};
     }
 };
+/// Sums of three numbers that a compiler unfolds.
 [[gnu::always_inline]] inline constexpr double dot(const Plain3& a, const Plain3& b) noexcept {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
@@ -34,6 +35,7 @@ inline Plain3 plain(const Vec3& v) noexcept { return {v[0], v[1], v[2]}; }
     return x < 1.0 ? x : 1.0;
 }
 
+/// Squared distance of the points at s and t of two segments whose starts are w apart [length^2].
 [[gnu::always_inline]] inline constexpr double squared_between(const Plain3& w, const Plain3& u, const Plain3& v, double s,
                                                                double t) noexcept {
     const Plain3 difference{w.x + s * u.x - t * v.x, w.y + s * u.y - t * v.y, w.z + s * u.z - t * v.z};

@@ -17,6 +17,7 @@ struct Station {
     double fraction = 0.0;  ///< of the rest length, in [0, 1]; of a closed fibre 1 is 0
 };
 
+/// Stations at the ends of a fibre.
 inline Station first_end(Index fibre) { return {fibre, 0.0}; }
 inline Station last_end(Index fibre) { return {fibre, 1.0}; }
 
@@ -26,6 +27,7 @@ enum class NodeVector : int { position = 0, director_1 = 1, director_2 = 2 };
 /// Axes in which directions are given: those of space, or (g_1, g_2, tangent) of the section at rest.
 enum class Axes { space, section };
 
+/// Throws unless it is one of the vectors of a node.
 inline void require_vector(std::string_view field, NodeVector vector) {
     const int number = static_cast<int>(vector);
     if (number < 0 || number > 2) core::refuse(field, std::to_string(number), "a position or a director");

@@ -49,12 +49,14 @@ struct CrossSection {
     }
 };
 
+/// A round section.
 /// @param radius  [length], > 0
 inline CrossSection circular(double radius, double inertia_factor = 1.0) {
     core::require_positive("circular.radius", radius);
     return {radius, radius, inertia_factor};
 }
 
+/// An elliptical section.
 /// @param semi_axis_1, semi_axis_2  [length], > 0
 inline CrossSection elliptical(double semi_axis_1, double semi_axis_2, double inertia_factor = 1.0) {
     const CrossSection section{semi_axis_1, semi_axis_2, inertia_factor};

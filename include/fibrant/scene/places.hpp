@@ -27,6 +27,7 @@ inline std::string label(std::string_view kind, Index number, const std::string&
     return std::string(kind) + " " + std::to_string(number) + (name.empty() ? "" : " '" + name + "'");
 }
 
+/// Throws unless all coordinates are finite.
 inline void require_finite(std::string_view field, const Vec3& value) {
     if (!value.allFinite()) core::refuse(field, text(value), "finite");
 }

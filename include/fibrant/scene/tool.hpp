@@ -11,6 +11,7 @@
 
 namespace fibrant::scene {
 
+/// Surfaces that a rigid tool may have.
 enum class ToolShape { plane, cylinder, sphere };
 
 /// A rigid, unbounded surface. Fibres stay on one side of it: where the normal of a plane points, outside a cylinder or a
@@ -54,6 +55,7 @@ struct ToolPose {
     }
 };
 
+/// Where a tool stands at the amplitude of its channel.
 inline ToolPose tool_pose(const Tool& tool, double amplitude) {
     ToolPose pose;
     if (tool.rotation) pose.turn = tool.rotation(amplitude);
@@ -69,6 +71,7 @@ struct ToolDistance {
     Vec3 normal;      ///< unit, away from the tool
 };
 
+/// Distance of a point from a tool's surface.
 /// @param tool  with a unit axis
 /// @param x     in the tool's own axes, as it stands at amplitude 0 [length]
 inline ToolDistance tool_distance(const Tool& tool, const Vec3& x) {

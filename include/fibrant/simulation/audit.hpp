@@ -18,6 +18,7 @@
 
 namespace fibrant::simulation {
 
+/// True gaps of a state against what is allowed, whatever contact elements say.
 struct Audit {
     observe::LeastGap least_gap;  ///< of any two fibres, and of a fibre and itself where contact is asked to see that
     observe::ToolGap tool_gap;    ///< of any fibre and any tool, where the model has tools

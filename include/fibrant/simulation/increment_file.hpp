@@ -7,6 +7,7 @@
 
 namespace fibrant::simulation {
 
+/// Writes what is told of an increment to a checkpoint.
 inline void put_increment(CheckpointWriter& file, const IncrementReport& plain) {
     file.put(plain.stage);
     file.put(plain.number), file.put(plain.stage_progress), file.put(plain.progress), file.put(plain.fraction);
@@ -15,6 +16,7 @@ inline void put_increment(CheckpointWriter& file, const IncrementReport& plain) 
     file.put(plain.contact), file.put(plain.energy), file.put(plain.seconds);
 }
 
+/// Reads it back, in the same order.
 inline void get_increment(CheckpointReader& file, IncrementReport& increment) {
     increment.stage = file.get_text();
     increment.number = file.get<Index>(), increment.stage_progress = file.get<double>();

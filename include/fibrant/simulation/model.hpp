@@ -22,7 +22,7 @@ class ContactsWithTools;
 
 namespace fibrant::simulation {
 
-// One concept a part, so that a missing or ill-formed one is named by the compiler.
+/// One concept a part, so that a missing or ill-formed one is named by the compiler.
 template <class M>
 concept HasBeam = requires {
     typename M::Beam;
@@ -61,6 +61,7 @@ struct SolidOf<M> {
 };
 }  // namespace detail
 
+/// Its linear solver solves the system of the model, whatever parts that has.
 template <class M>
 concept HasSolver = requires {
     typename M::Solver;
@@ -108,7 +109,7 @@ concept HasSteps = requires {
     typename M::Steps;
 };
 
-// A part that may be left out is refused under a name that is nearly its own.
+/// A part that may be left out is refused under a name that is nearly its own.
 template <class M>
 concept SpellsTools = !detail::NearTools<M>;
 template <class M>

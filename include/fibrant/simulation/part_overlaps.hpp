@@ -124,6 +124,7 @@ SeenLines seen_lines(const beam::Mesh<Beam>& mesh, const Vector& state) {
     return seen;
 }
 
+/// Parts fibres that begin in each other, by least motion, under a limit of the gap.
 template <Model M>
 class OverlapParter {
 public:

@@ -37,6 +37,7 @@ template <class Contacts, class Equilibrium, class Mesh, class Laws>
 RunParts(Vector&, std::vector<double>&, EnergyAccount&, Contacts&, Equilibrium&, Position&, MeanMotion&, core::StageClock&, Mesh&,
          Laws&) -> RunParts<Contacts, Equilibrium, Mesh, Laws>;
 
+/// Writes all that a run goes on from to a checkpoint.
 template <Model M, class Contacts, class Equilibrium, class Mesh, class Laws>
 void put_run(CheckpointWriter& file, const RunParts<Contacts, Equilibrium, Mesh, Laws>& run, const Report& report) {
     const auto put = [&](const auto& value) { file.put(value); };

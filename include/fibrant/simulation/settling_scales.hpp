@@ -118,6 +118,7 @@ inline std::vector<Vec3> start_points(const scene::FibreSpecification& fibre, In
     return points;
 }
 
+/// Length of a fibre as it begins [length].
 inline double start_length(const scene::FibreSpecification& fibre) {
     const scene::Curve& curve = fibre.start ? fibre.start : fibre.curve;
     return curve ? scene::length_of(curve, std::max<Index>(64, 2 * fibre.elements)) : (fibre.to - fibre.from).norm();

@@ -129,6 +129,7 @@ void put_memory(CheckpointWriter& file, const std::vector<Record>& records, cons
     file.put(core::count(zones));
     for (const contact::Zone& zone : zones) file.put(zone);
 }
+/// Reads what contacts remember from a checkpoint.
 /// @param fibres  of the scene: what is remembered of others is damage
 template <class Record>
 void get_memory(CheckpointReader& file, std::vector<Record>& records, std::vector<contact::Zone>& zones, Index fibres) {
@@ -182,6 +183,7 @@ void put_solid(CheckpointWriter& file, const Solid& solid) {
     file.put(rest.identity());
     for (const bool broken : solid.broken()) file.put(broken);
 }
+/// Reads the state of a solid from a checkpoint.
 /// @throws std::runtime_error if the file has other solids
 template <class Solid>
 void get_solid(CheckpointReader& file, Solid& solid) {

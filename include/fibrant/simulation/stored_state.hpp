@@ -23,6 +23,7 @@ struct StoredState {
     Vector laws{};  ///< SectionLaws::numbers: what the laws of sections remember; empty for those that do not
 };
 
+/// The state that a checkpoint holds, without the rest of its run.
 /// @throws std::runtime_error if the file cannot be read or has other fibres
 template <Model M>
 StoredState<M> read_state(const std::string& path, const beam::Mesh<typename M::Beam>& mesh) {

@@ -8,6 +8,7 @@
 
 namespace fibrant::simulation {
 
+/// Force and moment of supports.
 struct Wrench {
     Vec3 force = Vec3::Zero();   ///< [force]
     Vec3 moment = Vec3::Zero();  ///< about the origin that was asked for [force * length]

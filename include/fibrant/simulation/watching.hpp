@@ -10,6 +10,7 @@
 
 namespace fibrant::simulation {
 
+/// What an observer may be told of besides snapshots, and how it chooses.
 template <class O>
 concept ToldOfIncrements = requires(O& observer, const IncrementReport& increment) {
     observer.reported(increment);
@@ -50,7 +51,7 @@ concept HasDue = Open<O> && !requires {
 };
 }  // namespace detail
 
-// A member that has the name of what an observer is told has to take what it is told.
+/// A member that has the name of what an observer is told has to take what it is told.
 template <class O>
 concept TakesSnapshots = observe::Observer<O> || !detail::HasAccepted<std::remove_const_t<O>>;
 template <class O>

@@ -20,6 +20,7 @@ using CellNodes = Eigen::Matrix<double, 8, 3>;
 using ShapeGradient = Eigen::Matrix<double, 8, 3>;
 using CellWeights = Eigen::Matrix<double, 8, 1>;
 
+/// Corner k of the cell from -1 to 1, k in [0, 8) [1].
 inline Vec3 corner(int k) noexcept {
     static constexpr std::array<std::array<double, 3>, 8> corners{
         {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};
@@ -58,6 +59,7 @@ inline double least_jacobian(const CellNodes& nodes) noexcept {
     return box > 0.0 ? 8.0 * least / box : -1.0;
 }
 
+/// Where a point lies, or why it cannot be told.
 enum class MapStatus : std::uint8_t {
     inside,  ///< on faces, edges and corners too
     outside,

@@ -27,6 +27,7 @@ struct ChainLine {
     Vec3 direction = Vec3::Zero();  ///< unit from end to end; zero for a single node or a closed loop
 };
 
+/// Chord of a chain, by which chains are gathered into clusters.
 inline ChainLine line_of(const scene::DofLayout& layout, Index c) {
     const scene::Chain& chain = layout.chains[core::at(c)];
     const auto position = [&](Index node) { return layout.value[core::at(chain.first_vector + node * chain.vectors_per_node)]; };

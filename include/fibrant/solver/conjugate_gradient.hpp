@@ -39,6 +39,7 @@ inline double advance(const scene::DofLayout& layout, double alpha, const Conjug
     });
 }
 
+/// Never asks for another preconditioner.
 struct SamePreconditioner {
     bool operator()(int) const noexcept { return false; }
 };

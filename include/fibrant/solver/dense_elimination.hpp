@@ -18,6 +18,7 @@ enum class SmallPivot : std::uint8_t {
     magnitude,  ///< its magnitude, at least `least_pivot`: nearly an inverse, for use as a preconditioner
 };
 
+/// What was met while a dense matrix was factored.
 struct Pivots {
     Index dropped = 0;   ///< replaced
     Index negative = 0;  ///< of these, negative beyond rounding: the matrix is indefinite

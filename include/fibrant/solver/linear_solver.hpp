@@ -13,6 +13,7 @@
 
 namespace fibrant::solver {
 
+/// How a linear solve ended.
 enum class SolveStatus : std::uint8_t {
     converged,
     iteration_limit,
@@ -20,6 +21,7 @@ enum class SolveStatus : std::uint8_t {
     not_finite,  ///< NaN or infinity in the values, the right-hand side or the result
 };
 
+/// What a linear solve did.
 struct SolveReport {
     SolveStatus status = SolveStatus::not_finite;
     int iterations = 0;

@@ -78,6 +78,7 @@ struct IterationCounts {
     }
 };
 
+/// How Newton's method ended.
 enum class NewtonStatus : std::uint8_t {
     converged,
     moved,       ///< so far that the search has to be repeated
@@ -86,6 +87,7 @@ enum class NewtonStatus : std::uint8_t {
     unsolvable,  ///< the tangent stayed indefinite
 };
 
+/// What Newton's method did on one set of contact elements.
 struct NewtonReport {
     NewtonStatus status = NewtonStatus::too_many;
     Index iterations = 0;

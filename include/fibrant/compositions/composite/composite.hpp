@@ -55,6 +55,7 @@ inline solid::Layers layers_of(const observe::Snapshot& snapshot, const FabricPa
     return solid::mesh_layers(solid::FibreSurface(sections_of(snapshot)), parameters);
 }
 
+/// A settled fabric in its matrix: fibres where they lie, the solid, and what bonds them.
 /// @param state  of the fabric's fibres where it has settled
 inline Composite composite_of(const FabricParameters& fabric, const Vector& state, const scene::Assembly& flat,
                               const solid::Layers& layers, const MatrixParameters& matrix, const LoadParameters& load) {

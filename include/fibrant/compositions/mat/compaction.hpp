@@ -84,6 +84,7 @@ double mean_sine(const simulation::Simulator<M>& simulator) {
     return others > 0 ? sum / static_cast<double>(n * others) : 0.0;
 }
 
+/// Height, volume fraction, pressure and contacts of a mat in the present state of a run.
 template <simulation::Model M>
 MatState measure(const simulation::Simulator<M>& simulator, const MatParameters& parameters) {
     MatState state;
@@ -130,6 +131,7 @@ struct PressParameters {
     }
 };
 
+/// Parameters of a model that presses a mat: tools, contact, solver, by radius and modulus of its fibres.
 template <simulation::Model M>
 simulation::ModelParameters<M> model_parameters(const MatParameters& parameters, const PressParameters& press) {
     parameters.validate(), press.validate(parameters);

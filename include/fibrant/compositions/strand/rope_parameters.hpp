@@ -119,6 +119,7 @@ double least_with_room(double low, double high, const Room& room) {
     return high;
 }
 
+/// Radius of a strand's section: its core, layers and the clearances between them [length].
 inline double thickness(const StrandSection& section) {
     double sum = section.core_radius;
     for (const Layer& layer : section.layers) sum += layer.clearance + 2.0 * layer.radius;
@@ -228,6 +229,7 @@ inline void RopeParameters::validate() const {
 struct RopeStiffness {
     double force_by_strain = 0.0, torque_by_strain = 0.0, torque_by_rotation = 0.0;
 };
+/// The bound of a rope's stiffness.
 /// @param stuck  each piece of a wire is stretched as its place says; otherwise a wire has one tension all along, as without
 /// friction, which is less
 inline RopeStiffness stiffness_bound(const RopeParameters& rope, bool stuck = false) {

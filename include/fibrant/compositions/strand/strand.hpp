@@ -95,6 +95,7 @@ struct StrandState {
     double rotation = 0.0;  ///< of the middle half, a length at rest, mean of the wires [radian / length]
 };
 
+/// Pull, torque, strain and rotation of a strand in the present state of a run.
 /// @param parameters  of a strand, or of what else has wires of so many elements between two plates, the first of them straight
 template <simulation::Model M, class Parameters>
 StrandState measure(const simulation::Simulator<M>& simulator, const Parameters& parameters) {

@@ -22,6 +22,7 @@ struct Line {
     std::vector<double> arc{};
 };
 
+/// A polyline with the arc length of each of its points [length].
 inline Line line_of(std::vector<Vec3> points) {
     Line line{std::move(points), {}};
     line.arc.assign(line.points.size(), 0.0);
@@ -56,6 +57,7 @@ struct PlanPoint {
     double u = 0.0, v = 0.0, height = 0.0;
 };
 
+/// Lines of a textile seen in plan, by which crossings are found.
 struct Plan {
     std::vector<std::vector<PlanPoint>> lines;
     double period = 0.0;  ///< of u; 0: none

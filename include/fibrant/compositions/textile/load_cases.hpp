@@ -22,6 +22,7 @@ namespace fibrant::compositions::textile {
 /// Channel that takes a load case from 0 to its amount at 1.
 inline constexpr const char* load_channel = "load";
 
+/// Names of the load cases of a textile, as scenes spell them.
 inline const std::vector<std::string>& load_case_names() {
     static const std::vector<std::string> names{"tension", "shear", "bending", "compaction"};
     return names;
@@ -226,6 +227,7 @@ struct CurveFit {
     double misfit = 0.0;                 ///< greatest distance from a point over the greatest value [1]
 };
 
+/// The polynomial that is nearest to points, by least squares.
 /// @param degree  >= 1; less where there are fewer points that differ
 inline CurveFit fit_curve(const std::vector<std::pair<double, double>>& points, Index degree = 3) {
     core::require_at_least("fit_curve.degree", degree, 1);

@@ -87,6 +87,7 @@ observe::LeastGap image_gap(const Textile& textile, const Assembled& assembled, 
 using CellVector = Eigen::Matrix<double, 6, 1>;
 using CellMatrix = Eigen::Matrix<double, 6, 6>;
 
+/// Efforts of a cell in the present state of a run.
 /// @param area  of the cell [length^2], > 0
 template <class Simulator>
 CellVector cell_efforts(const Simulator& simulator, double area) {

@@ -51,6 +51,7 @@ inline double helix_length_ratio(double radius, double pitch) noexcept {
     return std::hypot(1.0, 2.0 * std::numbers::pi * radius / pitch);
 }
 
+/// A plied yarn, or a rope of such, about the z axis.
 inline Textile plied(const Plied& rope) {
     rope.validate();
     Textile textile;

@@ -40,6 +40,7 @@ struct YarnType {
     }
 };
 
+/// How a yarn's path ends.
 enum class PathKind : std::uint8_t {
     open,
     closed,    ///< ends where it begins

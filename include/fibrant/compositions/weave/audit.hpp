@@ -20,6 +20,7 @@ struct AuditedCrossing {
     double height = 0;             ///< of the axis that should be above over the other, < 0 where the order is wrong [length]
 };
 
+/// What a settled weave is judged by: crossings against the pattern.
 struct Audit {
     Index crossings = 0;          ///< found
     Index wrong_crossings = 0;    ///< against the pattern

@@ -26,6 +26,7 @@ inline constexpr const char* plate_channel = "plates";  ///< approach of the pla
 inline constexpr const char* pull_channel = "pull";  ///< displacement of a tow's end over the spacing of the tows that it crosses
 // tension_channel: tension of a tow over its E A, where an edge is free
 
+/// Names of the load cases of a fabric, as scenes spell them.
 inline const std::vector<std::string>& load_case_names() {
     static const std::vector<std::string> names{"release", "equibiaxial", "uniaxial",   "shear",
                                                 "frame",   "bending",     "compaction", "pull_out"};
@@ -92,6 +93,7 @@ inline double middle_spacing(const observe::Snapshot& snapshot, const FabricPara
 /// @param x  from the middle [length]
 inline double arc_rise(double x, double width) noexcept { return (x * x - 0.25 * width * width) / width; }
 
+/// A load case of a settled fabric: its ends, channels and stages.
 /// @param name      one of load_case_names()
 /// @param snapshot  the settled fabric
 /// @throws std::invalid_argument naming the field that is wrong

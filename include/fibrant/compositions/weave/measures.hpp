@@ -116,6 +116,7 @@ struct CurvatureStatistics {
     double mean = 0, root_mean_square = 0, greatest = 0;
 };
 
+/// Curvature of some fibres of a snapshot.
 /// @param fibres  numbers in the snapshot
 inline CurvatureStatistics curvature_statistics(const observe::Snapshot& snapshot, std::span<const Index> fibres) {
     CurvatureStatistics answer;

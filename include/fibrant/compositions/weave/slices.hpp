@@ -23,6 +23,7 @@ inline observe::Palette fabric_palette(const FabricParameters& fabric) {
     return palette;
 }
 
+/// A picture of a tow cut along its middle.
 struct TowSlice {
     std::string name;  ///< "warp_0", "weft_3"
     std::string svg;

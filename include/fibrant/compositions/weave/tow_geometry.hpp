@@ -28,6 +28,7 @@ inline void require_snapshot_of(const observe::Snapshot& snapshot, const FabricP
 /// Coordinate along the fibres of a family: 0 for warp, 1 for weft.
 constexpr Index axis_of(Family family) noexcept { return family == Family::warp ? 0 : 1; }
 
+/// Warp for weft, and weft for warp.
 constexpr Family other(Family family) noexcept { return family == Family::warp ? Family::weft : Family::warp; }
 
 /// Nodes of a tow's centre line: the mean of its fibres, node by node [length].
