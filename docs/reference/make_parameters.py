@@ -6,12 +6,12 @@ A structure of parameters has a member validate(). What each field is stands in 
 validate(); both are taken from there. A field without a comment is an error.
 usage: make_parameters.py [--check]
 """
-import pathlib
 import re
 import sys
 
-here = pathlib.Path(__file__).resolve().parent
-headers = here.parent.parent / "include" / "fibrant"
+sys.dont_write_bytecode = True  # no folder beside the pages
+from header_pages import by_folder, cell, finish, headers
+
 BOUNDS = {
     "require_positive": lambda a: "> 0",
     "require_not_negative": lambda a: ">= 0",
@@ -112,15 +112,11 @@ def fields(body):
             pending = []
 
 
-def cell(text):
-    return text.replace("|", "\\|").replace("<", "&lt;") or "-"
-
-
 def page():
     text, missing, count = [], [], 0
-    for folder in sorted(path for path in headers.iterdir() if path.is_dir()):
+    for folder, own in by_folder():
         tables = []
-        for header in sorted(folder.rglob("*.hpp")):
+        for header in own:
             source = header.read_text()
             for found, body in structures(source):
                 validate = re.search(r"void validate\(\) const \{", body)
@@ -162,13 +158,4 @@ def page():
     return head + "\n".join(text), missing, count
 
 
-made, missing, count = page()
-target = here / "parameters.md"
-if "--check" not in sys.argv:
-    target.write_text(made)
-elif target.read_text() != made:
-    missing.append("docs/reference/parameters.md is not what the headers say: python3 docs/reference/make_parameters.py")
-if count < 200:
-    missing.append(f"only {count} parameters were found: the headers are read wrongly")
-print(f"{count} parameters", *missing, sep="\n")
-sys.exit(1 if missing else 0)
+finish("parameters", *page(), least=200, what="parameters")
