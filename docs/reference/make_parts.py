@@ -73,7 +73,8 @@ def page():
         if rows:
             text.append(f"## {folder.name}\n\n| name | header | what it is |\n|---|---|---|\n" + "\n".join(rows) + "\n")
     head = ("# Index of the C++ parts\n\nMade from the headers by [make_parts.py](make_parts.py): each public name, the header "
-            "that has it, below `fibrant/`, and the first sentence\nof its comment. Structures of parameters have [a page with their fields](parameters.md).\n\n")
+            "that has it, below `fibrant/`, and the first sentence\nof its comment. "
+            "Structures of parameters have [a page with their fields](parameters.md).\n\n")
     return head + "\n".join(text), missing, count
 
 

@@ -1,9 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Settles a list of odd but valid weaves or textiles and says how each ended: status, convergence, audit, least gap, increments, time.
-# Where a folder of scenes is given, each line of the list has a scene after its name; names with `refused_` are to end with status 2.
-# usage: fabrics.sh <the program> <scene file or folder> <list of fabrics> <scratch folder> [every n-th] [least share that is clean, %] [only names like]
-weave=$1
+# Settles a list of odd but valid weaves or textiles and says how each ended: status, convergence, audit, least gap, increments,
+# time. Where a folder of scenes is given, each line of the list has a scene after its name. Names with `refused_` are to end
+# with status 2.
+# usage: fabrics.sh <the program> <scene file or folder> <list of fabrics> <scratch folder> [every n-th]
+#   [least share that is clean, %] [only names like]
+program=$1
 scene=$2
 list=$3
 out=$4
@@ -32,7 +34,7 @@ while read -r name sets; do
   fi
   set --
   for one in $base $sets; do set -- "$@" --set "$one"; done
-  (ulimit -t "$limit"; exec "$weave" "$start" --output "$out/$name" --threads 1 --quiet "$@" > "$out/$name.said" 2>&1 < /dev/null)
+  (ulimit -t "$limit"; exec "$program" "$start" --output "$out/$name" --threads 1 --quiet "$@" > "$out/$name.said" 2>&1 < /dev/null)
   status=$?
   case $name in refused_*) expected=2 ;; *) expected=0 ;; esac
   [ $status -eq $expected ] && echo "$name" >> "$out/clean"
