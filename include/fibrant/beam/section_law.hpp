@@ -43,7 +43,7 @@ inline constexpr int e33 = 3, e13 = 4, e23 = 5;             ///< E_33, 2 E_13, 2
 inline constexpr int b1 = 6, b2 = 7;                        ///< a . g_a': bending [1 / length]
 inline constexpr int c11 = 8, c12 = 9, c21 = 10, c22 = 11;  ///< g_a . g_b': torsion and gradients [1 / length]
 inline constexpr int q11 = 12, q12 = 13, q22 = 14;          ///< g_a' . g_b' (halved if a = b) [1 / length^2]
-/// Numbers of the strains that a section law sees, by whether its quadratic ones are complete [1].
+/// How many strains there are, by whether the quadratic ones are complete.
 inline constexpr int count(QuadraticStrain quadratic) noexcept { return quadratic == QuadraticStrain::complete ? 15 : 12; }
 }  // namespace strain
 

@@ -102,7 +102,7 @@ struct PairGeometry {
     Eigen::Matrix2d closeness;  ///< second derivatives of |x_j - x_i|^2 / 2 by both arc lengths [1]
 };
 
-/// Patches of two fibres about the places u_i and u_j, as they stand in a state.
+/// How two fibres stand to each other at u_i and u_j, as means over patches about these.
 template <class B>
 PairGeometry pair_geometry(const beam::Mesh<B>& mesh, const Vector& state, Index i, Index j, double u_i, double u_j) noexcept {
     const Patches<B> patches(mesh, state);

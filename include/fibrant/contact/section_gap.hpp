@@ -158,7 +158,7 @@ struct NormalTurn {
     double length = 0.0;         ///< gap + R_i + R_j [length]; <= 0: no maximum
 };
 
-/// How a normal that is not yet that of the greatest gap has to turn.
+/// How the normal turns, if it is that of the greatest gap.
 /// @param centres  x_j - x_i [length]
 /// @param tangent  unit, across the plane in which the gap is taken
 /// @param normal   unit, in that plane

@@ -23,7 +23,7 @@ struct SlidPair {
     double gap;                 ///< [length]
 };
 
-/// Where two sections touch now, from a place nearby.
+/// Follows a pair of places to where it has slid to.
 /// @param at      in: nearby
 /// @param normal  of sections that are not round; in: of the side that they are on
 template <class B>

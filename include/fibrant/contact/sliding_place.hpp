@@ -92,7 +92,7 @@ struct FacingSection {
     }
 };
 
-/// A fibre's section as it stands at a place, pressed by what it touches.
+/// A fibre's section at a place, as it faces the other fibre.
 /// @param normal  from this fibre to the other one, unit
 template <class B>
 StandingSection standing_section(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, double half,

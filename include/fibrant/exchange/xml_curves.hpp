@@ -26,7 +26,7 @@ inline void parse_xml(pugi::xml_document& document, std::string_view text, const
     if (!result) refuse_file(file, "byte " + std::to_string(result.offset), std::string("is no XML: ") + result.description());
 }
 
-/// Bytes of a text in base 64. @throws exchange::FileError, by file, for what is none
+/// Bytes of a text in base 64. @throws std::invalid_argument naming the file, for what is none
 inline std::string from_base64(std::string_view text, const std::string& file) {
     std::string bytes;
     std::uint32_t bits = 0;

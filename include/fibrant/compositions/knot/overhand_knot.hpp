@@ -155,7 +155,7 @@ struct KnotState {
     double imbalance = 0.0;
 };
 
-/// Ends, pull and shape of a knot in the present state of a run.
+/// Forces, shortening and energy of a knot in the present state of a run.
 template <simulation::Model M>
 KnotState measure(const simulation::Simulator<M>& simulator, const KnotParameters& parameters) {
     KnotState state;

@@ -131,7 +131,7 @@ struct PressParameters {
     }
 };
 
-/// Parameters of a model that presses a mat: tools, contact, solver, by radius and modulus of its fibres.
+/// Parameters of a model that presses a mat: laws, stiffness of contact and iteration.
 template <simulation::Model M>
 simulation::ModelParameters<M> model_parameters(const MatParameters& parameters, const PressParameters& press) {
     parameters.validate(), press.validate(parameters);

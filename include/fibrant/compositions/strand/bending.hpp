@@ -108,7 +108,7 @@ struct BendingState {
     double tension = 0.0;   ///< of the core and all wires along the far plate's normal [force]
 };
 
-/// Curvature, moment and slip at the middle of a bent strand in the present state of a run.
+/// Angle, moment and tension of a bent strand in the present state of a run.
 template <simulation::Model M>
 BendingState measure_bending(const simulation::Simulator<M>& simulator, const StrandParameters& parameters,
                              const Bending& bending = {}) {

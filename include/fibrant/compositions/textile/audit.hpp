@@ -146,7 +146,7 @@ struct YarnFigures {
     double mean_angle = 0.0;  ///< mean angle of its fibres to its chord, or to its plane's mean for closed ones: 0 [radian]
 };
 
-/// Crimp, curvature and lengths of each yarn of a textile, from a snapshot of its fibres.
+/// Length, crimp, strain, curvature and angle of each yarn of a textile, from a snapshot of its fibres.
 inline std::vector<YarnFigures> yarn_figures(const Textile& textile, const Assembled& assembled,
                                              const observe::Snapshot& snapshot) {
     std::vector<YarnFigures> all;

@@ -106,7 +106,7 @@ Mat3 section_turn(const Mesh& mesh, const Vector& state, Index fibre, double u) 
     return polar.matrixU() * polar.matrixV().transpose();
 }
 
-/// Twist, torque and lay of two plies in the present state of a run.
+/// Torque, helix, twist and line load of two plies in the present state of a run.
 template <simulation::Model M>
 TwoPlyState measure(const simulation::Simulator<M>& simulator, const TwoPlyParameters& parameters) {
     TwoPlyState state;

@@ -17,7 +17,7 @@ struct ElementFigures {
     std::vector<double> curvature;  ///< mean over the element [1 / length]
 };
 
-/// Extremes over all elements of the fibres of a snapshot.
+/// Strain and curvature of each element of the fibres of a snapshot.
 inline ElementFigures element_figures(const observe::Snapshot& snapshot) {
     ElementFigures figures;
     for (const observe::FibreSnapshot& fibre : snapshot.fibres) {
