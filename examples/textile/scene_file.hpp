@@ -124,6 +124,11 @@ inline void read_height(SceneReader& file, const std::string& section, double& h
               "height of yarns at crossings above the middle surface, over their half width; below 1 they start in each other");
 }
 
+inline void read_overhang(SceneReader& file, const std::string& section, double& overhang) {
+    file.read(section, "overhang", overhang, example::not_negative(), "length",
+              "straight ends beyond the outermost crossings; 0: a yarn's way from crossing to crossing and two diameters");
+}
+
 /// Reads the section of the generator; all of them where there is no file.
 /// @param curves  gets those of a file, if it is one
 /// @param periodic  it goes on at its ends
@@ -142,8 +147,7 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
                      "length in which a yarn goes to the other edge and back");
         file.read("flat_braid", "periods", braid.periods, example::above(0.0, 1e4), "1", "number of periods");
         file.read("flat_braid", "over", braid.over, example::between(1, 2), "how many yarns in turn a yarn passes above");
-        file.read("flat_braid", "overhang", braid.overhang, example::not_negative(), "length",
-                  "straight ends beyond the outermost crossings; 0: a yarn's way from crossing to crossing and two diameters");
+        read_overhang(file, "flat_braid", braid.overhang);
         read_height(file, "flat_braid", braid.height_over_radius);
         if (!all) file.complete(), made = cloth::flat_braid(braid);
     }
@@ -159,6 +163,7 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
                   "how many yarns in turn a yarn passes outside, a divisor of the carriers: 1 for 1x1, 2 for 2x2");
         file.read("tubular_braid", "axials", braid.axials,
                   "add straight yarns along the axis, one for each yarn of one way, where over is 1");
+        read_overhang(file, "tubular_braid", braid.overhang);
         read_height(file, "tubular_braid", braid.height_over_radius);
         if (!all) file.complete(), made = cloth::tubular_braid(braid);
     }

@@ -64,7 +64,7 @@ TEST_CASE("a tubular braid of n and n carriers has 2 n^2 crossings a turn, in ru
         for (const Index n : {4, 6, 8}) {
             const double r = 0.05, radius = 2.0 * static_cast<double>(n) * r, pitch = 2.0 * std::numbers::pi * radius;
             const TubularBraid parameters{
-                .carriers = n, .radius = radius, .pitch = pitch, .turns = 1.0, .over = over, .type = yarn(r)};
+                .carriers = n, .radius = radius, .pitch = pitch, .turns = 1.0, .over = over, .overhang = 1.0, .type = yarn(r)};
             const Textile braid = tubular_braid(parameters);
             CHECK(core::count(braid.crossings) == 2 * n * n);
             for (const std::string& word : order_words(braid.crossings, 2 * n)) {
@@ -72,15 +72,53 @@ TEST_CASE("a tubular braid of n and n carriers has 2 n^2 crossings a turn, in ru
                 CHECK(in_runs_of(word, static_cast<std::size_t>(over)));
             }
             CHECK(parameters.angle() == test::near(std::numbers::pi / 4.0, 1e-12));
-            // The mean of a carrier's slope over a whole turn is that of the helix: heights only go to and fro.
+            // The mean of a carrier's slope over a whole turn, without its ends, is that of the helix: heights only go to and
+            // fro.
             const Path& path = braid.paths.front();
-            const double rise = path.curve(1.0).z() - path.curve(0.0).z();
+            const double rise = path.curve(1.0).z() - path.curve(0.0).z() - 2.0 * parameters.overhang;
             CHECK(std::tan(parameters.angle()) == test::near(2.0 * std::numbers::pi * radius / rise, 1e-12));
             CHECK(refusal([&] { require_holding(braid); }).empty());
         }
     CHECK(refusal([] {
               tubular_braid({.carriers = 5, .radius = 1.0, .pitch = 1.0, .over = 2, .type = yarn()});
           }).find("TubularBraid.over = 2") == 0);
+}
+
+TEST_CASE("ends of a tubular braid leave its helices, and lie along the tube in grips, side by side: no crossing slides off") {
+    const double r = 0.05, radius = 0.4;
+    for (const Index n : {3, 4, 5})
+        for (const double angle : {30.0, 45.0, 60.0, 65.0}) {
+            const double pitch = 2.0 * std::numbers::pi * radius / std::tan(angle * std::numbers::pi / 180.0);
+            // Of turns that are no whole rows, the crossings within them are there.
+            const double turns = (static_cast<double>(n) + 0.3) / (2.0 * static_cast<double>(n));
+            const Textile braid =
+                tubular_braid({.carriers = n, .radius = radius, .pitch = pitch, .turns = turns, .type = yarn(r)});
+            CHECK(core::count(braid.crossings) == n * n);
+            CHECK(refusal([&] { validate(braid); }).empty());
+            for (const double end : {0.0, 1.0}) {
+                std::vector<double> angles;
+                for (const Path& path : braid.paths) {
+                    const Vec3 tip = path.curve(end);
+                    angles.push_back(std::atan2(tip.y(), tip.x()));
+                    REQUIRE(path.grip > 0.0);
+                    const double held = path.grip * scene::length_of(path.curve, 1024);
+                    CHECK(held > 4.0 * r);
+                    const Vec3 along = path.curve(std::abs(end - 0.5 * path.grip)) - tip;
+                    CHECK(along.head<2>().norm() < 1e-9 * along.norm());
+                }
+                std::sort(angles.begin(), angles.end());
+                for (std::size_t k = 1; k < angles.size(); ++k)
+                    CHECK(angles[k] - angles[k - 1] == test::near(std::numbers::pi / static_cast<double>(n), 1e-9));
+            }
+            for (const Crossing& crossing : braid.crossings)  // grips end before the outermost ones
+                CHECK(crossing.at_above > braid.paths[0].grip * scene::length_of(braid.paths[0].curve, 1024));
+        }
+    CHECK(refusal([&] {
+              tubular_braid({.carriers = 4, .radius = 0.4, .pitch = 2.5, .overhang = 0.1, .type = yarn(r)});
+          }).find("TubularBraid.overhang = 0.1") == 0);
+    CHECK(refusal([&] {
+              tubular_braid({.carriers = 4, .radius = 0.4, .pitch = 2.5, .turns = 0.01, .type = yarn(r)});
+          }).find("TubularBraid.turns: rows of crossings = 0.08") == 0);
 }
 
 /// Where a path is at an arc from its start, and where it goes.
@@ -197,6 +235,12 @@ TEST_CASE("a cloth whose warps all lie above comes apart, and is refused by name
                                  .weft = yarn()});
     const std::string message = refusal([&] { require_holding(loose); });
     CHECK(message.find("warp 0") != std::string::npos);
+    CHECK(refusal([] {
+              require_wefts_held({.levels = levels_of({"01", "12"}), .layers = 2});
+          }) ==
+          "LevelPlan.levels: column 0 = levels from 0 to 1, an interlacing that comes apart, but it must be from 0 to layers "
+          "= 2: else no warp lies above its uppermost weft");
+    CHECK(refusal([] { require_wefts_held({.levels = levels_of({"02", "20"}), .layers = 2}); }).empty());
     CHECK(refusal([] {
               require_holding(woven({.levels = levels_of({"0101", "1010"}),
                                      .column_spacing = 0.6,
@@ -438,15 +482,27 @@ TEST_CASE("loops, ends and rings that do not reach each other, or reach too far,
     const double r = 0.05;
     WeftKnit knit{
         .courses = 3, .wales = 3, .wale_spacing = 12.0 * r, .course_spacing = 9.0 * r, .loop_height = 4.6 * r, .type = yarn(r)};
-    CHECK(refusal([&] { weft_knit(knit); }).find("crossings, but it must be 24: four of each loop with that above it") !=
-          std::string::npos);
+    // The message names the nearest value that would do, and it does.
+    const auto named = [](const std::string& message) {
+        const std::size_t at = message.find(" at this");
+        return at == std::string::npos ? 0.0 : std::stod(message.substr(message.rfind(' ', at - 1)));
+    };
+    std::string message = refusal([&] { weft_knit(knit); });
+    CHECK(message.find("WeftKnit.loop_height = 0.23, but it must be >= ") == 0);
+    CHECK(message.find("for 24 crossings, not ") != std::string::npos);
+    knit.loop_height = named(message);
+    CHECK(refusal([&] { weft_knit(knit); }).empty());
     Tricot warp{.needles = 4,
                 .courses = 4,
                 .needle_spacing = 20.0 * r,
                 .course_spacing = 16.0 * r,
                 .loop_height = 40.0 * r,
                 .type = yarn(r)};
-    CHECK(refusal([&] { tricot(warp); }).find("crossings, but it must be 36: four of each loop") != std::string::npos);
+    message = refusal([&] { tricot(warp); });
+    CHECK(message.find("Tricot.loop_height = 2, but it must be <= ") == 0);
+    CHECK(message.find("for 36 crossings, not ") != std::string::npos);
+    warp.loop_height = named(message);
+    CHECK(refusal([&] { tricot(warp); }).empty());
     CHECK(refusal([&] {
               chain_mail({.rows = 2, .columns = 2, .ring_radius = 1.0, .pitch = 4.5, .row_pitch = 1.9, .type = yarn(r)});
           }).find("links of yarn 0 'ring 0.0' with yarn 2 'ring 1.0' = 0, but it must be 1 or -1") != std::string::npos);

@@ -230,15 +230,21 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
             } else if (path.ends != Ends::free) {
                 assembly.hold_axial_rotation(first);
                 assembly.hold_position(first);
+                const double step = 0.25 / static_cast<double>(2 * elements);
+                const auto along = [&](double end) -> Vec3 {
+                    return (path.pull.isZero() ? scene::detail::curve_derivative(curve, end, step) : path.pull).normalized();
+                };
+                const auto across = [](const Vec3& axis) -> Mat3 { return Mat3::Identity() - axis * axis.transpose(); };
+                if (path.grip > 0.0) {
+                    assembly.hold_position({f, path.grip}, across(along(0.0)));
+                    assembly.hold_position({f, 1.0 - path.grip}, across(along(1.0)));
+                }
                 if (path.ends == Ends::held) {
                     assembly.hold_position(last);
                 } else {
-                    const double step = 0.25 / static_cast<double>(2 * elements);
-                    const Vec3 along = path.pull.isZero() ? scene::detail::curve_derivative(curve, 1.0, step).normalized()
-                                                          : path.pull.normalized();
-                    assembly.hold_position(last, Mat3::Identity() - along * along.transpose());
+                    assembly.hold_position(last, across(along(1.0)));
                     const double pull = path.tension_strain * type.material.young_modulus * fibre.section.area();
-                    assembly.apply(scene::DeadForce{last, scene::NodeVector::position, pull * along, tension_channel});
+                    assembly.apply(scene::DeadForce{last, scene::NodeVector::position, pull * along(1.0), tension_channel});
                 }
             }
             for (const Guide& guide : path.guides) assembly.hold_position({f, guide.at}, guide.directions);

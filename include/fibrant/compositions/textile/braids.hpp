@@ -4,6 +4,8 @@
 
 #include <fibrant/compositions/textile/interlaced.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -47,11 +49,49 @@ inline double rounded_wave(double x, double tip) noexcept {
     if (0.5 - d < tip) return -1.0 + 2.0 * tip + 2.0 * (0.5 - d) * (0.5 - d) / tip;
     return straight;
 }
-/// x in [low, high], and beyond them what it comes to rest at over a length `turn`, half of that further on.
-inline double resting(double x, double low, double high, double turn) noexcept {
-    const auto beyond = [turn](double y) { return y >= turn ? 0.5 * turn : y * (1.0 - 0.5 * y / turn); };
-    return x < low ? low - beyond(low - x) : x > high ? high + beyond(x - high) : x;
-}
+/// How a braid goes along its axis. One that does not go on has ends: half a row beside the outermost crossings yarns leave their
+/// way, turn along the braid in arcs of a circle, and lie side by side in grips. What crosses a yarn has to pass the grips to
+/// slide off it.
+struct BraidLength {
+    double length = 0.0;    ///< of the braid without its ends, whole rows of crossings [length]
+    double slope = 0.0;     ///< of a yarn, across over along the braid [1], > 0
+    double aside = 0.0;     ///< along the braid, within its length, where arcs begin [length]
+    double radius = 0.0;    ///< of the arcs [length]
+    double turn = 0.0;      ///< length of an arc along the braid [length]
+    double overhang = 0.0;  ///< of an end beyond `length` [length]; 0: it goes on
+
+    /// @param field       that the length follows from
+    /// @param count       of rows, rounded to whole ones: those whose crossings lie within the length asked for
+    /// @param row         length of the braid from crossings to the next ones [length], > 0
+    /// @param overhang    of ends [length]; 0: a yarn's way from crossing to crossing and two diameters
+    BraidLength(const std::string& field, double count, double row, double slope_, bool goes_on, double overhang_,
+                double half_width)
+        : length{row * std::round(count)}, slope{slope_} {
+        core::require(count >= 0.5, field + ": rows of crossings", count, ">= 0.5, which is one row");
+        if (goes_on) return;
+        const double over = std::hypot(1.0, slope);
+        aside = 0.4 * row, radius = aside * slope * over / (over - 1.0), turn = radius * slope / over;
+        overhang = overhang_ > 0.0 ? overhang_ : row * over + 4.0 * half_width;
+    }
+    /// Least overhang in which a yarn comes to lie along the braid, over two diameters [length].
+    double least_overhang(double half_width) const noexcept { return turn - aside + 4.0 * half_width; }
+    /// Puts the straight parts of all ends into grips.
+    void grip(Textile& textile) const {
+        for (Path& path : textile.paths)
+            if (path.kind == PathKind::open)
+                path.grip = std::max(0.0, overhang - turn + aside) / scene::length_of(path.curve, 1024);
+    }
+    /// Place along the braid, and how far a yarn is on its way there [length], at a part of the whole.
+    std::array<double, 2> operator()(double part) const noexcept {
+        const double y = (length + 2.0 * overhang) * part - overhang;
+        const auto beyond = [this](double d) {
+            const double left = std::max(0.0, turn - d);  // of the arc
+            return (std::sqrt(radius * radius - left * left) - radius / std::hypot(1.0, slope)) / slope;
+        };
+        if (!(overhang > 0.0) || (y >= aside && y <= length - aside)) return {y, y};
+        return {y, y < aside ? aside - beyond(aside - y) : length - aside + beyond(y - length + aside)};
+    }
+};
 }  // namespace detail
 
 /// Yarn k lies at x = A tri(y / P + k / N): meetings are at x_m = A (2 m / N - 1), m from 1 to N - 1, in a quincunx. The yarn
@@ -66,27 +106,25 @@ inline Textile flat_braid(const FlatBraid& braid) {
     Textile textile;
     textile.name = "flat braid";
     textile.types = {braid.type};
-    const double n = static_cast<double>(braid.yarns), length = braid.period * braid.periods;
+    const double n = static_cast<double>(braid.yarns);
     const double tip = 0.4 / n;  // within the outermost meetings, which are half of 1 / N from a tip
     // No end stands on a crossing: meetings are at whole multiples of 1 / (2 N) of a period.
-    const double shift = 0.25 / n, row = 0.5 * braid.period / n, turn = braid.periodic ? 0.0 : 0.8 * row;
-    const double tail = braid.periodic ? 0.0
-                        : braid.overhang > 0.0
-                            ? braid.overhang
-                            : row * std::hypot(1.0, 4.0 * braid.half_width / braid.period) + 4.0 * half_width(braid.type);
+    const double shift = 0.25 / n;
+    const detail::BraidLength along("FlatBraid.periods", 2.0 * n * braid.periods, 0.5 * braid.period / n,
+                                    4.0 * braid.half_width / braid.period, braid.periodic, braid.overhang,
+                                    half_width(braid.type));
     for (Index k = 0; k < braid.yarns; ++k) {
         Path path;
         path.name = "strand " + std::to_string(k);
         path.family = k;
-        if (braid.periodic) repeat(path, length * Vec3::UnitY());
+        if (braid.periodic) repeat(path, along.length * Vec3::UnitY());
         path.curve = [=, a = braid.half_width, period = braid.period, phase = static_cast<double>(k) / n](double t) {
-            const double y = (length + 2.0 * tail) * t - tail,
-                         way = turn > 0.0 ? detail::resting(y, 0.5 * turn, length - 0.5 * turn, turn) : y;
+            const auto [y, way] = along(t);
             return Vec3(a * detail::rounded_wave(way / period + phase + shift, tip), y, 0.0);
         };
         textile.paths.push_back(std::move(path));
     }
-    if (braid.periodic) textile.lattice = {length * Vec3::UnitY()};
+    if (braid.periodic) textile.lattice = {along.length * Vec3::UnitY()};
     interlace(
         textile,
         [&](const PlanCrossing& crossing) {
@@ -95,6 +133,7 @@ inline Textile flat_braid(const FlatBraid& braid) {
             return one_above((crossing.along_first.x() > 0.0) == right_above);
         },
         braid.height_over_radius * half_width(braid.type));
+    along.grip(textile);
     return textile;
 }
 
@@ -106,6 +145,7 @@ struct TubularBraid {
     double turns = 0.5;                ///< > 0
     Index over = 1;                    ///< 1: 1x1; 2: 2x2; divides the carriers
     bool axials = false;               ///< an axial yarn at every other line of meetings, with 1x1 only
+    double overhang = 0.0;             ///< of ends along the tube, beyond the turns [length]; 0: as of FlatBraid
     bool periodic = false;             ///< goes on at both ends; whole turns
     YarnType type{};                   ///< of all yarns
     double height_over_radius = 1.05;  ///< of a yarn at a crossing out of the middle of the tube [1], > 0
@@ -115,6 +155,8 @@ struct TubularBraid {
         core::require_positive("TubularBraid.radius", radius);
         core::require_positive("TubularBraid.pitch", pitch);
         core::require_positive("TubularBraid.turns", turns);
+        core::require_not_negative("TubularBraid.overhang", overhang);
+        if (periodic && overhang > 0.0) core::refuse("TubularBraid.overhang", core::text(overhang), "0, of a braid that goes on");
         if (periodic) require_whole("TubularBraid.turns, of a braid that goes on", turns);
         core::require_at_least("TubularBraid.over", over, 1);
         if (carriers % over != 0)
@@ -141,33 +183,30 @@ inline Textile tubular_braid(const TubularBraid& braid) {
     textile.types = {braid.type};
     textile.view = {Vec3::UnitZ(), true, Vec3::Zero()};
     const double n = static_cast<double>(braid.carriers), full = 2.0 * std::numbers::pi;
-    const double first = std::numbers::pi / (2.0 * n), last = first + full * braid.turns;  // of f: no end stands on a meeting
+    const double first = std::numbers::pi / (2.0 * n);  // of f: no end stands on a meeting
+    const detail::BraidLength along("TubularBraid.turns", 2.0 * n * braid.turns, 0.5 * braid.pitch / n, std::tan(braid.angle()),
+                                    braid.periodic, braid.overhang, half_width(braid.type));
+    const double least = along.least_overhang(half_width(braid.type));
+    core::require(!(braid.overhang > 0.0) || braid.overhang >= least, "TubularBraid.overhang", braid.overhang,
+                  "0, or >= " + core::text(least) + ", for yarns to turn along the tube and two diameters");
+    const auto add = [&](const std::string& name, Index family, double start, double way) {
+        Path path;
+        path.name = name, path.family = family, path.pull = Vec3::UnitZ();
+        if (braid.periodic) repeat(path, along.length * Vec3::UnitZ());
+        path.curve = [=, radius = braid.radius, pitch = braid.pitch](double t) {
+            const auto [z, wound] = along(t);
+            const double angle = start + way * (first + full * wound / pitch);
+            return Vec3(radius * std::cos(angle), radius * std::sin(angle), z + first / full * pitch);
+        };
+        textile.paths.push_back(std::move(path));
+    };
     for (const int way : {1, -1})
-        for (Index k = 0; k < braid.carriers; ++k) {
-            Path path;
-            path.name = (way > 0 ? "right " : "left ") + std::to_string(k);
-            path.family = way > 0 ? 0 : 1, path.pull = Vec3::UnitZ();
-            if (braid.periodic) repeat(path, braid.pitch * braid.turns * Vec3::UnitZ());
-            path.curve = [=, radius = braid.radius, pitch = braid.pitch, start = full * static_cast<double>(k) / n](double t) {
-                const double f = first + (last - first) * t, angle = way * f + start;
-                return Vec3(radius * std::cos(angle), radius * std::sin(angle), pitch * f / full);
-            };
-            textile.paths.push_back(std::move(path));
-        }
+        for (Index k = 0; k < braid.carriers; ++k)
+            add((way > 0 ? "right " : "left ") + std::to_string(k), way > 0 ? 0 : 1, full * static_cast<double>(k) / n, way);
     if (braid.axials)
-        for (Index k = 0; k < braid.carriers; ++k) {
-            Path path;
-            path.name = "axial " + std::to_string(k);
-            path.family = 2;
-            if (braid.periodic) repeat(path, braid.pitch * braid.turns * Vec3::UnitZ());
-            const double angle = std::numbers::pi * (2.0 * static_cast<double>(k) + 1.0) / n;
-            path.curve = [=, radius = braid.radius, pitch = braid.pitch](double t) {
-                const double f = first + (last - first) * t;
-                return Vec3(radius * std::cos(angle), radius * std::sin(angle), pitch * f / full);
-            };
-            textile.paths.push_back(std::move(path));
-        }
-    if (braid.periodic) textile.lattice = {braid.pitch * braid.turns * Vec3::UnitZ()};
+        for (Index k = 0; k < braid.carriers; ++k)
+            add("axial " + std::to_string(k), 2, std::numbers::pi * (2.0 * static_cast<double>(k) + 1.0) / n, 0.0);
+    if (braid.periodic) textile.lattice = {along.length * Vec3::UnitZ()};
     const Index n2 = 2 * braid.over;
     interlace(
         textile,
@@ -185,6 +224,7 @@ inline Textile tubular_braid(const TubularBraid& braid) {
             return rest < braid.over ? std::array{high, -high} : std::array{-high, high};
         },
         braid.height_over_radius* half_width(braid.type));
+    along.grip(textile);
     return textile;
 }
 

@@ -71,6 +71,9 @@ struct Path {
     Ends ends = Ends::held;       ///< of an open path
     double tension_strain = 0.0;  ///< pull of each fibre over its E A, of ends that are pulled, or of a periodic path [1], >= 0
     Vec3 pull = Vec3::Zero();     ///< direction that an end that is pulled goes in; zero: along the path
+    /// Part of an open path at either end that lies in a grip: where it leaves that, it keeps its place across the pull, unless
+    /// ends are free [1], in [0, 0.5).
+    double grip = 0.0;
     std::vector<Guide> guides{};
     bool straight = true;        ///< at rest, as long as it is drawn; else its rest shape is what is drawn
     Vec3 upward = Vec3::Zero();  ///< thickness of the packing at the start; zero: any
@@ -168,6 +171,7 @@ inline void validate(const Textile& textile) {
                              scene::require_finite("Path.pull", path.pull);
                              if (path.ends == Ends::pulled && path.kind == PathKind::open)
                                  core::require_positive("Path.tension_strain, of ends that are pulled", path.tension_strain);
+                             core::require(path.grip >= 0.0 && path.grip < 0.5, "Path.grip", path.grip, ">= 0 and < 0.5");
                              for (const Guide& guide : path.guides) {
                                  core::require_between("Guide.at", guide.at, 0.0, 1.0);
                                  scene::require_projector("Guide.directions", guide.directions);
