@@ -210,6 +210,7 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
                 plan.warp_types.push_back(kind == "binder" ? 1 : 0);
             }
             made = cloth::woven(plan);
+            cloth::require_wefts_held(plan, lifts.empty() ? "levels.levels" : "levels.lifts");
         }
     }
     if (wanted("leno")) {
@@ -466,7 +467,7 @@ inline Scene read_scene(SceneReader& file) {
     cloth::validate(scene.textile);
     if (!scene.textile.crossings.empty() && scene.generator != "weft_knit" && scene.generator != "tricot" &&
         scene.generator != "file")
-        cloth::require_holding(scene.textile);
+        cloth::require_holding(scene.textile, scene.generator + ": crossings");
     return scene;
 }
 

@@ -285,6 +285,28 @@ inline CrossingAudit audit_crossings(std::vector<Crossing> asked, std::vector<Cr
     return audit;
 }
 
+/// The value nearest to a given one at which something holds: looked for in steps both ways, then between two steps.
+/// @param given       at which it does not hold
+/// @param low, high   of all values that are tried
+/// @returns NaN where none of them holds
+template <class Holds>
+double nearest_that_holds(double given, double low, double high, const Holds& holds) {
+    constexpr int steps = 40;
+    constexpr double close = 1e-3;  // of the given value
+    for (int k = 1; k <= steps; ++k)
+        for (const double end : {low, high}) {
+            const auto at = [&](int n) { return given + (end - given) * static_cast<double>(n) / steps; };
+            double good = at(k), bad = at(k - 1);
+            if (good == given || !holds(good)) continue;
+            while (std::abs(good - bad) > close * std::abs(given)) {
+                const double middle = 0.5 * (good + bad);
+                (holds(middle) ? good : bad) = middle;
+            }
+            return good;
+        }
+    return core::unset;
+}
+
 /// Refuses a textile that crosses itself more or less often than its generator says: loops that do not reach each other hold
 /// nothing, and those that reach too far lie in their neighbours.
 /// @param fields  that the crossings follow from
@@ -293,6 +315,24 @@ inline CrossingAudit audit_crossings(std::vector<Crossing> asked, std::vector<Cr
 inline void require_crossings(const Textile& textile, Index asked, const std::string& fields, const std::string& why) {
     const Index found = core::count(textile.crossings);
     if (found != asked) core::refuse(fields, std::to_string(found) + " crossings", std::to_string(asked) + ": " + why);
+}
+/// The same, with a value that would do.
+/// @param field   that crossings are most sensitive to, which is `given`, and > low
+/// @param others  that they follow from as well
+/// @param why     so many
+/// @param drawn   the same textile with another value of that field
+/// @throws std::invalid_argument naming the nearest value with the right number, if there is one
+template <class Drawn>
+void require_crossings(const Textile& textile, Index asked, const std::string& field, double given, double low,
+                       const std::string& others, const std::string& why, const Drawn& drawn) {
+    const Index found = core::count(textile.crossings);
+    if (found == asked) return;
+    const double nearest = nearest_that_holds(given, low, 2.0 * given,
+                                              [&](double x) { return x > low && core::count(drawn(x).crossings) == asked; });
+    const std::string need = std::to_string(asked) + " crossings, not " + std::to_string(found) + ": " + why;
+    if (std::isnan(nearest)) core::refuse(field, core::text(given), "changed, or " + others + ", for " + need);
+    core::refuse(field, core::text(given),
+                 (nearest < given ? "<= " : ">= ") + core::text(nearest) + " at this " + others + ", for " + need);
 }
 
 }  // namespace fibrant::compositions::textile

@@ -50,11 +50,9 @@ struct WeftKnit {
     }
 };
 
-/// Four crossings of each loop with that above it: heads over legs, legs under feet, as seen from where feet of face stitches lie
-/// in front, and the other way round for reverse ones. The feet of the first course and the heads of the last one are held, as on
-/// needles, and so are ends.
-inline Textile weft_knit(const WeftKnit& knit) {
-    knit.validate();
+namespace detail {
+/// A weft knit as it is drawn, however often it crosses itself.
+inline Textile drawn(const WeftKnit& knit) {
     Textile textile;
     textile.name = "weft knit";
     textile.types = {knit.type};
@@ -104,8 +102,23 @@ inline Textile weft_knit(const WeftKnit& knit) {
         textile.paths.push_back(std::move(path));
     }
     textile.crossings = crossings_of(textile);
-    require_crossings(textile, 4 * knit.wales * (knit.courses - 1), "WeftKnit.wale_spacing, course_spacing, loop_height, bulge",
-                      "four of each loop with that above it");
+    return textile;
+}
+}  // namespace detail
+
+/// Four crossings of each loop with that above it: heads over legs, legs under feet, as seen from where feet of face stitches lie
+/// in front, and the other way round for reverse ones. The feet of the first course and the heads of the last one are held, as on
+/// needles, and so are ends.
+inline Textile weft_knit(const WeftKnit& knit) {
+    knit.validate();
+    Textile textile = detail::drawn(knit);
+    require_crossings(textile, 4 * knit.wales * (knit.courses - 1), "WeftKnit.loop_height", knit.loop_height,
+                      0.5 * knit.course_spacing, "wale_spacing, course_spacing and bulge", "four of each loop with that above it",
+                      [other = knit](double height) {
+                          auto changed = other;
+                          changed.loop_height = height;
+                          return detail::drawn(changed);
+                      });
     return textile;
 }
 
@@ -130,10 +143,9 @@ struct Tricot {
     }
 };
 
-/// Yarn m lays its loops on needles m and m + 1 by turns. Loops are closed: feet lie side by side, heads above the legs of the
-/// loop that is drawn through them, underlaps and feet above the legs of the loop below.
-inline Textile tricot(const Tricot& knit) {
-    knit.validate();
+namespace detail {
+/// A tricot as it is drawn, however often it crosses itself.
+inline Textile drawn(const Tricot& knit) {
     Textile textile;
     textile.name = "tricot";
     textile.types = {knit.type};
@@ -168,8 +180,22 @@ inline Textile tricot(const Tricot& knit) {
         textile.paths.push_back(std::move(path));
     }
     textile.crossings = crossings_of(textile);
-    require_crossings(textile, 4 * (knit.needles - 1) * (knit.courses - 1), "Tricot.needle_spacing, course_spacing, loop_height",
-                      "four of each loop with that drawn through it");
+    return textile;
+}
+}  // namespace detail
+
+/// Yarn m lays its loops on needles m and m + 1 by turns. Loops are closed: feet lie side by side, heads above the legs of the
+/// loop that is drawn through them, underlaps and feet above the legs of the loop below.
+inline Textile tricot(const Tricot& knit) {
+    knit.validate();
+    Textile textile = detail::drawn(knit);
+    require_crossings(textile, 4 * (knit.needles - 1) * (knit.courses - 1), "Tricot.loop_height", knit.loop_height,
+                      knit.course_spacing, "needle_spacing and course_spacing", "four of each loop with that drawn through it",
+                      [other = knit](double height) {
+                          auto changed = other;
+                          changed.loop_height = height;
+                          return detail::drawn(changed);
+                      });
     return textile;
 }
 

@@ -216,8 +216,9 @@ inline void validate(const Textile& textile) {
 ///
 /// No such set exists if and only if the graph "A lies above B" is strongly connected (Clapham 1980, Enns 1984), here in each
 /// part that crossings join. Time linear in the crossings. It does not see what holds by ends or by links.
+/// @param field  that the crossings follow from
 /// @throws std::invalid_argument naming the yarns
-inline void require_holding(const Textile& textile) {
+inline void require_holding(const Textile& textile, const std::string& field = "Textile.crossings") {
     const Index n = core::count(textile.paths);
     std::vector<std::vector<Index>> down(core::at(n)), up(core::at(n));
     for (const Crossing& crossing : textile.crossings) {
@@ -257,7 +258,7 @@ inline void require_holding(const Textile& textile) {
         std::string loose;
         for (std::size_t m = 0; m < std::min<std::size_t>(named.size(), 4); ++m)
             loose += (m > 0 ? ", " : "") + textile.label(named[m]);
-        core::refuse("Textile.crossings", "an interlacing that comes apart",
+        core::refuse(field, "an interlacing that comes apart",
                      "one that holds: " + loose + (named.size() > 4 ? ", ..." : "") + (named.size() == 1 ? " lies " : " lie ") +
                          (lower == fewer ? "above" : "below") + " all that " + (named.size() == 1 ? "it crosses" : "they cross"));
     }

@@ -76,6 +76,21 @@ struct LevelPlan {
     }
 };
 
+/// Refuses a plan whose uppermost weft of a column lies above all warps, or its lowest one below all: it can be lifted off.
+/// @param field  that says the levels
+inline void require_wefts_held(const LevelPlan& plan, const std::string& field = "LevelPlan.levels") {
+    for (Index c = 0; c < plan.column_count(); ++c) {
+        Index least = plan.layers, most = 0;
+        for (Index w = 0; w < plan.warps(); ++w)
+            least = std::min(least, plan.level(w, c)), most = std::max(most, plan.level(w, c));
+        if (least == 0 && most == plan.layers) continue;
+        core::refuse(field + ": column " + std::to_string(c),
+                     "levels from " + std::to_string(least) + " to " + std::to_string(most) + ", an interlacing that comes apart",
+                     "from 0 to layers = " + std::to_string(plan.layers) + ": else no warp lies " +
+                         (least > 0 ? "below its lowest weft" : "above its uppermost weft"));
+    }
+}
+
 /// Levels from texts of digits, a text a warp.
 inline std::vector<std::vector<Index>> levels_of(const std::vector<std::string>& rows) {
     std::vector<std::vector<Index>> levels;
