@@ -15,6 +15,7 @@
 #include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/contact/element_directions.hpp>
 #include <fibrant/contact/element_normal.hpp>
+#include <fibrant/contact/element_placing.hpp>
 #include <fibrant/contact/fibre_patch.hpp>
 #include <fibrant/contact/followed_places.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>

@@ -76,10 +76,12 @@ void act_within([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] con
 
 /// Sets the gap that an element had, and the offset that its slip counts from.
 /// @param state     of the end
+/// @param tangents  of the element there
 /// @param unseen    depth that its zone takes off gaps [length]
 template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
 void count_from(const beam::Mesh<B>& mesh, const NormalRule& rule, const Normal& law,
-                ContactElement<B, Normal, Friction>& element, const Vector& state, const Vector& accepted, double unseen) {
+                ContactElement<B, Normal, Friction>& element, const Vector& state, const PairTangents& tangents,
+                const Vector& accepted, double unseen) {
     const bool within = ActingState<Normal>::within(law) && element.place < 0;
     if constexpr (law::SteppedNormal<Normal>) {
         if (within) {
@@ -92,13 +94,13 @@ void count_from(const beam::Mesh<B>& mesh, const NormalRule& rule, const Normal&
     }
     if constexpr (core::Active<Friction>) {
         element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
-        const auto offset = [&](const auto& seen) { return accepted_offset(mesh, rule, seen, state, accepted); };
+        const auto offset = [&](const auto& seen) { return accepted_offset(mesh, rule, seen, tangents, accepted); };
         if (!within) {
             element.friction.accepted_offset = offset(element);
             return;
         }
         ContactElement<B, Normal, Friction> turned = element;
-        turned.normal = element_normal(mesh, state, element, rule, element.normal);
+        turned.normal = element_normal(mesh, state, element, tangents, rule, element.normal);
         element.friction.accepted_offset = offset(turned);
     }
 }

@@ -8,6 +8,7 @@
 #include <fibrant/contact/contact_figures.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
+#include <fibrant/contact/element_placing.hpp>
 #include <fibrant/contact/followed_places.hpp>
 #include <fibrant/contact/pair_rules.hpp>
 #include <fibrant/contact/seen_touch.hpp>
@@ -91,7 +92,7 @@ public:
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
             const Vec3 before = element.normal;
-            if (!slides(k)) place_particles(element, acting, state, accepted, before);
+            if (!slides(k)) placing().place(element, zones_[core::at(element.zone)], acting, state, accepted, before);
             const double turn = slides(k) ? follow(k, state) : turn_between(before, element.normal);
             if (k < core::count(responses_) && responses_[core::at(k)].reaction != 0.0) turned[core::at(k)] = turn;
         });
@@ -118,9 +119,6 @@ public:
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
             if (slides(k) && !start) places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
-            Vec3 slip = Vec3::Zero();
-            if constexpr (core::Active<Friction>)
-                if (!start) slip = element.friction_offset(state) - element.friction.accepted_offset;
             if (slides(k))
                 places_.take(*mesh_, state, zones_[core::at(element.zone)], element);
             else
@@ -133,6 +131,10 @@ public:
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             act_within(*mesh_, normal_, state, acting, element);
             if constexpr (core::Active<Friction>) {
+                frictions_[core::at(k)] = {};
+                if (!carries(k)) return;
+                Vec3 slip = Vec3::Zero();
+                if (!start) slip = element.friction_offset(state) - element.friction.accepted_offset;
                 slip -= slip.dot(plane(k)) * plane(k);
                 const double bound = none ? 0.0 : standing_bound(normal_, *mesh_, element, responses_[core::at(k)]);
                 frictions_[core::at(k)] = friction_answer(friction_, *mesh_, element, slip, zone.friction_factor, bound);
@@ -147,8 +149,7 @@ public:
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
             if (element.crossing || acting_.within(normal_)) return;
-            element.normal = element_normal(*mesh_, start, element, parameters_.normal, element.normal);
-            find_meeting_point(*mesh_, start, element);
+            placing().place_back(element, start);
         });
         return present;
     }
@@ -328,10 +329,10 @@ private:
                         Vec3 remembered = record ? record->normal : Vec3(Vec3::Zero());
                         if (zone.order >= 0 && (zone.forced || !record))
                             remembered = orders_.direction(zone.order, zone.span.fibre_i);
-                        place_particles(element, state, end, accepted, remembered);
+                        const PairTangents tangents = placing().place(element, zone, state, end, accepted, remembered);
                         if (zone.forced && element.gap(state) > forced_keep * mesh_->fibre(zone.span.fibre_i).section.radius())
                             continue;
-                        if constexpr (core::Active<Friction>) recall_friction(element, state);
+                        if constexpr (core::Active<Friction>) recall_friction(element, tangents);
                         made[core::at(b)].push_back(element);
                     }
                     zone.last = core::count(made[core::at(b)]);
@@ -358,8 +359,9 @@ private:
         Element& element = elements_[core::at(k)];
         places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
         places_.host(*mesh_, element);
-        meet(element, state, state, places_.accepted());
-        if constexpr (core::Active<Friction>) recall_friction(element, state);
+        const PairTangents tangents = pair_tangents(*mesh_, state, element);
+        placing().meet(element, zones_[core::at(element.zone)], state, tangents, state, places_.accepted());
+        if constexpr (core::Active<Friction>) recall_friction(element, tangents);
         return places_.renew(*mesh_, state, element, core::Active<Friction>);
     }
     /// Normal to an element's friction, and its stiffness.
@@ -386,28 +388,10 @@ private:
         return element;
     }
 
-    /// Normal, particles, gap shift and accepted offset of an element whose stations stand.
-    void place_particles(Element& element, const Vector& state, const Vector& end, const Vector& accepted,
-                         const Vec3& remembered) const {
-        element.normal = element_normal(*mesh_, state, element, parameters_.normal, remembered);
-        meet(element, state, end, accepted);
-        if constexpr (law::GapShifting<Normal>) element.shift.shift = normal_.gap_shift(element.gap(accepted));
-        if constexpr (law::Augmenting<Normal>)
-            element.shift.shift = -normal_.penetration(element.shift.multiplier, stiffness(element));
-        if constexpr (core::Active<Friction>) {
-            Vec3& reversible = element.friction.history.reversible;
-            if (!remembered.isZero()) reversible = turned_with_plane(reversible, remembered, element.normal);
-        }
-    }
-    /// Where both forces of an element act, and from where its slip counts.
-    void meet(Element& element, const Vector& state, const Vector& end, const Vector& accepted) const {
-        find_meeting_point(*mesh_, state, element), see_directions(*mesh_, state, element);
-        count_from(*mesh_, parameters_.normal, normal_, element, end, accepted, zones_[core::at(element.zone)].unseen);
-    }
+    ElementPlacing<B, Normal, Friction> placing() const noexcept { return {*mesh_, parameters_.normal, normal_}; }
 
-    void recall_friction(Element& element, const Vector& state) const requires core::Active<Friction> {
-        give_friction<Friction>(*mesh_, element, state,
-                                accepted_.friction(element, 1.5 / parameters_.spacing.points_per_element));
+    void recall_friction(Element& element, const PairTangents& tangents) const requires core::Active<Friction> {
+        give_friction<Friction>(tangents, element, accepted_.friction(element, 1.5 / parameters_.spacing.points_per_element));
     }
 
     std::vector<typename Memory::Record> records(const Vector& state) const {
@@ -422,7 +406,8 @@ private:
                 if (k < core::count(responses_)) record.multiplier.force = responses_[core::at(k)].reaction;
             if constexpr (core::Active<Friction>) {
                 if (k < core::count(frictions_) && responses_[core::at(k)].reaction != 0.0)
-                    record.friction = recorded_friction<Friction>(*mesh_, element, state, frictions_[core::at(k)].history);
+                    record.friction = recorded_friction<Friction>(pair_tangents(*mesh_, state, element), element.normal,
+                                                                  frictions_[core::at(k)].history);
             }
         });
         return list;

@@ -32,4 +32,14 @@ Vec3 contact_tangent(const beam::Mesh<B>& mesh, const Vector& state, Index fibre
     return tangent;
 }
 
+/// Unit tangents of the fibres of a pair.
+struct PairTangents {
+    Vec3 i, j;
+};
+template <class B, class Element>
+PairTangents pair_tangents(const beam::Mesh<B>& mesh, const Vector& state, const Element& element) noexcept {
+    return {contact_tangent(mesh, state, element.fibre_i, element.u_i).normalized(),
+            contact_tangent(mesh, state, element.fibre_j, element.u_j).normalized()};
+}
+
 }  // namespace fibrant::contact

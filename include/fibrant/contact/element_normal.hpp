@@ -29,25 +29,29 @@ SectionAxes section_axes(const beam::Mesh<B>& mesh, const Vector& state, Index f
 }
 
 /// Normal of a contact element, from fibre i to fibre j.
+/// @param tangents    of the element in that state
 /// @param remembered  last normal, or zero for a contact that is new
 template <class B, class Element>
-Vec3 element_normal(const beam::Mesh<B>& mesh, const Vector& state, const Element& element, const NormalRule& rule,
-                    const Vec3& remembered) noexcept {
+Vec3 element_normal(const beam::Mesh<B>& mesh, const Vector& state, const Element& element, const PairTangents& tangents,
+                    const NormalRule& rule, const Vec3& remembered) noexcept {
     const Index i = element.fibre_i, j = element.fibre_j;
     const Vec3 centres = mesh.position(state, j, element.u_j) - mesh.position(state, i, element.u_i);
     if (element.end_i || element.end_j) {
         const Vec3 side = remembered.isZero() ? centres : remembered;
         return unit_or(centres.dot(side) > 0.0 ? centres : side, Vec3::UnitZ());
     }
-    const Vec3 t_i = contact_tangent(mesh, state, i, element.u_i).normalized(),
-               t_j = contact_tangent(mesh, state, j, element.u_j).normalized();
     const double radii = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
     if (flat_sections(mesh, i, j))
-        return normal_direction(rule, centres, t_i, t_j, remembered,
+        return normal_direction(rule, centres, tangents.i, tangents.j, remembered,
                                 FlatSections{section_axes(mesh, state, i, element.u_i), section_axes(mesh, state, j, element.u_j),
                                              element.crossing, radii});
-    return normal_direction(rule, centres, t_i, t_j, remembered,
+    return normal_direction(rule, centres, tangents.i, tangents.j, remembered,
                             RoundSections{element.crossing ? std::numeric_limits<double>::infinity() : radii, radii});
+}
+template <class B, class Element>
+Vec3 element_normal(const beam::Mesh<B>& mesh, const Vector& state, const Element& element, const NormalRule& rule,
+                    const Vec3& remembered) noexcept {
+    return element_normal(mesh, state, element, pair_tangents(mesh, state, element), rule, remembered);
 }
 
 }  // namespace fibrant::contact

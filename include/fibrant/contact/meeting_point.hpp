@@ -73,14 +73,9 @@ void follow_particles(const beam::Mesh<B>& mesh, const Vector& state, Element& e
 /// Ways along both fibres, flat against the normal, from two particles of fibres that cross to the point where they do [length].
 /// @param apart  particle j - particle i, flat against the normal
 /// @returns ways from particle i and from particle j: way i - way j = apart
-template <class B, class Element>
-std::pair<Vec3, Vec3> ways_to_crossing(const beam::Mesh<B>& mesh, const Vector& state, const Element& element,
-                                       const Vec3& apart) {
-    const auto flat = [&](Index fibre, double u) {
-        const Vec3 tangent = contact_tangent(mesh, state, fibre, u).normalized();
-        return Vec3(tangent - tangent.dot(element.normal) * element.normal);
-    };
-    const Vec3 t_i = flat(element.fibre_i, element.u_i), t_j = flat(element.fibre_j, element.u_j), both = t_i.cross(t_j);
+inline std::pair<Vec3, Vec3> ways_to_crossing(const PairTangents& tangents, const Vec3& normal, const Vec3& apart) {
+    const auto flat = [&](const Vec3& tangent) { return Vec3(tangent - tangent.dot(normal) * normal); };
+    const Vec3 t_i = flat(tangents.i), t_j = flat(tangents.j), both = t_i.cross(t_j);
     const double square = both.squaredNorm();
     if (square < 1e-4) return {0.5 * apart, -0.5 * apart};  // a normal along one of them: half-way
     return {apart.cross(t_j).dot(both) / square * t_i, apart.cross(t_i).dot(both) / square * t_j};
@@ -92,7 +87,8 @@ std::pair<Vec3, Vec3> ways_to_crossing(const beam::Mesh<B>& mesh, const Vector& 
 /// pair, a slip would turn both fibres. A crossing that went on along its fibres is beside neither of them: half-way, normal
 /// forces would spin both, which next to nothing holds.
 template <class B, class Element>
-void find_meeting_point(const beam::Mesh<B>& mesh, const Vector& state, Element& element) {
+void find_meeting_point(const beam::Mesh<B>& mesh, const Vector& state, [[maybe_unused]] const PairTangents& tangents,
+                        Element& element) {
     follow_support(mesh, state, element);
     if constexpr (!beam::CentreTouched<B>) {
         Vec3 half = 0.5 * element.offset(state);
@@ -101,7 +97,7 @@ void find_meeting_point(const beam::Mesh<B>& mesh, const Vector& state, Element&
         Vec3 from_i = half, from_j = -half;
         if (element.crossing && !element.end_i && !element.end_j) {  // across a round end a fibre has no way
             const Vec3 sunk = half.dot(element.normal) * element.normal;
-            const auto [way_i, way_j] = ways_to_crossing(mesh, state, element, Vec3(2.0 * (half - sunk)));
+            const auto [way_i, way_j] = ways_to_crossing(tangents, element.normal, 2.0 * (half - sunk));
             from_i = way_i + sunk, from_j = way_j - sunk;
         }
         element.meeting = {material_shift(mesh, state, element.fibre_i, element.u_i, element.first_i, element.weights_i, from_i),

@@ -20,7 +20,10 @@ struct SectionAxes {
     Vec3 first, second;
 
     /// Half extent along a unit direction: the support function of the ellipse [length].
-    double extent(const Vec3& direction) const noexcept { return std::hypot(first.dot(direction), second.dot(direction)); }
+    double extent(const Vec3& direction) const noexcept {
+        const double p = first.dot(direction), q = second.dot(direction);
+        return std::sqrt(p * p + q * q);
+    }
 };
 
 /// The same in two coordinates of a plane that it is looked at in.

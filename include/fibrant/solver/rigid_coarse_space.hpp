@@ -105,12 +105,13 @@ public:
                     modes_.mode(layout, held, chain.first_vector + a * chain.vectors_per_node + v);
             }
         }
+        // Products of a few numbers, without the packing of those of large matrices.
         Modes product(m, 6);
         for (Index a = 0; a < chain.nodes; ++a) {
             for (Index d = 0; d <= std::min(a, chain.reach); ++d) {
                 // I - F, which the band has on held vectors, gives nothing with F times the modes.
-                product.noalias() = band.block(a * m, d * m, m, m) * modes[core::at(a - d)];
-                const Block block = modes[core::at(a)].transpose() * product;
+                product.noalias() = band.block(a * m, d * m, m, m).lazyProduct(modes[core::at(a - d)]);
+                const Block block = modes[core::at(a)].transpose().lazyProduct(product);
                 add_to_chain(own, chain.reach, hat(own, a), hat(own, a - d), block, d == 0);
             }
         }

@@ -5,12 +5,14 @@
 #include <fibrant/assembly/term_assembly.hpp>
 #include <fibrant/solver/conjugate_gradient.hpp>
 
+#include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 namespace fibrant::solver {
 
@@ -36,12 +38,15 @@ public:
     SolveReport solve(const System& system, const Vector& b, double tolerance, Vector& x);
 
 private:
+    using Permutation = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>;
     static constexpr int tied_limit = 500;  ///< iterations where a system has ties
     struct Work {
         assembly::TermAssembly terms;
         ConjugateGradientVectors vectors;
         SparseMatrix a;
-        Eigen::SimplicialLDLT<SparseMatrix> factor;
+        Permutation order;    // from unknowns to places in the factor
+        SparseMatrix sorted;  // lower part, in that order
+        Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::NaturalOrdering<int>> factor;
         Vector pivots, scale, residual;
         SolveStatus status = SolveStatus::not_finite;
         double curvature = 0.0;
@@ -51,6 +56,8 @@ private:
     void assemble(const System& system) {
         if constexpr (assembly::AssembledSystem<System>) {
             system.assemble(work_->a);
+            if (work_->order.size() != work_->a.cols()) find_order();
+            sort();
         } else {
             // Contact elements that come to carry force add terms; the pattern is that of the system alone, so that the
             // bits do not depend on what was solved before.
@@ -59,8 +66,37 @@ private:
             const bool same = now == work_->terms;
             if (!same) work_->terms = std::move(now);
             work_->terms.fill(system, work_->a);
-            if (!same) work_->factor.analyzePattern(work_->a);
+            if (!same) find_order();
+            sort();
+            if (!same) work_->factor.analyzePattern(work_->sorted);
         }
+    }
+    /// Minimum degree of vectors, not of unknowns: their graph is a ninth of the matrix, and contact changes it often.
+    void find_order() {
+        const SparseMatrix& a = work_->a;
+        const Index vectors = a.cols() / 3;
+        std::vector<int> starts{0}, rows, last(core::at(vectors), -1);
+        for (int v = 0; v < vectors; ++v) {
+            for (int k = 3 * v; k < 3 * v + 3; ++k)
+                for (SparseMatrix::InnerIterator it(a, k); it; ++it) {
+                    const int row = static_cast<int>(it.row()) / 3;
+                    if (row < v || std::exchange(last[core::at(row)], v) == v) continue;
+                    rows.push_back(row);
+                }
+            std::sort(rows.begin() + starts.back(), rows.end());
+            starts.push_back(static_cast<int>(rows.size()));
+        }
+        const std::vector<double> ones(rows.size(), 1.0);
+        const Eigen::Map<const SparseMatrix> graph(vectors, vectors, core::count(rows), starts.data(), rows.data(), ones.data());
+        Permutation order;
+        Eigen::AMDOrdering<int>()(SparseMatrix(graph).selfadjointView<Eigen::Lower>(), order);
+        work_->order.resize(a.cols());
+        for (int place = 0; place < vectors; ++place)
+            for (int c = 0; c < 3; ++c) work_->order.indices()[3 * order.indices()[place] + c] = 3 * place + c;
+    }
+    void sort() {
+        work_->sorted.resize(work_->a.rows(), work_->a.cols());
+        work_->sorted.selfadjointView<Eigen::Lower>() = work_->a.selfadjointView<Eigen::Lower>().twistedBy(work_->order);
     }
 
     /// x = L^-T |D|^-1 L^-1 b, or b scaled by the diagonal where there is no factor.
@@ -79,15 +115,20 @@ private:
         const double least = 1e-14 * most_over(work.pivots, work.scale);
         for (Index k = 0; k < x.size(); ++k) x[k] /= std::max(std::abs(work.pivots[k]), least * work.scale[k]);
         work.factor.matrixU().solveInPlace(x);
-        const auto& order = work.factor.permutationP().indices();
-        const Vector found = x;
-        for (Index k = 0; k < x.size(); ++k) x[k] = found[order[k]];
+        x = plain(x);
     }
     /// A vector in the order of the factor.
     Vector ordered(const Vector& plain) const {
-        const auto& order = work_->factor.permutationP().indices();
+        const auto& order = work_->order.indices();
         Vector values(plain.size());
         for (Index k = 0; k < plain.size(); ++k) values[order[k]] = plain[k];
+        return values;
+    }
+    /// And back.
+    Vector plain(const Vector& ordered) const {
+        const auto& order = work_->order.indices();
+        Vector values(ordered.size());
+        for (Index k = 0; k < ordered.size(); ++k) values[k] = ordered[order[k]];
         return values;
     }
     static double most_over(const Vector& values, const Vector& scale) noexcept {
@@ -104,8 +145,9 @@ private:
 
 template <assembly::LinearSystem System>
 void SparseCholesky::analyse(const System& system) {
+    if constexpr (assembly::AssembledSystem<System>) work_->order.resize(0);
     assemble(system);
-    if constexpr (assembly::AssembledSystem<System>) work_->factor.analyzePattern(work_->a);
+    if constexpr (assembly::AssembledSystem<System>) work_->factor.analyzePattern(work_->sorted);
 }
 
 template <assembly::LinearSystem System>
@@ -118,7 +160,7 @@ SolveStatus SparseCholesky::prepare(const System& system) {
     if (!Eigen::Map<const Vector>(work.a.valuePtr(), work.a.nonZeros()).allFinite()) {
         return work.status = SolveStatus::not_finite;
     }
-    work.factor.factorize(work.a);
+    work.factor.factorize(work.sorted);
     work.status = SolveStatus::indefinite;
     work.curvature = 0.0;
     if (work.factor.info() != Eigen::Success) return work.status;  // a pivot is exactly zero
@@ -161,7 +203,7 @@ SolveReport SparseCholesky::solve(const System& system, const Vector& b, double 
     Vector best = x;
     work.residual = b;
     for (; report.iterations <= parameters_.refinements && report.residual > tolerance; ++report.iterations) {
-        x += work.factor.solve(work.residual);
+        x += plain(work.factor.solve(ordered(work.residual)));
         const double residual = relative_residual(system, b, norm, x, work.residual);
         if (!std::isfinite(residual)) return {SolveStatus::not_finite, report.iterations, residual, work.curvature};
         if (report.iterations > 0 && residual >= report.residual) {  // refinement has reached its floor
