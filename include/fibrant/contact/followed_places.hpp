@@ -38,6 +38,15 @@ public:
         zone.followed = wanted(mesh, state, zone, before);
         zone.settled = zone.followed && before && before->settled;
     }
+    /// Whether what `follow` says decides about some zone of an attempt, as the fibres lay before it.
+    bool matters(const beam::Mesh<B>& mesh, const Vector& state, const std::vector<Zone>& zones) const {
+        FollowedPlaces other(places_);
+        other.follow(!all_);
+        const auto differs = [&](const Zone& zone) {
+            return !zone.forced && other.wanted(mesh, state, zone, &zone) != zone.followed;
+        };
+        return zones.empty() || std::any_of(zones.begin(), zones.end(), differs);
+    }
     /// Crossings that are followed go on as one contact element until bent around each other so much that the angle between them
     /// is, but for this part of what it is elsewhere, that of fibres side by side [1].
     static double angle_share(const Zone& zone) noexcept { return zone.followed ? 0.2 : 1.0; }
