@@ -352,7 +352,7 @@ private:
     static constexpr double flat_of_ovals = 0.1;  ///< the same of sections that are not round
     /// Where there are stations beside a place, or valleys that slant, there are until these bounds are passed by a factor:
     /// fibres come to rest elsewhere on one contact than on several, and passes would go to and fro between both.
-    static constexpr double stay = 1.25, leave = 1.5;
+    static constexpr double stay = 1.25, leave = 2.5;
     static constexpr double spacing = valley_spacing,
                             clear = 0.1;  ///< of stations in a valley, and gap beyond which there are none [touching distance]
     static constexpr double near_valley = 2.0;  ///< of a station that stays, across [touching distance]
