@@ -16,6 +16,7 @@ struct Hooks {
     Index elements = 40, increments = 10;
     double friction = 0.0;
     double pull = 0.5;                              ///< of the ends from each other, over the radius of the rings
+    double slant = 0.0;                             ///< the same across it, along the plane of the first ring
     double angle_deg = 90.0;                        ///< between the planes of both
     double radius = 0.05, ring_over_radius = 20.0;  // mm
     contact::Places places = contact::Places::as_needed;
@@ -48,7 +49,7 @@ Hooked pull_hooks(const Hooks& hooks) {
     const Index lower = assembly.add(ring);
     for (const Index fibre : {upper, lower})
         for (const scene::Station& end : {scene::first_end(fibre), scene::last_end(fibre)})
-            assembly.clamp(end, (fibre == upper ? 0.5 : -0.5) * hooks.pull * R * Vec3::UnitZ());
+            assembly.clamp(end, (fibre == upper ? 0.5 : -0.5) * R * Vec3(hooks.slant, 0.0, hooks.pull));
     simulation::ModelParameters<M> parameters;
     parameters.normal.regularisation_depth = 1e-3 * r;
     if constexpr (core::Active<typename M::Friction>)

@@ -61,6 +61,12 @@ TEST_CASE("hooks at a slant touch along a valley, and hold as well") {
     }
 }
 
+TEST_CASE("hooks that are pulled at a slant hold where the valley between them turns, in few iterations") {
+    const Hooked hooked = test::pull_hooks<test::Smooth>({.elements = 20, .increments = 20, .slant = 0.8, .angle_deg = 75.0});
+    check_held(hooked, "pulled at a slant", 5);
+    CHECK(hooked.report.counts.newton < 500);
+}
+
 TEST_CASE("with places that are renewed outside of Newton hooks do not hold") {
     const Hooked hooked = test::pull_hooks<test::Smooth>({.elements = 20, .increments = 50, .places = contact::Places::renewed});
     CHECK_FALSE((hooked.report.converged && hooked.crossing > 1.5));

@@ -37,6 +37,16 @@ public:
     void mark(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Zone* before) const {
         zone.followed = wanted(mesh, state, zone, before);
         zone.settled = zone.followed && before && before->settled;
+        if (zone.settled) zone.slanting = before->slanting;
+    }
+    /// Whether what `follow` says decides about some zone of an attempt, as the fibres lay before it.
+    bool matters(const beam::Mesh<B>& mesh, const Vector& state, const std::vector<Zone>& zones) const {
+        FollowedPlaces other(places_);
+        other.follow(!all_);
+        const auto differs = [&](const Zone& zone) {
+            return !zone.forced && other.wanted(mesh, state, zone, &zone) != zone.followed;
+        };
+        return zones.empty() || std::any_of(zones.begin(), zones.end(), differs);
     }
     /// Crossings that are followed go on as one contact element until bent around each other so much that the angle between them
     /// is, but for this part of what it is elsewhere, that of fibres side by side [1].
@@ -288,9 +298,12 @@ private:
         };
         // Wide faces are close beside a place without being bent, and would make stations that pass one reaction to and fro.
         const bool not_round = oval_pair(mesh, i, j);
-        const double weak = not_round ? flat_of_ovals : flat, stuck = not_round ? -1e9 : held;
+        const double stuck = not_round ? -1e9 : held;
+        const double weak = (not_round ? flat_of_ovals : flat) * (known.size() > 1 ? stay : 1.0);
         if (least(closeness) < weak) {
-            const bool upright = std::abs(closeness(0, 1)) < square;
+            bool& slants = zone.slanting[place];
+            slants = std::abs(closeness(0, 1)) > (known.size() < 2 ? square : slants ? square / leave : square * leave);
+            const bool upright = !slants;
             const Eigen::Vector2d of_i(1.0, 0.0), of_j(0.0, 1.0);
             if (upright) {
                 const bool weak_i = closeness(0, 0) < weak, weak_j = closeness(1, 1) < weak;
@@ -337,6 +350,9 @@ private:
     /// 0.02 to 0.1 and spacings of 0.25 to 0.5 [1].
     static constexpr double flat = 0.4, held = 0.05;
     static constexpr double flat_of_ovals = 0.1;  ///< the same of sections that are not round
+    /// Where there are stations beside a place, or valleys that slant, there are until these bounds are passed by a factor:
+    /// fibres come to rest elsewhere on one contact than on several, and passes would go to and fro between both.
+    static constexpr double stay = 1.25, leave = 2.5;
     static constexpr double spacing = valley_spacing,
                             clear = 0.1;  ///< of stations in a valley, and gap beyond which there are none [touching distance]
     static constexpr double near_valley = 2.0;  ///< of a station that stays, across [touching distance]

@@ -33,6 +33,7 @@ struct Zone {
     bool followed = false;   ///< that one is followed to where its fibres are closest
     bool forced = false;     ///< its normal is prescribed by a forced order
     static constexpr std::size_t most_crossings = 4;
+    std::array<bool, most_crossings> slanting{};   ///< where it is followed: the next are along neither fibre
     std::array<double, most_crossings> valleys{};  ///< where it is followed: directions in the plane of both arc lengths in which
                                                    ///< its fibres stay closest, of each of its crossings [radian]
     bool settled = false;                          ///< its stations are those of crossings that are followed

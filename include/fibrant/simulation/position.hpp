@@ -47,14 +47,19 @@ struct Position {
     }
 
     /// An attempt has failed: the other way of finding places is tried before anything else is, once at a size of increment.
-    /// Where that fails too the first one is taken up again. @returns whether the same increment is to be tried
-    bool try_other_places(contact::Places places) {
-        if (places != contact::Places::as_needed) return false;
-        following = !following;
+    /// Where that fails too the first one is taken up again. What would be the same attempt once more is none.
+    /// @param state   last accepted one
+    /// @param anew    the next attempt differs in any case
+    /// @returns whether the same increment is to be tried
+    template <class Mesh, class Contacts>
+    bool try_other_places(const Mesh& mesh, const Vector& state, Contacts& contacts, bool anew) {
+        if (contacts.parameters().places != contact::Places::as_needed) return false;
         const std::pair<Index, double> now{accepted, fraction};
-        if (tried == now) return false;
+        const bool again = tried != now;
+        if (again && !anew && !contacts.places().matters(mesh, state, contacts.zones())) return false;
         tried = now;
-        return true;
+        contacts.places().follow(following = !following);
+        return again;
     }
 
     /// Over an increment as the stage says it, >= 1: gaps are limited to as much more, contact is as much softer, and damping

@@ -203,12 +203,10 @@ private:
             ++report.rejected_increments, ++increment.cuts, astray += attempt.astray ? 1 : 0;
             gave_up(FailedAttempt{position_.accepted + 1, stage.name, increment.cuts, position_.fraction, position_.damping,
                                   attempt.counts.newton, attempt.reason, core::seconds_since(start)});
+            const bool again = touching && !stage.forced_orders && !position_.calming.resting &&
+                               position_.try_other_places(mesh_, state_, contacts_, attempt.astray && astray == 1);
             contacts_.restore(), equilibrium_.restore();
-            if (touching && !stage.forced_orders && !position_.calming.resting) {
-                const bool again = position_.try_other_places(parameters_.contact.places);
-                contacts_.places().follow(position_.following);
-                if (again) continue;
-            }
+            if (again) continue;
             if (loading.calmed && report.rejected_increments <= loading.most_rejected && stage.damping == 0.0 &&
                 !stage.forced_orders && position_.calming.harder(position_.fraction, Calming::softest(mesh_))) {
                 contacts_.places().follow(position_.following = parameters_.contact.places == contact::Places::as_needed);

@@ -148,6 +148,10 @@ void get_memory(CheckpointReader& file, std::vector<Record>& records, std::vecto
         for (const std::size_t flag : {offsetof(contact::Zone, crossing), offsetof(contact::Zone, followed),
                                        offsetof(contact::Zone, forced), offsetof(contact::Zone, settled)})
             bytes[flag] = static_cast<char>(bytes[flag] != 0);
+        for (std::size_t k = 0; k < contact::Zone::most_crossings; ++k) {
+            char& flag = bytes[offsetof(contact::Zone, slanting) + k];
+            flag = static_cast<char>(flag != 0);
+        }
         std::memcpy(static_cast<void*>(&zone), bytes.data(), bytes.size());
         const proximity::ProximityZone& span = zone.span;
         file.require(known(span.fibre_i) && known(span.fibre_j) && zone.stiffness >= 0.0 && !std::isnan(zone.deepest));
