@@ -72,7 +72,7 @@ refused interlock levels.column_spacing=0.1 levels.column_spacing
 refused chain_mail ends.kind=periodic ends.kind
 refused cell_plain levels.columns=3 levels.columns
 refused from_csv file.path=nowhere.csv nowhere.csv
-refused knit_plain weft_knit.loop_height=0.41 "weft_knit.wale_spacing, course_spacing, loop_height"
+refused knit_plain weft_knit.loop_height=0.41 "weft_knit.loop_height = 0.41, but it must be >= "
 refused stitched stitched.row_spacing=0.7 "distance of thread"
 refused stitched stitched.sideways=0 "comes apart"
 exit 0

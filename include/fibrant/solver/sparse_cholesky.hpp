@@ -56,8 +56,8 @@ private:
     void assemble(const System& system) {
         if constexpr (assembly::AssembledSystem<System>) {
             system.assemble(work_->a);
-            if (work_->order.size() != work_->a.cols()) find_order();
-            sort();
+            if (work_->order.size() != work_->a.cols()) find_order(*work_);
+            sort(*work_);
         } else {
             // Contact elements that come to carry force add terms; the pattern is that of the system alone, so that the
             // bits do not depend on what was solved before.
@@ -66,14 +66,16 @@ private:
             const bool same = now == work_->terms;
             if (!same) work_->terms = std::move(now);
             work_->terms.fill(system, work_->a);
-            if (!same) find_order();
-            sort();
+            if (!same) find_order(*work_);
+            sort(*work_);
             if (!same) work_->factor.analyzePattern(work_->sorted);
         }
     }
-    /// Minimum degree of vectors, not of unknowns: their graph is a ninth of the matrix, and contact changes it often.
-    void find_order() {
-        const SparseMatrix& a = work_->a;
+    /// Minimum degree of vectors, not of unknowns: their graph is a ninth of the matrix, and contact changes it often. A
+    /// template, so that a program without this solver does not compile it.
+    template <class Own>
+    static void find_order(Own& work) {
+        const SparseMatrix& a = work.a;
         const Index vectors = a.cols() / 3;
         std::vector<int> starts{0}, rows, last(core::at(vectors), -1);
         for (int v = 0; v < vectors; ++v) {
@@ -90,13 +92,15 @@ private:
         const Eigen::Map<const SparseMatrix> graph(vectors, vectors, core::count(rows), starts.data(), rows.data(), ones.data());
         Permutation order;
         Eigen::AMDOrdering<int>()(SparseMatrix(graph).selfadjointView<Eigen::Lower>(), order);
-        work_->order.resize(a.cols());
+        work.order.resize(a.cols());
         for (int place = 0; place < vectors; ++place)
-            for (int c = 0; c < 3; ++c) work_->order.indices()[3 * order.indices()[place] + c] = 3 * place + c;
+            for (int c = 0; c < 3; ++c) work.order.indices()[3 * order.indices()[place] + c] = 3 * place + c;
     }
-    void sort() {
-        work_->sorted.resize(work_->a.rows(), work_->a.cols());
-        work_->sorted.selfadjointView<Eigen::Lower>() = work_->a.selfadjointView<Eigen::Lower>().twistedBy(work_->order);
+    template <class Own>
+    static void sort(Own& work) {
+        work.sorted.resize(work.a.rows(), work.a.cols());
+        work.sorted.template selfadjointView<Eigen::Lower>() =
+            work.a.template selfadjointView<Eigen::Lower>().twistedBy(work.order);
     }
 
     /// x = L^-T |D|^-1 L^-1 b, or b scaled by the diagonal where there is no factor.
