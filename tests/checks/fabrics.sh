@@ -34,7 +34,8 @@ while read -r name sets; do
   fi
   set --
   for one in $base $sets; do set -- "$@" --set "$one"; done
-  (ulimit -t "$limit"; exec "$program" "$start" --output "$out/$name" --threads 1 --quiet "$@" > "$out/$name.said" 2>&1 < /dev/null)
+  (ulimit -t "$limit"
+   exec "$program" "$start" --output "$out/$name" --threads 1 --quiet "$@" > "$out/$name.said" 2>&1 < /dev/null)
   status=$?
   case $name in refused_*) expected=2 ;; *) expected=0 ;; esac
   [ $status -eq $expected ] && echo "$name" >> "$out/clean"

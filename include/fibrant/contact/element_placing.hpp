@@ -43,7 +43,7 @@ struct ElementPlacing {
     /// Where both forces of an element act, and from where its slip counts.
     void meet(Element& element, const Zone& zone, const Vector& state, const PairTangents& tangents, const Vector& end,
               const Vector& accepted) const {
-        find_meeting_point(mesh, state, tangents, element), see_directions(mesh, state, element);
+        find_meeting_point(mesh, state, tangents, element), see_directions(tangents, element);
         count_from(mesh, rule, law, element, end, &end == &state ? tangents : pair_tangents(mesh, end, element), accepted,
                    zone.unseen);
     }

@@ -53,14 +53,13 @@ void see_lengths([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] st
     }
 }
 /// Sets the directions of the fibres in the tangent plane, if its law asks for them.
+/// @param tangents  of the element
 template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
-void see_directions([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] const Vector& state,
+void see_directions([[maybe_unused]] const PairTangents& tangents,
                     [[maybe_unused]] ContactElement<B, Normal, Friction>& element) {
     if constexpr (law::SeeingFriction<Friction>) {
-        element.friction.seen.along_i =
-            TangentPlane(contact_tangent(mesh, state, element.fibre_i, element.u_i).normalized(), element.normal).along;
-        element.friction.seen.along_j =
-            TangentPlane(contact_tangent(mesh, state, element.fibre_j, element.u_j).normalized(), element.normal).along;
+        element.friction.seen.along_i = TangentPlane(tangents.i, element.normal).along;
+        element.friction.seen.along_j = TangentPlane(tangents.j, element.normal).along;
     }
 }
 template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
