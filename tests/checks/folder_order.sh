@@ -26,9 +26,8 @@ find fibrant -name '*.hpp' | sort | xargs grep -nE '^[[:space:]]*#[[:space:]]*in
 
 for folder in $order; do
   [ -d "fibrant/$folder" ] || continue
-  find "fibrant/$folder" -name '*.hpp' | sort | while read -r header; do
-    grep -q '__has_include' "$header" || grep -qxF "#include <$header>" "fibrant/$folder.hpp" || echo "fibrant/$folder.hpp does not include $header"
-  done | { ! grep .; } || failed=1
+  find "fibrant/$folder" -name '*.hpp' | sort | xargs -r grep -L '__has_include' | sed 's/.*/#include <&>/' |
+    grep -vxF -f "fibrant/$folder.hpp" | sed "s|#include <\(.*\)>|fibrant/$folder.hpp does not include \1|" | { ! grep .; } || failed=1
 done
 
 # tsort takes pairs and names the members of a loop.

@@ -9,15 +9,24 @@ cd "$1"
 failed=0
 complain() { echo "$1"; failed=1; }
 
-for header in $(find fibrant -name '*.hpp' | sort); do
-  [ "$(head -n 1 "$header")" = '// SPDX-License-Identifier: MIT' ] || complain "$header: the first line is not the SPDX licence tag"
-  [ "$(sed -n 2p "$header")" = '#pragma once' ] || complain "$header: the second line is not #pragma once"
-  grep -q '^/// @file ' "$header" || complain "$header: no /// @file sentence"
-  size=$(wc -c < "$header")
-  [ "$size" -le 24000 ] || complain "$header: $size bytes, but at most 24000"
-  case $header in fibrant/observe/*) continue ;; esac
-  found=$(grep -nE 'std::(cout|cerr|clog)|printf *\(|\bputs *\(' "$header") && complain "$header prints: $found"
-done
+find fibrant -name '*.hpp' | sort | xargs awk '
+  function complain(what) { print what; bad = 1 }
+  function close_file() {
+    if (header == "") return
+    if (!guarded) complain(header ": the second line is not #pragma once")
+    if (!told) complain(header ": no /// @file sentence")
+  }
+  FNR == 1 {
+    close_file()
+    header = FILENAME; guarded = told = 0
+    if ($0 != "// SPDX-License-Identifier: MIT") complain(header ": the first line is not the SPDX licence tag")
+  }
+  FNR == 2 && $0 == "#pragma once" { guarded = 1 }
+  /^\/\/\/ @file / { told = 1 }
+  header !~ /^fibrant\/observe\// && /std::(cout|cerr|clog)|printf *\(|(^|[^A-Za-z0-9_])puts *\(/ { complain(header " prints: " FNR ":" $0) }
+  END { close_file(); exit bad }' || failed=1
+find fibrant -name '*.hpp' | sort | xargs wc -c |
+  awk '$2 != "total" && $1 > 24000 { print $2 ": " $1 " bytes, but at most 24000"; bad = 1 } END { exit bad }' || failed=1
 
 # Standard headers have no suffix; Eigen's own are used everywhere, its bindings to other libraries are not.
 for name in $(find fibrant -name '*.hpp' | sort | xargs sed -nE 's/^[[:space:]]*#[[:space:]]*include[[:space:]]*<([^>]*)>.*/\1/p' |

@@ -5,8 +5,14 @@
 # usage: vocabulary.sh INCLUDE_FOLDER
 set -eu
 cd "$1"
-find fibrant -name '*.hpp' ! -path 'fibrant/compositions/*' | sort | while read -r header; do
-  grep -n '' "$header" | { [ "$header" != fibrant/compositions.hpp ] && cat || grep -v '#include' || true; } |
-    sed -E 's/([a-z0-9])([A-Z])/\1 \2/g; s/[_0-9]/ /g' |
-    grep -iwE '(weave|woven|warp|weft|tow|resin|knot)s?' | sed "s|^|$header: |" || true
-done | { ! grep .; }
+find fibrant -name '*.hpp' ! -path 'fibrant/compositions/*' | sort | xargs awk '
+  FILENAME == "fibrant/compositions.hpp" && /#include/ { next }
+  {
+    # Whole names, and the parts of those that capitals begin.
+    words = $0 " "
+    gsub(/[A-Z]/, " &", words)
+    words = " " $0 " " words
+    gsub(/[^A-Za-z]/, " ", words)
+    if (tolower(words) ~ / (weave|woven|warp|weft|tow|resin|knot)s? /) { print FILENAME ":" FNR ": " $0; bad = 1 }
+  }
+  END { exit bad }'
