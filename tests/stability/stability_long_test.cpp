@@ -2,6 +2,7 @@
 // Sweeps over decades of slenderness, stiffness and penetration, friction whose history must not depend on how it is followed,
 // and a thousand random scenes. Prints a line a case, as CSV. The decades of a penalty that stays as it is are in
 // stability_test.cpp.
+#include <stability/cycles.hpp>
 #include <stability/random_scenes.hpp>
 #include <stability/sweeps.hpp>
 
@@ -95,6 +96,10 @@ TEST_CASE("what friction has done does not depend on how finely it was followed"
 
 TEST_CASE("a thousand random small scenes neither crash nor leave a fibre in another one without saying so") {
     check_random_scenes(1, 1000);
+}
+
+TEST_CASE("a fibre that goes there and back with friction, deep in the other one, loses no work either") {
+    check_resolved_cycle(1e-2, 2e-6);
 }
 
 }  // namespace stability_long_test
