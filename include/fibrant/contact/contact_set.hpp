@@ -321,7 +321,8 @@ private:
                     station_pairs(*mesh_, state, zone.span, zone.crossing, parameters_.spacing, pairs,
                                   [&](const auto& see) { memory.visit_places(zone.span, see); });
                     zone.first = core::count(made[core::at(b)]);
-                    if (!pairs.empty() && places_.follows(pairs.back(), zone)) places_.settle(*mesh_, state, zone, memory, pairs);
+                    if (!pairs.empty() && places_.follows(pairs.back(), zone))
+                        ValleyStations<B>::settle(*mesh_, state, zone, memory, pairs);
                     add_watched(zone, pairs);
                     for (const StationPair& pair : pairs) {
                         Element element = make(zone, z, pair);
