@@ -49,10 +49,6 @@ public:
     /// Crossings that are followed go on as one contact element until bent around each other so much that the angle between them
     /// is, but for this part of what it is elsewhere, that of fibres side by side [1].
     static double angle_share(const Zone& zone) noexcept { return zone.followed ? 0.2 : 1.0; }
-    /// Of a contact element, or of a pair of stations.
-    static bool follows(const auto& pair, const Zone& zone) noexcept {
-        return zone.followed && !zone.forced && pair.crossing && !pair.end_i && !pair.end_j;
-    }
     bool none() const noexcept { return held_.empty(); }
 
     /// Gives each element that is followed a place.
@@ -61,7 +57,7 @@ public:
         std::int32_t count = 0;
         held_.clear();
         for (auto& element : elements) {
-            element.place = follows(element, zones[core::at(element.zone)]) ? count++ : -1;
+            element.place = is_followed(element, zones[core::at(element.zone)]) ? count++ : -1;
             if (element.place >= 0) held_.emplace_back();
         }
         if (count > 0) accepted_ = accepted;

@@ -5,14 +5,22 @@
 #include <fibrant/contact/closest_places.hpp>
 #include <fibrant/contact/slid_pair.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
+#include <fibrant/core/parallel.hpp>
 #include <fibrant/core/symmetric_eigen.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace fibrant::contact {
+
+/// Whether a contact element, or a pair of stations, is followed.
+bool is_followed(const auto& pair, const Zone& zone) noexcept {
+    return zone.followed && !zone.forced && pair.crossing && !pair.end_i && !pair.end_j;
+}
 
 /// Stations of zones whose crossings are followed.
 template <class B>
@@ -26,26 +34,56 @@ public:
                        std::vector<StationPair>& pairs) {
         const StationPair crossing = pairs.back();
         pairs.pop_back();
-        std::vector<Eigen::Vector2d> known;
-        if (zone.settled) memory.visit_places(zone.span, [&](double u_i, double u_j) { known.emplace_back(u_i, u_j); });
-        zone.settled = true;
         const std::size_t first = pairs.size();
-        const std::vector<Eigen::Vector2d> places = closest_places(mesh, state, zone.span, {crossing.u_i, crossing.u_j});
-        const auto nearest = [&](const Eigen::Vector2d& to) {
-            const auto nearer = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-                return arc_apart(mesh, zone.span, a, to) < arc_apart(mesh, zone.span, b, to);
-            };
-            return std::min_element(places.begin(), places.end(), nearer) - places.begin();
-        };
-        for (std::size_t place = 0; place < places.size(); ++place) {
-            std::vector<Eigen::Vector2d> own;
-            for (const Eigen::Vector2d& one : known)
-                if (nearest(one) == static_cast<std::ptrdiff_t>(place)) own.push_back(one);
-            StationPair middle = crossing;
-            middle.u_i = places[place][0], middle.u_j = places[place][1];
-            settle_one(mesh, state, zone, places, place, own, middle, pairs);
-        }
+        const std::vector<Place> places = places_of(mesh, state, zone, memory, crossing);
+        zone.settled = true;
+        for (std::size_t place = 0; place < places.size(); ++place) settle_one(mesh, state, zone, places, place, pairs);
         sort_along(pairs, first);
+    }
+
+    /// Zones of the same two fibres that have found the same place, nearer than stations are, become one: stations that stand
+    /// twice push twice. A search tells zones apart where fibres turn from along each other to against, as a loop does beside
+    /// what it hangs in.
+    /// @param zones  sorted by fibres
+    template <class Memory>
+    static void join(const beam::Mesh<B>& mesh, const Vector& state, const ContactSpacing& points, const Memory& memory,
+                     std::vector<Zone>& zones) {
+        const auto may = [](const Zone& zone) { return zone.followed && zone.crossing && !zone.forced; };
+        std::vector<std::span<Zone>> several;  // of two fibres each
+        for (std::size_t first = 0, last = 0; first < zones.size(); first = last) {
+            const proximity::ProximityZone& span = zones[first].span;
+            Index count = 0;
+            for (; last < zones.size() && zones[last].span.fibre_i == span.fibre_i && zones[last].span.fibre_j == span.fibre_j;
+                 ++last)
+                count += may(zones[last]) ? 1 : 0;
+            if (count > 1) several.push_back(std::span(zones).subspan(first, last - first));
+        }
+        core::parallel_for(
+            core::count(several),
+            [&](Index k) {
+                std::vector<StationPair> pairs;
+                const auto found = [&](const Zone& zone) {
+                    pairs.clear();
+                    if (may(zone)) station_pairs(mesh, state, zone.span, true, points, pairs);
+                    return !pairs.empty() && is_followed(pairs.back(), zone) ? places_of(mesh, state, zone, memory, pairs.back())
+                                                                             : std::vector<Place>();
+                };
+                const std::span<Zone> own = several[core::at(k)];
+                std::vector<std::vector<Place>> places;
+                for (const Zone& zone : own) places.push_back(found(zone));
+                for (std::size_t a = 0; a < own.size(); ++a)
+                    for (std::size_t b = a + 1; b < own.size(); ++b) {
+                        if (!meet(mesh, own[a].span, places[a], places[b])) continue;
+                        const Zone one = both(mesh, own[a], own[b]);
+                        std::vector<Place> all = found(one);
+                        if (!has_all(mesh, one.span, all, places[a]) || !has_all(mesh, one.span, all, places[b])) continue;
+                        own[a] = one, places[a].swap(all);
+                        own[b].followed = false, own[b].span.fibre_i = -1, places[b].clear();  // is no more
+                        b = a;                                                                 // with what both have found
+                    }
+            },
+            core::light_items);
+        if (!several.empty()) std::erase_if(zones, [](const Zone& zone) { return zone.span.fibre_i < 0; });
     }
 
     /// How a station slides.
@@ -72,21 +110,114 @@ private:
     /// How a place slides: freely, on one fibre alone, not at all, or across one of its zone's valleys, from this number on.
     enum : std::int8_t { free, on_i, on_j, fixed, across_valley };
 
+    /// A closest place of a zone.
+    struct Place {
+        Eigen::Vector2d closest;             ///< of the centrelines
+        StationPair middle;                  ///< of the stations that it had, or where it has slid to
+        std::vector<Eigen::Vector2d> known;  ///< stations that it had
+        SlidPair seen;
+        Vec3 normal;
+    };
+    template <class Memory>
+    static std::vector<Place> places_of(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Memory& memory,
+                                        const StationPair& crossing) {
+        const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
+        std::vector<Place> places;
+        for (const Eigen::Vector2d& place : closest_places(mesh, state, zone.span, {crossing.u_i, crossing.u_j}, zone.both_ways))
+            places.push_back({place, crossing, {}, {}, Vec3::Zero()});
+        const auto add = [&](double u_i, double u_j) {
+            const Eigen::Vector2d to(u_i, u_j);
+            const auto nearer = [&](const Place& a, const Place& b) {
+                return arc_apart(mesh, zone.span, a.closest, to) < arc_apart(mesh, zone.span, b.closest, to);
+            };
+            std::min_element(places.begin(), places.end(), nearer)->known.push_back(to);
+        };
+        if (zone.settled) memory.visit_places(zone.span, add);
+        for (Place& place : places) {
+            StationPair& middle = place.middle;
+            middle.u_i = place.closest[0], middle.u_j = place.closest[1];
+            if (!place.known.empty()) middle.u_i = median(place.known, 0), middle.u_j = median(place.known, 1);
+            place.normal = unit_or(pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j).centres, Vec3::UnitZ());
+            place.seen = slid(mesh, state, i, j, {Slide::nowhere, {}}, middle, place.normal);
+            if (place.known.size() < 3 || least(place.seen.closeness) > held)
+                place.seen = slid(mesh, state, i, j, {}, middle, place.normal);
+        }
+        return places;
+    }
+    /// Whether two zones have a place in common.
+    static bool meet(const beam::Mesh<B>& mesh, const proximity::ProximityZone& span, const std::vector<Place>& a,
+                     const std::vector<Place>& b) {
+        const double near = spacing * (mesh.fibre(span.fibre_i).section.radius() + mesh.fibre(span.fibre_j).section.radius());
+        for (const Place& one : a)
+            for (const Place& other : b)
+                if (arc_apart(mesh, span, {one.middle.u_i, one.middle.u_j}, {other.middle.u_i, other.middle.u_j}) < near)
+                    return true;
+        return false;
+    }
+
+    /// The nearer one of two zones, which takes in the other one.
+    static Zone both(const beam::Mesh<B>& mesh, const Zone& a, const Zone& b) {
+        Zone zone = a.span.distance <= b.span.distance ? a : b;
+        const Zone& other = a.span.distance <= b.span.distance ? b : a;
+        proximity::ProximityZone &to = zone.span, from = other.span;
+        // Around closed fibres to where the nearer one is; of one fibre with itself the parts that are there.
+        const auto turned = [&](Index fibre, double u, double near) {
+            const double period = static_cast<double>(mesh.fibre(fibre).elements);
+            return mesh.fibre(fibre).closed ? near + std::remainder(u - near, period) - u : 0.0;
+        };
+        const auto away = [&] {
+            return std::abs(from.closest_i + turned(from.fibre_i, from.closest_i, to.closest_i) - to.closest_i) +
+                   std::abs(from.closest_j + turned(from.fibre_j, from.closest_j, to.closest_j) - to.closest_j);
+        };
+        const auto swap_parts = [&] {
+            std::swap(from.a_i, from.a_j), std::swap(from.b_i, from.b_j), std::swap(from.closest_i, from.closest_j);
+            if (from.a_i > from.b_i) std::swap(from.a_i, from.b_i), std::swap(from.a_j, from.b_j);
+        };
+        if (to.fibre_i == to.fibre_j) {
+            const double straight = away();
+            swap_parts();
+            if (away() >= straight) swap_parts();
+        }
+        const bool against = to.b_j < to.a_j, other_against = from.b_j < from.a_j;
+        const double by_i = turned(from.fibre_i, from.closest_i, to.closest_i),
+                     by_j = turned(from.fibre_j, from.closest_j, to.closest_j);
+        to.a_i = std::min(to.a_i, from.a_i + by_i), to.b_i = std::max(to.b_i, from.b_i + by_i);
+        const double low = std::min({to.a_j, to.b_j, from.a_j + by_j, from.b_j + by_j}),
+                     high = std::max({to.a_j, to.b_j, from.a_j + by_j, from.b_j + by_j});
+        to.a_j = against ? high : low, to.b_j = against ? low : high;
+        zone.both_ways = a.both_ways || b.both_ways || against != other_against;
+        if (!zone.settled && other.settled) zone.slanting = other.slanting;
+        zone.settled = a.settled || b.settled;
+        zone.stiffness = std::max(a.stiffness, b.stiffness), zone.deepest = std::max(a.deepest, b.deepest);
+        zone.penetration_factor = std::min(a.penetration_factor, b.penetration_factor);
+        zone.narrowed = std::min(a.narrowed, b.narrowed), zone.unseen = std::max(a.unseen, b.unseen);
+        return zone;
+    }
+
+    /// Whether a zone has the places of one that it takes in, but for what counts as one place: none is to go through unseen.
+    static bool has_all(const beam::Mesh<B>& mesh, const proximity::ProximityZone& span, const std::vector<Place>& all,
+                        const std::vector<Place>& some) {
+        const double touching = mesh.fibre(span.fibre_i).section.radius() + mesh.fibre(span.fibre_j).section.radius();
+        return std::all_of(some.begin(), some.end(), [&](const Place& one) {
+            return std::any_of(all.begin(), all.end(),
+                               [&](const Place& other) { return arc_apart(mesh, span, one.closest, other.closest) < touching; });
+        });
+    }
+
     /// Stations of one closest place. Where the fibres are nearly as close beside it, as fibres are that hang in each other at a
     /// slant or are bent around each other by a touching distance, they touch along a line: then there are stations along this
     /// valley too. These slide across it only, and stay where they are from one detection to the next, so that no contact hops;
     /// what touches in two places after it did in one does so on stations that were there before.
     /// @param places  all closest places of the zone, and which of them it is: stations are of the nearest one
-    /// @param known   stations that it had
-    static void settle_one(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const std::vector<Eigen::Vector2d>& places,
-                           std::size_t place, const std::vector<Eigen::Vector2d>& known, StationPair middle,
-                           std::vector<StationPair>& pairs) {
+    static void settle_one(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const std::vector<Place>& places,
+                           std::size_t place, std::vector<StationPair>& pairs) {
         const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
-        if (!known.empty()) middle.u_i = median(known, 0), middle.u_j = median(known, 1);
         const double touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
-        Vec3 normal = unit_or(pair_geometry(mesh, state, i, j, middle.u_i, middle.u_j).centres, Vec3::UnitZ());
-        SlidPair seen = slid(mesh, state, i, j, {Slide::nowhere, {}}, middle, normal);
-        if (known.size() < 3 || least(seen.closeness) > held) seen = slid(mesh, state, i, j, {}, middle, normal);
+        const Place& own_place = places[place];
+        StationPair middle = own_place.middle;
+        const std::vector<Eigen::Vector2d>& known = own_place.known;
+        const SlidPair& seen = own_place.seen;
+        const Vec3& normal = own_place.normal;
         const PairGeometry& pair = seen.pair;
         const Eigen::Matrix2d& closeness = seen.closeness;
         // Where fibres come close again further on, or lie along each other in all of the zone, they touch there too.
@@ -105,9 +236,9 @@ private:
             std::max(most_beside, static_cast<int>(std::min(longest / (spacing * touching), 1e6)));  // once around closed fibres
         const auto of_another = [&](const StationPair& at) {
             const Eigen::Vector2d here(at.u_i, at.u_j);
-            const double own = arc_apart(mesh, zone.span, places[place], here) + 0.25 * spacing * touching;
+            const double own = arc_apart(mesh, zone.span, places[place].closest, here) + 0.25 * spacing * touching;
             for (std::size_t k = 0; k < places.size(); ++k)
-                if (k != place && arc_apart(mesh, zone.span, places[k], here) < own) return true;
+                if (k != place && arc_apart(mesh, zone.span, places[k].closest, here) < own) return true;
             return false;
         };
         if (place > 0 && of_another(middle)) return;  // it slid there
