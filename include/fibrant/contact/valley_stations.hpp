@@ -122,17 +122,18 @@ private:
     static std::vector<Place> places_of(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Memory& memory,
                                         const StationPair& crossing) {
         const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
+        std::vector<Eigen::Vector2d> known;
+        if (zone.settled) memory.visit_places(zone.span, [&](double u_i, double u_j) { known.emplace_back(u_i, u_j); });
         std::vector<Place> places;
-        for (const Eigen::Vector2d& place : closest_places(mesh, state, zone.span, {crossing.u_i, crossing.u_j}, zone.both_ways))
+        for (const Eigen::Vector2d& place :
+             closest_places(mesh, state, zone.span, {crossing.u_i, crossing.u_j}, zone.joined, known))
             places.push_back({place, crossing, {}, {}, Vec3::Zero()});
-        const auto add = [&](double u_i, double u_j) {
-            const Eigen::Vector2d to(u_i, u_j);
+        for (const Eigen::Vector2d& to : known) {
             const auto nearer = [&](const Place& a, const Place& b) {
                 return arc_apart(mesh, zone.span, a.closest, to) < arc_apart(mesh, zone.span, b.closest, to);
             };
             std::min_element(places.begin(), places.end(), nearer)->known.push_back(to);
-        };
-        if (zone.settled) memory.visit_places(zone.span, add);
+        }
         for (Place& place : places) {
             StationPair& middle = place.middle;
             middle.u_i = place.closest[0], middle.u_j = place.closest[1];
@@ -178,14 +179,14 @@ private:
             swap_parts();
             if (away() >= straight) swap_parts();
         }
-        const bool against = to.b_j < to.a_j, other_against = from.b_j < from.a_j;
+        const bool against = to.b_j < to.a_j;
         const double by_i = turned(from.fibre_i, from.closest_i, to.closest_i),
                      by_j = turned(from.fibre_j, from.closest_j, to.closest_j);
         to.a_i = std::min(to.a_i, from.a_i + by_i), to.b_i = std::max(to.b_i, from.b_i + by_i);
         const double low = std::min({to.a_j, to.b_j, from.a_j + by_j, from.b_j + by_j}),
                      high = std::max({to.a_j, to.b_j, from.a_j + by_j, from.b_j + by_j});
         to.a_j = against ? high : low, to.b_j = against ? low : high;
-        zone.both_ways = a.both_ways || b.both_ways || against != other_against;
+        zone.joined = true;
         if (!zone.settled && other.settled) zone.slanting = other.slanting;
         zone.settled = a.settled || b.settled;
         zone.stiffness = std::max(a.stiffness, b.stiffness), zone.deepest = std::max(a.deepest, b.deepest);
@@ -194,13 +195,18 @@ private:
         return zone;
     }
 
-    /// Whether a zone has the places of one that it takes in, but for what counts as one place: none is to go through unseen.
+    /// Whether a zone has the places of one that it takes in, but for what counts as one place, and what is too far for any: none
+    /// is to go through unseen.
     static bool has_all(const beam::Mesh<B>& mesh, const proximity::ProximityZone& span, const std::vector<Place>& all,
                         const std::vector<Place>& some) {
         const double touching = mesh.fibre(span.fibre_i).section.radius() + mesh.fibre(span.fibre_j).section.radius();
         return std::all_of(some.begin(), some.end(), [&](const Place& one) {
-            return std::any_of(all.begin(), all.end(),
-                               [&](const Place& other) { return arc_apart(mesh, span, one.closest, other.closest) < touching; });
+            const Eigen::Vector2d at(one.middle.u_i, one.middle.u_j);
+            return one.seen.gap > (furthest_crossing - 1.0) * touching ||
+                   std::any_of(all.begin(), all.end(), [&](const Place& other) {
+                       return arc_apart(mesh, span, at, {other.middle.u_i, other.middle.u_j}) < touching ||
+                              arc_apart(mesh, span, at, other.closest) < touching;
+                   });
         });
     }
 
