@@ -38,5 +38,6 @@
 #include <fibrant/contact/tool_contacts.hpp>
 #include <fibrant/contact/tool_element.hpp>
 #include <fibrant/contact/tool_place.hpp>
+#include <fibrant/contact/valley_stations.hpp>
 #include <fibrant/contact/watched_places.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>

@@ -595,6 +595,24 @@ TEST_CASE("a run that does not converge reports why, with figures, and keeps the
     CHECK(simulator.amplitude("load") == 0.0);
 }
 
+TEST_CASE("where Newton ends because the tangent is indefinite, the report says so, and which fibre gives way where") {
+    const Rod rod;  // clamped, pressed along itself by several times what buckles it, and no iterations to find a way out
+    const double critical = std::pow(0.5 * std::numbers::pi / rod.length, 2) * rod.bending_stiffness();
+    const auto pressed = [&](double times) {
+        scene::Assembly assembly = rod.clamped();
+        assembly.apply(scene::DeadForce{scene::last_end(0), {}, Vec3(1e-3 * critical, 0.0, -times * critical), "load"});
+        simulation::ModelParameters<Smooth> parameters = test::model_parameters<Smooth>(rod.radius);
+        parameters.iteration.newton_limit = 3, parameters.iteration.mixed = false;
+        Simulator<Smooth> simulator(assembly, parameters);
+        return simulator.run({.increments = 1, .smallest_fraction = 0.9});
+    };
+    const Report report = pressed(4.0);
+    INFO(report.reason);
+    CHECK(!report.converged);
+    CHECK(report.reason.find("; the tangent was not positive definite in ") != std::string::npos);
+    CHECK(report.reason.find(" of 3 iterations, fibre 0 moves most, at 1 of its length") != std::string::npos);
+}
+
 TEST_CASE("a fibre that nothing holds cannot carry a load: a report, not an exception") {
     Rod rod;
     scene::Assembly assembly;

@@ -211,6 +211,26 @@ TEST_CASE(
     CHECK(problem.asked.back().back().shift < 0.1);
 }
 
+TEST_CASE("of iterations that did not come to an end, it is told how many had a tangent that was not positive definite") {
+    const auto few = [](const Vec3& from) {
+        Wells problem;
+        Untouched contacts;
+        Definite linear{&problem};
+        solver::IterationParameters parameters;
+        parameters.mixed = false, parameters.newton_limit = 2;
+        core::StageClock clock;
+        solver::Newton<Wells, Untouched, Definite> newton(problem, contacts, linear, parameters, 1.0, clock);
+        solver::IterationCounts counts;
+        Vector x = from;
+        return newton.solve(x, 1e-12, x, std::numeric_limits<double>::infinity(), counts);
+    };
+    const solver::NewtonReport between = few({0.01, 0.01, 0.01}), within = few({2.0, 2.0, 2.0});
+    REQUIRE(between.status == solver::NewtonStatus::too_many);
+    CHECK(between.indefinite == 2);
+    REQUIRE(within.status == solver::NewtonStatus::too_many);
+    CHECK(within.indefinite == 0);
+}
+
 TEST_CASE(
     "what the first step of a prescribed motion may leave over is a part of the forces, not of what the motion does to an end "
     "alone") {

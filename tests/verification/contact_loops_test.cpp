@@ -67,6 +67,44 @@ TEST_CASE("hooks that are pulled at a slant hold where the valley between them t
     CHECK(hooked.report.counts.newton < 500);
 }
 
+TEST_CASE("a loop that turns back along what it lies over presses on it once, though it runs along it and against it there") {
+    const double r = 0.05, bend = 3.0 * r, leg = 8.0 * r, quarter = 0.5 * std::numbers::pi * bend;
+    scene::Assembly assembly;
+    scene::FibreSpecification fibre;
+    fibre.section = scene::circular(r), fibre.material = {1e4, 0.3}, fibre.elements = 20;
+    fibre.from = Vec3(-10.0 * r, 0.0, 0.0), fibre.to = Vec3(20.0 * r, 0.0, 0.0), fibre.director = Vec3::UnitZ();
+    const Index straight = assembly.add(fibre);
+    fibre.curve = [=](double t) {
+        const double s = (2.0 * t - 1.0) * (quarter + leg), beyond = std::max(0.0, std::abs(s) - quarter),
+                     turn = std::clamp(s / bend, -0.5 * std::numbers::pi, 0.5 * std::numbers::pi);
+        return Vec3(bend * (1.0 - std::cos(turn)) + beyond, bend * std::sin(turn), 2.0 * r);
+    };
+    const Index loop = assembly.add(fibre);
+    for (const Index of : {straight, loop})
+        for (const scene::Station& end : {scene::first_end(of), scene::last_end(of)})
+            assembly.clamp(end, (of == loop ? -0.2 * r : 0.0) * Vec3::UnitZ());
+    simulation::ModelParameters<test::Smooth> parameters;
+    parameters.normal.regularisation_depth = 1e-3 * r;
+    parameters.contact.stiffness.allowed_penetration = 1e-2 * r;
+    parameters.contact.places = contact::Places::followed;
+    simulation::Simulator<test::Smooth> simulator(assembly, parameters);
+    const simulation::Report report = simulator.run({.increments = 2});
+    INFO(report.reason);
+    REQUIRE(report.converged);
+    const auto& elements = simulator.contacts().elements();
+    REQUIRE(!elements.empty());
+    const auto& mesh = simulator.mesh();
+    Index twice = 0;
+    for (const auto& one : elements)
+        for (const auto& other : elements) {
+            const double apart = std::max(std::abs(one.u_i - other.u_i) * mesh.fibre(straight).element_length,
+                                          std::abs(one.u_j - other.u_j) * mesh.fibre(loop).element_length);
+            twice += &one < &other && apart < 0.1 * r ? 1 : 0;
+        }
+    CHECK(twice == 0);
+    CHECK(report.contact.active >= 1);
+}
+
 TEST_CASE("with places that are renewed outside of Newton hooks do not hold") {
     const Hooked hooked = test::pull_hooks<test::Smooth>({.elements = 20, .increments = 50, .places = contact::Places::renewed});
     CHECK_FALSE((hooked.report.converged && hooked.crossing > 1.5));

@@ -352,6 +352,8 @@ public:
     std::vector<double> greatest_by_fibre(const Vector& step) const {
         return greatest_of_chains(system_.layout(), mesh_->fibre_count(), step);
     }
+    /// The fibre that moves most in a step, and where.
+    MovesMost moves_most(const Vector& step) const { return assembly::moves_most(system_.layout(), mesh_->fibre_count(), step); }
 
 private:
     /// Supports carry forces of the end of a step.

@@ -50,4 +50,28 @@ inline std::vector<double> greatest_of_chains(const scene::DofLayout& layout, In
     return greatest;
 }
 
+/// Where some chain moves most in a step.
+struct MovesMost {
+    Index chain = -1;    ///< -1 where nothing moves, or no one knows
+    double along = 0.0;  ///< node over the last one, in [0, 1]
+};
+/// Of the first chains.
+inline MovesMost moves_most(const scene::DofLayout& layout, Index chains, const Vector& step) {
+    MovesMost found;
+    const std::vector<double> greatest = greatest_of_chains(layout, chains, step);
+    const auto chain = std::max_element(greatest.begin(), greatest.end());
+    if (chain == greatest.end() || !(*chain > 0.0)) return found;
+    found.chain = chain - greatest.begin();
+    const scene::Chain& one = layout.chains[core::at(found.chain)];
+    double most = 0.0;
+    scene::for_own_vectors(layout, found.chain, [&](Index v, double length) {
+        const double moved = length * step.segment<3>(3 * v).norm();
+        if (moved <= most) return;
+        most = moved;
+        found.along = static_cast<double>((v - one.first_vector) / one.vectors_per_node) /
+                      static_cast<double>(std::max<Index>(1, one.nodes - 1));
+    });
+    return found;
+}
+
 }  // namespace fibrant::assembly

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace fibrant::contact {
@@ -28,9 +30,12 @@ double arc_apart(const beam::Mesh<B>& mesh, const proximity::ProximityZone& span
 }
 /// Places of a zone where its two fibres are closer than beside, as its centrelines stand, the known one first: what a walk along
 /// the zone finds, a station's spacing at a time.
+/// @param joined    it is two in one: it is walked along and against
+/// @param stations  that it has: of a zone that is two in one, where places are beside those ways
 template <class B>
-std::vector<Eigen::Vector2d> closest_places(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& span,
-                                            const Eigen::Vector2d& known) {
+std::vector<Eigen::Vector2d> closest_places(const beam::Mesh<B>& mesh, const Vector& state, proximity::ProximityZone span,
+                                            const Eigen::Vector2d& known, bool joined = false,
+                                            std::span<const Eigen::Vector2d> stations = {}) {
     const Index i = span.fibre_i, j = span.fibre_j;
     const double touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
     const double h_i = mesh.fibre(i).element_length, h_j = mesh.fibre(j).element_length;
@@ -39,29 +44,37 @@ std::vector<Eigen::Vector2d> closest_places(const beam::Mesh<B>& mesh, const Vec
     const Index steps = static_cast<Index>(length / (valley_spacing * touching));
     if (steps < 3) return places;
     const auto distance = [&](double u_i, double u_j) { return pair_geometry(mesh, state, i, j, u_i, u_j).centres.norm(); };
-    Eigen::Vector2d before = Eigen::Vector2d::Zero();
-    double last = 0.0;
-    bool falling = false;
-    for (Index k = 0; k <= steps; ++k) {
-        const double share = static_cast<double>(k) / static_cast<double>(steps);
-        Eigen::Vector2d here(mesh.wrapped(i, span.a_i + share * (span.b_i - span.a_i)),
-                             mesh.wrapped(j, span.a_j + share * (span.b_j - span.a_j)));
-        follow_along(mesh, state, i, j, Slide{Slide::along, {0.0, 1.0}}, here[0], here[1]);
-        const double now = distance(here[0], here[1]);
-        if (k > 0 && falling && now > last && places.size() < Zone::most_crossings) {
-            Eigen::Vector2d place = before;
-            follow_closest(mesh, state, i, j, place[0], place[1]);
-            const bool self = i == j && mesh.apart(i, place[0], place[1]) * h_i < self_contact_arc(0.5 * touching, h_i);
-            const bool met = std::any_of(places.begin(), places.end(), [&](const Eigen::Vector2d& one) {
-                return arc_apart(mesh, span, one, place) < touching;
-            });
-            // Where the walk saw it: a search that ran off has found another one, or none.
-            if (!self && !met && arc_apart(mesh, span, place, before) < touching &&
-                distance(place[0], place[1]) < furthest_crossing * touching)
-                places.push_back(place);
+    const auto look = [&](const Eigen::Vector2d& near) {
+        if (places.size() >= Zone::most_crossings) return;
+        Eigen::Vector2d place = near;
+        follow_closest(mesh, state, i, j, place[0], place[1]);
+        const bool self = i == j && mesh.apart(i, place[0], place[1]) * h_i < self_contact_arc(0.5 * touching, h_i);
+        const bool met = std::any_of(places.begin(), places.end(),
+                                     [&](const Eigen::Vector2d& one) { return arc_apart(mesh, span, one, place) < touching; });
+        // Where it was seen: a search that ran off has found another one, or none.
+        if (!self && !met && arc_apart(mesh, span, place, near) < touching &&
+            distance(place[0], place[1]) < furthest_crossing * touching)
+            places.push_back(place);
+    };
+    const auto walk = [&] {
+        Eigen::Vector2d before = Eigen::Vector2d::Zero();
+        double last = 0.0;
+        bool falling = false;
+        for (Index k = 0; k <= steps; ++k) {
+            const double share = static_cast<double>(k) / static_cast<double>(steps);
+            Eigen::Vector2d here(mesh.wrapped(i, span.a_i + share * (span.b_i - span.a_i)),
+                                 mesh.wrapped(j, span.a_j + share * (span.b_j - span.a_j)));
+            follow_along(mesh, state, i, j, Slide{Slide::along, {0.0, 1.0}}, here[0], here[1]);
+            const double now = distance(here[0], here[1]);
+            if (k > 0 && falling && now > last) look(before);
+            falling = k > 0 && now < last;
+            last = now, before = here;
         }
-        falling = k > 0 && now < last;
-        last = now, before = here;
+    };
+    walk();
+    if (joined) {
+        std::swap(span.a_j, span.b_j), walk();
+        for (const Eigen::Vector2d& one : stations) look({mesh.wrapped(i, one[0]), mesh.wrapped(j, one[1])});
     }
     return places;
 }

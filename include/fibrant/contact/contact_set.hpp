@@ -76,6 +76,7 @@ public:
     void regenerate(const Vector& state, const Vector& accepted) {
         const Memory last(accepted_.periods(), records(state));
         const Memory& memory = last.records().empty() ? accepted_ : last;
+        ValleyStations<B>::join(*mesh_, acting(state, accepted), parameters_.spacing, memory, zones_);
         generate(state, accepted, memory, acting(state, accepted));
         places_.number(elements_, zones_, accepted);
         for_elements([&](Index k) {
@@ -321,7 +322,8 @@ private:
                     station_pairs(*mesh_, state, zone.span, zone.crossing, parameters_.spacing, pairs,
                                   [&](const auto& see) { memory.visit_places(zone.span, see); });
                     zone.first = core::count(made[core::at(b)]);
-                    if (!pairs.empty() && places_.follows(pairs.back(), zone)) places_.settle(*mesh_, state, zone, memory, pairs);
+                    if (!pairs.empty() && is_followed(pairs.back(), zone))
+                        ValleyStations<B>::settle(*mesh_, state, zone, memory, pairs);
                     add_watched(zone, pairs);
                     for (const StationPair& pair : pairs) {
                         Element element = make(zone, z, pair);

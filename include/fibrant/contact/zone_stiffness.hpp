@@ -37,6 +37,7 @@ struct Zone {
     std::array<double, most_crossings> valleys{};  ///< where it is followed: directions in the plane of both arc lengths in which
                                                    ///< its fibres stay closest, of each of its crossings [radian]
     bool settled = false;                          ///< its stations are those of crossings that are followed
+    bool joined = false;                           ///< it is two in one, which may run along and against
     double friction_factor = 1.0;                  ///< of its pair of groups, on the law's coefficient [1]
     double penetration_factor = 1.0;               ///< of its pair of groups, on the allowed penetration [1]
     double narrowed = 1.0;  ///< part of it that is left where it is deeper between contact points, in (0, 1]

@@ -145,8 +145,9 @@ void get_memory(CheckpointReader& file, std::vector<Record>& records, std::vecto
     zones.resize(core::at(file.get_count(sizeof(contact::Zone))));
     for (contact::Zone& zone : zones) {
         auto bytes = file.get<std::array<char, sizeof(contact::Zone)>>();
-        for (const std::size_t flag : {offsetof(contact::Zone, crossing), offsetof(contact::Zone, followed),
-                                       offsetof(contact::Zone, forced), offsetof(contact::Zone, settled)})
+        for (const std::size_t flag :
+             {offsetof(contact::Zone, crossing), offsetof(contact::Zone, followed), offsetof(contact::Zone, forced),
+              offsetof(contact::Zone, settled), offsetof(contact::Zone, joined)})
             bytes[flag] = static_cast<char>(bytes[flag] != 0);
         for (std::size_t k = 0; k < contact::Zone::most_crossings; ++k) {
             char& flag = bytes[offsetof(contact::Zone, slanting) + k];

@@ -165,7 +165,7 @@ public:
                     continue;
                 }
                 if (last.status != NewtonStatus::converged) {
-                    report.reason = reason(last), report.unsettled = newton.last_step(), report.astray = true;
+                    report.reason = reason(last, newton.last_step()), report.unsettled = newton.last_step(), report.astray = true;
                     return report;
                 }
                 report.displacement = equilibrium_->greatest(state - accepted);
@@ -274,7 +274,7 @@ private:
             if (pass == 0) travel.resize(0);  // it holds the increment itself
             if (inner.status == NewtonStatus::moved) return false;
             if (inner.status != NewtonStatus::converged) {
-                report.reason = reason(inner), report.astray = true;
+                report.reason = reason(inner, newton.last_step()), report.astray = true;
                 return true;
             }
             if (!contact_possible_) break;
@@ -303,17 +303,21 @@ private:
     static constexpr double growing = 1.3,
                             swinging = 0.7;  ///< ratios of two travels from which a series does not end by itself, or hardly
 
-    static std::string reason(const NewtonReport& inner) {
-        const std::string figures = " after " + std::to_string(inner.iterations) + " iterations, residual " +
-                                    core::text(inner.residual.relative()) + ", step " + core::text(inner.step);
-        switch (inner.status) {
-            case NewtonStatus::diverged:
-                return "Newton diverged" + figures;
-            case NewtonStatus::unsolvable:
-                return "the tangent is not positive definite" + figures;
-            default:
-                return "Newton did not converge" + figures;
+    std::string reason(const NewtonReport& inner, const Vector& step) const {
+        const std::string iterations = std::to_string(inner.iterations) + " iterations";
+        std::string text =
+            " after " + iterations + ", residual " + core::text(inner.residual.relative()) + ", step " + core::text(inner.step);
+        const bool unsolvable = inner.status == NewtonStatus::unsolvable;
+        // What gives way shows in a step of such a tangent.
+        if (unsolvable || inner.indefinite > 0) {
+            if (!unsolvable)
+                text += "; the tangent was not positive definite in " + std::to_string(inner.indefinite) + " of " + iterations;
+            if (const auto most = equilibrium_->moves_most(step); most.chain >= 0)
+                text += ", fibre " + std::to_string(most.chain) + " moves most, at " +
+                        core::text(std::round(1e4 * most.along) / 1e4) + " of its length";
         }
+        if (unsolvable) return "the tangent is not positive definite" + text;
+        return (inner.status == NewtonStatus::diverged ? "Newton diverged" : "Newton did not converge") + text;
     }
 
     Equilibrium* equilibrium_;

@@ -91,7 +91,8 @@ enum class NewtonStatus : std::uint8_t {
 struct NewtonReport {
     NewtonStatus status = NewtonStatus::too_many;
     Index iterations = 0;
-    double step = 0.0;  ///< last one [length]
+    Index indefinite = 0;  ///< of these, whose tangent was not positive definite as it stood
+    double step = 0.0;     ///< last one [length]
     assembly::ResidualFigures residual;
 };
 
@@ -170,7 +171,7 @@ public:
             }
             if (watched) scale *= shorten(scale * slope, state, report.residual, mixed);
             if (mixed && !iterated) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
-            ++report.iterations, ++counts.newton;
+            ++report.iterations, ++counts.newton, report.indefinite += shifted_ > 0 ? 1 : 0;
             report.step = equilibrium.greatest(step_);
             if (!std::isfinite(report.residual.residual) || !std::isfinite(report.step)) {
                 report.status = NewtonStatus::diverged;
