@@ -195,9 +195,11 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
         const std::vector<scene::Curve> curves = detail::fibre_curves(textile, p);
         const double path_length = scene::length_of(path.curve, 128);
         // Steep helices turn by more than elements of a given length can follow: their fibres would go through each other.
-        const auto by_length = static_cast<Index>(std::ceil(path_length / (fineness.element_over_radius * type.radius))),
-                   by_turn = static_cast<Index>(std::ceil(detail::turning(path.curve, 8 * by_length + 64) / fineness.turn));
-        const Index elements = std::max({fineness.least_elements, by_length, by_turn});
+        const auto by_length = static_cast<Index>(std::ceil(path_length / (fineness.element_over_radius * type.radius)));
+        Index elements = std::max(fineness.least_elements, by_length);
+        for (const scene::Curve& curve : curves)  // a packing that is twisted turns more than its path
+            elements =
+                std::max(elements, static_cast<Index>(std::ceil(detail::turning(curve, 8 * by_length + 64) / fineness.turn)));
         for (const scene::Curve& curve : curves) {
             scene::FibreSpecification fibre;
             fibre.section = scene::circular(type.radius, type.inertia_factor), fibre.material = type.material;

@@ -142,10 +142,8 @@ inline std::vector<std::vector<Index>> levels_of_lifts(const std::vector<std::ve
     return levels;
 }
 
-/// Wefts lie straight, warps at their levels between them, level where they cross and joined by arcs of the third degree: nothing
-/// overlaps where there is room. warps x columns x layers crossings.
-inline Textile woven(const LevelPlan& plan) {
-    plan.validate();
+namespace detail {
+inline Textile drawn(const LevelPlan& plan) {
     Textile textile;
     textile.name = "weave";
     textile.types = {plan.warp, plan.weft};
@@ -169,8 +167,8 @@ inline Textile woven(const LevelPlan& plan) {
                                pz * (static_cast<double>(plan.level(w, c)) - 0.5 * static_cast<double>(layers)));
         const double y = py * static_cast<double>(w);
         if (plan.periodic) repeat(path, length * Vec3::UnitX());
-        path.curve = detail::raised([=](double t) { return Vec3(length * t - beyond_x, y, 0.0); }, std::move(knots),
-                                    plan.periodic, textile.view);
+        path.curve =
+            raised([=](double t) { return Vec3(length * t - beyond_x, y, 0.0); }, std::move(knots), plan.periodic, textile.view);
         textile.paths.push_back(std::move(path));
     }
     for (Index c = 0; c < columns; ++c)
@@ -187,6 +185,22 @@ inline Textile woven(const LevelPlan& plan) {
     if (plan.periodic) textile.lattice = {length * Vec3::UnitX(), width * Vec3::UnitY()};
     textile.crossings = crossings_of(textile);
     return textile;
+}
+}  // namespace detail
+
+/// Wefts lie straight, warps at their levels between them, level where they cross and joined by arcs of the third degree: nothing
+/// overlaps where there is room. warps x columns x layers crossings.
+inline Textile woven(const LevelPlan& plan) {
+    plan.validate();
+    // A rise h over a spacing p is level at both ends with a radius of curvature of p^2 / 6 h.
+    double bend = 0.0;  // greatest product of a rise and half the width of its yarn
+    for (Index w = 0; w < plan.warps(); ++w)
+        for (Index c = 0; c + (plan.periodic ? 0 : 1) < plan.column_count(); ++c)
+            bend = std::max(bend, half_width(plan.bound(w) ? plan.binder : plan.warp) * plan.pitch() *
+                                      static_cast<double>(std::abs(plan.level(w, c + 1) - plan.level(w, c))));
+    return laid(plan, &LevelPlan::column_spacing, "LevelPlan.column_spacing", std::sqrt(6.0 * bend / 0.95),
+                {{"warp_spacing", plan.warp_spacing}, {"layer_spacing", plan.layer_spacing}, {"overhang", plan.overhang}},
+                plan.weft, [](const LevelPlan& one) { return detail::drawn(one); });
 }
 
 /// Leno: pairs of a ground end and a doup end that crosses to its other side between picks, below it, and lies above all wefts.
@@ -209,10 +223,8 @@ struct LenoWeave {
     }
 };
 
-/// Each pair of yarns has one order for good: doup above wefts, wefts above ground, ground above doup. 2 crossings a pick and one
-/// a gap for each pair.
-inline Textile leno(const LenoWeave& weave) {
-    weave.validate();
+namespace detail {
+inline Textile drawn(const LenoWeave& weave) {
     Textile textile;
     textile.name = "leno";
     textile.types = {weave.type};
@@ -247,6 +259,15 @@ inline Textile leno(const LenoWeave& weave) {
                       "two of each pair of ends with a weft, and one between two wefts");
     return textile;
 }
+}  // namespace detail
+
+/// Each pair of yarns has one order for good: doup above wefts, wefts above ground, ground above doup. 2 crossings a pick and one
+/// a gap for each pair.
+inline Textile leno(const LenoWeave& weave) {
+    return laid(weave, &LenoWeave::pick_spacing, "LenoWeave.pick_spacing", 2.0 * half_width(weave.type),
+                {{"pair_spacing", weave.pair_spacing}, {"aside", weave.aside}}, weave.type,
+                [](const LenoWeave& one) { return detail::drawn(one); });
+}
 
 /// Three families of straight yarns at 0, 60 and -60 degrees within a circle, no three of which meet at a point.
 struct TriaxialWeave {
@@ -258,15 +279,16 @@ struct TriaxialWeave {
     void validate() const {
         core::require_positive("TriaxialWeave.spacing", spacing);
         core::require(radius > spacing, "TriaxialWeave.radius", radius, "> spacing");
+        constexpr double most = 10000.0;  // yarns of a family
+        core::require(radius <= 0.5 * most * spacing, "TriaxialWeave.radius", radius,
+                      "<= " + core::text(0.5 * most * spacing) + ", 5000 spacings");
         core::require_positive("TriaxialWeave.height_over_radius", height_over_radius);
         type.validate();
     }
 };
 
-/// Orders are cyclic by families: the first above the second, the second above the third, the third above the first. One crossing
-/// a pair that meets.
-inline Textile triaxial_weave(const TriaxialWeave& weave) {
-    weave.validate();
+namespace detail {
+inline Textile drawn(const TriaxialWeave& weave) {
     Textile textile;
     textile.name = "triaxial weave";
     textile.types = {weave.type};
@@ -298,6 +320,14 @@ inline Textile triaxial_weave(const TriaxialWeave& weave) {
         },
         weave.height_over_radius * half_width(weave.type));
     return textile;
+}
+}  // namespace detail
+
+/// Orders are cyclic by families: the first above the second, the second above the third, the third above the first. One crossing
+/// a pair that meets.
+inline Textile triaxial_weave(const TriaxialWeave& weave) {
+    return laid(weave, &TriaxialWeave::spacing, "TriaxialWeave.spacing", 2.0 * half_width(weave.type), {{"radius", weave.radius}},
+                weave.type, [](const TriaxialWeave& one) { return detail::drawn(one); });
 }
 
 }  // namespace fibrant::compositions::textile
