@@ -51,14 +51,14 @@ struct WeftKnit {
         const double w = half_width(type);
         core::require(course_spacing >= 2.0 * w, "WeftKnit.course_spacing", course_spacing,
                       ">= " + core::text(2.0 * w) + ", the thickness of the yarn");
-        if (std::isnan(bulge))
+        if (std::isnan(bulge)) {
             core::require(wale_spacing >= w / 0.175, "WeftKnit.wale_spacing", wale_spacing,
                           ">= " + core::text(w / 0.175) + ", for legs of loops to lie beside each other");
-        else
-            core::require(
-                bulge > 0.0 && bulge <= 0.375 * wale_spacing - w, "WeftKnit.bulge", bulge,
-                "> 0 and <= " + core::text(0.375 * wale_spacing - w) +
-                    ", 3/8 of wale_spacing less half of the yarn's thickness, for legs of loops to lie beside each other");
+            return;
+        }
+        const double most = 0.375 * wale_spacing - w;
+        core::require(bulge > 0.0 && bulge <= most, "WeftKnit.bulge", bulge,
+                      "> 0 and <= " + core::text(most) + ", for legs of loops to lie beside each other");
     }
 };
 
