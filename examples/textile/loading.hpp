@@ -63,6 +63,9 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
     parameters.iteration.residual_tolerance = 1e-9, parameters.iteration.step_tolerance = 1e-7,
     parameters.iteration.linear_tolerance = 1e-9, parameters.iteration.normal_step_tolerance = 1e-7,
     parameters.iteration.normal_limit = 40, parameters.iteration.inexact = 0.0;
+    // Forces of contacts that slide have to be those of an energy, or the stiffness is not symmetric: places and normals of
+    // crossings are followed.
+    parameters.contact.places = fibrant::contact::Places::followed;
     const auto cell_of = [&](const observe::Snapshot& state) {
         return cloth::assemble(scene.textile, scene.fineness, {true, cloth::images_of(scene.textile, assembled, state)}).assembly;
     };

@@ -185,6 +185,9 @@ TEST_CASE("yarns that would lie in each other or bend more sharply than they are
     CHECK(refusal([&] {
               flat_braid({.yarns = 3, .half_width = 1e9, .period = 1e12, .type = yarn(r)});
           }).find("FlatBraid.period") == 0);
+    CHECK(refusal([&] {
+              flat_braid({.yarns = 3, .half_width = 1e9, .period = 1.8, .type = yarn(r)});
+          }).find("FlatBraid.half_width = 1e+09") == 0);
     CHECK(refusal([&] { net({.yarns = 3, .spacing = 0.8, .period = 1e9, .type = yarn(r)}); }).find("Net.period = 1e+09") == 0);
 }
 

@@ -176,8 +176,8 @@ Textile laid(const Parameters& given, double Parameters::*length, const std::str
         try {
             bends(draw(changed));
             return true;
-        } catch (const TooLong&) {
-            longer = true;
+        } catch (const TooLong& error) {
+            longer = true, why = error.what();
         } catch (const std::invalid_argument& error) {
             if (why.empty() && !own(error)) why = error.what();
         }
@@ -194,19 +194,22 @@ Textile laid(const Parameters& given, double Parameters::*length, const std::str
             return textile;
         }
     } catch (const TooLong& error) {
-        others.push_back({field.c_str() + owner.size(), value});
-        const DrawnLength& largest = *std::max_element(
-            others.begin(), others.end(), [](const DrawnLength& a, const DrawnLength& b) { return a.value < b.value; });
-        core::refuse(owner + largest.name, core::text(largest.value),
-                     "less with fibres of radius " + core::text(type.radius) + ": " + error.what());
+        longer = true, why = error.what();
     } catch (const std::invalid_argument& error) {
         if (own(error)) throw;
         why = error.what();
     }
     // Upwards in steps until it holds, then between the last two.
     double bad = value, good = std::max(value, low) * (1.0 + 1e-9);
-    bool found = value < low && good <= high && holds(good);
+    bool found = !longer && value < low && good <= high && holds(good);
     for (int k = 0; k < 40 && !found && !longer && good <= high; ++k) bad = good, good *= 1.3, found = holds(good);
+    if (longer && !found) {
+        others.push_back({field.c_str() + owner.size(), value});
+        const DrawnLength& largest = *std::max_element(
+            others.begin(), others.end(), [](const DrawnLength& a, const DrawnLength& b) { return a.value < b.value; });
+        core::refuse(owner + largest.name, core::text(largest.value),
+                     "less with fibres of radius " + core::text(type.radius) + ": " + why);
+    }
     if (!found)
         core::refuse(field, core::text(value),
                      (value < low ? ">= " + core::text(low) : std::string("another one")) + at +
