@@ -92,6 +92,9 @@ inline double crossing_spacing(const Textile& textile) {
 struct CellDrive {
     bool strained = false;       ///< its six strains are held, by cell_channels(); else free ones are under the yarns' tension
     std::vector<Vec3> images{};  ///< from the start of each path to its end, as they stand now; empty: as drawn
+    /// Fibres that repeat keep their places along their paths. Without friction nothing resists that they slide through their own
+    /// waves, and no force is needed to hold them.
+    bool kept_along = false;
 };
 
 /// Channels of the strains of a cell in the plane of x and y: of its lengths, and of the right angle between them, [1]; and the
@@ -227,6 +230,10 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
                     scene::PeriodicPair{first, last, drive.images.empty() ? path.image : drive.images[core::at(p)], cell_of()});
                 assembly.hold_axial_rotation({f, 0.5});
                 middle.ends.push_back({f, 0.5});
+                if (drive.kept_along) {
+                    const Vec3 along = path.image.normalized();
+                    assembly.hold_position({f, 0.25}, along * along.transpose());  // no node is held twice
+                }
             } else if (path.kind == PathKind::closed) {
                 assembly.hold_axial_rotation(first);  // a ring that turns inside out of itself is the same ring
             } else if (path.ends != Ends::free) {
