@@ -156,6 +156,9 @@ inline Textile drawn(const LevelPlan& plan) {
     const double beyond_x = beyond(px), beyond_y = beyond(py);
     const double length = px * static_cast<double>(columns - 1) + 2.0 * beyond_x,
                  width = py * static_cast<double>(warps - 1) + 2.0 * beyond_y;
+    // What goes on has its middle at the origin: a cell is bent about that (scene::PeriodicCell), and yarns, whose spin is held
+    // in their middles, do not spin against those that they cross when it is twisted.
+    const double x0 = plan.periodic ? beyond_x - 0.5 * length : 0.0, y0 = plan.periodic ? beyond_y - 0.5 * width : 0.0;
     for (Index w = 0; w < warps; ++w) {
         Path path;
         path.name = (plan.bound(w) ? "binder " : "warp ") + std::to_string(w);
@@ -165,10 +168,10 @@ inline Textile drawn(const LevelPlan& plan) {
         for (Index c = 0; c < columns; ++c)
             knots.emplace_back((beyond_x + px * static_cast<double>(c)) / length,
                                pz * (static_cast<double>(plan.level(w, c)) - 0.5 * static_cast<double>(layers)));
-        const double y = py * static_cast<double>(w);
+        const double y = y0 + py * static_cast<double>(w);
         if (plan.periodic) repeat(path, length * Vec3::UnitX());
-        path.curve =
-            raised([=](double t) { return Vec3(length * t - beyond_x, y, 0.0); }, std::move(knots), plan.periodic, textile.view);
+        path.curve = raised([=](double t) { return Vec3(x0 + length * t - beyond_x, y, 0.0); }, std::move(knots), plan.periodic,
+                            textile.view);
         textile.paths.push_back(std::move(path));
     }
     for (Index c = 0; c < columns; ++c)
@@ -176,10 +179,10 @@ inline Textile drawn(const LevelPlan& plan) {
             Path path;
             path.name = "weft " + std::to_string(c) + "." + std::to_string(l);
             path.type = 1, path.family = 1, path.upward = Vec3::UnitZ();
-            const double x = px * static_cast<double>(c),
+            const double x = x0 + px * static_cast<double>(c),
                          z = pz * (static_cast<double>(l) - 0.5 * static_cast<double>(layers - 1));
             if (plan.periodic) repeat(path, width * Vec3::UnitY());
-            path.curve = [=](double t) { return Vec3(x, width * t - beyond_y, z); };
+            path.curve = [=](double t) { return Vec3(x, y0 + width * t - beyond_y, z); };
             textile.paths.push_back(std::move(path));
         }
     if (plan.periodic) textile.lattice = {length * Vec3::UnitX(), width * Vec3::UnitY()};
