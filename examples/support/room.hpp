@@ -41,14 +41,15 @@ inline double unknowns_of(Index fibres, Index elements) {
 /// @param section,key  of the count that is to blame
 /// @param bytes_each   that a run takes an unknown, contacts and solver included: 2600 were measured on woven fabrics of 89 and
 /// 356 thousand
+/// @param way         that the count has to go
 inline void require_room(const SceneReader& file, const std::string& section, const std::string& key, double unknowns,
-                         double bytes_each = 2600.0) {
+                         double bytes_each = 2600.0, const std::string& way = "less") {
     constexpr double most = 5e7;
     const double taken = unknowns * bytes_each;
     const Room there = memory_room();
     if (unknowns <= most && taken <= there.bytes) return;
     file.refuse(section, key,
-                "less: the scene has " + fibrant::observe::rounded(unknowns, 0) + " unknowns, which take some " +
+                way + ": the scene has " + fibrant::observe::rounded(unknowns, 0) + " unknowns, which take some " +
                     memory_text(taken) + " of memory, and may have 50000000 and " + memory_text(there.bytes) +
                     ", which is what " + there.said);
 }

@@ -19,6 +19,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -127,6 +128,16 @@ inline void read_height(SceneReader& file, const std::string& section, double& h
 inline void read_overhang(SceneReader& file, const std::string& section, double& overhang) {
     file.read(section, "overhang", overhang, example::not_negative(), "length",
               "straight ends beyond the outermost crossings; 0: a yarn's way from crossing to crossing and two diameters");
+}
+
+/// Refuses a packing that is twisted so much that its outer fibres would lie at more than 63 degrees to the yarn, as plies may.
+inline void check_twist(const SceneReader& file, const std::string& section, const cloth::YarnType& type) {
+    const double outer = cloth::half_width(type) - type.radius;  // of the packing, to the middle of a fibre
+    if (type.fibres == 1 || !(outer > 0.0)) return;
+    const double most = 1.0 / (std::numbers::pi * outer);
+    file.check(std::abs(type.twist) <= most, section, "twist",
+               "from " + fibrant::core::text(-most) + " to " + fibrant::core::text(most) +
+                   ", or outer fibres lie at more than 63 degrees to the yarn");
 }
 
 /// Reads the section of the generator; all of them where there is no file.
@@ -339,12 +350,15 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
             const std::filesystem::path whole = std::filesystem::path(file.file()).parent_path() / path;
             fibrant::exchange::CleanParameters own = clean;
             if (smooth > 0.0) own.largest_turn_deg = 180.0;  // as they are smoothed
-            curves = fibrant::exchange::read_curves(whole, own);
-            if (smooth > 0.0) {
-                std::vector<fibrant::exchange::FileCurve> after = curves;
-                for (auto& curve : after) curve.points = cloth::smoothed(curve.points, smooth, curve.closed);
-                fibrant::exchange::require_turns(after, whole.string(), clean.largest_turn_deg);
-            }
+            fibrant::core::with_place([] { return "file.path, smooth, largest_turn_deg"; },
+                                      [&] {
+                                          curves = fibrant::exchange::read_curves(whole, own);
+                                          if (!(smooth > 0.0)) return;
+                                          std::vector<fibrant::exchange::FileCurve> after = curves;
+                                          for (auto& curve : after)
+                                              curve.points = cloth::smoothed(curve.points, smooth, curve.closed);
+                                          fibrant::exchange::require_turns(after, whole.string(), clean.largest_turn_deg);
+                                      });
             made = cloth::textile_of(curves, yarn, {fibrant::Vec3::UnitZ(), seen == "tube", fibrant::Vec3::Zero()}, smooth);
             if (seen == "none") made.crossings.clear();
         }
@@ -379,6 +393,7 @@ inline Scene read_scene(SceneReader& file) {
     double tension = 0.0;
     bool straight = true;
     file.require("textile", "generator", scene.generator, generators, "what is made; the section of this name has its numbers");
+    if (scene.generator == "file") file.names({{"Path.", "file.path, scale: "}, {"yarn ", "file.path, scale: yarn "}});
     detail::read_type(file, "yarn", true, yarn);
     example::read_material(file, "yarn", yarn.material);
     std::string law = "isotropic";
@@ -441,6 +456,8 @@ inline Scene read_scene(SceneReader& file) {
     const bool periodic = ends == "periodic";
     scene.textile = detail::generate(file, scene.generator, yarn, binder, periodic, scene.file_curves);
     if (file.describes()) file.complete();
+    detail::check_twist(file, "yarn", yarn);
+    if (bound) detail::check_twist(file, "binder", binder);
     file.check(!periodic || !scene.textile.lattice.empty(), "ends", "kind",
                "held, pulled or free: only flat_braid, tubular_braid, levels and plied go on");
     file.check(periodic || !file.given("ends", "lengths"), "ends", "lengths", "left out, unless ends.kind = \"periodic\"");
@@ -463,11 +480,13 @@ inline Scene read_scene(SceneReader& file) {
             scene.textile.type_of(p).fibres,
             static_cast<Index>(length / (scene.fineness.element_over_radius * scene.textile.type_of(p).radius)) + 8);
     }
-    example::require_room(file, "yarn", "element_over_radius", unknowns, 6000.0);
+    example::require_room(file, "yarn", "element_over_radius", unknowns, 6000.0, "more");
     cloth::validate(scene.textile);
     if (!scene.textile.crossings.empty() && scene.generator != "weft_knit" && scene.generator != "tricot" &&
         scene.generator != "file")
-        cloth::require_holding(scene.textile, scene.generator + ": crossings");
+        cloth::require_holding(scene.textile, scene.generator == "stitched" ? "stitched.sideways: crossings"
+                                              : scene.generator == "levels" ? "levels.levels: crossings"
+                                                                            : "textile.generator: crossings");
     return scene;
 }
 

@@ -117,8 +117,89 @@ TEST_CASE("ends of a tubular braid leave its helices, and lie along the tube in 
               tubular_braid({.carriers = 4, .radius = 0.4, .pitch = 2.5, .overhang = 0.1, .type = yarn(r)});
           }).find("TubularBraid.overhang = 0.1") == 0);
     CHECK(refusal([&] {
+              tubular_braid({.carriers = 4, .radius = 0.4, .pitch = 2.5, .axials = true, .overhang = 0.1, .type = yarn(r)});
+          }).find("TubularBraid.overhang = 0.1, but it must be 0, or >= ") == 0);
+    // Of a flat one: an arc of 0.4 (1 + sec a) rows from 0.4 rows within the crossings, and two diameters.
+    const double row = 0.3, least = 0.4 * row * std::hypot(1.0, 0.4) + 4.0 * r;
+    for (const double overhang : {0.999 * least, 1.001 * least}) {
+        const std::string message =
+            refusal([&] { flat_braid({.yarns = 3, .half_width = 0.18, .period = 1.8, .overhang = overhang, .type = yarn(r)}); });
+        CHECK((overhang < least ? message.find("FlatBraid.overhang = " + core::text(overhang) +
+                                               ", but it must be 0, or >= " + core::text(least)) == 0
+                                : message.empty()));
+    }
+    CHECK(refusal([&] {
               tubular_braid({.carriers = 4, .radius = 0.4, .pitch = 2.5, .turns = 0.01, .type = yarn(r)});
           }).find("TubularBraid.turns: rows of crossings = 0.08") == 0);
+}
+
+/// Checks that a generator refuses a length by its field and names one that does, while a twentieth less does not; the length.
+template <class Parameters, class Draw>
+double least_length(Parameters parameters, double Parameters::*length, const std::string& field, const Draw& draw) {
+    const std::string message = refusal([&] { draw(parameters); });
+    const std::string start = field + " = " + core::text(parameters.*length) + ", but it must be >= ";
+    CHECK(message.find(start) == 0);
+    REQUIRE(message.size() > start.size());
+    const double least = parameters.*length = std::stod(message.substr(start.size()));
+    CHECK(refusal([&] { validate(draw(parameters)); }).empty());
+    parameters.*length *= 0.95;
+    CHECK(refusal([&] { draw(parameters); }).find(field) == 0);
+    return least;
+}
+
+TEST_CASE("yarns that would lie in each other or bend more sharply than they are thick are refused by the length that would do") {
+    const double r = 0.05;
+    for (const double period : {1e-9, 1e-3, 0.4}) {
+        const FlatBraid flat{.yarns = 3, .half_width = 0.18, .period = period, .type = yarn(r)};
+        const double least = least_length(flat, &FlatBraid::period, "FlatBraid.period", flat_braid);
+        // Beside each other in one direction, across them.
+        CHECK(4.0 * 0.18 / 3.0 / std::hypot(1.0, 4.0 * 0.18 / least) > 2.0 * r);
+    }
+    for (const double pitch : {1e-9, 1e-3, 0.2}) {
+        const TubularBraid tube{.carriers = 4, .radius = 0.4, .pitch = pitch, .type = yarn(r)};
+        TubularBraid good = tube;
+        good.pitch = least_length(tube, &TubularBraid::pitch, "TubularBraid.pitch", tubular_braid);
+        CHECK(good.spacing() > 2.0 * r * (1.0 - 1e-6));
+    }
+    for (const double period : {1e-9, 1e-3, 0.5}) {
+        const double least =
+            least_length(Net{.yarns = 4, .spacing = 0.8, .period = period, .type = yarn(r)}, &Net::period, "Net.period", net);
+        CHECK(std::pow(least / (2.0 * std::numbers::pi), 2) / 0.5 > r);  // radius of curvature of a cosine of amplitude 0.5
+    }
+    for (const double spacing : {1e-9, 1e-3, 0.2})
+        least_length(
+            LenoWeave{.pairs = 2, .picks = 4, .pick_spacing = spacing, .pair_spacing = 0.7, .aside = 0.15, .type = yarn(r)},
+            &LenoWeave::pick_spacing, "LenoWeave.pick_spacing", leno);
+    // Layers far apart: warps climb, and the wefts have to give them room.
+    least_length(LevelPlan{.levels = levels_of({"01", "10"}),
+                           .column_spacing = 0.4,
+                           .warp_spacing = 0.3,
+                           .layer_spacing = 10.0,
+                           .warp = yarn(r),
+                           .weft = yarn(r)},
+                 &LevelPlan::column_spacing, "LevelPlan.column_spacing", woven);
+    CHECK(refusal([&] {
+              tubular_braid({.carriers = 100, .radius = 0.4, .pitch = 2.5, .type = yarn(r)});
+          }).find("TubularBraid.radius = 0.4, but it must be > " + core::text(5.0 / std::numbers::pi)) == 0);
+    // A slip of the unit is told by the length that is the largest.
+    CHECK(refusal([&] {
+              flat_braid({.yarns = 3, .half_width = 1e9, .period = 1e12, .type = yarn(r)});
+          }).find("FlatBraid.period") == 0);
+    CHECK(refusal([&] {
+              flat_braid({.yarns = 3, .half_width = 1e9, .period = 1.8, .type = yarn(r)});
+          }).find("FlatBraid.half_width = 1e+09") == 0);
+    CHECK(refusal([&] { net({.yarns = 3, .spacing = 0.8, .period = 1e9, .type = yarn(r)}); }).find("Net.period = 1e+09") == 0);
+}
+
+TEST_CASE("a curve that goes back within its points is as sharp as it is") {
+    // To and fro on a line, a thousandth apart: half a circle of that, however points lie about it.
+    for (const double shift : {0.0, 0.003, 0.011}) {
+        const scene::Curve hairpin = [=](double t) {
+            const double x = std::abs(t - 0.5 - shift);
+            return Vec3(-x, t > 0.5 + shift ? 1e-3 : 0.0, 0.0);
+        };
+        CHECK(detail::tightest(hairpin, 64, false).first < 0.02);
+    }
 }
 
 /// Where a path is at an arc from its start, and where it goes.

@@ -92,6 +92,9 @@ inline double crossing_spacing(const Textile& textile) {
 struct CellDrive {
     bool strained = false;       ///< its six strains are held, by cell_channels(); else free ones are under the yarns' tension
     std::vector<Vec3> images{};  ///< from the start of each path to its end, as they stand now; empty: as drawn
+    /// Fibres that repeat keep their places along their paths. Without friction nothing resists that they slide through their own
+    /// waves, and no force is needed to hold them.
+    bool kept_along = false;
 };
 
 /// Channels of the strains of a cell in the plane of x and y: of its lengths, and of the right angle between them, [1]; and the
@@ -195,9 +198,11 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
         const std::vector<scene::Curve> curves = detail::fibre_curves(textile, p);
         const double path_length = scene::length_of(path.curve, 128);
         // Steep helices turn by more than elements of a given length can follow: their fibres would go through each other.
-        const auto by_length = static_cast<Index>(std::ceil(path_length / (fineness.element_over_radius * type.radius))),
-                   by_turn = static_cast<Index>(std::ceil(detail::turning(path.curve, 8 * by_length + 64) / fineness.turn));
-        const Index elements = std::max({fineness.least_elements, by_length, by_turn});
+        const auto by_length = static_cast<Index>(std::ceil(path_length / (fineness.element_over_radius * type.radius)));
+        Index elements = std::max(fineness.least_elements, by_length);
+        for (const scene::Curve& curve : curves)  // a packing that is twisted turns more than its path
+            elements =
+                std::max(elements, static_cast<Index>(std::ceil(detail::turning(curve, 8 * by_length + 64) / fineness.turn)));
         for (const scene::Curve& curve : curves) {
             scene::FibreSpecification fibre;
             fibre.section = scene::circular(type.radius, type.inertia_factor), fibre.material = type.material;
@@ -225,6 +230,10 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
                     scene::PeriodicPair{first, last, drive.images.empty() ? path.image : drive.images[core::at(p)], cell_of()});
                 assembly.hold_axial_rotation({f, 0.5});
                 middle.ends.push_back({f, 0.5});
+                if (drive.kept_along) {
+                    const Vec3 along = path.image.normalized();
+                    assembly.hold_position({f, 0.25}, along * along.transpose());  // no node is held twice
+                }
             } else if (path.kind == PathKind::closed) {
                 assembly.hold_axial_rotation(first);  // a ring that turns inside out of itself is the same ring
             } else if (path.ends != Ends::free) {

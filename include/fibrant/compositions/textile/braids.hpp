@@ -37,6 +37,9 @@ struct FlatBraid {
         if (over != 1 && over != 2) core::refuse("FlatBraid.over", std::to_string(over), "1 or 2");
         core::require_positive("FlatBraid.height_over_radius", height_over_radius);
         type.validate();
+        const double least = static_cast<double>(yarns) * textile::half_width(type);
+        core::require(half_width >= least, "FlatBraid.half_width", half_width,
+                      ">= " + core::text(least) + ", that of the yarns side by side");
     }
 };
 
@@ -60,21 +63,25 @@ struct BraidLength {
     double turn = 0.0;      ///< length of an arc along the braid [length]
     double overhang = 0.0;  ///< of an end beyond `length` [length]; 0: it goes on
 
-    /// @param field       that the length follows from
+    /// @param braid       whose fields are named
+    /// @param field       of it that the length follows from
     /// @param count       of rows, rounded to whole ones: those whose crossings lie within the length asked for
     /// @param row         length of the braid from crossings to the next ones [length], > 0
     /// @param overhang    of ends [length]; 0: a yarn's way from crossing to crossing and two diameters
-    BraidLength(const std::string& field, double count, double row, double slope_, bool goes_on, double overhang_,
-                double half_width)
+    BraidLength(const std::string& braid, const std::string& field, double count, double row, double slope_, bool goes_on,
+                double overhang_, double half_width)
         : length{row * std::round(count)}, slope{slope_} {
-        core::require(count >= 0.5, field + ": rows of crossings", count, ">= 0.5, which is one row");
+        core::require(count >= 0.5, braid + "." + field + ": rows of crossings", count, ">= 0.5, which is one row");
         if (goes_on) return;
         const double over = std::hypot(1.0, slope);
-        aside = 0.4 * row, radius = aside * slope * over / (over - 1.0), turn = radius * slope / over;
+        aside = 0.4 * row, radius = aside * over * (over + 1.0) / slope, turn = aside * (over + 1.0);
         overhang = overhang_ > 0.0 ? overhang_ : row * over + 4.0 * half_width;
+        // In less a yarn does not come to lie along the braid over two diameters: nothing would be gripped, and crossings slide
+        // off.
+        const double least = turn - aside + 4.0 * half_width;
+        core::require(overhang >= least, braid + ".overhang", overhang,
+                      "0, or >= " + core::text(least) + ", for yarns to turn along the braid and two diameters");
     }
-    /// Least overhang in which a yarn comes to lie along the braid, over two diameters [length].
-    double least_overhang(double half_width) const noexcept { return turn - aside + 4.0 * half_width; }
     /// Puts the straight parts of all ends into grips.
     void grip(Textile& textile) const {
         for (Path& path : textile.paths)
@@ -85,8 +92,9 @@ struct BraidLength {
     std::array<double, 2> operator()(double part) const noexcept {
         const double y = (length + 2.0 * overhang) * part - overhang;
         const auto beyond = [this](double d) {
-            const double left = std::max(0.0, turn - d);  // of the arc
-            return (std::sqrt(radius * radius - left * left) - radius / std::hypot(1.0, slope)) / slope;
+            const double left = std::max(0.0, turn - d);           // of the arc
+            const double level = radius / std::hypot(1.0, slope);  // of the arc's start, from its middle
+            return (turn - left) * (turn + left) / (std::sqrt(radius * radius - left * left) + level) / slope;
         };
         if (!(overhang > 0.0) || (y >= aside && y <= length - aside)) return {y, y};
         return {y, y < aside ? aside - beyond(aside - y) : length - aside + beyond(y - length + aside)};
@@ -94,15 +102,8 @@ struct BraidLength {
 };
 }  // namespace detail
 
-/// Yarn k lies at x = A tri(y / P + k / N): meetings are at x_m = A (2 m / N - 1), m from 1 to N - 1, in a quincunx. The yarn
-/// that goes to the right is above where the whole part of m over `over` is even, so that each yarn alternates, across its turns
-/// as well. N (N - 1) crossings a period. Ends lie along the braid, side by side where yarns are half way between crossings.
-inline Textile flat_braid(const FlatBraid& braid) {
-    braid.validate();
-    const double apart = 2.0 * braid.half_width / static_cast<double>(braid.yarns);
-    core::require(
-        apart >= 2.0 * half_width(braid.type), "FlatBraid.half_width", braid.half_width,
-        ">= " + core::text(static_cast<double>(braid.yarns) * half_width(braid.type)) + ", that of the yarns side by side");
+namespace detail {
+inline Textile drawn(const FlatBraid& braid) {
     Textile textile;
     textile.name = "flat braid";
     textile.types = {braid.type};
@@ -110,9 +111,8 @@ inline Textile flat_braid(const FlatBraid& braid) {
     const double tip = 0.4 / n;  // within the outermost meetings, which are half of 1 / N from a tip
     // No end stands on a crossing: meetings are at whole multiples of 1 / (2 N) of a period.
     const double shift = 0.25 / n;
-    const detail::BraidLength along("FlatBraid.periods", 2.0 * n * braid.periods, 0.5 * braid.period / n,
-                                    4.0 * braid.half_width / braid.period, braid.periodic, braid.overhang,
-                                    half_width(braid.type));
+    const BraidLength along("FlatBraid", "periods", 2.0 * n * braid.periods, 0.5 * braid.period / n,
+                            4.0 * braid.half_width / braid.period, braid.periodic, braid.overhang, half_width(braid.type));
     for (Index k = 0; k < braid.yarns; ++k) {
         Path path;
         path.name = "strand " + std::to_string(k);
@@ -120,7 +120,7 @@ inline Textile flat_braid(const FlatBraid& braid) {
         if (braid.periodic) repeat(path, along.length * Vec3::UnitY());
         path.curve = [=, a = braid.half_width, period = braid.period, phase = static_cast<double>(k) / n](double t) {
             const auto [y, way] = along(t);
-            return Vec3(a * detail::rounded_wave(way / period + phase + shift, tip), y, 0.0);
+            return Vec3(a * rounded_wave(way / period + phase + shift, tip), y, 0.0);
         };
         textile.paths.push_back(std::move(path));
     }
@@ -135,6 +135,20 @@ inline Textile flat_braid(const FlatBraid& braid) {
         braid.height_over_radius * half_width(braid.type));
     along.grip(textile);
     return textile;
+}
+}  // namespace detail
+
+/// Yarn k lies at x = A tri(y / P + k / N): meetings are at x_m = A (2 m / N - 1), m from 1 to N - 1, in a quincunx. The yarn
+/// that goes to the right is above where the whole part of m over `over` is even, so that each yarn alternates, across its turns
+/// as well. N (N - 1) crossings a period. Ends lie along the braid, side by side where yarns are half way between crossings.
+inline Textile flat_braid(const FlatBraid& braid) {
+    // Across neighbours of one direction, 4 A / N over the length of a slope of 4 A / P, is a diameter; tips are as wide as
+    // yarns.
+    const double a = braid.half_width, n = static_cast<double>(braid.yarns), w = half_width(braid.type), k = 2.0 * a / (n * w);
+    const double beside = k > 1.0 ? 4.0 * a / std::sqrt(k * k - 1.0) : 0.0, tips = std::sqrt(10.0 * a * n * w / 0.95);
+    return laid(braid, &FlatBraid::period, "FlatBraid.period", std::max(beside, tips),
+                {{"half_width", a}, {"overhang", braid.overhang}}, braid.type,
+                [](const FlatBraid& one) { return detail::drawn(one); });
 }
 
 /// A tubular braid: as many carriers one way round as the other, and straight axial yarns if wanted.
@@ -164,6 +178,9 @@ struct TubularBraid {
         if (axials && over != 1) core::refuse("TubularBraid.over", std::to_string(over), "1 with axial yarns");
         core::require_positive("TubularBraid.height_over_radius", height_over_radius);
         type.validate();
+        const double least = static_cast<double>(carriers) * half_width(type) / std::numbers::pi;
+        core::require(radius > least, "TubularBraid.radius", radius,
+                      "> " + core::text(least) + ", that of the carriers side by side around the tube");
     }
     /// Angle of the carriers to the axis: tan alpha = 2 pi R / H [radian].
     double angle() const noexcept { return std::atan(2.0 * std::numbers::pi * radius / pitch); }
@@ -173,22 +190,16 @@ struct TubularBraid {
     }
 };
 
-/// With f = 2 pi z / H carriers lie at angles f + 2 pi i / n and -f + 2 pi j / n. They meet where n f = pi (j' - i), j' = j + n
-/// m, at the angle pi (i + j') / n, and there the first is outside where (i + j') mod 2 p < p, in a p x p braid. 2 n^2 crossings
-/// a turn. An axial yarn stands at the angles pi (2 k + 1) / n, between the two that meet there.
-inline Textile tubular_braid(const TubularBraid& braid) {
-    braid.validate();
+namespace detail {
+inline Textile drawn(const TubularBraid& braid) {
     Textile textile;
     textile.name = "tubular braid";
     textile.types = {braid.type};
     textile.view = {Vec3::UnitZ(), true, Vec3::Zero()};
     const double n = static_cast<double>(braid.carriers), full = 2.0 * std::numbers::pi;
     const double first = std::numbers::pi / (2.0 * n);  // of f: no end stands on a meeting
-    const detail::BraidLength along("TubularBraid.turns", 2.0 * n * braid.turns, 0.5 * braid.pitch / n, std::tan(braid.angle()),
-                                    braid.periodic, braid.overhang, half_width(braid.type));
-    const double least = along.least_overhang(half_width(braid.type));
-    core::require(!(braid.overhang > 0.0) || braid.overhang >= least, "TubularBraid.overhang", braid.overhang,
-                  "0, or >= " + core::text(least) + ", for yarns to turn along the tube and two diameters");
+    const BraidLength along("TubularBraid", "turns", 2.0 * n * braid.turns, 0.5 * braid.pitch / n, std::tan(braid.angle()),
+                            braid.periodic, braid.overhang, half_width(braid.type));
     const auto add = [&](const std::string& name, Index family, double start, double way) {
         Path path;
         path.name = name, path.family = family, path.pull = Vec3::UnitZ();
@@ -226,6 +237,19 @@ inline Textile tubular_braid(const TubularBraid& braid) {
         braid.height_over_radius* half_width(braid.type));
     along.grip(textile);
     return textile;
+}
+}  // namespace detail
+
+/// With f = 2 pi z / H carriers lie at angles f + 2 pi i / n and -f + 2 pi j / n. They meet where n f = pi (j' - i), j' = j + n
+/// m, at the angle pi (i + j') / n, and there the first is outside where (i + j') mod 2 p < p, in a p x p braid. 2 n^2 crossings
+/// a turn. An axial yarn stands at the angles pi (2 k + 1) / n, between the two that meet there.
+inline Textile tubular_braid(const TubularBraid& braid) {
+    // The spacing of carriers of one way is a diameter.
+    const double round = 2.0 * std::numbers::pi * braid.radius,
+                 k = round / (2.0 * half_width(braid.type) * static_cast<double>(braid.carriers));
+    return laid(braid, &TubularBraid::pitch, "TubularBraid.pitch", k > 1.0 ? round / std::sqrt(k * k - 1.0) : 0.0,
+                {{"radius", braid.radius}, {"overhang", braid.overhang}}, braid.type,
+                [](const TubularBraid& one) { return detail::drawn(one); });
 }
 
 }  // namespace fibrant::compositions::textile

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <numbers>
 #include <span>
+#include <stdexcept>
 #include <tuple>
 #include <vector>
 
@@ -31,16 +32,27 @@ inline Line line_of(std::vector<Vec3> points) {
     return line;
 }
 
+/// A path that is far longer than its fibres are thick.
+struct TooLong : std::invalid_argument {
+    using std::invalid_argument::invalid_argument;
+};
+
 /// Points of all paths, about half a radius apart.
 /// @param step_over_radius  distance of points [1], > 0
+/// @throws TooLong where that would be more points than can be held
 inline std::vector<Line> lines_of(const Textile& textile, double step_over_radius = 0.5) {
     std::vector<Line> lines;
+    double all = 0.0;
     for (Index p = 0; p < core::count(textile.paths); ++p) {
         const Path& path = textile.paths[core::at(p)];
         const double length = scene::length_of(path.curve, 128);
-        constexpr double most = 1e7;  // points of a path: more is a slip of the unit
+        constexpr double most = 1e7;  // points in all: more is a slip of the unit
         const double steps = length / (step_over_radius * textile.type_of(p).radius);
-        core::require(steps <= most, textile.label(p) + ": length over the radius of its fibres", 0.5 * steps, "<= 5e6");
+        all += steps;
+        if (!(all <= most))
+            throw TooLong(textile.label(p) + ": length over the radius of its fibres = " + core::text(step_over_radius * steps) +
+                          ", and of those before it " + core::text(step_over_radius * (all - steps)) +
+                          ", but it must be <= " + core::text(step_over_radius * most) + " in all");
         const auto pieces = std::max<Index>(64, static_cast<Index>(steps));
         std::vector<Vec3> points;
         for (Index k = 0; k <= pieces; ++k) points.push_back(path.curve(static_cast<double>(k) / static_cast<double>(pieces)));
@@ -327,7 +339,8 @@ void require_crossings(const Textile& textile, Index asked, const std::string& f
                        const std::string& others, const std::string& why, const Drawn& drawn) {
     const Index found = core::count(textile.crossings);
     if (found == asked) return;
-    const double nearest = nearest_that_holds(given, low, 2.0 * given,
+    const double start = low > 0.0 ? std::min(given, 4.0 * low) : given;  // far above nothing can hold, and takes long to draw
+    const double nearest = nearest_that_holds(start, low, 2.0 * start,
                                               [&](double x) { return x > low && core::count(drawn(x).crossings) == asked; });
     const std::string need = std::to_string(asked) + " crossings, not " + std::to_string(found) + ": " + why;
     if (std::isnan(nearest)) core::refuse(field, core::text(given), "changed, or " + others + ", for " + need);

@@ -8,8 +8,11 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -129,6 +132,95 @@ inline void interlace(Textile& textile, const HeightRule& rule, double height) {
             std::to_string(audit.wrong) + " wrong, " + std::to_string(audit.missing) + " missing and " +
                 std::to_string(audit.extra) + " more",
             "as the rule says");
+}
+
+/// A length that a textile is drawn from, and its name.
+struct DrawnLength {
+    const char* name;
+    double value;  ///< [length]
+};
+
+/// What a generator draws, if its yarns lie beside each other, cross as they should, and bend no more sharply than they are
+/// thick.
+/// @param length   of the parameters: the one that this follows from most; more of it is better
+/// @param field    its name, of the form "Generator.length"
+/// @param low      that it has to be at least, or yarns would lie in each other [length]
+/// @param others   that this follows from as well
+/// @param type     of the yarns
+/// @param draw     draw(parameters) is the textile
+/// @param high     beyond which no value would do [length]
+/// @throws std::invalid_argument by the length and the least value near to it that does; what is too long by its largest length
+template <class Parameters, class Draw>
+Textile laid(const Parameters& given, double Parameters::*length, const std::string& field, double low,
+             std::vector<DrawnLength> others, const YarnType& type, const Draw& draw,
+             double high = std::numeric_limits<double>::infinity()) {
+    given.validate();
+    const double value = given.*length;
+    const std::string owner = field.substr(0, field.find('.') + 1);
+    std::string why;
+    const auto own = [&](const std::invalid_argument& error) {  // names a field of the generator
+        return std::string_view(error.what()).substr(0, owner.size()) == owner;
+    };
+    const auto bends = [](const Textile& textile) {
+        for (Index p = 0; p < core::count(textile.paths); ++p)
+            core::with_place([&] { return textile.label(p); },
+                             [&] {
+                                 const Path& path = textile.paths[core::at(p)];
+                                 detail::require_bends(path, textile.type_of(p), scene::length_of(path.curve, 128), "");
+                             });
+    };
+    bool longer = false;
+    const auto holds = [&](double x) {
+        Parameters changed = given;
+        changed.*length = x;
+        try {
+            bends(draw(changed));
+            return true;
+        } catch (const TooLong& error) {
+            longer = true, why = error.what();
+        } catch (const std::invalid_argument& error) {
+            if (why.empty() && !own(error)) why = error.what();
+        }
+        return false;
+    };
+    std::string at;
+    for (const DrawnLength& other : others)
+        at += std::string(at.empty() ? " at " : ", ") + other.name + " = " + core::text(other.value);
+    at += " and yarns " + core::text(2.0 * half_width(type)) + " thick";
+    try {
+        if (value >= low) {
+            Textile textile = draw(given);
+            bends(textile);
+            return textile;
+        }
+    } catch (const TooLong& error) {
+        longer = true, why = error.what();
+    } catch (const std::invalid_argument& error) {
+        if (own(error)) throw;
+        why = error.what();
+    }
+    // Upwards in steps until it holds, then between the last two.
+    double bad = value, good = std::max(value, low) * (1.0 + 1e-9);
+    bool found = !longer && value < low && good <= high && holds(good);
+    for (int k = 0; k < 40 && !found && !longer && good <= high; ++k) bad = good, good *= 1.3, found = holds(good);
+    if (longer && !found) {
+        others.push_back({field.c_str() + owner.size(), value});
+        const DrawnLength& largest = *std::max_element(
+            others.begin(), others.end(), [](const DrawnLength& a, const DrawnLength& b) { return a.value < b.value; });
+        core::refuse(owner + largest.name, core::text(largest.value),
+                     "less with fibres of radius " + core::text(type.radius) + ": " + why);
+    }
+    if (!found)
+        core::refuse(field, core::text(value),
+                     (value < low ? ">= " + core::text(low) : std::string("another one")) + at +
+                         (why.empty() ? ", for yarns to lie beside each other" : ": " + why));
+    while (bad >= low && good - bad > 1e-3 * good) {
+        const double middle = 0.5 * (bad + good);
+        (holds(middle) ? good : bad) = middle;
+    }
+    core::refuse(field, core::text(value),
+                 ">= " + core::text(good) + at + ", for yarns to lie beside each other" +
+                     (why.empty() ? std::string() : " and not too bent: " + why));
 }
 
 }  // namespace fibrant::compositions::textile

@@ -47,10 +47,47 @@ struct WeftKnit {
                       "> half of course_spacing, or loops do not reach the next course");
         core::require_positive("WeftKnit.height_over_radius", height_over_radius);
         type.validate();
+        // Beside each other lie courses, and legs of one course: an eighth of a wale and the bulge beside the middle of a foot.
+        const double w = half_width(type);
+        core::require(course_spacing >= 2.0 * w, "WeftKnit.course_spacing", course_spacing,
+                      ">= " + core::text(2.0 * w) + ", the thickness of the yarn");
+        if (std::isnan(bulge)) {
+            core::require(wale_spacing >= w / 0.175, "WeftKnit.wale_spacing", wale_spacing,
+                          ">= " + core::text(w / 0.175) + ", for legs of loops to lie beside each other");
+            return;
+        }
+        const double most = 0.375 * wale_spacing - w;
+        core::require(bulge > 0.0 && bulge <= most, "WeftKnit.bulge", bulge,
+                      "> 0 and <= " + core::text(most) + ", for legs of loops to lie beside each other");
     }
 };
 
 namespace detail {
+/// A knit whose loops cross as often as they should: others are refused with the height that would do.
+/// @param asked    crossings
+/// @param low      that its height is above [length]
+/// @param fields   that crossings follow from as well
+/// @param draw     draws it, however often it crosses itself
+/// @param bend     height at which a loop is as sharp as its yarn is thick [length]
+template <class Knit>
+Textile looped(const Knit& knit, Textile (*draw)(const Knit&), const std::string& field, Index asked, double low,
+               const std::string& fields, const std::string& why, std::vector<DrawnLength> lengths, double bend = 0.0) {
+    const auto crossed = [&](const Knit& one) {
+        Textile textile = draw(one);
+        if (&one != &knit)
+            require_crossings(textile, asked, "crossings", why);
+        else
+            require_crossings(textile, asked, field, one.loop_height, low, fields, why, [other = one, draw](double height) {
+                auto changed = other;
+                changed.loop_height = height;
+                return draw(changed);
+            });
+        return textile;
+    };
+    constexpr double tallest = 8.0;  // over the least height: a loop that is taller crosses those beyond its neighbours
+    return laid(knit, &Knit::loop_height, field, bend, std::move(lengths), knit.type, crossed, tallest * low);
+}
+
 /// A weft knit as it is drawn, however often it crosses itself.
 inline Textile drawn(const WeftKnit& knit) {
     Textile textile;
@@ -110,16 +147,14 @@ inline Textile drawn(const WeftKnit& knit) {
 /// in front, and the other way round for reverse ones. The feet of the first course and the heads of the last one are held, as on
 /// needles, and so are ends.
 inline Textile weft_knit(const WeftKnit& knit) {
-    knit.validate();
-    Textile textile = detail::drawn(knit);
-    require_crossings(textile, 4 * knit.wales * (knit.courses - 1), "WeftKnit.loop_height", knit.loop_height,
-                      0.5 * knit.course_spacing, "wale_spacing, course_spacing and bulge", "four of each loop with that above it",
-                      [other = knit](double height) {
-                          auto changed = other;
-                          changed.loop_height = height;
-                          return detail::drawn(changed);
-                      });
-    return textile;
+    // At the sides of a loop, where cos 4 pi u = -W / 4 pi a, its radius of curvature is (H sin 2 pi u)^2 / 4 a sin 4 pi u.
+    const double a = knit.width(), side = -knit.wale_spacing / (4.0 * std::numbers::pi * a);
+    const double bend =
+        side > -1.0 ? std::sqrt(half_width(knit.type) / 0.95 * 8.0 * a * std::sqrt(1.0 - side * side) / (1.0 - side)) : 0.0;
+    return detail::looped(knit, &detail::drawn, "WeftKnit.loop_height", 4 * knit.wales * (knit.courses - 1),
+                          0.5 * knit.course_spacing, "wale_spacing, course_spacing and bulge",
+                          "four of each loop with that above it",
+                          {{"wale_spacing", knit.wale_spacing}, {"course_spacing", knit.course_spacing}, {"bulge", a}}, bend);
 }
 
 /// Tricot of one bar: each yarn lays a loop on a needle and on its neighbour by turns, joined by underlaps.
@@ -140,6 +175,12 @@ struct Tricot {
                       "> course_spacing, or loops do not reach the next course");
         core::require_positive("Tricot.height_over_radius", height_over_radius);
         type.validate();
+        // Feet lie beside each other, 0.14 of the spacing beside a needle.
+        const double w = half_width(type);
+        core::require(needle_spacing >= w / 0.14, "Tricot.needle_spacing", needle_spacing,
+                      ">= " + core::text(w / 0.14) + ", for feet of loops to lie beside each other");
+        core::require(course_spacing >= 2.0 * w, "Tricot.course_spacing", course_spacing,
+                      ">= " + core::text(2.0 * w) + ", the thickness of the yarn");
     }
 };
 
@@ -187,16 +228,10 @@ inline Textile drawn(const Tricot& knit) {
 /// Yarn m lays its loops on needles m and m + 1 by turns. Loops are closed: feet lie side by side, heads above the legs of the
 /// loop that is drawn through them, underlaps and feet above the legs of the loop below.
 inline Textile tricot(const Tricot& knit) {
-    knit.validate();
-    Textile textile = detail::drawn(knit);
-    require_crossings(textile, 4 * (knit.needles - 1) * (knit.courses - 1), "Tricot.loop_height", knit.loop_height,
-                      knit.course_spacing, "needle_spacing and course_spacing", "four of each loop with that drawn through it",
-                      [other = knit](double height) {
-                          auto changed = other;
-                          changed.loop_height = height;
-                          return detail::drawn(changed);
-                      });
-    return textile;
+    return detail::looped(knit, &detail::drawn, "Tricot.loop_height", 4 * (knit.needles - 1) * (knit.courses - 1),
+                          knit.course_spacing, "needle_spacing and course_spacing",
+                          "four of each loop with that drawn through it",
+                          {{"needle_spacing", knit.needle_spacing}, {"course_spacing", knit.course_spacing}});
 }
 
 }  // namespace fibrant::compositions::textile

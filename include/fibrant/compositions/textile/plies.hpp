@@ -44,17 +44,35 @@ struct StitchedPlies {
                       ">= " + core::text(room) + ", for threads to pass between yarns");
         core::require(length >= 2.0 * stitch_length, "StitchedPlies.length", length, ">= two stitches");
         core::require(width >= row_spacing, "StitchedPlies.width", width, ">= row_spacing");
+        constexpr double most = 10000.0;  // yarns of a ply, threads, stitches of a thread
+        for (const auto& [field, extent] : {std::pair{"StitchedPlies.length", length}, {"StitchedPlies.width", width}})
+            core::require(extent <= most * yarn_spacing, field, extent,
+                          "<= " + core::text(most * yarn_spacing) + ", 10000 times yarn_spacing");
+        core::require(stitch_length * most >= length, "StitchedPlies.stitch_length", stitch_length,
+                      ">= " + core::text(length / most) + ", a ten thousandth of length");
+        core::require(row_spacing * most >= width, "StitchedPlies.row_spacing", row_spacing,
+                      ">= " + core::text(width / most) + ", a ten thousandth of width");
     }
     /// From one ply to the next: a twentieth more than their thickness [length].
     double pitch() const { return 2.1 * half_width(yarn); }
 };
+
+namespace detail {
+/// As `stitched` says.
+inline Textile drawn(const StitchedPlies& plies);
+}  // namespace detail
 
 /// Nothing overlaps. Each ply lies above those below it, and a thread above all plies or below all of them; neighbouring threads
 /// take turns. In corners yarns that would not cross two threads are left out: nothing would hold them. Yarns along x are held by
 /// threads that go sideways over and under them. One crossing for each two lines of a view from above that meet.
 /// @throws std::invalid_argument naming ply, thread and distance, where a thread would go through a yarn
 inline Textile stitched(const StitchedPlies& plies) {
-    plies.validate();
+    return laid(plies, &StitchedPlies::stitch_length, "StitchedPlies.stitch_length", 0.0,
+                {{"length", plies.length}, {"width", plies.width}}, plies.thread,
+                [](const StitchedPlies& one) { return detail::drawn(one); });
+}
+
+inline Textile detail::drawn(const StitchedPlies& plies) {
     Textile textile;
     textile.name = "stitched plies";
     textile.types = {plies.yarn, plies.thread};

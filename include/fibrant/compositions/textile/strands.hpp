@@ -38,11 +38,19 @@ struct Plied {
     /// Distance of an axis from that which it goes around, of `count` cylinders of radius r that lean by their pitch: in the
     /// plane across the axis a section is an ellipse, wider around the axis by 1 / cos of the lean [length].
     double lay_radius(Index count, double r, double of_pitch) const noexcept {
-        const double n = static_cast<double>(count), width = r * (1.0 + slack), straight = width / std::sin(std::numbers::pi / n);
+        const double straight = straight_radius(count, r);
         double a = straight;
         for (int k = 0; k < 50; ++k)
             a = straight * std::hypot(1.0, 2.0 * std::numbers::pi * a / of_pitch);  // a fixed point: the lean grows with a
         return a;
+    }
+    /// The same of cylinders that do not lean [length].
+    double straight_radius(Index count, double r) const noexcept {
+        return r * (1.0 + slack) / std::sin(std::numbers::pi / static_cast<double>(count));
+    }
+    /// Pitch at which they lean by a tangent of 2, where the lay radius is 5^1/2 times the straight one [length].
+    double least_pitch(Index count, double r) const noexcept {
+        return std::numbers::pi * std::sqrt(5.0) * straight_radius(count, r);
     }
 };
 
@@ -59,11 +67,13 @@ inline Textile plied(const Plied& rope) {
     textile.types = {rope.type};
     const double thick = half_width(rope.type), a = rope.lay_radius(rope.plies, thick, rope.pitch);
     core::require(2.0 * std::numbers::pi * a / rope.pitch < 2.0, "Plied.pitch", rope.pitch,
-                  "longer: plies would lie at more than 63 degrees");
+                  "> " + core::text(rope.least_pitch(rope.plies, thick)) + ", or plies lie at more than 63 degrees");
     const double b = rope.strands > 1 ? rope.lay_radius(rope.strands, a + thick, rope.strand_pitch) : 0.0;
     if (rope.strands > 1)
         core::require(2.0 * std::numbers::pi * b / rope.strand_pitch < 2.0, "Plied.strand_pitch", rope.strand_pitch,
-                      "longer: strands would lie at more than 63 degrees");
+                      "> " + core::text(rope.least_pitch(rope.strands, a + thick)) + ", or strands lie at more than 63 degrees");
+    constexpr double longest = 1e6;  // half widths of a yarn: more is a slip of the unit
+    core::require_between("Plied.length", rope.length, 2.0 * thick, longest * thick);
     for (Index s = 0; s < rope.strands; ++s) {
         const double start = 2.0 * std::numbers::pi * static_cast<double>(s) / static_cast<double>(rope.strands);
         const scene::Curve axis = [=, length = rope.length, pitch = rope.strand_pitch](double t) {
@@ -103,7 +113,9 @@ struct ChainMail {
         core::require_at_least("ChainMail.rows", rows, 2);
         core::require_at_least("ChainMail.columns", columns, 2);
         type.validate();
-        core::require(ring_radius > 4.0 * type.radius, "ChainMail.ring_radius", ring_radius, "> 4 radii of the wire");
+        constexpr double widest = 1e5;  // radii of the wire: more is a slip of the unit
+        core::require(ring_radius > 4.0 * type.radius && ring_radius <= widest * type.radius, "ChainMail.ring_radius",
+                      ring_radius, "> 4 and <= 1e5 radii of the wire, " + core::text(type.radius));
         core::require_positive("ChainMail.pitch", along());
         core::require_positive("ChainMail.row_pitch", across());
         core::require(tilt_deg > 0.0 && tilt_deg <= 80.0, "ChainMail.tilt_deg", tilt_deg, "> 0 and <= 80");
@@ -133,7 +145,9 @@ inline Textile chain_mail(const ChainMail& mail) {
             };
             textile.paths.push_back(std::move(path));
         }
-    const std::vector<Line> lines = lines_of(textile);
+    constexpr double points = 256.0;  // of a ring, to find its links
+    const std::vector<Line> lines =
+        lines_of(textile, std::max(0.5, 2.0 * std::numbers::pi * mail.ring_radius / (points * mail.type.radius)));
     for (Index j = 0; j + 1 < mail.rows; ++j)
         for (Index i = 0; i < mail.columns; ++i)
             for (const Index k : {i + (j % 2 == 0 ? -1 : 0), i + (j % 2 == 0 ? 0 : 1)}) {
@@ -153,7 +167,7 @@ struct Net {
     Index yarns = 4;                   ///< >= 2
     double spacing = core::unset;      ///< of yarns [length], > 0
     double period = core::unset;       ///< of a yarn [length], > 0
-    double periods = 2.0;              ///< > 0
+    double periods = 2.0;              ///< >= 0.5
     double overlap = 0.0;              ///< by which a yarn reaches beyond its neighbour's turns [length]; 0: four half widths
     YarnType type{};                   ///< of all yarns
     double height_over_radius = 1.05;  ///< of yarns at crossings out of the middle plane [1], > 0
@@ -162,22 +176,25 @@ struct Net {
         core::require_at_least("Net.yarns", yarns, 2);
         core::require_positive("Net.spacing", spacing);
         core::require_positive("Net.period", period);
-        core::require_positive("Net.periods", periods);
+        core::require(std::isfinite(periods) && periods >= 0.5, "Net.periods", periods, ">= 0.5, which is one turn");
         core::require_not_negative("Net.overlap", overlap);
         core::require_positive("Net.height_over_radius", height_over_radius);
         type.validate();
+        // At a turn a yarn reaches half of the overlap beyond its neighbour's line, and so does the next but two.
+        const double w = half_width(type), least = yarns > 3 ? 0.5 * reach() + w : w;
+        core::require(spacing >= least, "Net.spacing", spacing,
+                      ">= " + core::text(least) + ", for yarns to meet none but their neighbours");
     }
+    /// By which a yarn reaches beyond its neighbour's turns [length].
+    double reach() const { return overlap > 0.0 ? overlap : 4.0 * half_width(type); }
 };
 
-/// Yarn k lies at x = k p + (p + o) / 2 cos(2 pi y / P + pi k): neighbours cross twice at each of their turns, first the one
-/// above, then the other.
-inline Textile net(const Net& given) {
-    given.validate();
+namespace detail {
+inline Textile drawn(const Net& given) {
     Textile textile;
     textile.name = "net";
     textile.types = {given.type};
-    const double overlap = given.overlap > 0.0 ? given.overlap : 4.0 * half_width(given.type),
-                 length = given.period * given.periods;
+    const double overlap = given.reach(), length = given.period * given.periods;
     for (Index k = 0; k < given.yarns; ++k) {
         Path path;
         path.name = "yarn " + std::to_string(k), path.family = k % 2;
@@ -200,6 +217,17 @@ inline Textile net(const Net& given) {
         },
         given.height_over_radius * half_width(given.type));
     return textile;
+}
+}  // namespace detail
+
+/// Yarn k lies at x = k p + (p + o) / 2 cos(2 pi y / P + pi k): neighbours cross twice at each of their turns, first the one
+/// above, then the other.
+inline Textile net(const Net& given) {
+    const double turn = half_width(given.type) / 0.95,
+                 a = 0.5 * (given.spacing + given.reach());  // radius at a turn: P^2 / 4 pi^2 a
+    return laid(given, &Net::period, "Net.period", 2.0 * std::numbers::pi * std::sqrt(a * turn),
+                {{"spacing", given.spacing}, {"overlap", given.overlap}}, given.type,
+                [](const Net& one) { return detail::drawn(one); });
 }
 
 }  // namespace fibrant::compositions::textile

@@ -144,11 +144,26 @@ inline std::pair<double, double> tightest(const scene::Curve& curve, Index sampl
     for (Index k = closed ? 0 : 1; k < samples; ++k) {
         const double t = h * static_cast<double>(k);
         const Vec3 a = curve(k == 0 ? 1.0 - h : t - h), b = curve(t), c = curve(t + h);
-        const double area = (b - a).cross(c - b).norm();  // the circle through three points
-        const double radius = (b - a).norm() * (c - b).norm() * (c - a).norm() / (2.0 * area);
+        const double area = (b - a).cross(c - b).norm(), ahead = (b - a).dot(c - b);
+        // The circle through three points; of those that go back it would be the wider, the sharper they turn.
+        const double radius = ahead > 0.0 ? (b - a).norm() * (c - b).norm() * (c - a).norm() / (2.0 * area)
+                                          : 0.5 * ((b - a).norm() + (c - b).norm()) / std::atan2(area, ahead);
         if (radius < least.first) least = {radius, t};
     }
     return least;
+}
+
+/// Refuses a path that bends more sharply than its yarn is thick: the outermost fibre of a bend is as thick as it is; a twentieth
+/// is left for what bends further while it settles.
+/// @param length  of the path
+/// @param field   that messages begin with
+inline void require_bends(const Path& path, const YarnType& type, double length, const std::string& field = "Path.curve: ") {
+    constexpr double per_radius = 4.0;  // points: what steps over a bend has not seen it
+    const Index samples = std::clamp<Index>(static_cast<Index>(per_radius * length / type.radius), 64, 400000);
+    const double least = half_width(type) / 0.95;
+    const auto [tight, at] = tightest(path.curve, samples, path.kind == PathKind::closed);
+    core::require(tight >= least, field + "radius of curvature at parameter " + core::text(at), tight,
+                  ">= " + core::text(least) + ", the half width of the yarn over 0.95");
 }
 }  // namespace detail
 
@@ -190,13 +205,7 @@ inline void validate(const Textile& textile) {
                              if (path.kind == PathKind::periodic)
                                  core::require(path.image.norm() > 0.0, "Path.image, of a periodic path", path.image.norm(),
                                                "> 0");
-                             // The outermost fibre of a bend is as thick as it is; a twentieth is left for what bends further
-                             // while it settles.
-                             const Index samples = std::clamp<Index>(static_cast<Index>(length / type.radius), 16, 100000);
-                             const double least = half_width(type) / 0.95;
-                             const auto [tight, at] = detail::tightest(path.curve, samples, path.kind == PathKind::closed);
-                             core::require(tight >= least, "Path.curve: radius of curvature at parameter " + core::text(at),
-                                           tight, ">= " + core::text(least) + ", the half width of the yarn over 0.95");
+                             detail::require_bends(path, type, length);
                          });
     }
     for (Index c = 0; c < core::count(textile.crossings); ++c) {

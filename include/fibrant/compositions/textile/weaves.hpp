@@ -142,10 +142,8 @@ inline std::vector<std::vector<Index>> levels_of_lifts(const std::vector<std::ve
     return levels;
 }
 
-/// Wefts lie straight, warps at their levels between them, level where they cross and joined by arcs of the third degree: nothing
-/// overlaps where there is room. warps x columns x layers crossings.
-inline Textile woven(const LevelPlan& plan) {
-    plan.validate();
+namespace detail {
+inline Textile drawn(const LevelPlan& plan) {
     Textile textile;
     textile.name = "weave";
     textile.types = {plan.warp, plan.weft};
@@ -158,6 +156,9 @@ inline Textile woven(const LevelPlan& plan) {
     const double beyond_x = beyond(px), beyond_y = beyond(py);
     const double length = px * static_cast<double>(columns - 1) + 2.0 * beyond_x,
                  width = py * static_cast<double>(warps - 1) + 2.0 * beyond_y;
+    // What goes on has its middle at the origin: a cell is bent about that (scene::PeriodicCell), and yarns, whose spin is held
+    // in their middles, do not spin against those that they cross when it is twisted.
+    const double x0 = plan.periodic ? beyond_x - 0.5 * length : 0.0, y0 = plan.periodic ? beyond_y - 0.5 * width : 0.0;
     for (Index w = 0; w < warps; ++w) {
         Path path;
         path.name = (plan.bound(w) ? "binder " : "warp ") + std::to_string(w);
@@ -167,10 +168,10 @@ inline Textile woven(const LevelPlan& plan) {
         for (Index c = 0; c < columns; ++c)
             knots.emplace_back((beyond_x + px * static_cast<double>(c)) / length,
                                pz * (static_cast<double>(plan.level(w, c)) - 0.5 * static_cast<double>(layers)));
-        const double y = py * static_cast<double>(w);
+        const double y = y0 + py * static_cast<double>(w);
         if (plan.periodic) repeat(path, length * Vec3::UnitX());
-        path.curve = detail::raised([=](double t) { return Vec3(length * t - beyond_x, y, 0.0); }, std::move(knots),
-                                    plan.periodic, textile.view);
+        path.curve = raised([=](double t) { return Vec3(x0 + length * t - beyond_x, y, 0.0); }, std::move(knots), plan.periodic,
+                            textile.view);
         textile.paths.push_back(std::move(path));
     }
     for (Index c = 0; c < columns; ++c)
@@ -178,15 +179,31 @@ inline Textile woven(const LevelPlan& plan) {
             Path path;
             path.name = "weft " + std::to_string(c) + "." + std::to_string(l);
             path.type = 1, path.family = 1, path.upward = Vec3::UnitZ();
-            const double x = px * static_cast<double>(c),
+            const double x = x0 + px * static_cast<double>(c),
                          z = pz * (static_cast<double>(l) - 0.5 * static_cast<double>(layers - 1));
             if (plan.periodic) repeat(path, width * Vec3::UnitY());
-            path.curve = [=](double t) { return Vec3(x, width * t - beyond_y, z); };
+            path.curve = [=](double t) { return Vec3(x, y0 + width * t - beyond_y, z); };
             textile.paths.push_back(std::move(path));
         }
     if (plan.periodic) textile.lattice = {length * Vec3::UnitX(), width * Vec3::UnitY()};
     textile.crossings = crossings_of(textile);
     return textile;
+}
+}  // namespace detail
+
+/// Wefts lie straight, warps at their levels between them, level where they cross and joined by arcs of the third degree: nothing
+/// overlaps where there is room. warps x columns x layers crossings.
+inline Textile woven(const LevelPlan& plan) {
+    plan.validate();
+    // A rise h over a spacing p is level at both ends with a radius of curvature of p^2 / 6 h.
+    double bend = 0.0;  // greatest product of a rise and half the width of its yarn
+    for (Index w = 0; w < plan.warps(); ++w)
+        for (Index c = 0; c + (plan.periodic ? 0 : 1) < plan.column_count(); ++c)
+            bend = std::max(bend, half_width(plan.bound(w) ? plan.binder : plan.warp) * plan.pitch() *
+                                      static_cast<double>(std::abs(plan.level(w, c + 1) - plan.level(w, c))));
+    return laid(plan, &LevelPlan::column_spacing, "LevelPlan.column_spacing", std::sqrt(6.0 * bend / 0.95),
+                {{"warp_spacing", plan.warp_spacing}, {"layer_spacing", plan.layer_spacing}, {"overhang", plan.overhang}},
+                plan.weft, [](const LevelPlan& one) { return detail::drawn(one); });
 }
 
 /// Leno: pairs of a ground end and a doup end that crosses to its other side between picks, below it, and lies above all wefts.
@@ -209,10 +226,8 @@ struct LenoWeave {
     }
 };
 
-/// Each pair of yarns has one order for good: doup above wefts, wefts above ground, ground above doup. 2 crossings a pick and one
-/// a gap for each pair.
-inline Textile leno(const LenoWeave& weave) {
-    weave.validate();
+namespace detail {
+inline Textile drawn(const LenoWeave& weave) {
     Textile textile;
     textile.name = "leno";
     textile.types = {weave.type};
@@ -247,6 +262,15 @@ inline Textile leno(const LenoWeave& weave) {
                       "two of each pair of ends with a weft, and one between two wefts");
     return textile;
 }
+}  // namespace detail
+
+/// Each pair of yarns has one order for good: doup above wefts, wefts above ground, ground above doup. 2 crossings a pick and one
+/// a gap for each pair.
+inline Textile leno(const LenoWeave& weave) {
+    return laid(weave, &LenoWeave::pick_spacing, "LenoWeave.pick_spacing", 2.0 * half_width(weave.type),
+                {{"pair_spacing", weave.pair_spacing}, {"aside", weave.aside}}, weave.type,
+                [](const LenoWeave& one) { return detail::drawn(one); });
+}
 
 /// Three families of straight yarns at 0, 60 and -60 degrees within a circle, no three of which meet at a point.
 struct TriaxialWeave {
@@ -258,15 +282,16 @@ struct TriaxialWeave {
     void validate() const {
         core::require_positive("TriaxialWeave.spacing", spacing);
         core::require(radius > spacing, "TriaxialWeave.radius", radius, "> spacing");
+        constexpr double most = 10000.0;  // yarns of a family
+        core::require(radius <= 0.5 * most * spacing, "TriaxialWeave.radius", radius,
+                      "<= " + core::text(0.5 * most * spacing) + ", 5000 spacings");
         core::require_positive("TriaxialWeave.height_over_radius", height_over_radius);
         type.validate();
     }
 };
 
-/// Orders are cyclic by families: the first above the second, the second above the third, the third above the first. One crossing
-/// a pair that meets.
-inline Textile triaxial_weave(const TriaxialWeave& weave) {
-    weave.validate();
+namespace detail {
+inline Textile drawn(const TriaxialWeave& weave) {
     Textile textile;
     textile.name = "triaxial weave";
     textile.types = {weave.type};
@@ -298,6 +323,14 @@ inline Textile triaxial_weave(const TriaxialWeave& weave) {
         },
         weave.height_over_radius * half_width(weave.type));
     return textile;
+}
+}  // namespace detail
+
+/// Orders are cyclic by families: the first above the second, the second above the third, the third above the first. One crossing
+/// a pair that meets.
+inline Textile triaxial_weave(const TriaxialWeave& weave) {
+    return laid(weave, &TriaxialWeave::spacing, "TriaxialWeave.spacing", 2.0 * half_width(weave.type), {{"radius", weave.radius}},
+                weave.type, [](const TriaxialWeave& one) { return detail::drawn(one); });
 }
 
 }  // namespace fibrant::compositions::textile
