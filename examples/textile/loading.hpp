@@ -156,6 +156,10 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
                      "textile: the stiffness of the cell is not symmetric, by %.3g: elements are too long, or it is not at rest "
                      "without friction\n",
                      stiffness.asymmetry);
+    for (Index c = 0; report.converged && c < 6; ++c)
+        if (stiffness.matrix(c, c) <= 0.0)
+            std::fprintf(stderr, "textile: the cell is not stable: its stiffness against %s is %.3g\n",
+                         cloth::cell_channels()[static_cast<std::size_t>(c)].c_str(), stiffness.matrix(c, c));
     return report.converged && audit.clean() && stiffness.asymmetry <= symmetric;
 }
 

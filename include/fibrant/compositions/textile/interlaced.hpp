@@ -140,22 +140,10 @@ struct DrawnLength {
     double value;  ///< [length]
 };
 
-/// What a generator draws, if its yarns lie beside each other, cross as they should, and bend no more sharply than they are
-/// thick.
-/// @param length   of the parameters: the one that this follows from most; more of it is better
-/// @param field    its name, of the form "Generator.length"
-/// @param low      that it has to be at least, or yarns would lie in each other [length]
-/// @param others   that this follows from as well
-/// @param type     of the yarns
-/// @param draw     draw(parameters) is the textile
-/// @param high     beyond which no value would do [length]
-/// @throws std::invalid_argument by the length and the least value near to it that does; what is too long by its largest length
-template <class Parameters, class Draw>
-Textile laid(const Parameters& given, double Parameters::*length, const std::string& field, double low,
-             std::vector<DrawnLength> others, const YarnType& type, const Draw& draw,
-             double high = std::numeric_limits<double>::infinity()) {
-    given.validate();
-    const double value = given.*length;
+namespace detail {
+/// As laid() below, of a length and what draws with it.
+inline Textile laid(double value, const std::string& field, double low, std::vector<DrawnLength> others, const YarnType& type,
+                    const std::function<Textile(double)>& draw, double high) {
     const std::string owner = field.substr(0, field.find('.') + 1);
     std::string why;
     const auto own = [&](const std::invalid_argument& error) {  // names a field of the generator
@@ -166,15 +154,13 @@ Textile laid(const Parameters& given, double Parameters::*length, const std::str
             core::with_place([&] { return textile.label(p); },
                              [&] {
                                  const Path& path = textile.paths[core::at(p)];
-                                 detail::require_bends(path, textile.type_of(p), scene::length_of(path.curve, 128), "");
+                                 require_bends(path, textile.type_of(p), scene::length_of(path.curve, 128), "");
                              });
     };
     bool longer = false;
     const auto holds = [&](double x) {
-        Parameters changed = given;
-        changed.*length = x;
         try {
-            bends(draw(changed));
+            bends(draw(x));
             return true;
         } catch (const TooLong& error) {
             longer = true, why = error.what();
@@ -189,7 +175,7 @@ Textile laid(const Parameters& given, double Parameters::*length, const std::str
     at += " and yarns " + core::text(2.0 * half_width(type)) + " thick";
     try {
         if (value >= low) {
-            Textile textile = draw(given);
+            Textile textile = draw(value);
             bends(textile);
             return textile;
         }
@@ -221,6 +207,31 @@ Textile laid(const Parameters& given, double Parameters::*length, const std::str
     core::refuse(field, core::text(value),
                  ">= " + core::text(good) + at + ", for yarns to lie beside each other" +
                      (why.empty() ? std::string() : " and not too bent: " + why));
+}
+}  // namespace detail
+
+/// What a generator draws, if its yarns lie beside each other, cross as they should, and bend no more sharply than they are
+/// thick.
+/// @param length   of the parameters: the one that this follows from most; more of it is better
+/// @param field    its name, of the form "Generator.length"
+/// @param low      that it has to be at least, or yarns would lie in each other [length]
+/// @param others   that this follows from as well
+/// @param type     of the yarns
+/// @param draw     draw(parameters) is the textile; it is told of what is given by `given` itself
+/// @param high     beyond which no value would do [length]
+/// @throws std::invalid_argument by the length and the least value near to it that does; what is too long by its largest length
+template <class Parameters, class Draw>
+Textile laid(const Parameters& given, double Parameters::*length, const std::string& field, double low,
+             std::vector<DrawnLength> others, const YarnType& type, const Draw& draw,
+             double high = std::numeric_limits<double>::infinity()) {
+    given.validate();
+    const auto drawn = [&](double x) -> Textile {
+        if (x == given.*length) return draw(given);
+        Parameters changed = given;
+        changed.*length = x;
+        return draw(changed);
+    };
+    return detail::laid(given.*length, field, low, std::move(others), type, drawn, high);
 }
 
 }  // namespace fibrant::compositions::textile
