@@ -184,19 +184,24 @@ struct Definite {
     }
 };
 
+/// Newton's method from x, which comes to where it ends.
+solver::NewtonReport descend(Wells& problem, Vector& x, double tolerance, Index most) {
+    Untouched contacts;
+    Definite linear{&problem};
+    solver::IterationParameters parameters;
+    parameters.mixed = false, parameters.newton_limit = most;
+    core::StageClock clock;
+    solver::Newton<Wells, Untouched, Definite> newton(problem, contacts, linear, parameters, 1.0, clock);
+    solver::IterationCounts counts;
+    return newton.solve(x, tolerance, x, std::numeric_limits<double>::infinity(), counts);
+}
+
 TEST_CASE(
     "an indefinite tangent is met without compression, then by shifts that are four times the last, and the next one "
     "begins a step below") {
     Wells problem;
-    Untouched contacts;
-    Definite linear{&problem};
-    solver::IterationParameters parameters;
-    parameters.mixed = false, parameters.newton_limit = 100;
-    core::StageClock clock;
-    solver::Newton<Wells, Untouched, Definite> newton(problem, contacts, linear, parameters, 1.0, clock);
-    solver::IterationCounts counts;
     Vector x = Vec3(0.1, 0.1, 0.1);
-    REQUIRE(newton.solve(x, 1e-4, x, std::numeric_limits<double>::infinity(), counts).status == solver::NewtonStatus::converged);
+    REQUIRE(descend(problem, x, 1e-4, 100).status == solver::NewtonStatus::converged);
     CHECK((x - Vec3::Ones()).norm() < 1e-5);
     const std::vector<Wells::Asked>& first = problem.asked.front();
     REQUIRE(first.size() == 10);  // the tangent is -0.97 of the mean stiffness, and the last shift 1.64 of it
@@ -214,15 +219,8 @@ TEST_CASE(
 TEST_CASE("of iterations that did not come to an end, it is told how many had a tangent that was not positive definite") {
     const auto few = [](const Vec3& from) {
         Wells problem;
-        Untouched contacts;
-        Definite linear{&problem};
-        solver::IterationParameters parameters;
-        parameters.mixed = false, parameters.newton_limit = 2;
-        core::StageClock clock;
-        solver::Newton<Wells, Untouched, Definite> newton(problem, contacts, linear, parameters, 1.0, clock);
-        solver::IterationCounts counts;
         Vector x = from;
-        return newton.solve(x, 1e-12, x, std::numeric_limits<double>::infinity(), counts);
+        return descend(problem, x, 1e-12, 2);
     };
     const solver::NewtonReport between = few({0.01, 0.01, 0.01}), within = few({2.0, 2.0, 2.0});
     REQUIRE(between.status == solver::NewtonStatus::too_many);
