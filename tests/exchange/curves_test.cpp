@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <sstream>
@@ -144,6 +145,12 @@ TEST_CASE("yarns of TexGen come back with their nodes, periods and widths") {
     CHECK(greatest_difference(given, read) == 0.0);
     CHECK(read[1].radius == 0.07);
     CHECK((read[0].period - given[0].period).norm() == 0.0);
+    // A flat section is as thick as a round one of its area.
+    const std::string flat =
+        "<TexGenModel><Textile type=\"CTextile\"><Yarn index=\"0\"><MasterNode index=\"0\" Position=\"0, 0, 0\"/>"
+        "<MasterNode index=\"1\" Position=\"1, 0, 0\"/><YarnSection><Section Width=\"0.9\" Height=\"0.1\"/></YarnSection></Yarn>"
+        "</Textile></TexGenModel>";
+    CHECK(curves_of_tg3(flat, "h.tg3").at(0).radius == test::near(0.15, 1e-12));
     CHECK(refusal([] {
               curves_of_tg3("<TexGenModel><Textile type=\"CTextileWeave2D\"/></TexGenModel>", "h.tg3");
           }).find("h.tg3: Textile type = CTextileWeave2D, but it must be CTextile") == 0);
@@ -335,6 +342,14 @@ TEST_CASE("a yarn's surface is closed and holds the hull of its fibres, whicheve
     const FileYarn wave = yarns_of(twisted)[0];
     CHECK(turns_of(wave) * wave.length == test::near(-2.0, 0.01));
     CHECK(std::abs(turns_of(yarns_of(seven(r, 2.0, true))[0])) < 1e-12);
+    // Two that lean to either side by a cosine of 0.8 are cut in ellipses.
+    std::vector<FileCurve> leaning(2);
+    for (const double side : {-1.0, 1.0}) {
+        FileCurve& one = leaning[side > 0.0 ? 1 : 0];
+        one.points = {Vec3(-1.0, -0.75 * side, 0.0), Vec3(1.0, 0.75 * side, 0.0)}, one.radius = r, one.group = 0;
+    }
+    for (const YarnStation& station : yarns_of(leaning).at(0).stations)
+        CHECK(station.section.fibre_area == test::near(2.0 * pi * r * r / 0.8, 1e-9));
     std::vector<FileCurve> mixed = seven(r, 2.0, false);
     mixed[3].closed = true;
     CHECK(refusal([&] { yarns_of(mixed); }) == "curve 3 = closed, but it must be as the other curves of yarn 5");
@@ -423,6 +438,23 @@ TEST_CASE("an Abaqus mesh of voxels fills its box with cubes, each in one set, w
     CHECK(map_svg_of(volume_map(voxels)).find("fibre volume fraction along z: mean") != std::string::npos);
     CHECK(refusal([] { grid_in(Vec3::Zero(), Vec3(1, 1, 1), 0.3); }).find("edge along x over the spacing = 3.33") !=
           std::string::npos);
+}
+
+TEST_CASE("lines of OBJ count from the end, radii of a table from its first point, and long numbers of VTK are long") {
+    const auto obj = curves_of_obj("v 0 0 0\nv 1 0 0\nv 3 0 0\nl -3 -2 -1\n", "b.obj");
+    CHECK(obj.at(0).points == std::vector<Vec3>{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(3, 0, 0)});
+    const auto csv = curves_of_csv("x,y,z,radius\n0,0,0,0.1\n1,0,0,0.1\n2,0,0,0.3\n", "b.csv");
+    CHECK(csv.at(0).radii == std::vector<double>{0.1, 0.1, 0.3});
+    std::string bytes = "# vtk DataFile Version 5.1\nt\nBINARY\nDATASET POLYDATA\nPOINTS 2 float\n";
+    for (const int c : {0x3f, 0x80, 0, 0, 0, 0, 0, 0, 0x40, 0, 0, 0, 0x40, 0x40, 0, 0, 0, 0, 0, 0, 0xbf, 0x80, 0, 0})
+        bytes += static_cast<char>(c);
+    const auto put = [&](std::initializer_list<char> values) {
+        for (const char value : values) bytes += std::string(7, '\0') + value;
+        bytes += '\n';
+    };
+    bytes += "\nLINES 2 2\nOFFSETS vtktypeint64\n", put({0, 2});
+    bytes += "CONNECTIVITY vtktypeint64\n", put({0, 1});
+    CHECK(curves_of_vtk(bytes, "b.vtk").at(0).points == std::vector<Vec3>{Vec3(1, 0, 2), Vec3(3, 0, -1)});
 }
 
 }  // namespace exchange_curves_test

@@ -105,6 +105,12 @@ TEST_CASE("ends of a tubular braid leave its helices, and lie along the tube in 
                     CHECK(held > 4.0 * r);
                     const Vec3 along = path.curve(std::abs(end - 0.5 * path.grip)) - tip;
                     CHECK(along.head<2>().norm() < 1e-9 * along.norm());
+                    // The grip is all of what is straight: a tenth of a row behind it yarns have begun to turn.
+                    const double beyond =
+                        (held + 0.05 * pitch / static_cast<double>(n)) / (path.curve(1.0) - path.curve(0.0)).z();
+                    const Vec3 turned = path.curve(std::abs(end - beyond));
+                    CHECK(std::abs(std::remainder(std::atan2(turned.y(), turned.x()) - angles.back(), 2.0 * std::numbers::pi)) >
+                          1e-4);
                 }
                 std::sort(angles.begin(), angles.end());
                 for (std::size_t k = 1; k < angles.size(); ++k)
@@ -218,6 +224,15 @@ TEST_CASE("orders of braids are those of their closed forms: z = h sin 2 f over 
         CHECK((along.x() > 0.0) == (place.x() > 0.0));   // sin 2 f = 2 sin f cos f > 0
         CHECK(place.z() == test::near(1.05 * r, 5e-3));  // between points half a radius apart, on a slope that is level there
     }
+    // Of five yarns over two: what goes right is above in the outer two of four lines of meetings, at 0.6 and 0.2 of the half
+    // width.
+    const double half = 8.0 * r;
+    const Textile twill = flat_braid({.yarns = 5, .half_width = half, .period = 80.0 * r, .over = 2, .type = yarn(r)});
+    lines = lines_of(twill);
+    for (const Crossing& crossing : twill.crossings) {
+        const auto [place, along] = place_at(lines[core::at(crossing.above)], crossing.at_above);
+        CHECK((along.x() > 0.0) == (std::abs(place.x()) > 0.4 * half));
+    }
     const Index n = 4;
     const double radius = 0.4, pitch = 2.5;
     const Textile tube = tubular_braid({.carriers = n, .radius = radius, .pitch = pitch, .turns = 1.0, .type = yarn(r)});
@@ -225,6 +240,20 @@ TEST_CASE("orders of braids are those of their closed forms: z = h sin 2 f over 
     for (const Crossing& crossing : tube.crossings) {
         const double f = 2.0 * std::numbers::pi * place_at(lines[core::at(crossing.above)], crossing.at_above).first.z() / pitch;
         CHECK((crossing.above < n) == (std::cos(static_cast<double>(n) * f) > 0.0));
+    }
+}
+
+TEST_CASE("a path has the heights of its crossings however many there are, and of those at one point the greatest") {
+    for (const Index n : {4, 20000}) {
+        std::vector<std::pair<double, double>> knots;
+        const auto at = [&](Index k) { return (static_cast<double>(k) + 0.5) / static_cast<double>(n); };
+        for (Index k = 0; k < n; ++k) knots.emplace_back(at(k), k % 2 == 0 ? 1.0 : -1.0);
+        knots.emplace_back(at(1) + 1e-9, -2.0);
+        const detail::HeightLine heights(std::move(knots), false);
+        Index right = 0;
+        for (Index k = 0; k < n; ++k)
+            right += std::abs(heights(at(k)) - (k % 2 == 0 ? 1.0 : k == 1 ? -2.0 : -1.0)) < 1e-6 ? 1 : 0;
+        CHECK(right == n);
     }
 }
 
@@ -293,6 +322,22 @@ TEST_CASE("a level matrix has warps x columns x layers crossings, and warp w lie
     CHECK(refusal([] {
               woven({.levels = levels_of({"01"}), .column_spacing = 0.15, .warp_spacing = 0.3, .warp = yarn(), .weft = yarn()});
           }).find("LevelPlan.column_spacing") == 0);
+}
+
+TEST_CASE("a weave that goes on has its middle at the origin, and all of its yarns have theirs across it") {
+    const Textile cell = woven({.levels = levels_of({"01", "10", "01", "10"}),
+                                .column_spacing = 0.6,
+                                .warp_spacing = 0.3,
+                                .periodic = true,
+                                .warp = yarn(),
+                                .weft = yarn()});
+    Vec3 sum = Vec3::Zero();
+    for (const Path& path : cell.paths) {
+        const Vec3 middle = path.curve(0.5), along = path.curve(1.0) - path.curve(0.0);
+        CHECK(std::abs(middle.dot(along)) < 1e-12);
+        sum += middle;
+    }
+    CHECK(sum.head<2>().norm() < 1e-12);
 }
 
 TEST_CASE("a lift plan gives back its levels, and one bit that contradicts them is refused by warp and pick") {

@@ -39,7 +39,8 @@ class HeightLine {
 public:
     HeightLine(std::vector<std::pair<double, double>> knots, bool repeating) : repeating_{repeating} {
         std::sort(knots.begin(), knots.end());
-        constexpr double same = 1e-4;  // of a path: crossings of three at one point
+        // Crossings of three at one point, however many a path has.
+        const double same = std::min(1e-4, 0.05 / static_cast<double>(knots.size() + 1));  // of a path
         for (const auto& knot : knots) {
             if (!knots_.empty() && knot.first - knots_.back().first < same) {
                 if (std::abs(knot.second) > std::abs(knots_.back().second)) knots_.back().second = knot.second;
