@@ -644,4 +644,51 @@ TEST_CASE("an end that is held cannot be tied, nor tied twice, and a body needs 
           }).find("AverageConnection.body = 7") != std::string::npos);
 }
 
+TEST_CASE("a rod that is seen beside its cell by the period of another one moves as the plate does where it lies") {
+    const Vec3 bends(0.3, -0.2, 0.5);
+    scene::Assembly assembly;
+    scene::PeriodicCell cell;
+    for (const std::size_t k : {0u, 1u, 2u})
+        cell.curvature[k] = scene::Coordinate::held_at(1e-5 * bends[static_cast<Index>(k)], "bend");
+    assembly.add(cell);
+    for (const double side : {-1.0, 1.0}) {
+        const Vec3 middle(0.0, 0.4 * side, 0.3 * side), along(length, 0, 0);
+        const Index f = assembly.add({.from = middle - 0.5 * along,
+                                      .to = middle + 0.5 * along,
+                                      .section = scene::circular(radius),
+                                      .material = {young, 0.3},
+                                      .elements = 4,
+                                      .director = Vec3::UnitY()});
+        assembly.hold_position({f, 0.5});
+        assembly.hold_axial_rotation({f, 0.5});
+        assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), along, 0});
+    }
+    assembly.add(scene::FibreImage{1, {{0, 1.0}}});
+    simulation::Simulator<Tied> simulator(assembly, parameters());
+    REQUIRE(simulator.run({.increments = 1}).converged);
+    Index seen = 0;
+    for (const scene::ImageVector& one : simulator.equilibrium().system().layout().images) {
+        if (one.shift < 0) continue;
+        ++seen;
+        const Vec3 start = simulator.mesh().start_state().segment<3>(3 * one.source), along(length, 0, 0);
+        const Vec3 apart_now = simulator.state().segment<3>(3 * one.image) - simulator.state().segment<3>(3 * one.source);
+        CHECK((apart_now - along - 1e-5 * connection::bend_jump(start, along, false) * bends).norm() < 1e-12);
+    }
+    CHECK(seen == 9);
+}
+
+TEST_CASE("the mean of ends is moved by what is asked for, however many ends there are") {
+    const double given = 1e-3;
+    Bundle bundle(3);
+    const Index ground = bundle.assembly.add(scene::RigidBody{});
+    bundle.assembly.connect({.ends = bundle.last_ends(),
+                             .body = ground,
+                             .tied = {false, true, false},
+                             .displacement = {0, given, 0},
+                             .channel = "push"});
+    simulation::Simulator<Tied> simulator(bundle.assembly, parameters());
+    REQUIRE(simulator.run({.increments = 1}).converged);
+    for (Index k = 0; k < 3; ++k) CHECK(simulator.value(scene::last_end(k)).y() == test::near(given, 1e-9));
+}
+
 }  // namespace rigid_bodies_test

@@ -256,6 +256,8 @@ TEST_CASE(
             CHECK((here.force - there.force).norm() < 1e-13 * there.force.norm());
             CHECK((here.by_reaction - there.by_reaction).norm() < 1e-13 * there.by_reaction.norm());
             CHECK(here.dissipated == test::near(there.dissipated, 1e-13));
+            if constexpr (requires { theirs.numbers; })
+                CHECK(here.history.numbers[0] == test::near(there.history.numbers[0], 1e-13));
         }
     };
     same(shaped({.across = 2.0, .exponent = n, .line_load = q}, mu),
@@ -264,6 +266,15 @@ TEST_CASE(
                            .exponent = n,
                            .crossing_along = mu,
                            .crossing_across = 2.0 * mu,
+                           .reversible_displacement = u}),
+         0.0);
+    // Where pressure would make the coefficient larger than it may be, it depends on pressure no more.
+    same(shaped({.exponent = n, .line_load = q, .largest_coefficient = 0.1}, mu),
+         DirectedFriction({.along = 0.1,
+                           .across = 0.1,
+                           .exponent = 1.0,
+                           .crossing_along = mu,
+                           .crossing_across = mu,
                            .reversible_displacement = u}),
          0.0);
     same(shaped({.line_adhesion = 5.0, .crossing_adhesion = 0.7}, mu),
