@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -37,6 +38,12 @@ inline double unknowns_of(Index fibres, Index elements) {
     return 9.0 * static_cast<double>(fibres) * (2.0 * static_cast<double>(elements) + 1.0);
 }
 
+/// Unknowns that a scene may have.
+constexpr double most_unknowns = 5e7;
+/// Of these, what there is memory for.
+/// @param bytes_each  that a run takes an unknown
+inline double unknowns_in_room(double bytes_each) { return std::min(most_unknowns, memory_room().bytes / bytes_each); }
+
 /// Refuses a count of which a scene has more unknowns than there is memory for, or than 50 million.
 /// @param section,key  of the count that is to blame
 /// @param bytes_each   that a run takes an unknown, contacts and solver included: 2600 were measured on woven fabrics of 89 and
@@ -44,10 +51,9 @@ inline double unknowns_of(Index fibres, Index elements) {
 /// @param way         that the count has to go
 inline void require_room(const SceneReader& file, const std::string& section, const std::string& key, double unknowns,
                          double bytes_each = 2600.0, const std::string& way = "less") {
-    constexpr double most = 5e7;
     const double taken = unknowns * bytes_each;
     const Room there = memory_room();
-    if (unknowns <= most && taken <= there.bytes) return;
+    if (unknowns <= unknowns_in_room(bytes_each)) return;
     file.refuse(section, key,
                 way + ": the scene has " + fibrant::observe::rounded(unknowns, 0) + " unknowns, which take some " +
                     memory_text(taken) + " of memory, and may have 50000000 and " + memory_text(there.bytes) +

@@ -17,6 +17,7 @@
 #include <fibrant/compositions/textile/weaves.hpp>
 #include <fibrant/exchange/files.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -368,6 +369,9 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
 
 }  // namespace detail
 
+/// That a run takes, contacts and solver included.
+constexpr double bytes_an_unknown = 6000.0;
+
 /// Reads and checks what a file says, before any work.
 inline Scene read_scene(SceneReader& file) {
     file.names({{"FlatBraid.", "flat_braid."},
@@ -454,6 +458,12 @@ inline Scene read_scene(SceneReader& file) {
     detail::read_load(file, scene.load);
     if (!file.describes()) example::check_transverse(file, "yarn", law);  // before a generator looks at the material
     const bool periodic = ends == "periodic";
+    // What there is no memory for is refused before it is drawn.
+    for (cloth::YarnType* type : {&yarn, &binder}) {
+        const double an_element = example::unknowns_of(type->fibres, 1) - example::unknowns_of(type->fibres, 0),
+                     elements = example::unknowns_in_room(bytes_an_unknown) / an_element;
+        type->longest = std::min(type->longest, elements * scene.fineness.element_over_radius);
+    }
     scene.textile = detail::generate(file, scene.generator, yarn, binder, periodic, scene.file_curves);
     if (file.describes()) file.complete();
     detail::check_twist(file, "yarn", yarn);
@@ -480,7 +490,7 @@ inline Scene read_scene(SceneReader& file) {
             scene.textile.type_of(p).fibres,
             static_cast<Index>(length / (scene.fineness.element_over_radius * scene.textile.type_of(p).radius)) + 8);
     }
-    example::require_room(file, "yarn", "element_over_radius", unknowns, 6000.0, "more");
+    example::require_room(file, "yarn", "element_over_radius", unknowns, bytes_an_unknown, "more");
     cloth::validate(scene.textile);
     if (!scene.textile.crossings.empty() && scene.generator != "weft_knit" && scene.generator != "tricot" &&
         scene.generator != "file")

@@ -195,6 +195,16 @@ TEST_CASE("yarns that would lie in each other or bend more sharply than they are
               flat_braid({.yarns = 3, .half_width = 1e9, .period = 1.8, .type = yarn(r)});
           }).find("FlatBraid.half_width = 1e+09") == 0);
     CHECK(refusal([&] { net({.yarns = 3, .spacing = 0.8, .period = 1e9, .type = yarn(r)}); }).find("Net.period = 1e+09") == 0);
+    // What may not be as long is refused by its length as well, before it is drawn: 3 yarns of 2 periods.
+    YarnType few = yarn(r);
+    for (const double most : {4.0, 10.0}) {
+        few.longest = most * 3.0 / r;
+        const std::string message =
+            refusal([&] { flat_braid({.yarns = 3, .half_width = 0.18, .period = 1.8, .periods = 2.0, .type = few}); });
+        CHECK((most < 5.0 ? message.find("FlatBraid.period = 1.8, but it must be less with fibres of radius 0.05: ") == 0 &&
+                                message.find("memory") != std::string::npos
+                          : message.empty()));
+    }
 }
 
 TEST_CASE("a curve that goes back within its points is as sharp as it is") {

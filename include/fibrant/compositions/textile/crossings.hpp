@@ -39,20 +39,22 @@ struct TooLong : std::invalid_argument {
 
 /// Points of all paths, about half a radius apart.
 /// @param step_over_radius  distance of points [1], > 0
-/// @throws TooLong where that would be more points than can be held
+/// @throws TooLong where that would be more points than can be held, or longer than the type of a yarn says
 inline std::vector<Line> lines_of(const Textile& textile, double step_over_radius = 0.5) {
     std::vector<Line> lines;
-    double all = 0.0;
+    double taken = 0.0;  // share of what may be drawn
     for (Index p = 0; p < core::count(textile.paths); ++p) {
         const Path& path = textile.paths[core::at(p)];
-        const double length = scene::length_of(path.curve, 128);
-        constexpr double most = 1e7;  // points in all: more is a slip of the unit
-        const double steps = length / (step_over_radius * textile.type_of(p).radius);
-        all += steps;
-        if (!(all <= most))
-            throw TooLong(textile.label(p) + ": length over the radius of its fibres = " + core::text(step_over_radius * steps) +
-                          ", and of those before it " + core::text(step_over_radius * (all - steps)) +
-                          ", but it must be <= " + core::text(step_over_radius * most) + " in all");
+        const YarnType& type = textile.type_of(p);
+        const double over_radius = scene::length_of(path.curve, 128) / type.radius;
+        constexpr double most_points = 1e7;  // in all: more is a slip of the unit
+        const double most = std::min(type.longest, step_over_radius * most_points), left = (1.0 - taken) * most;
+        taken += over_radius / most;
+        if (!(taken <= 1.0))
+            throw TooLong(textile.label(p) + ": length over the radius of its fibres = " + core::text(over_radius) +
+                          ", but it must be <= " + core::text(left) +
+                          " beside the yarns before it, for all to be held in memory");
+        const double steps = over_radius / step_over_radius;
         const auto pieces = std::max<Index>(64, static_cast<Index>(steps));
         std::vector<Vec3> points;
         for (Index k = 0; k <= pieces; ++k) points.push_back(path.curve(static_cast<double>(k) / static_cast<double>(pieces)));

@@ -28,6 +28,8 @@ struct YarnType {
     double packing_gap = 0.02;    ///< free distance of neighbours over their diameter [1], >= 0
     double twist = 0.0;           ///< of the packing about the path, > 0 right-handed [turns / length]
     scene::ElasticMaterial material{};
+    /// Length of all paths over the radius of their fibres, were all of this type [1], > 0: what is longer is not drawn.
+    double longest = 5e6;
 
     void validate() const {
         core::require_at_least("YarnType.fibres", fibres, 1);
@@ -36,6 +38,7 @@ struct YarnType {
         core::require(std::isfinite(aspect) && aspect >= 1.0, "YarnType.aspect", aspect, "finite and >= 1");
         core::require_not_negative("YarnType.packing_gap", packing_gap);
         core::require_finite("YarnType.twist", twist);
+        core::require_positive("YarnType.longest", longest);
         material.validate();
     }
 };
