@@ -46,6 +46,24 @@ inline fibrant::simulation::LoadProgramme programme_of(const Scene& scene, const
     return programme;
 }
 
+/// A cell under tension that bends stretches by the square of its slopes: so much of its stiffness against curvatures grows with
+/// the square of its size, and is none of the fabric's own.
+inline void tell_tension(const cloth::CellStiffness& stiffness, const std::vector<fibrant::Vec3>& periods,
+                         observe::JsonObject& json) {
+    const double n_x = stiffness.before.front()[0], n_y = stiffness.before.front()[1];
+    const double x = periods[0].squaredNorm() / 12.0, y = periods[1].squaredNorm() / 12.0;
+    const std::vector<double> most{n_x * x, n_y * y, n_x * y + n_y * x};
+    json.add("tension", std::vector<double>{n_x, n_y}).add("tension_in_bending", most);
+    constexpr double small = 0.05;
+    for (Index c = 0; c < 3; ++c)
+        if (const double own = stiffness.matrix(3 + c, 3 + c); std::abs(most[fibrant::core::at(c)]) > small * std::abs(own))
+            std::fprintf(
+                stderr,
+                "textile: note: the stiffness against %s, %.3g, has up to %.3g in it that the cell's tension makes and that "
+                "grows with the square of its size: ends.tension_strain near 0 leaves it out\n",
+                cloth::cell_channels()[fibrant::core::at(3 + c)].c_str(), own, most[fibrant::core::at(c)]);
+}
+
 /// Six small strains of a cell that repeats, one by one, in the folder "loading" of the results: stiffness.csv.
 ///
 /// Friction at rest depends on the pressure of its contact, and creeps as normals turn: the cell rests without, and no contact
@@ -147,6 +165,7 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
             table.row(row);
         }
         json.add("asymmetry", stiffness.asymmetry).add("creep", stiffness.creep);
+        tell_tension(stiffness, periods, json);
     }
     example::write_summary(output, report, audit, radius, {}, json);
     // Yarns that leap as they slide by themselves, or normals in the kinks between long elements, make it differ by more.

@@ -55,6 +55,12 @@ stiffness bending 0.001 bending
 "$program" "$scenes/cell_plain.toml" --output "$out/cell" --quiet --set output.paraview=false || fail "the cell of a plain weave"
 awk '/"asymmetry"/ { gsub(/[,"]/, ""); found = 1; if ($2 > 1e-3) { print "asymmetry", $2; exit 1 } } END { if (!found) exit 1 }' \
   "$out/cell/loading/summary.json" || fail "the stiffness of a cell is not symmetric"
+# Threads that turn about their crossings like pins: against shear there is their tension alone, (N_x + N_y) / 4.
+awk -F, 'FNR == 1 { for (i = 1; i <= NF; ++i) of[$i] = i }
+  FILENAME ~ /increments/ && FNR == 2 { pins = ($of["n_x"] + $of["n_y"]) / 4 }
+  $1 == "shear" { found = $of["n_xy"] }
+  END { exit !(pins > 0 && found > 0.99 * pins && found < 1.01 * pins) }' \
+  "$out/cell/loading/increments.csv" "$out/cell/loading/stiffness.csv" || fail "the shear stiffness of a cell is not that of pins"
 for file in tows.yarns.stl tows.yarns.vtp tows.yarns.csv cells.vti cells.voxels.inp cells.voxels.csv cells.map.svg cells.profile.csv; do
   [ -s "$out/tension/$file" ] || fail "there is no $file"
 done
