@@ -109,16 +109,18 @@ public:
     /// nothing is booked; empty if it is kept.
     /// @param laws  books what laws of sections have lost
     /// @param part  of the stage's duration that the increment lasts
+    /// @param left  of it, after that
     template <class Equilibrium, class Contacts, class Laws>
     std::string book(Equilibrium& equilibrium, Contacts& contacts, const Vector& from, const Vector& to, bool leap,
-                     const Laws& laws, [[maybe_unused]] double part) {
+                     const Laws& laws, [[maybe_unused]] double part, [[maybe_unused]] double left) {
         if constexpr (Equilibrium::moves) {
             std::string reason;
             equilibrium.terms().moving([&](auto& term) { reason = term.refusal(to); });
             if (!reason.empty()) return reason;
             const EnergyAccount before = *this;
             book(equilibrium, contacts, from, to, leap), laws(*this);
-            const term::StepEnergy step = of_step(before.balance_, part);
+            term::StepEnergy step = of_step(before.balance_);
+            step.part = part, step.left = left;
             equilibrium.terms().moving([&](auto& term) { reason = term.refusal(step); });
             if (!reason.empty()) *this = before;
             return reason;
@@ -154,14 +156,14 @@ public:
 
 private:
     /// What has happened since another balance, but for what rounding makes of sums.
-    term::StepEnergy of_step(const EnergyBalance& before, double part) const {
+    term::StepEnergy of_step(const EnergyBalance& before) const {
         const auto change = [&](double EnergyBalance::*kind) { return std::abs(balance_.*kind - before.*kind); };
         term::StepEnergy step;
         for (const auto kind :
              {&EnergyBalance::external, &EnergyBalance::kinetic, &EnergyBalance::elastic, &EnergyBalance::contact,
               &EnergyBalance::dissipated, &EnergyBalance::lost, &EnergyBalance::damped})
             step.turned += 0.5 * change(kind);  // it is counted where it comes from and where it goes
-        step.held = balance_.kinetic + balance_.elastic + balance_.contact, step.part = part;
+        step.held = balance_.kinetic + balance_.elastic + balance_.contact;
         const double digits = 16.0 * std::numeric_limits<double>::epsilon() * (std::abs(balance_.external) + step.held);
         step.missed = balance_.error() - before.error();
         if (std::abs(step.missed) <= digits) step.missed = 0.0;

@@ -181,7 +181,8 @@ private:
             if (attempt.converged)
                 attempt.refuse(energy_.book(
                     equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again(),
-                    [&](EnergyAccount& energy) { laws_.book(mesh_, beam_, trial, energy); }, drive.duration / stage.duration));
+                    [&](EnergyAccount& energy) { laws_.book(mesh_, beam_, trial, energy); }, drive.duration / stage.duration,
+                    1.0 - progress));
             if (attempt.converged) {
                 laws_.accept(mesh_, beam_, trial, energy_);
                 increment.energy = energy_.template closed<Equilibrium::moves>();

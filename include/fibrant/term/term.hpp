@@ -136,6 +136,7 @@ struct StepEnergy {
     double turned = 0.0;  ///< what has become of another kind, >= 0
     double held = 0.0;    ///< there is at its end: moving, or stored
     double part = 0.0;    ///< of the stage's duration that it lasts [1]
+    double left = 0.0;    ///< of that, after it [1]
 };
 
 /// A term that makes a model move in time. Forces of the fibres are then those that it averages over a step; it is told how long
