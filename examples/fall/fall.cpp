@@ -75,7 +75,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     scene::ElasticMaterial material;
     double density = core::unset, damping = 0.0, mu = 0.2, reversible = 0.02, depth = 0.1, line = core::unset,
            crossing = core::unset, gravity = core::unset, duration = core::unset, error = 0.02, restraint = 0.0, missing = 1e-3,
-           loss = 1e-4, pressing = core::unset;
+           loss = core::unset, pressing = core::unset;
     Index steps = 100;
     file.read("nest", "fibres", shape.fibres, example::between(1, 1000), "fibres, one above the other");
     file.require("nest", "radius", shape.radius, example::positive(), "length", "radius of a fibre");
@@ -108,7 +108,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read(
         "motion", "allowed_loss", loss, example::above(0.0, 1.0), "1",
         "part that the balance of energy of a step may miss beyond which it is cut: of what the step turns from one kind into "
-        "another, and of all there is by the step's part of the stage");
+        "another, and of all there is by the step's part of the stage; left out: none is cut for that");
     file.read("motion", "missing_energy", missing, example::above(0.0, 1.0), "1",
               "part of the work that the balance of energy may miss at the end; more fails the run");
     file.read("press", "height", shape.pressed, example::not_negative(), "length",
@@ -178,7 +178,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     if (off > missing)
         std::fprintf(stderr,
                      "fall: the balance of energy misses %.1e of the work, more than motion.missing_energy = %g: take "
-                     "smaller motion.allowed_loss\n",
+                     "smaller motion.allowed_error_over_radius\n",
                      off, missing);
     return report.converged && audit.clean() && off <= missing;
 }
