@@ -75,7 +75,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     scene::ElasticMaterial material;
     double density = core::unset, damping = 0.0, mu = 0.2, reversible = 0.02, depth = 0.1, line = core::unset,
            crossing = core::unset, gravity = core::unset, duration = core::unset, error = 0.02, restraint = 0.0, missing = 1e-3,
-           pressing = core::unset;
+           loss = core::unset, pressing = core::unset;
     Index steps = 100;
     file.read("nest", "fibres", shape.fibres, example::between(1, 1000), "fibres, one above the other");
     file.require("nest", "radius", shape.radius, example::positive(), "length", "radius of a fibre");
@@ -105,6 +105,10 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("motion", "steps", steps, example::increments(), "steps of time of the fall, and of the press, if none is cut");
     file.read("motion", "allowed_error_over_radius", error, example::above(0.0, 1.0), "1",
               "local error of a step beyond which it is cut, over the radius");
+    file.read(
+        "motion", "allowed_loss", loss, example::above(0.0, 1.0), "1",
+        "part that the balance of energy of a step may miss beyond which it is cut: of what the step turns from one kind into "
+        "another, and of all there is by the step's part of the stage; left out: none is cut for that");
     file.read("motion", "missing_energy", missing, example::above(0.0, 1.0), "1",
               "part of the work that the balance of energy may miss at the end; more fails the run");
     file.read("press", "height", shape.pressed, example::not_negative(), "length",
@@ -125,6 +129,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     model.friction = {.friction_coefficient = mu, .reversible_displacement = reversible * shape.radius};
     model.contact.stiffness.allowed_penetration = depth * shape.radius;
     model.acts.inertia.density = density, model.acts.inertia.allowed_error = error * shape.radius;
+    model.acts.inertia.allowed_loss = loss;
     model.acts.gravity.weight = Vec3(0, 0, -density * gravity);
     simulation::Simulator<Nest> simulator(nest(shape, material), model);
     output.open(file);
@@ -145,9 +150,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
             for (const double at : {0.0, 0.5, 1.0}) most = std::max(most, simulator.value({f, at}).z());
         return most;
     };
-    const auto motion = [&] {
-        return simulator.equilibrium().terms().get<inertia::Inertia<inertia::Midpoint>>().motion(simulator.state());
-    };
+    const auto& moving = simulator.equilibrium().terms().get<inertia::Inertia<inertia::Midpoint>>();
+    const auto motion = [&] { return moving.motion(simulator.state()); };
     example::Recorder recorder(output, shape.radius, [&]() -> std::vector<observe::Column> {
         return {
             {"top", top()}, {"kinetic", motion().kinetic}, {"floor_force", simulator.contacts().tools().reaction(0).force.z()}};
@@ -167,6 +171,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
                                                                 {"lost_in_the_fibres", energy.lost},
                                                                 {"dissipated", energy.dissipated},
                                                                 {"energy_error", energy.error()},
+                                                                {"missed_by_steps", moving.missed()},
+                                                                {"allowed_to_miss", moving.may_miss()},
                                                                 {"energy_error_over_work", off}});
     example::write_report(output, "fall", summary, simulator.snapshot());
     if (off > missing)

@@ -4,9 +4,12 @@
 #include "../support/random_vector.hpp"
 
 #include <contact/contact_model.hpp>
+#include <near.hpp>
 #include <refusal.hpp>
 
+#include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
+#include <fibrant/law/directed_friction.hpp>
 
 #include <doctest/doctest.h>
 
@@ -294,6 +297,45 @@ TEST_CASE("a fibre pressed on a rough plate is dragged along with it, and slips 
     std::printf("energy %.2e of %.2e missing\n", report.energy.error(), report.energy.external);
     CHECK(std::abs(report.energy.error()) <
           0.002 * report.energy.external);  // increments of half the reversible way: the force bends within none
+}
+
+TEST_CASE("friction by a power of the pressure does not see how many stations of an element press on a round tool") {
+    // A rod of straight elements around a pin, turned about it: of two stations an element, nodes do not touch, by less than they
+    // are shown, or both press.
+    using Rod = beam::RigidSectionRod;
+    const Index elements = 24;
+    const double R = 0.5, h = 0.05, a = 0.3, n = 0.8, turn = h / R, sagitta = 0.125 * h * turn;
+    const law::DirectedFriction friction(
+        {.along = a, .across = a, .exponent = n, .crossing_along = a, .crossing_across = a, .reversible_displacement = 1e-4 * r});
+    scene::Assembly assembly;
+    assembly.add(straight_fibre({0, 0, 0}, {h * static_cast<double>(elements), 0, 0}, r, elements));
+    assembly.add(round(scene::ToolShape::cylinder, {0, 0, 0}, {0, 0, 1}, R));
+    const beam::Mesh<Rod> mesh(assembly, Rod());
+    for (const double deep : {0.5 * sagitta, 10.0 * sagitta}) {
+        const auto around = [&](double by) {
+            Vector state = mesh.rest_state();
+            for (Index k = 0; k <= elements; ++k) {
+                const double angle = turn * static_cast<double>(k - elements / 2) - by, away = R + r + sagitta - deep;
+                state.segment<3>(6 * k) = away * Vec3(std::sin(angle), std::cos(angle), 0.0);
+                state.segment<3>(6 * k + 3) =
+                    core::rotation_vector(core::turn_about(Vec3::UnitZ(), -angle) * core::rotation(state.segment<3>(6 * k + 3)));
+            }
+            return state;
+        };
+        contact::ToolContacts<Rod, law::RegularisedPenalty, law::DirectedFriction> tools(assembly, mesh,
+                                                                                         {.allowed_penetration = r}, 2.0);
+        const Vector accepted = around(0.01), state = around(0.0);
+        tools.detect(state, accepted, 0.1 * r, penalty);
+        for (int pass = 0; pass < 2; ++pass) tools.refresh(state, accepted, penalty), tools.evaluate(state, penalty, friction);
+        contact::ContactFigures sum;
+        tools.add_figures(state, penalty, sum);
+        CHECK(sum.active == (deep < sagitta ? elements : 2 * elements + 1));
+        const double length = h * static_cast<double>(elements),
+                     bound = a * std::pow(sum.reaction_sum, n) * std::pow(length, 1.0 - n);
+        const double held = std::abs(tools.reaction(0).moment.z()) / R;
+        std::printf("%td stations press on the pin: friction %.4f of a continuous line's\n", sum.active, held / bound);
+        CHECK(held == test::near(bound, 0.015));  // outer stations of the line stand for three quarters
+    }
 }
 
 TEST_CASE("a tool that comes closer in long steps does not hold by more than the friction of what it presses with") {

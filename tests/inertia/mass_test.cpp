@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Inertia without a run: masses of sections and rings, steps of time, what a checkpoint has of them.
 #include <near.hpp>
+#include <refusal.hpp>
 #include <term/term_contract.hpp>
 
 #include <fibrant/beam/director_beam.hpp>
@@ -12,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <type_traits>
 
 using namespace fibrant;
@@ -82,6 +84,73 @@ TEST_CASE("flat sections turn about each axis with the moment of what they turn,
     };
     check(std::type_identity<beam::DirectorBeam<3>>{});
     check(std::type_identity<beam::RigidSectionRod>{});
+}
+
+TEST_CASE("a step may miss a part of the energy that it turns over, and half of what those before it have left") {
+    using B = beam::RigidSectionRod;
+    const scene::Assembly assembly = bar(scene::circular(0.3), 3);
+    const inertia::Inertia<>::Parameters parameters{.density = 3.0, .allowed_loss = 0.1};
+    test::TermScene<B, inertia::Inertia<>> scene(assembly, parameters), again(assembly, parameters);
+    const Vector rest = scene.mesh.rest_state();
+    const auto kept = [&](auto& of, double missed, double turned, double held, double part) {
+        return of.term.refusal(term::StepEnergy{missed, turned, held, part}).empty();
+    };
+    scene.begin(1.0);
+    CHECK_FALSE(kept(scene, 0.121, 1.0, 2.0, 0.1));
+    CHECK_FALSE(kept(scene, -0.121, 1.0, 2.0, 0.1));  // nor may it gain that
+    CHECK(kept(scene, -0.119, 1.0, 2.0, 0.1));
+    CHECK_FALSE(scene.term.may_grow(1.1));
+    CHECK(kept(scene, 0.02, 1.0, 2.0, 0.1));
+    CHECK(scene.term.may_grow(std::sqrt(6.0) - 1e-9));
+    CHECK_FALSE(scene.term.may_grow(std::sqrt(6.0) + 1e-9));
+    scene.term.accept(rest);
+    CHECK(scene.term.missed() == test::near(0.02));
+    CHECK(scene.term.may_miss() == test::near(0.12));
+    CHECK(kept(scene, 0.049, 0.0, 0.0, 0.1));
+    CHECK_FALSE(kept(scene, 0.051, 0.0, 0.0, 0.1));
+    test::copy_numbers(scene.term, again.term);  // through a checkpoint as well
+    again.begin(1.0);
+    CHECK(kept(again, 0.049, 0.0, 0.0, 0.1));
+    CHECK_FALSE(kept(again, 0.051, 0.0, 0.0, 0.1));
+    // Half of the step misses as much: half of what the rest of the stage may miss goes into it, and what follows makes up for
+    // it.
+    again.term.last(0.05);
+    CHECK_FALSE(again.term.refusal(term::StepEnergy{0.16, 0.0, 1.0, 0.1, 0.9}).empty());
+    again.term.last(0.1);
+    CHECK_FALSE(again.term.refusal(term::StepEnergy{0.154, 0.0, 1.0, 0.1, 0.9}).empty());  // no shorter than the last
+    again.term.last(0.05);
+    CHECK_FALSE(again.term.refusal(term::StepEnergy{0.156, 0.0, 1.0, 0.1, 0.9}).empty());
+    again.term.last(0.025);
+    CHECK(again.term.refusal(term::StepEnergy{0.154, 0.0, 1.0, 0.1, 0.9}).empty());  // 0.1 (0.1 + 0.9/2) and what was left
+    again.term.accept(rest);
+    CHECK(again.term.missed() > again.term.may_miss());
+    CHECK(kept(again, 0.0049, 0.0, 1.0, 0.1));
+    CHECK_FALSE(kept(again, 0.0051, 0.0, 1.0, 0.1));
+    // What three halvings make hardly less is of no step, and passes, until steps miss little again.
+    const auto at = [&](double duration, double missed) {
+        again.term.last(duration);
+        return again.term.refusal(term::StepEnergy{missed, 0.0, 1.0, 0.1, 0.0}).empty();
+    };
+    again.term.accept(rest);
+    CHECK_FALSE(at(0.8, 8.0));
+    CHECK_FALSE(at(0.4, 4.0));
+    CHECK_FALSE(at(0.2, 2.0));
+    CHECK(at(0.1, 1.0));
+    again.term.accept(rest);
+    CHECK(at(0.1, 1.4));
+    again.term.accept(rest);
+    CHECK_FALSE(at(0.1, 1.6));
+    CHECK(at(0.1, 0.001));
+    again.term.accept(rest);
+    CHECK_FALSE(at(0.1, 1.0));
+    CHECK_FALSE(at(0.05, 0.3));  // less by more than that
+    CHECK_FALSE(at(0.025, 0.15));
+    CHECK_FALSE(at(0.0125, 0.075));
+    for (const double none : {0.0, -1.0, 1.5}) {
+        const auto built = [&] { test::TermScene<B, inertia::Inertia<>>(assembly, {.density = 3.0, .allowed_loss = none}); };
+        CHECK(test::refusal(built).find("Inertia.allowed_loss = " + core::text(none) + ", but it must be > 0 and <= 1") !=
+              std::string::npos);
+    }
 }
 
 TEST_CASE("all nodes of a ring of rods have two sides") {

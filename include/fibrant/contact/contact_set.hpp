@@ -112,7 +112,7 @@ public:
 
     /// Inner loop: gaps, reactions and friction of a state.
     /// @param start  the last accepted one: nothing has slipped, however pairs have turned; twice as deep as its zone was, none
-    /// touched
+    /// touched, unless contact acts within an increment: what it gives then counts from there
     void evaluate(const Vector& state, bool start = false) {
         responses_.resize(elements_.size());
         if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
@@ -126,7 +126,7 @@ public:
                 follow_particles(*mesh_, state, element);
             const Zone& zone = zones_[core::at(element.zone)];
             const double apart = element.gap(state) - zone.unseen;
-            const bool none = start && apart < -2.0 * zone.deepest;
+            const bool none = start && apart < -2.0 * zone.deepest && !acting_.within(normal_);
             const double gap = (none ? 0.0 : apart) + element.shift.value();
             const law::NormalResponse response = normal_answer(normal_, *mesh_, element, gap, zone.stiffness);
             responses_[core::at(k)] = {gap, response.reaction, response.slope};

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <span>
+#include <vector>
 
 namespace fibrant::contact {
 
@@ -21,6 +22,30 @@ void see_length([[maybe_unused]] Element& element, [[maybe_unused]] double lengt
 template <class Element>
 void see_length(Element& element, const StationPair& pair) noexcept {
     see_length(element, pair.crossing ? 0.0 : pair.length);
+}
+/// Sets the lengths that friction sees at stations of fibres on tools of which not all press: those that do carry what lies
+/// between them, if that is no longer than an element or a step. A fibre of straight elements that is drawn over a pin presses
+/// with one station of each: with their own steps alone their friction would be that of a shorter, harder pressed line.
+/// @param elements  sorted by fibre, tool and u; what bounds their friction is what they press with
+/// @param step      of stations [elements]
+template <class B, class Element>
+void see_pressed_lengths([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] std::vector<Element>& elements,
+                         [[maybe_unused]] double step) {
+    if constexpr (requires(Element & element) { element.friction.seen.length; }) {
+        Element* before = nullptr;
+        for (Element& element : elements) {
+            if (!(element.friction.bound > 0.0)) continue;
+            const beam::MeshFibre& fibre = mesh.fibre(element.fibre);
+            const double unit = 0.5 * fibre.element_length, end = static_cast<double>(fibre.elements);
+            const auto own = [&](double room) { return unit * (fibre.closed ? step : std::min(step, room)); };
+            const bool next = before != nullptr && before->fibre == element.fibre && before->tool == element.tool &&
+                              element.u - before->u <= std::max(1.0, step) * (1.0 + 1e-9);
+            double& length = element.friction.seen.length;
+            if (next) before->friction.seen.length += unit * (element.u - before->u) - own(end - before->u);
+            length = (next ? unit * (element.u - before->u) : own(element.u)) + own(end - element.u);
+            before = &element;
+        }
+    }
 }
 /// Sets the lengths that the elements of a zone stand for, if their laws ask for them: half of the way to either neighbour along
 /// the mean of both fibres at rest, so that they add up to the line from the first to the last; 0 of crossings and of caps.

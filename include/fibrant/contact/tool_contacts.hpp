@@ -128,8 +128,7 @@ public:
         hold_reactions();
         return angle.empty() ? 0.0 : *std::max_element(angle.begin(), angle.end());
     }
-    /// The reactions of the last evaluation bound friction from now on; at the start of an increment those that it starts from
-    /// do.
+    /// The reactions of the last evaluation bound friction from now on; at the start of an increment those accepted.
     void hold_reactions() {
         if constexpr (core::Active<Friction>) {
             const bool starting = std::exchange(starting_, false);
@@ -138,6 +137,7 @@ public:
                 const Record* record = starting ? find(accepted_, key_of(element)) : nullptr;
                 element.friction.bound = !starting ? bound_of(k) : record ? record->multiplier : 0.0;
             }
+            see_pressed_lengths(*mesh_, elements_, step_);
         }
     }
 

@@ -38,6 +38,9 @@ struct InertiaParameters {
     std::vector<double> densities{};  ///< or one for each fibre
     double allowed_error =
         std::numeric_limits<double>::infinity();  ///< of a step, directors counted at the surface [length], > 0
+    /// What the balance of a step may miss: this part of the energy that the step turns from one kind into another, and, of all
+    /// that there is, this part in the duration of a stage. Steps that miss less leave that to later ones [1], > 0, <= 1.
+    double allowed_loss = core::unset;  // left out: any
     typename Integrator::Parameters integrator{};
     std::vector<Start> starts{};  ///< the last that is said of a fibre counts
 };
@@ -50,7 +53,9 @@ struct InertiaSlot {
 /// Inertia of the fibres of a beam: a spring from every vector to where it would go without forces, of the stiffness M/c^2.
 ///
 /// Each stage has a `duration`; its increments are the steps of time, and what follows its ramps goes on in steps of the last
-/// one. A step that errs by more than `allowed_error` is cut, and grows again by as much as the error lets it.
+/// one. A step that errs by more than `allowed_error`, or whose balance of energy misses more than `allowed_loss` lets it, is
+/// cut, and grows again by as much as both let it. So a motion misses no more than `may_miss`, however it is
+/// stepped, but for what contact misses in steps of any length: `missed` tells.
 template <beam::BeamElement B, TimeIntegrator Integrator>
 class InertiaOf : public term::NoSearch,
                   public term::NoSpring,
@@ -67,8 +72,12 @@ public:
 
     /// @throws std::invalid_argument naming the parameter that is wrong
     InertiaOf(const term::SiteOf<B>& site, const Parameters& parameters)
-        : mesh_{&site.mesh()}, integrator_{core::validated(parameters.integrator)}, allowed_{parameters.allowed_error} {
+        : mesh_{&site.mesh()},
+          integrator_{core::validated(parameters.integrator)},
+          allowed_{parameters.allowed_error},
+          loss_{parameters.allowed_loss} {
         core::require(allowed_ > 0.0, "Inertia.allowed_error", allowed_, "> 0");
+        if (limits_loss()) core::require(loss_ > 0.0 && loss_ <= 1.0, "Inertia.allowed_loss", loss_, "> 0 and <= 1");
         const Index fibres = mesh_->fibre_count();
         if (!parameters.densities.empty() && core::count(parameters.densities) != fibres)
             core::refuse("Inertia.densities", std::to_string(parameters.densities.size()) + " numbers",
@@ -172,17 +181,49 @@ public:
         if (error_ <= allowed_) return {};
         return "the step of time errs by " + core::text(error_) + ", more than Inertia.allowed_error = " + core::text(allowed_);
     }
-    /// Whether a step that is `growth` times as long would be accepted, as the error grows by the third power.
-    bool may_grow(double growth) const noexcept { return error_ * growth * growth * growth <= allowed_; }
+    /// The same of its energy: half of what is left over may go into one step. What half of the step misses nearly as well is of
+    /// contact, and no step resolves it: half of what the rest of the stage may miss goes into it, and later steps make up for
+    /// that. What three halvings do not make less is let pass, until steps miss little by themselves again.
+    std::string refusal(const term::StepEnergy& step) {
+        step_missed_ = std::abs(step.missed), step_may_ = step_most_ = 0.0;
+        if (!limits_loss()) return {};
+        const double over = may_miss_ - missed_;
+        step_may_ = loss_ * (step.turned + step.part * step.held);
+        step_most_ = over >= 0.0 ? step_may_ : 0.5 * step_may_;
+        double most = step_most_ + 0.5 * std::max(0.0, over);
+        const bool no_better = duration_ < shorter * refused_duration_ && step_missed_ > hardly_less * refused_missed_;
+        halvings_ = no_better ? halvings_ + 1 : 0;
+        if (no_better) most = std::max(most, step_may_ + over + 0.5 * loss_ * step.left * step.held);
+        if (halvings_ >= most_halvings) unresolved_ = step_missed_ / duration_;
+        most = std::max(most, unevenness * unresolved_ * duration_);
+        if (step_missed_ <= most) return {};
+        refused_missed_ = step_missed_, refused_duration_ = duration_;
+        return "the balance of energy of the step of time misses " + core::text(step_missed_) + ", more than " +
+               core::text(most) + ", which Inertia.allowed_loss = " + core::text(loss_) + " lets it";
+    }
+    /// What the balances of all accepted steps miss, whether lost or gained [force length].
+    double missed() const noexcept { return missed_; }
+    /// What they may, by `allowed_loss`; 0 if any may [force length].
+    double may_miss() const noexcept { return may_miss_; }
+    /// Whether a step that is `growth` times as long would be accepted, as what it errs by and misses grows by the third power,
+    /// and what it may miss as it lasts.
+    bool may_grow(double growth) const noexcept {
+        return error_ * growth * growth * growth <= allowed_ && (!limits_loss() || step_missed_ * growth * growth <= step_most_);
+    }
 
     void accept(const Vector& state) {
         if (!(duration_ > 0.0)) return;
         std::tie(velocity_, acceleration_) = arrived(state);
         if (now_.size() == size_) force_ = now_;
         moving_ = 1.0;
+        missed_ += step_missed_, may_miss_ += step_may_;
+        if (step_missed_ <= step_most_) unresolved_ = 0.0;
+        step_missed_ = step_may_ = refused_missed_ = refused_duration_ = 0.0, halvings_ = 0;
     }
     void restore() const noexcept {}
-    void each(const auto& see) { see(velocity_), see(acceleration_), see(force_), see(moving_); }
+    void each(const auto& see) {
+        see(velocity_), see(acceleration_), see(force_), see(moving_), see(missed_), see(may_miss_), see(unresolved_);
+    }
 
     /// Begins anew from a state: at rest, or as it is told. @throws std::invalid_argument for a fibre that is none
     void set_off(const std::vector<Start>& starts) {
@@ -207,6 +248,12 @@ public:
     }
 
 private:
+    static constexpr double shorter = 0.75;  // than a step that is halved, or cut by more
+    static constexpr double hardly_less =
+        0.4;  // of what that missed: an eighth it should be, a quarter by a scheme of first order
+    static constexpr Index most_halvings = 3;
+    static constexpr double unevenness = 1.5;  // of what no step resolves
+    bool limits_loss() const noexcept { return !std::isnan(loss_); }
     std::pair<Vector, Vector> arrived(const Vector& state) const {
         Vector acceleration = (Own::of(state.head(size_)) - place_) / step_.c2;
         Vector velocity = velocity_ + step_.old_acceleration * acceleration_ + step_.new_acceleration * acceleration;
@@ -299,9 +346,15 @@ private:
 
     const beam::Mesh<B>* mesh_;
     Integrator integrator_;
-    double allowed_, error_ = 0.0;
-    std::vector<ElementMass<B>> masses_;  // of each fibre
-    Index size_ = 0;                      // of a state of the fibres
+    double allowed_, loss_, error_ = 0.0;
+    double missed_ = 0.0, may_miss_ = 0.0;  // of all steps
+    // Of the last one that has converged; `most` without what others leave.
+    double step_missed_ = 0.0, step_may_ = 0.0, step_most_ = 0.0;
+    double unresolved_ = 0.0;                               // missed in a time by accepted steps that none resolves
+    Index halvings_ = 0;                                    // in a row that made it hardly less
+    double refused_missed_ = 0.0, refused_duration_ = 0.0;  // of the last one that missed too much, since one was accepted
+    std::vector<ElementMass<B>> masses_;                    // of each fibre
+    Index size_ = 0;                                        // of a state of the fibres
     double duration_ = 0.0, extent_ = 0.0;
     double mass_norm_ = 0.0;  // of the masses of nodes
     TimeStep step_{};

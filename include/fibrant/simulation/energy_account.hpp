@@ -5,8 +5,11 @@
 #include <fibrant/core/types.hpp>
 #include <fibrant/law/normal_law.hpp>
 #include <fibrant/simulation/report.hpp>
+#include <fibrant/term/term.hpp>
 
 #include <cmath>
+#include <limits>
+#include <string>
 #include <type_traits>
 
 namespace fibrant::simulation {
@@ -102,6 +105,31 @@ public:
         if (leap) balance_.released += balance_.error() - error_before;
     }
 
+    /// The same of an increment that a motion keeps only if it errs and misses little enough: what it is refused for, and then
+    /// nothing is booked; empty if it is kept.
+    /// @param laws  books what laws of sections have lost
+    /// @param part  of the stage's duration that the increment lasts
+    /// @param left  of it, after that
+    template <class Equilibrium, class Contacts, class Laws>
+    std::string book(Equilibrium& equilibrium, Contacts& contacts, const Vector& from, const Vector& to, bool leap,
+                     const Laws& laws, [[maybe_unused]] double part, [[maybe_unused]] double left) {
+        if constexpr (Equilibrium::moves) {
+            std::string reason;
+            equilibrium.terms().moving([&](auto& term) { reason = term.refusal(to); });
+            if (!reason.empty()) return reason;
+            const EnergyAccount before = *this;
+            book(equilibrium, contacts, from, to, leap), laws(*this);
+            term::StepEnergy step = of_step(before.balance_);
+            step.part = part, step.left = left;
+            equilibrium.terms().moving([&](auto& term) { reason = term.refusal(step); });
+            if (!reason.empty()) *this = before;
+            return reason;
+        } else {
+            book(equilibrium, contacts, from, to, leap), laws(*this);
+            return {};
+        }
+    }
+
     /// The balance of an increment of which all is booked. What a motion misses then is lost to the scheme that moves it.
     template <bool Moves>
     const EnergyBalance& closed() {
@@ -127,6 +155,20 @@ public:
     void each(auto&& see) { see(external_), see(damping_), see(contact_), see(balance_); }
 
 private:
+    /// What has happened since another balance, but for what rounding makes of sums.
+    term::StepEnergy of_step(const EnergyBalance& before) const {
+        const auto change = [&](double EnergyBalance::*kind) { return std::abs(balance_.*kind - before.*kind); };
+        term::StepEnergy step;
+        for (const auto kind :
+             {&EnergyBalance::external, &EnergyBalance::kinetic, &EnergyBalance::elastic, &EnergyBalance::contact,
+              &EnergyBalance::dissipated, &EnergyBalance::lost, &EnergyBalance::damped})
+            step.turned += 0.5 * change(kind);  // it is counted where it comes from and where it goes
+        step.held = balance_.kinetic + balance_.elastic + balance_.contact;
+        const double digits = 16.0 * std::numeric_limits<double>::epsilon() * (std::abs(balance_.external) + step.held);
+        step.missed = balance_.error() - before.error();
+        if (std::abs(step.missed) <= digits) step.missed = 0.0;
+        return step;
+    }
     /// A normal law with a rate as it is at rest, and as it was. @returns whether there is one
     template <class Contacts>
     static bool rest([[maybe_unused]] Contacts& contacts, [[maybe_unused]] bool still) {

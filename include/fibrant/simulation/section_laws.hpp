@@ -59,6 +59,7 @@ public:
     static constexpr bool begin(const auto&, const Mesh&, const B&, const Vector&) noexcept { return false; }
     static void drive(const Mesh&, const std::vector<double>&, const beam::Drive&) noexcept {}
     static std::string refusal(const Mesh&, const B&, const Vector&) { return {}; }
+    static void book(const Mesh&, const B&, const Vector&, const EnergyAccount&) noexcept {}
     static void accept(const Mesh&, const B&, const Vector&, const EnergyAccount&) noexcept {}
     static Index count(const Mesh&) noexcept { return 0; }
     static Vector numbers(const Mesh&) { return {}; }
@@ -116,17 +117,21 @@ public:
         }
         return {};
     }
-    /// Keeps what points remember of an accepted state, breaks the weakest one if its time has come, and books both.
-    void accept(Mesh& mesh, const B& beam, const Vector& state, EnergyAccount& energy) {
+    /// Books what points have lost, and what has driven them has done, on the way to a state that has converged.
+    static void book(Mesh& mesh, const B& beam, const Vector& state, EnergyAccount& energy) {
         beam::LawFigures sum;
         for_elements(mesh, [&](Index f, Index e, typename B::Rest& rest) {
-            const auto y = mesh.element(state, f, e);
-            const beam::LawFigures own = beam.figures(rest, y);
+            const beam::LawFigures own = beam.figures(rest, mesh.element(state, f, e));
             sum.dissipated += own.dissipated, sum.driven += own.driven;
-            beam.accept(rest, y);
-            B::drive(rest, {0.0, rest.memory.drive.amplitude, 1.0});  // it stands there, and no time passes
         });
         energy.book_laws(sum.dissipated, sum.driven);
+    }
+    /// Keeps what points remember of an accepted state, breaks the weakest one if its time has come, and books that.
+    void accept(Mesh& mesh, const B& beam, const Vector& state, EnergyAccount& energy) {
+        for_elements(mesh, [&](Index f, Index e, typename B::Rest& rest) {
+            beam.accept(rest, mesh.element(state, f, e));
+            B::drive(rest, {0.0, rest.memory.drive.amplitude, 1.0});  // it stands there, and no time passes
+        });
         again_ = false;
         if constexpr (beam::Breakable<M>) {
             const Weakest most = weakest(mesh, beam, state);

@@ -149,9 +149,9 @@ private:
             }
             Vector trial = state_;
             move_tools(amplitudes);
-            laws_.drive(
-                mesh_, amplitudes,
-                let_last(contacts_, equilibrium_, stage.duration * (progress - position_.progress), position_.step(stage)));
+            const beam::Drive drive =
+                let_last(contacts_, equilibrium_, stage.duration * (progress - position_.progress), position_.step(stage));
+            laws_.drive(mesh_, amplitudes, drive);
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping / stride + position_.calming.springs,
                                position_.held_by_fibre(loading.damping_of_fibres));
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
@@ -167,15 +167,10 @@ private:
             const Index most = std::max<Index>(1, attempt.counts.normal_passes) * iteration.newton_limit;
             effort = static_cast<double>(attempt.counts.newton) / static_cast<double>(most);
             if (attempt.converged) {
-                attempt.reason = clock_.time(core::Part::search, [&] {
+                attempt.refuse(clock_.time(core::Part::search, [&] {
                     return refusal(mesh_, beam_, passage_, contacts_, state_, trial, stage.forced_orders, touching);
-                });
-                if (attempt.reason.empty()) attempt.reason = laws_.refusal(mesh_, beam_, trial);
-                equilibrium_.terms().moving([&](auto& term) {
-                    if (attempt.reason.empty()) attempt.reason = term.refusal(trial);
-                });
-                if (!attempt.reason.empty())
-                    attempt.converged = false, attempt.unsettled.resize(0);  // whoever moved most is not at fault
+                }));
+                if (attempt.converged) attempt.refuse(laws_.refusal(mesh_, beam_, trial));
             }
             // What nothing foretells would be held back: the first tells.
             if (attempt.converged && stage.damping_carried && stage.damping > 0.0 && !rehearsed && !motion_.foretells(change)) {
@@ -183,8 +178,12 @@ private:
                 contacts_.restore(), equilibrium_.restore(), rehearsed = true;
                 continue;
             }
+            if (attempt.converged)
+                attempt.refuse(energy_.book(
+                    equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again(),
+                    [&](EnergyAccount& energy) { laws_.book(mesh_, beam_, trial, energy); }, drive.duration / stage.duration,
+                    1.0 - progress));
             if (attempt.converged) {
-                energy_.book(equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again());
                 laws_.accept(mesh_, beam_, trial, energy_);
                 increment.energy = energy_.template closed<Equilibrium::moves>();
                 if (stage.damping_carried) motion_.learn(mesh_, state_, trial, change);

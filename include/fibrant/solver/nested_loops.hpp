@@ -26,6 +26,12 @@ struct AttemptReport {
     ToleranceUse use;           ///< of one that has converged
     Vector unsettled;           ///< last step, or displacement of the last pass or of the whole, of an attempt that has failed
     double allowed = 0.0;       ///< what that may be anywhere without harm [length]
+
+    /// One that has converged is not accepted, if there is a reason why: whoever moved most is not at fault.
+    void refuse(std::string why) {
+        reason = std::move(why);
+        if (!reason.empty()) converged = false, unsettled.resize(0);
+    }
 };
 
 /// Numbers of the nested loops that no scene has had to change. Where no source is named, they were chosen by trial on the scenes

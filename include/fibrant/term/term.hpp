@@ -130,10 +130,19 @@ concept Shown = requires(const T term, const Vector& state, observe::Snapshot& s
     term.show(state, shot);
 };
 
+/// What a step of time has done to the energy of all [force * length].
+struct StepEnergy {
+    double missed = 0.0;  ///< what its balance misses
+    double turned = 0.0;  ///< what has become of another kind, >= 0
+    double held = 0.0;    ///< there is at its end: moving, or stored
+    double part = 0.0;    ///< of the stage's duration that it lasts [1]
+    double left = 0.0;    ///< of that, after it [1]
+};
+
 /// A term that makes a model move in time. Forces of the fibres are then those that it averages over a step; it is told how long
 /// that lasts, and refuses a step that errs too much.
 template <class T>
-concept Moving = requires(T term, const T seen, const Vector& state, Vector& sum, double number) {
+concept Moving = requires(T term, const T seen, const Vector& state, Vector& sum, double number, const StepEnergy& energy) {
     term.last(number);                                // duration of the next increments; before `begin` [time]
     term.add_averaged(state, state, sum);             // state, forces of the fibres in it
     { seen.share() } -> std::same_as<double>;         // of those in that average, known once `last` is: factor on their stiffness
@@ -141,8 +150,9 @@ concept Moving = requires(T term, const T seen, const Vector& state, Vector& sum
     { seen.rounding() } -> std::same_as<double>;      // norm of what rounding makes of its forces [force]
     { seen.begins() } -> std::same_as<bool>;          // the motion, with this step
     { seen.kinetic(state) } -> std::same_as<double>;  // [force length]
-    { term.refusal(state) } -> std::same_as<std::string>;  // empty: none
-    { seen.may_grow(number) } -> std::same_as<bool>;       // the next step, by a factor
+    { term.refusal(state) } -> std::same_as<std::string>;   // empty: none
+    { term.refusal(energy) } -> std::same_as<std::string>;  // the same once energy is booked
+    { seen.may_grow(number) } -> std::same_as<bool>;        // the next step, by a factor
 };
 
 /// Something that pushes on fibres.
