@@ -102,7 +102,7 @@ bool run(const composite::Scene& scene, const example::SceneReader& file, exampl
     };
     example::Recorder recorder(output, cloth::smallest_radius(fabric), [&] {
         const simulation::Wrench edge = parts::edge_wrench(simulator, composite);
-        return watch.columns(point(edge), edge);
+        return composite::columns(point(edge), edge);
     });
     auto loading = parts::loading_of<Composite>(fabric, scene.weave.settle, scene.load);
     output.tell(loading, 20.0);

@@ -42,39 +42,26 @@ inline CurvePoint curve_point(const parts::LoadParameters& load, double amplitud
     }
 }
 
-/// Sees increments before the others do: its last one, and the solid's ParaView files.
+/// The solid's ParaView files.
 class Watch {
 public:
     explicit Watch(const example::Output& output) {
         if (output.paraview) series_.emplace(output.folder / "paraview", output.start());
     }
-    void reported(const fibrant::simulation::IncrementReport& increment) { last_ = &increment; }
     void accepted(const observe::Snapshot& snapshot) {
         if (series_) series_->accepted(snapshot);
-    }
-    /// Columns of the table of increments beside those of every run.
-    std::vector<observe::Column> columns(const CurvePoint& point, const fibrant::simulation::Wrench& edge) {
-        const fibrant::simulation::EnergyBalance& energy = last_->energy;
-        return {{point.x_name, point.x},
-                {"moment_x", edge.moment.x()},
-                {"moment_y", edge.moment.y()},
-                {"moment_z", edge.moment.z()},
-                {"force_x", edge.force.x()},
-                {"force_y", edge.force.y()},
-                {"force_z", edge.force.z()},
-                {"linear_solves", last_->counts.linear_solves},
-                {"elastic", energy.elastic},
-                {"contact", energy.contact},
-                {"rearranged", energy.rearranged},
-                {"energy_error", energy.error()},
-                {"displacement", last_->displacement},
-                {"fraction", last_->fraction}};
     }
 
 private:
     std::optional<observe::SolidWriter> series_;
-    const fibrant::simulation::IncrementReport* last_ = nullptr;
 };
+
+/// Columns of the table of increments beside those of every run.
+inline std::vector<observe::Column> columns(const CurvePoint& point, const fibrant::simulation::Wrench& edge) {
+    return {{point.x_name, point.x},       {"moment_x", edge.moment.x()}, {"moment_y", edge.moment.y()},
+            {"moment_z", edge.moment.z()}, {"force_x", edge.force.x()},   {"force_y", edge.force.y()},
+            {"force_z", edge.force.z()}};
+}
 
 /// curve.svg of the load, from the table, which a run that was resumed has whole.
 inline void write_curve(const example::Output& output, const CurvePoint& names) {

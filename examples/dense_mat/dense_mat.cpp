@@ -133,7 +133,6 @@ bool solve(example::SceneReader& file, example::Output& output) {
                     {"lower_pressure_over_modulus", state.lower_pressure},
                     {"contacts_per_fibre", state.contacts_per_fibre},
                     {"contacts_without_bulk", state.contacts_without_bulk},
-                    {"elastic_energy", state.elastic_energy},
                     {"sine", state.sine}};
         });
         simulation::Loading<Mat> loading = mat::pressing_by_levels<Mat>(parameters, levels, boxed);

@@ -98,8 +98,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
                 {"lower_pressure_over_modulus", state.lower_pressure / parameters.material.young_modulus},
                 {"contacts_per_fibre", state.contacts_per_fibre},
                 {"contacts_without_bulk", state.contacts_without_bulk},
-                {"sine", state.sine},
-                {"elastic_energy", state.elastic_energy}};
+                {"sine", state.sine}};
     });
     simulation::Loading<Mat> loading = mat::pressing<Mat>(parameters, press);
     output.tell(loading);

@@ -2,6 +2,7 @@
 #pragma once
 /// @file What the examples that read a scene file have in common: the command line, progress, tables, pictures and a summary.
 
+#include "increment_columns.hpp"
 #include "process.hpp"
 #include "progress.hpp"
 #include "results_folder.hpp"
@@ -127,31 +128,8 @@ public:
         if (output.paraview) series_.emplace(output.folder / "paraview", output.start());
     }
     void reported(const fibrant::simulation::IncrementReport& increment) {
-        std::vector<observe::Column> columns{
-            {"increment", increment.number}, {"stage", increment.stage}, {"progress", increment.progress}};
         const std::vector<observe::Column> figures = more_();
-        columns.insert(columns.end(), figures.begin(), figures.end());
-        for (const observe::Column& column :
-             std::vector<observe::Column>{{"newton_iterations", increment.counts.newton},
-                                          {"linear_iterations", increment.counts.linear_iterations},
-                                          {"contact_passes", increment.counts.contact_passes},
-                                          {"cuts", increment.cuts},
-                                          {"active_contacts", increment.contact.active},
-                                          {"greatest_penetration_over_radius", increment.contact.greatest_penetration / radius_},
-                                          {"residual", increment.residual},
-                                          {"damping_share", increment.damping},
-                                          {"springs", increment.springs},
-                                          {"hardest_springs", increment.hardest_springs},
-                                          {"elastic_energy", increment.energy.elastic},
-                                          {"contact_energy", increment.energy.contact},
-                                          {"external_work", increment.energy.external},
-                                          {"dissipated", increment.energy.dissipated},
-                                          {"damped", increment.energy.damped},
-                                          {"rearranged", increment.energy.rearranged},
-                                          {"energy_error", increment.energy.error()},
-                                          {"seconds", increment.seconds}})
-            columns.push_back(column);
-        table_.row(columns);
+        table_.row(increment_columns(increment, radius_, figures));
         printer_.reported(increment, figures);
     }
     void gave_up(const fibrant::simulation::FailedAttempt& attempt) const { printer_.gave_up(attempt); }

@@ -2,6 +2,8 @@
 #pragma once
 /// @file What a run of the weave prints and writes: progress, the table of increments, measures, pictures, the summary.
 
+#include "../support/increment_columns.hpp"
+
 #include <fibrant/compositions/weave/audit.hpp>
 #include <fibrant/compositions/weave/slices.hpp>
 #include <fibrant/compositions/weave/tow_section.hpp>
@@ -31,35 +33,7 @@ public:
         : table_{folder / "increments.csv", start}, radius_{radius} {}
 
     void reported(const fibrant::simulation::IncrementReport& increment) {
-        const auto& counts = increment.counts;
-        table_.row({{"increment", increment.number},
-                    {"stage", increment.stage},
-                    {"stage_progress", increment.stage_progress},
-                    {"progress", increment.progress},
-                    {"fraction", increment.fraction},
-                    {"cuts", increment.cuts},
-                    {"contact_passes", counts.contact_passes},
-                    {"normal_passes", counts.normal_passes},
-                    {"newton_iterations", counts.newton},
-                    {"linear_solves", counts.linear_solves},
-                    {"linear_iterations", counts.linear_iterations},
-                    {"indefinite_tangents", counts.indefinite},
-                    {"residual", increment.residual},
-                    {"displacement_over_radius", increment.displacement / radius_},
-                    {"damping_share", increment.damping},
-                    {"contact_elements", increment.contact.elements},
-                    {"active_contacts", increment.contact.active},
-                    {"limited_gaps", increment.contact.shifted},
-                    {"greatest_penetration_over_radius", increment.contact.greatest_penetration / radius_},
-                    {"reaction_sum", increment.contact.reaction_sum},
-                    {"elastic_energy", increment.energy.elastic},
-                    {"contact_energy", increment.energy.contact},
-                    {"external_work", increment.energy.external},
-                    {"dissipated", increment.energy.dissipated},
-                    {"rearranged", increment.energy.rearranged},
-                    {"released", increment.energy.released},
-                    {"energy_error", increment.energy.error()},
-                    {"seconds", increment.seconds}});
+        table_.row(example::increment_columns(increment, radius_));
     }
 
 private:

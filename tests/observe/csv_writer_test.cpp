@@ -56,6 +56,10 @@ TEST_CASE("rows of other columns are refused") {
     CHECK(test::refusal([&] {
               table.row({{"a", 1}, {"c", 2}});
           }) == "CsvWriter.columns = a,c, but it must be those of the first row, a,b");
+    CsvWriter twice(path);
+    CHECK(test::refusal([&] {
+              twice.row({{"a", 1}, {"b", 2}, {"a", 3}});
+          }) == "CsvWriter.columns = a, but it must be a name that no other column has");
     CsvWriter resumed(path, Start::resumed);
     CHECK(test::refusal([&] { resumed.row({{"a", 1}}); }).find("CsvWriter.columns = a, but it must be those of") == 0);
 }

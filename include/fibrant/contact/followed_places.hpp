@@ -33,16 +33,14 @@ public:
     /// Says whether crossings of a zone are followed. As needed they are wherever fibres are bent around each other as only loops
     /// are, or clasp each other, whatever increments lead there.
     void mark(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Zone* before) const {
-        zone.followed = wanted(mesh, state, zone, before);
+        zone.followed = wanted(mesh, state, zone, before, all_);
         zone.settled = zone.followed && before && before->settled;
         if (zone.settled) zone.slanting = before->slanting;
     }
     /// Whether what `follow` says decides about some zone of an attempt, as the fibres lay before it.
     bool matters(const beam::Mesh<B>& mesh, const Vector& state, const std::vector<Zone>& zones) const {
-        FollowedPlaces other(places_);
-        other.follow(!all_);
         const auto differs = [&](const Zone& zone) {
-            return !zone.forced && other.wanted(mesh, state, zone, &zone) != zone.followed;
+            return !zone.forced && wanted(mesh, state, zone, &zone, !all_) != zone.followed;
         };
         return zones.empty() || std::any_of(zones.begin(), zones.end(), differs);
     }
@@ -167,10 +165,11 @@ public:
     }
 
 private:
-    bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before) const {
+    /// @param all  every crossing is
+    bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before, bool all) const {
         if (!beam::DeformableSections<B> && oval_pair(mesh, zone.span.fibre_i, zone.span.fibre_j))
             return false;  // centrelines say too little of where they touch
-        if (places_ != Places::as_needed || all_) return places_ != Places::renewed;
+        if (places_ != Places::as_needed || all) return places_ != Places::renewed;
         return bend_around(mesh, state, zone.span) > loop - (before && before->followed ? hysteresis : 0.0) ||
                clasped(mesh, state, zone.span);
     }

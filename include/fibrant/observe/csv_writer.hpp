@@ -6,6 +6,7 @@
 #include <fibrant/observe/observer.hpp>
 #include <fibrant/observe/text_file.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <concepts>
@@ -40,8 +41,8 @@ public:
     ///               others are from increments that the resumed run repeats
     explicit CsvWriter(std::filesystem::path path, Start start = Start::anew) : path_{std::move(path)}, start_{start} {}
 
-    /// Every row has the columns of the first; otherwise std::invalid_argument is thrown, also where a resumed file has
-    /// another header. Throws std::runtime_error if the file cannot be written.
+    /// Every row has the columns of the first, whose names differ; otherwise std::invalid_argument is thrown, also where a
+    /// resumed file has another header. Throws std::runtime_error if the file cannot be written.
     void row(const std::vector<Column>& columns) {
         std::string header, line;
         for (const Column& column : columns) {
@@ -50,6 +51,7 @@ public:
             line += (first ? "" : ",") + quoted(column.value);
         }
         if (!file_.is_open()) {
+            require_names_differ(columns);
             std::string content = start_ == Start::resumed ? earlier_rows(header, columns) : std::string{};
             if (content.empty()) content = header + "\n";
             write_file(path_, content + line + "\n");
@@ -73,6 +75,15 @@ private:
         std::string answer = "\"";
         for (const char c : text) answer += c == '"' ? std::string("\"\"") : std::string(1, c);
         return answer + "\"";
+    }
+
+    /// A reader finds a column by its name.
+    static void require_names_differ(const std::vector<Column>& columns) {
+        std::vector<std::string_view> names;
+        for (const Column& column : columns) names.push_back(column.name);
+        std::sort(names.begin(), names.end());
+        if (const auto twice = std::adjacent_find(names.begin(), names.end()); twice != names.end())
+            core::refuse("CsvWriter.columns", std::string(*twice), "a name that no other column has");
     }
 
     static double number(std::string_view text) {
