@@ -166,6 +166,12 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
         }
         json.add("asymmetry", stiffness.asymmetry).add("creep", stiffness.creep);
         tell_tension(stiffness, periods, json);
+        constexpr double checked = 0.1;  // with less, planes of symmetry are not kept
+        if (const double mu = scene.settle.friction_coefficient; mu < checked)
+            std::fprintf(stderr,
+                         "textile: note: bending and twist of a cell are not to be relied on with so little friction, "
+                         "contact.friction_coefficient = %g: from %g on they are checked\n",
+                         mu, checked);
     }
     example::write_summary(output, report, audit, radius, {}, json);
     // Yarns that leap as they slide by themselves, or normals in the kinks between long elements, make it differ by more.
