@@ -348,7 +348,8 @@ TEST_CASE("a yarn's surface is closed and holds the hull of its fibres, whicheve
         FileCurve& one = leaning[side > 0.0 ? 1 : 0];
         one.points = {Vec3(-1.0, -0.75 * side, 0.0), Vec3(1.0, 0.75 * side, 0.0)}, one.radius = r, one.group = 0;
     }
-    for (const YarnStation& station : yarns_of(leaning).at(0).stations)
+    const FileYarn both = yarns_of(leaning).at(0);
+    for (const YarnStation& station : both.stations)
         CHECK(station.section.fibre_area == test::near(2.0 * pi * r * r / 0.8, 1e-9));
     std::vector<FileCurve> mixed = seven(r, 2.0, false);
     mixed[3].closed = true;
