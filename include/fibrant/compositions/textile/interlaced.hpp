@@ -39,8 +39,9 @@ class HeightLine {
 public:
     HeightLine(std::vector<std::pair<double, double>> knots, bool repeating) : repeating_{repeating} {
         std::sort(knots.begin(), knots.end());
-        // Crossings of three at one point, however many a path has.
-        const double same = std::min(1e-4, 0.05 / static_cast<double>(knots.size() + 1));  // of a path
+        // Crossings of three at one point, however many a path has: of the path, and of the mean distance between crossings.
+        constexpr double one_point = 1e-4, of_distance = 0.05;
+        const double same = std::min(one_point, of_distance / static_cast<double>(knots.size() + 1));
         for (const auto& knot : knots) {
             if (!knots_.empty() && knot.first - knots_.back().first < same) {
                 if (std::abs(knot.second) > std::abs(knots_.back().second)) knots_.back().second = knot.second;
