@@ -319,26 +319,32 @@ TEST_CASE("a body that is free under a force and a moment moves as a beam's end 
     CHECK(std::atan2(frame(0, 2), frame(2, 2)) == test::near(angle, 1e-3));  // St Venant-Kirchhoff: 1.5 eps
 }
 
+/// A straight rod that repeats by what it is along, in the cell 0, which is there. Its spin is held in its middle: the other
+/// rotations of a straight periodic fibre are held by its period.
+Index periodic_rod(scene::Assembly& assembly, const Vec3& from, const Vec3& along, Index elements, const Vec3& director) {
+    const Index f = assembly.add({.from = from,
+                                  .to = from + along,
+                                  .section = scene::circular(radius),
+                                  .material = {young, 0.3},
+                                  .elements = elements,
+                                  .director = director});
+    assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), along, 0});
+    assembly.hold_axial_rotation({f, 0.5});
+    return f;
+}
+
 TEST_CASE("a periodic fibre stretches under a mean stress as a bar, and carries what a prescribed strain asks for") {
     const double strain = 0.01, stretch = 1.0 + strain;
     const double force = young * area() * 0.5 * (stretch * stretch - 1.0) * stretch;  // St Venant-Kirchhoff, nominal
     for (const bool prescribed : {true, false}) {
         scene::Assembly assembly;
-        const Index f = assembly.add({.from = {0, 0, 0},
-                                      .to = {0, 0, length},
-                                      .section = scene::circular(radius),
-                                      .material = {young, 0.3},
-                                      .elements = 8,
-                                      .director = Vec3::UnitX()});
-        assembly.hold_position({f, 0.5});
-        assembly.hold_axial_rotation({f, 0.5});
-        // The other rotations of a straight periodic fibre are held by its period.
         scene::PeriodicCell cell;
         cell.volume = 3.0;
         cell.component(2, 2) = prescribed ? scene::Coordinate::held_at(strain, "strain")
                                           : scene::Coordinate::under(force * length / cell.volume, "strain");
         assembly.add(cell);
-        assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), Vec3(0, 0, length), 0});
+        const Index f = periodic_rod(assembly, Vec3::Zero(), Vec3(0, 0, length), 8, Vec3::UnitX());
+        assembly.hold_position({f, 0.5});
         simulation::Simulator<Tied> simulator(assembly, parameters());
         const simulation::Report report = simulator.run({.increments = 2});
         CAPTURE(report.reason);
@@ -399,18 +405,11 @@ TEST_CASE("a cell that bends stretches, bends and twists a bar off its middle pl
     for (const int of : {0, 1, 2}) {
         const double bent = of == 2 ? 1e-6 : 1e-5;  // what a twist tilts it stretches by the square, 1e-3 of the moment then
         scene::Assembly assembly;
-        const Index f = assembly.add({.from = {-0.5 * length, y, z},
-                                      .to = {0.5 * length, y, z},
-                                      .section = scene::circular(radius),
-                                      .material = {young, 0.3},
-                                      .elements = 4,
-                                      .director = Vec3::UnitY()});
-        assembly.hold_position({f, 0.5});
-        assembly.hold_axial_rotation({f, 0.5});
         scene::PeriodicCell cell;
         cell.curvature[core::at(of)] = scene::Coordinate::held_at(bent, "bend");
         assembly.add(cell);
-        assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), Vec3(length, 0, 0), 0});
+        const Index f = periodic_rod(assembly, Vec3(-0.5 * length, y, z), Vec3(length, 0, 0), 4, Vec3::UnitY());
+        assembly.hold_position({f, 0.5});
         simulation::Simulator<Tied> simulator(assembly, parameters());
         const simulation::Report report = simulator.run({.increments = 1});
         CAPTURE(of);
@@ -434,15 +433,7 @@ TEST_CASE("contact across the seams of a cell is contact: where a cell is cut ch
     // Two rods along x that are pressed on both sides, once inside the cell and once across its seam.
     constexpr double depth = 0.01 * radius, width = 2.0 * (2.0 * radius);
     const auto rod = [](scene::Assembly& assembly, const Vec3& from, const Vec3& along, Index elements) {
-        const Index f = assembly.add({.from = from,
-                                      .to = from + along,
-                                      .section = scene::circular(radius),
-                                      .material = {young, 0.3},
-                                      .elements = elements,
-                                      .director = Vec3::UnitZ()});
-        assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), along, 0});
-        assembly.hold_axial_rotation({f, 0.5});
-        return f;
+        return periodic_rod(assembly, from, along, elements, Vec3::UnitZ());
     };
     const auto see_beside = [](scene::Assembly& assembly, const std::vector<scene::FibreImage::Shift>& shifts) {
         for (Index f = 0; f < core::count(assembly.fibres()); ++f) assembly.add(scene::FibreImage{f, shifts});
@@ -518,14 +509,7 @@ TEST_CASE("what is in each other across a seam parts, and what passes through an
         const std::array<Vec3, 3> from{Vec3(0, off, 0), Vec3(0, width - off, 0), Vec3(-0.3 * r, 0, 10.0 * r)},
             along{Vec3(side, 0, 0), Vec3(side, 0, 0), Vec3(0, width, 0)};
         for (std::size_t k = 0; k < 3; ++k) {
-            const Index f = assembly.add({.from = from[k],
-                                          .to = from[k] + along[k],
-                                          .section = scene::circular(r),
-                                          .material = {young, 0.3},
-                                          .elements = 4,
-                                          .director = k < 2 ? Vec3(Vec3::UnitZ()) : Vec3(Vec3::UnitX())});
-            assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), along[k], 0});
-            assembly.hold_axial_rotation({f, 0.5});
+            const Index f = periodic_rod(assembly, from[k], along[k], 4, k < 2 ? Vec3::UnitZ() : Vec3::UnitX());
             assembly.hold_position({f, 0.5}, k == 1 ? Mat3(Vec3(1, aside, 1).asDiagonal()) : Mat3(Mat3::Identity()));
         }
         for (Index f = 0; f < 3; ++f) {
@@ -653,15 +637,7 @@ TEST_CASE("a rod that is seen beside its cell by the period of another one moves
     assembly.add(cell);
     for (const double side : {-1.0, 1.0}) {
         const Vec3 middle(0.0, 0.4 * side, 0.3 * side), along(length, 0, 0);
-        const Index f = assembly.add({.from = middle - 0.5 * along,
-                                      .to = middle + 0.5 * along,
-                                      .section = scene::circular(radius),
-                                      .material = {young, 0.3},
-                                      .elements = 4,
-                                      .director = Vec3::UnitY()});
-        assembly.hold_position({f, 0.5});
-        assembly.hold_axial_rotation({f, 0.5});
-        assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), along, 0});
+        assembly.hold_position({periodic_rod(assembly, middle - 0.5 * along, along, 4, Vec3::UnitY()), 0.5});
     }
     assembly.add(scene::FibreImage{1, {{0, 1.0}}});
     simulation::Simulator<Tied> simulator(assembly, parameters());
