@@ -51,13 +51,13 @@ inline double unknowns_in_room(double bytes_each) { return std::min(most_unknown
 /// @param way         that the count has to go
 inline void require_room(const SceneReader& file, const std::string& section, const std::string& key, double unknowns,
                          double bytes_each = 2600.0, const std::string& way = "less") {
+    if (unknowns <= unknowns_in_room(bytes_each)) return;
     const double taken = unknowns * bytes_each;
     const Room there = memory_room();
-    if (unknowns <= unknowns_in_room(bytes_each)) return;
     file.refuse(section, key,
                 way + ": the scene has " + fibrant::observe::rounded(unknowns, 0) + " unknowns, which take some " +
-                    memory_text(taken) + " of memory, and may have 50000000 and " + memory_text(there.bytes) +
-                    ", which is what " + there.said);
+                    memory_text(taken) + " of memory, and may have " + fibrant::observe::rounded(most_unknowns, 0) + " and " +
+                    memory_text(there.bytes) + ", which is what " + there.said);
 }
 
 /// Refuses elements that are far shorter than a fibre is thick, whose count is a slip of the pen.
