@@ -36,11 +36,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     simulation::Simulator<compiled::RoughFibres> simulator(assembly, parameters);
     // What a run begins its file with is put first, so that inputs get beyond it.
     static const std::vector<char> start = [&] {
-        simulation::CheckpointWriter file;
+        const std::string path = fuzz::file_of(nullptr, 0);
+        simulation::CheckpointWriter file(path);
         file.put(std::string(simulation::checkpoint_format)), file.put(std::string());
         file.put(simulation::outline_identity(simulator.mesh()));
         for (int k = 0; k < 3; ++k) file.put(std::uint64_t{0});
-        return file.bytes();
+        file.finish();
+        return simulation::CheckpointReader(path).bytes();
     }();
     std::vector<char> bytes = start;
     bytes.insert(bytes.end(), data, data + size);

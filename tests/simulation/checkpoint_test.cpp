@@ -228,12 +228,15 @@ TEST_CASE("a checkpoint that cannot be written ends the run with a message, and 
 TEST_CASE("a disk that is full ends the run with a message, and the file before stays") {
     if (!std::filesystem::exists("/dev/full")) return;
     const TemporaryFile file("full"), part("full.part");
-    simulation::CheckpointWriter one;
-    one.put(1.0);
-    one.write(file.path);
+    const auto write = [&] {
+        simulation::CheckpointWriter one(file.path);
+        one.put(1.0);
+        one.finish();
+    };
+    write();
     const std::string before = file.bytes();
     std::filesystem::create_symlink("/dev/full", part.path);
-    CHECK(failure([&] { one.write(file.path); }) == "cannot write checkpoint " + file.name() + ": No space left on device");
+    CHECK(failure(write) == "cannot write checkpoint " + file.name() + ": No space left on device");
     CHECK(file.bytes() == before);
 }
 
@@ -327,11 +330,17 @@ TEST_CASE(
 
 TEST_CASE("a new file takes the place of the old one only when it is whole") {
     const TemporaryFile file("replaced");
-    simulation::CheckpointWriter one, two;
-    one.put(1.0), one.put(std::string("a"));
-    two.put(2.0), two.put(std::string("bc"));
-    one.write(file.path);
-    two.write(file.path);
+    {
+        simulation::CheckpointWriter one(file.path);
+        one.put(1.0), one.put(std::string("a"));
+        one.finish();
+        simulation::CheckpointWriter two(file.path);
+        two.put(2.0), two.put(std::string("bc"));
+        CHECK(simulation::CheckpointReader(file.path).get<double>() == 1.0);
+        two.finish();
+        simulation::CheckpointWriter three(file.path);
+        three.put(3.0);
+    }
     CHECK(!std::filesystem::exists(file.name() + ".part"));
     simulation::CheckpointReader reader(file.path);
     CHECK(reader.get<double>() == 2.0);

@@ -5,7 +5,6 @@
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
-#include <fibrant/core/ordering.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/proximity/proximity_search.hpp>
 
@@ -240,14 +239,20 @@ std::vector<Zone> find_zones(const beam::Mesh<B>& mesh, const Vector& state, Sea
     };
     SampledCentrelines<B> lines(mesh, state, detection, Mat3::Identity(), [](Index) { return true; });
     lines.widen(reach, detection.wanted);
-    for (const proximity::ProximityZone& found : search.find(lines.centrelines, reach)) {
+    // A scene of many crossings has hundreds of megabytes of them: none is there twice.
+    const auto add = [&](const std::vector<proximity::ProximityZone>& found, const SampledCentrelines<B>& along,
+                         const auto& wanted) {
         Zone zone;
-        zone.span = lines.in_elements(found);
-        zone.order = order_of(zone.span);
-        if (forced && zone.order >= 0) continue;
-        if (is_joint(mesh, zone.span)) continue;
-        zones.push_back(zone);
-    }
+        const auto seen = [&](const proximity::ProximityZone& span) {
+            zone.span = along.in_elements(span), zone.order = order_of(zone.span);
+            return wanted(zone);
+        };
+        zones.reserve(zones.size() + core::at(std::count_if(found.begin(), found.end(), seen)));
+        for (const proximity::ProximityZone& span : found)
+            if (seen(span)) zones.push_back(zone);
+    };
+    add(search.find(lines.centrelines, reach), lines,
+        [&](const Zone& zone) { return !(forced && zone.order >= 0) && !is_joint(mesh, zone.span); });
     if (forced && !orders.empty()) {
         const Mat3 flat = Mat3::Identity() - orders.axis() * orders.axis().transpose();
         SampledCentrelines<B> plan(mesh, state, detection, flat, [&](Index f) { return orders.takes_part(f); });
@@ -256,15 +261,9 @@ std::vector<Zone> find_zones(const beam::Mesh<B>& mesh, const Vector& state, Sea
             plan.centrelines[k].self_skip = std::numeric_limits<double>::infinity();
             plan.centrelines[k].radius *= 1e-3;  // only where they cross in plan
         }
-        for (const proximity::ProximityZone& found : search.find(plan.centrelines, 0.0)) {
-            Zone zone;
-            zone.span = plan.in_elements(found);
-            zone.order = order_of(zone.span);
-            if (zone.order < 0) continue;
-            zone.forced = zone.crossing = true;
-            zones.push_back(zone);
-        }
-        core::stable_sort(zones, [](const Zone& a, const Zone& b) {
+        const auto middle = static_cast<std::ptrdiff_t>(zones.size());
+        add(search.find(plan.centrelines, 0.0), plan, [](Zone& zone) { return zone.forced = zone.crossing = zone.order >= 0; });
+        std::inplace_merge(zones.begin(), zones.begin() + middle, zones.end(), [](const Zone& a, const Zone& b) {
             return a.span.fibre_i != b.span.fibre_i ? a.span.fibre_i < b.span.fibre_i : a.span.fibre_j < b.span.fibre_j;
         });
     }

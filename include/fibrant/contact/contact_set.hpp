@@ -68,7 +68,7 @@ public:
         std::vector<Zone> found = find_zones(*mesh_, state, search_, parameters_.detection, orders_, reach, forced);
         core::parallel_for(
             core::count(found), [&](Index z) { inherit(found[core::at(z)], state); }, core::light_items);
-        zones_.swap(found);
+        zones_ = std::move(found);
         regenerate(state, accepted);
     }
 
@@ -308,15 +308,23 @@ private:
     }
 
     void generate(const Vector& end, const Vector& accepted, const Memory& memory, const Vector& state) {
+        elements_.clear();
+        // Some zones at a time, enough for many threads: what they make is not twice in memory.
+        const Index some = std::max<Index>(4096, core::count(zones_) / 32);
+        for (Index first = 0; first < core::count(zones_); first += some)
+            generate(first, std::min(core::count(zones_), first + some), end, accepted, memory, state);
+    }
+    /// Of zones [from, to), behind those that there are.
+    void generate(Index from, Index to, const Vector& end, const Vector& accepted, const Memory& memory, const Vector& state) {
         constexpr Index block = 64;  // zones
-        const Index blocks = (core::count(zones_) + block - 1) / block;
+        const Index blocks = (to - from + block - 1) / block;
         std::vector<std::vector<Element>> made(core::at(blocks));
         const double forced_keep = 0.5;  // radii of clearance beyond which a forced pair needs no element
         core::parallel_for<core::Share::turns>(
             blocks,
             [&](Index b) {
                 std::vector<StationPair> pairs;
-                for (Index z = b * block; z < std::min(core::count(zones_), (b + 1) * block); ++z) {
+                for (Index z = from + b * block; z < std::min(to, from + (b + 1) * block); ++z) {
                     Zone& zone = zones_[core::at(z)];
                     pairs.clear();
                     station_pairs(*mesh_, state, zone.span, zone.crossing, parameters_.spacing, pairs,
@@ -348,11 +356,11 @@ private:
                 }
             },
             core::light_items / block);
-        for (Index b = 0, offset = 0; b < blocks; offset += core::count(made[core::at(b++)])) {
-            for (Index z = b * block; z < std::min(core::count(zones_), (b + 1) * block); ++z)
+        for (Index b = 0, offset = core::count(elements_); b < blocks; offset += core::count(made[core::at(b++)])) {
+            for (Index z = from + b * block; z < std::min(to, from + (b + 1) * block); ++z)
                 zones_[core::at(z)].first += offset, zones_[core::at(z)].last += offset;
         }
-        core::join(made, elements_);
+        core::join(made, elements_, elements_.size());
     }
 
     /// The closest patches, and what stands until normals are renewed: where friction acts, so that it has a potential. @returns

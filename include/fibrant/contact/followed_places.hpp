@@ -53,11 +53,9 @@ public:
     template <class Elements>
     void number(Elements& elements, const std::vector<Zone>& zones, const Vector& accepted) {
         std::int32_t count = 0;
+        for (auto& element : elements) element.place = is_followed(element, zones[core::at(element.zone)]) ? count++ : -1;
         held_.clear();
-        for (auto& element : elements) {
-            element.place = is_followed(element, zones[core::at(element.zone)]) ? count++ : -1;
-            if (element.place >= 0) held_.emplace_back();
-        }
+        held_.resize(core::at(count));
         if (count > 0) accepted_ = accepted;
     }
     /// What the slips of an increment count from.

@@ -4,6 +4,7 @@
 
 #include <fibrant/core/types.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
@@ -14,6 +15,7 @@
 #include <string>
 #include <system_error>
 #include <type_traits>
+#include <utility>
 #include <vector>
 #if __has_include(<unistd.h>)
 #include <unistd.h>
@@ -21,56 +23,101 @@
 
 namespace fibrant::simulation {
 
-/// Writes plain values to memory, then to a file in one step: the old file stays until the new one is complete.
+/// Writes plain values to a file as they come: a part of it until the file is complete, so that the old one stays until then.
+/// Without a path it keeps nothing but their sum.
 class CheckpointWriter {
 public:
+    CheckpointWriter() = default;
+    /// What cannot be written is told by `finish`.
+    explicit CheckpointWriter(std::filesystem::path path) : path_{std::move(path)}, part_{path_} {
+        part_ += ".part";
+        file_ = std::fopen(part_.string().c_str(), "wb");
+        note(file_ != nullptr);
+        pending_.reserve(most_pending);
+    }
+    CheckpointWriter(const CheckpointWriter&) = delete;
+    CheckpointWriter& operator=(const CheckpointWriter&) = delete;
+    /// What was not finished leaves no file.
+    ~CheckpointWriter() { discard(); }
+
     template <class T>
         requires std::is_trivially_copyable_v<T>
-    void put(const T& value) {
-        const char* bytes = reinterpret_cast<const char*>(&value);
-        data_.insert(data_.end(), bytes, bytes + sizeof(T));
-    }
+    void put(const T& value) { put_bytes(reinterpret_cast<const char*>(&value), sizeof(T)); }
     void put(const std::string& text) {
         put(static_cast<std::uint64_t>(text.size()));
-        data_.insert(data_.end(), text.data(), text.data() + text.size());
+        put_bytes(text.data(), text.size());
     }
     void put(const Vector& vector) {
         put(static_cast<std::uint64_t>(vector.size()));
         for (Index k = 0; k < vector.size(); ++k) put(vector[k]);
     }
-    /// What another writer wrote, as it is.
-    void put_all(const std::vector<char>& bytes) { data_.insert(data_.end(), bytes.begin(), bytes.end()); }
-    /// @throws std::runtime_error if the file cannot be written
-    void write(const std::filesystem::path& path) const {
-        std::filesystem::path part = path;
-        part += ".part";
-        const std::uint64_t sum = hash(data_.data(), data_.size());
-        std::FILE* file = std::fopen(part.string().c_str(), "wb");
-        bool written = file != nullptr && std::fwrite(data_.data(), 1, data_.size(), file) == data_.size() &&
-                       std::fwrite(&sum, sizeof sum, 1, file) == 1 && std::fflush(file) == 0 && on_the_disk(file);
-        int reason = errno;
-        if (file != nullptr && std::fclose(file) != 0 && written) written = false, reason = errno;
-        std::error_code error;
-        if (written) {
-            std::filesystem::rename(part, path, error);
-            if (!error) return;
-            reason = error.value();
-        }
-        if (file != nullptr) std::filesystem::remove(part, error);
-        throw std::runtime_error("cannot write checkpoint " + path.string() + ": " + std::generic_category().message(reason));
+    void put_bytes(const char* bytes, std::size_t size) {
+        sum_ = hash(bytes, size, sum_);
+        if (file_ == nullptr) return;
+        if (pending_.size() + size > most_pending) flush();
+        if (size > most_pending)
+            note(std::fwrite(bytes, 1, size, file_) == size);
+        else
+            pending_.insert(pending_.end(), bytes, bytes + size);
     }
-    /// All that was put, without the sum.
-    const std::vector<char>& bytes() const noexcept { return data_; }
+    /// Puts all that another writer put into a file, before this one puts anything.
+    /// @throws std::runtime_error if it cannot be read or is damaged
+    void put_file(const std::filesystem::path& path) {
+        std::ifstream file(path, std::ios::binary | std::ios::ate);
+        const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
+        std::uint64_t sum = 0;
+        std::vector<char> piece(most_pending);
+        file.seekg(0);
+        for (std::streamoff left = size - static_cast<std::streamoff>(sizeof sum); left > 0 && file;) {
+            const std::streamoff some = std::min(left, static_cast<std::streamoff>(piece.size()));
+            file.read(piece.data(), some);
+            put_bytes(piece.data(), static_cast<std::size_t>(some));
+            left -= some;
+        }
+        file.read(reinterpret_cast<char*>(&sum), sizeof sum);
+        if (!file || sum != sum_) throw std::runtime_error("checkpoint " + path.string() + " is damaged");
+    }
+    /// The file is complete, and takes the place of the one before.
+    /// @throws std::runtime_error if it cannot be written
+    void finish() {
+        const std::uint64_t sum = sum_;
+        put(sum);
+        flush();
+        if (file_ != nullptr && reason_ == 0) note(std::fflush(file_) == 0 && on_the_disk(file_));
+        if (file_ != nullptr) note(std::fclose(file_) == 0);
+        std::error_code error;
+        if (reason_ == 0) std::filesystem::rename(part_, path_, error);
+        if (error) reason_ = error.value();
+        if (file_ != nullptr && reason_ != 0) std::filesystem::remove(part_, error);
+        file_ = nullptr;
+        if (reason_ != 0)
+            throw std::runtime_error("cannot write checkpoint " + path_.string() + ": " +
+                                     std::generic_category().message(reason_));
+    }
     /// Of what was put: two scenes with the same identity are taken for the same.
-    std::uint64_t identity() const noexcept { return hash(data_.data(), data_.size()); }
-    /// FNV-1a: tells a damaged file from a whole one.
-    static std::uint64_t hash(const char* data, std::size_t size) noexcept {
-        std::uint64_t sum = 14695981039346656037ull;
+    std::uint64_t identity() const noexcept { return sum_; }
+    /// FNV-1a: tells a damaged file from a whole one. @param sum  of what stands before
+    static std::uint64_t hash(const char* data, std::size_t size, std::uint64_t sum = 14695981039346656037ull) noexcept {
         for (std::size_t k = 0; k < size; ++k) sum = (sum ^ static_cast<unsigned char>(data[k])) * 1099511628211ull;
         return sum;
     }
 
 private:
+    static constexpr std::size_t most_pending = std::size_t{1} << 16;  // bytes a call to the system: its cost is then none
+    /// The first reason is the one that is told.
+    void note(bool written) noexcept {
+        if (!written && reason_ == 0) reason_ = errno != 0 ? errno : EIO;
+    }
+    void flush() {
+        if (file_ != nullptr && reason_ == 0) note(std::fwrite(pending_.data(), 1, pending_.size(), file_) == pending_.size());
+        pending_.clear();
+    }
+    void discard() noexcept {
+        if (file_ == nullptr) return;
+        std::fclose(file_);
+        std::error_code error;
+        std::filesystem::remove(part_, error);
+    }
     /// The name is given to a file only once its bytes are on the disk: where power fails in between, the old one is still there.
     static bool on_the_disk([[maybe_unused]] std::FILE* file) noexcept {
 #if __has_include(<unistd.h>)
@@ -79,7 +126,11 @@ private:
         return true;
 #endif
     }
-    std::vector<char> data_;
+    std::filesystem::path path_, part_;
+    std::FILE* file_ = nullptr;
+    std::vector<char> pending_;
+    std::uint64_t sum_ = hash(nullptr, 0);
+    int reason_ = 0;
 };
 
 /// Reads what a CheckpointWriter wrote, in the same order.

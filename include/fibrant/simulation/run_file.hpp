@@ -130,14 +130,18 @@ public:
     }
     /// File to begin from; empty: at the start.
     const std::string& from() const noexcept { return from_; }
+    /// @param put   writes the run to a CheckpointWriter
     /// @param ends  the run does, with this increment
-    void write(const CheckpointWriter& file, bool ends) {
+    template <class Put>
+    void write(const Put& put, bool ends) {
         if (ends && before_end_ && from_ != before()) {
-            CheckpointWriter last;
-            if (!from_.empty()) last.put_all(CheckpointReader(from_).bytes());
-            last.write(before());
+            CheckpointWriter last(before());
+            if (!from_.empty()) last.put_file(from_);
+            last.finish();
         }
-        file.write(path_);
+        CheckpointWriter file(path_);
+        put(file);
+        file.finish();
         if (ends) return;
         from_ = path_;
         std::error_code none;

@@ -270,11 +270,11 @@ private:
     auto parts() noexcept {
         return RunParts{state_, amplitudes_, energy_, contacts_, equilibrium_, position_, motion_, clock_, mesh_, laws_};
     }
-    CheckpointWriter checkpoint(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Report& report) {
-        CheckpointWriter file;
-        put_identity<M>(file, mesh_, channels_, stages, loading.scene);
-        put_run<M>(file, parts(), report);
-        return file;
+    auto checkpoint(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Report& report) {
+        return [&](CheckpointWriter& file) {
+            put_identity<M>(file, mesh_, channels_, stages, loading.scene);
+            put_run<M>(file, parts(), report);
+        };
     }
     void resume(const std::string& from, const Loading<M>& loading, const std::vector<Stage<M>>& stages, Report& report) {
         CheckpointReader file(from);

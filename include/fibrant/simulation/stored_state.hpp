@@ -44,7 +44,7 @@ StoredState<M> read_state(const std::string& path, const beam::Mesh<typename M::
 /// Writes a file that `Simulator::start_from` takes, but no run resumes from.
 template <Model M>
 void write_state(const std::string& path, const beam::Mesh<typename M::Beam>& mesh, const StoredState<M>& stored) {
-    CheckpointWriter file;
+    CheckpointWriter file(path);
     file.put(std::string(checkpoint_format)), file.put(std::string());
     file.put(outline_identity(mesh)), file.put(fibre_identity(mesh));
     for (int k = 0; k < 2; ++k) file.put(std::uint64_t{0});
@@ -52,7 +52,7 @@ void write_state(const std::string& path, const beam::Mesh<typename M::Beam>& me
     EnergyAccount().each([&](const auto& value) { file.put(value); });
     put_memory(file, stored.records, stored.zones);
     file.put(stored.laws);
-    file.write(path);
+    file.finish();
 }
 
 }  // namespace fibrant::simulation
