@@ -73,7 +73,7 @@ bool run(const composite::Scene& scene, const example::SceneReader& file, exampl
     const scene::Assembly flat = cloth::flat_fabric(fabric, scene.weave.settle.tension_strain);
     auto dry_parameters = cloth::model_parameters<Dry>(fabric, scene.weave.settle);
     dry_parameters.iteration = scene.weave.iteration;
-    dry_parameters.solver.strategy = scene.weave.linear_solver;
+    dry_parameters.solver.strategy = scene.weave.linear_solver.strategy;
     simulation::Simulator<Dry> dry(flat, dry_parameters);
     settle(dry, scene, output);
 

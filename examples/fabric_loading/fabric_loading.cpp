@@ -52,7 +52,7 @@ bool run(const fabric_loading::LoadFile& load, example::SceneReader& file, examp
     const cloth::LoadCase scene = cloth::load_case(load.name, settled, fabric, load.tow_ends);
     fabric_loading::require_channels(file, load, connection::Channels(scene.assembly).names());
     parameters.iteration = load.scene.iteration;
-    parameters.solver.strategy = load.scene.linear_solver;
+    example::choose_solver(parameters, load.scene.linear_solver);
     if (load.points_per_element > 0) parameters.contact.spacing.points_per_element = static_cast<double>(load.points_per_element);
     simulation::Simulator<LoadedWeave> simulator(scene.assembly, parameters);
     output.open(file, load.scene.told);

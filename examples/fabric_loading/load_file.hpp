@@ -110,7 +110,7 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     file.read("contact", "points_per_element", load.points_per_element, example::between(0, 100),
               "contact points along an element; 0: as in settling");
     auto& iteration = load.scene.iteration;
-    std::string solver = load.scene.linear_solver;
+    example::LinearSolver solver = load.scene.linear_solver;
     fibrant::solver::IterationParameters told;
     told.newton_limit = 30;  // near locking solutions take up to 25 iterations, and an attempt that is given up more
     told.overshoot = 0.5;

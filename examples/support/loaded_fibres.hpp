@@ -2,6 +2,8 @@
 #pragma once
 /// @file The model of textiles that are settled and loaded: bodies and plates at their edges, friction, any solver.
 
+#include "scene_solver.hpp"
+
 #include <fibrant/beam/with_law.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
@@ -11,7 +13,6 @@
 #include <fibrant/law/shaped_friction.hpp>
 #include <fibrant/material/elastic.hpp>
 #include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/any_solver.hpp>
 
 #include <type_traits>
 
@@ -25,7 +26,7 @@ struct LoadedFibres {
     using Proximity = fibrant::proximity::GridSearch;
     using Normal = fibrant::law::LimitedGap<fibrant::law::RegularisedPenalty>;
     using Friction = std::conditional_t<Own, fibrant::law::ShapedFriction, fibrant::law::RegularisedCoulomb>;
-    using Solver = fibrant::solver::AnySolver;
+    using Solver = SceneSolver;
     using Tools = fibrant::contact::RigidTools;
     using Connections = fibrant::connection::RigidBodies;
 };

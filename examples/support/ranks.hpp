@@ -3,6 +3,7 @@
 /// @file A program that ranks of MPI run together: one of them writes and speaks, all stop together, and share linear systems.
 
 #include "example.hpp"
+#include "usual_keys.hpp"
 
 #include <fibrant/distributed/mpi_exchange.hpp>
 #include <fibrant/distributed/subdomain_pcg.hpp>
@@ -84,20 +85,12 @@ using RankStrategies = fibrant::solver::OneOf<RankGradients>;
 /// How ranks solve a linear system together, by name; what is automatic in a program of one rank is the first here.
 class RankSolver : public RankStrategies {
 public:
-    static const std::vector<std::string>& strategies() {
-        static const std::vector<std::string> names = [] {
-            std::vector<std::string> all{"automatic", "two_level_pcg"};
-            if (std::variant_size_v<Strategy> == 2) all.emplace_back("petsc");
-            return all;
-        }();
-        return names;
-    }
     struct Parameters {
-        std::string strategy = "two_level_pcg";  ///< one of `strategies`
+        std::string strategy = "two_level_pcg";  ///< one of `linear_solvers`
         int subdomains = 64;                     ///< in [1, 4096]
         std::string petsc_options{};             ///< of "petsc"
         void validate() const {
-            if (std::find(strategies().begin(), strategies().end(), strategy) == strategies().end())
+            if (std::find(linear_solvers().begin(), linear_solvers().end(), strategy) == linear_solvers().end())
                 fibrant::core::refuse("RankSolver.strategy", "\"" + strategy + "\"", "one that ranks can share");
         }
     };

@@ -122,6 +122,11 @@ int run(int argc, char** argv, const Program& program) {
         if (!keys) require_folder(folder);
         SceneReader reader = keys ? SceneReader::of_keys() : SceneReader(scene, set);
         output.folder = folder, output.scene = scene;
+        if (!output.quiet)
+            reader.when_read([&] {
+                std::printf("%s: %s is read, results go to %s\n", program.name, scene.c_str(), folder.c_str());
+                std::fflush(stdout);
+            });
         try {
             const bool sound = solve(program, reader, output, app.count("--threads") == 0 ? "" : threads, "--threads");
             if (!stopped()) return sound ? 0 : 1;

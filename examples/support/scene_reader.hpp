@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -161,7 +162,11 @@ public:
         refuse_unknown();
         if (describes_) throw Described{};
         refuse_missing();
+        if (const auto tell = std::exchange(when_read_, nullptr)) tell();
     }
+    /// Calls what is given once the file has been read and its keys are those of the program: what is left to check may take a
+    /// while, and a long silence looks like an end.
+    void when_read(std::function<void()> tell) { when_read_ = std::move(tell); }
 
     /// Refuses a value that has been read, be it given or taken otherwise.
     [[noreturn]] void refuse(const std::string& section, const std::string& key, const std::string& bound) const {
@@ -380,6 +385,7 @@ private:
     std::vector<Entry> entries_;  ///< in the order of reading, which is that of the documentation
     std::vector<std::pair<std::string, std::string>> missing_;
     Names names_;
+    mutable std::function<void()> when_read_;
     bool describes_ = false;
 };
 

@@ -21,16 +21,35 @@ inline constexpr bool has_own_laws = false;
 #endif
 inline constexpr const char* no_own_laws = "that of a build with -DFIBRANT_OWN_LAWS=ON; without it this program has no such law";
 
-/// Strategies of solver::AnySolver, whose header is not for those who only read a scene.
+/// How a scene's linear systems are solved.
+struct LinearSolver {
+    std::string strategy = "automatic";  ///< one of `linear_solvers`
+    fibrant::Index subdomains = 64;      ///< that ranks share, in [1, 4096]
+    std::string petsc_options{};         ///< where PETSc iterates
+};
+/// Strategies of solver::AnySolver, or of example::RankSolver, whose headers are not for those who only read a scene.
 inline const std::vector<std::string>& linear_solvers() {
-    static const std::vector<std::string> names{
-        "automatic", "two_level_pcg", "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky", "sparse_cholesky"};
+    static const std::vector<std::string> names{"automatic",       "two_level_pcg",
+#ifndef FIBRANT_WITH_MPI
+                                                "fibre_block_pcg", "float_block_cholesky", "double_block_cholesky",
+                                                "sparse_cholesky"
+#elif defined FIBRANT_WITH_PETSC
+                                                "petsc"
+#endif
+    };
     return names;
 }
-/// @param strategies  that the program has
-inline void read_linear_solver(SceneReader& file, std::string& strategy,
-                               const std::vector<std::string>& strategies = linear_solvers()) {
-    file.read("solver", "linear_solver", strategy, strategies, "how linear systems are solved");
+inline void read_linear_solver(SceneReader& file, LinearSolver& how) {
+    file.read("solver", "linear_solver", how.strategy, linear_solvers(), "how linear systems are solved");
+#ifdef FIBRANT_WITH_MPI
+    file.read("solver", "subdomains", how.subdomains, between(1, 4096),
+              "parts that the scene is cut into for the ranks; results depend on it, and not on the ranks");
+#ifdef FIBRANT_WITH_PETSC
+    file.names({{"PetscKrylov.options", "solver.petsc_options"}});
+    file.read("solver", "petsc_options", how.petsc_options, {},
+              "of PETSc where linear_solver is \"petsc\", as \"-ksp_type fgmres -ksp_monitor\"");
+#endif
+#endif
 }
 
 /// Young's modulus and Poisson's ratio; both must be given.

@@ -76,7 +76,7 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
     using Simulator = simulation::Simulator<Model>;
     const double radius = scene.textile.smallest_radius();
     auto parameters = cloth::model_parameters<Model>(scene.textile, scene.settle);
-    parameters.solver.strategy = scene.linear_solver;
+    example::choose_solver(parameters, scene.linear_solver);
     // Efforts are differences: what iterations leave has to be a small part of what a strain changes.
     parameters.iteration.residual_tolerance = 1e-9, parameters.iteration.step_tolerance = 1e-7,
     parameters.iteration.linear_tolerance = 1e-9, parameters.iteration.normal_step_tolerance = 1e-7,
@@ -199,7 +199,7 @@ std::pair<fibrant::observe::JsonObject, bool> run_load_case(const example::Outpu
     const double radius = scene.textile.smallest_radius();
     const cloth::LoadCase load = cloth::load_case(scene.textile, assembled, settled, settled_by.state(), scene.load.parameters);
     auto parameters = cloth::model_parameters<Model>(scene.textile, scene.settle);
-    parameters.solver.strategy = scene.linear_solver;
+    example::choose_solver(parameters, scene.linear_solver);
     simulation::Simulator<Model> simulator(load.assembly, parameters);
     simulator.start_from(whole.checkpoint());
     example::Output output = whole;

@@ -40,6 +40,14 @@ struct Load {
     double damping = 1e-4, rest_damping = 0.1;  ///< over the stiffness of a node against moving aside
 };
 
+/// Of few fibres a factor is the fastest; ranks cannot share it.
+inline constexpr const char* usual_solver =
+#ifdef FIBRANT_WITH_MPI
+    "automatic";
+#else
+    "float_block_cholesky";
+#endif
+
 /// Everything that a run is told.
 struct Scene {
     std::string generator;
@@ -47,7 +55,7 @@ struct Scene {
     cloth::SettleParameters settle;
     cloth::Fineness fineness;
     bool own_laws = false;  ///< fibres are softer across than along, or friction is not Coulomb's
-    std::string linear_solver = "float_block_cholesky";
+    example::LinearSolver linear_solver{.strategy = usual_solver};
     Load load{};
     bool surfaces = false;                                    ///< of yarns are written
     double voxel_spacing = 0.0;                               ///< [length]; 0: none are written

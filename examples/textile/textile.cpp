@@ -10,6 +10,7 @@
 #include "output.hpp"
 #include "scene_file.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 
@@ -22,7 +23,8 @@ bool settle(const textile::Scene& scene, example::SceneReader& file, example::Ou
     const double radius = scene.textile.smallest_radius();
     const textile::cloth::Assembled assembled = textile::cloth::assemble(scene.textile, scene.fineness);
     auto parameters = textile::cloth::model_parameters<Yarns>(scene.textile, scene.settle);
-    parameters.solver.strategy = scene.linear_solver;
+    example::choose_solver(parameters, scene.linear_solver);
+    const example::RankFolder own(output);
     simulation::Simulator<Yarns> simulator(assembled.assembly, parameters);
     const observe::Snapshot drawn = simulation::snapshot_of(simulator.mesh(), simulator.mesh().start_state());
 
@@ -33,6 +35,7 @@ bool settle(const textile::Scene& scene, example::SceneReader& file, example::Ou
     });
     auto loading = textile::cloth::settling<Yarns>(scene.textile, assembled, scene.settle);
     output.tell(loading, 15.0);
+    example::stop_together(loading);
     const simulation::Report report = simulator.run(loading, recorder);
 
     const observe::Snapshot settled = simulator.snapshot();
@@ -62,8 +65,20 @@ bool settle(const textile::Scene& scene, example::SceneReader& file, example::Ou
     return textile::run_load_case(output, scene, assembled, simulator).second;
 }
 
+/// @throws std::invalid_argument for what ranks do not share yet
+void require_open(const textile::Scene& scene, const example::SceneReader& file) {
+    if (scene.load.wanted)
+        file.refuse("loading", "case",
+                    "left out: bodies at edges are not shared among ranks; `textile --resume` loads what settled");
+    const auto& paths = scene.textile.paths;
+    const auto rings = [](const auto& path) { return path.kind == textile::cloth::PathKind::closed; };
+    if (!scene.textile.lattice.empty() || std::any_of(paths.begin(), paths.end(), rings))
+        file.refuse("textile", "generator", "of open yarns that do not repeat: rings and cells are not shared among ranks");
+}
+
 bool solve(example::SceneReader& file, example::Output& output) {
     const textile::Scene scene = textile::read_scene(file);
+    if (example::run_by_ranks) require_open(scene, file);
     if (scene.generator == "file" && !scene.textile.crossings.empty()) {
         try {
             textile::cloth::require_holding(scene.textile);

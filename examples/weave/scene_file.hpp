@@ -33,15 +33,13 @@ struct Scene {
     /// Fibres are softer across than along, or friction is not Coulomb's.
     bool own_laws() const { return transverse() || !settle.friction_shape.coulomb(); }
     fibrant::solver::IterationParameters iteration;
-    std::string linear_solver = "automatic";  ///< one of solver::AnySolver
-    int subdomains = 64;                      ///< of runs that ranks share
-    std::string petsc_options{};              ///< of those that PETSc iterates for
-    Index threads = 0;                        ///< 0: as many as the machine has
-    bool paraview = true;                     ///< write the ParaView files
-    Index paraview_every = 1;                 ///< increments
-    bool pictures = true;                     ///< write the view and the slices
-    std::string unit = "mm";                  ///< of lengths, for the pictures
-    std::string told;                         ///< what the fabric is and how it is settled, line by line
+    example::LinearSolver linear_solver;
+    Index threads = 0;         ///< 0: as many as the machine has
+    bool paraview = true;      ///< write the ParaView files
+    Index paraview_every = 1;  ///< increments
+    bool pictures = true;      ///< write the view and the slices
+    std::string unit = "mm";   ///< of lengths, for the pictures
+    std::string told;          ///< what the fabric is and how it is settled, line by line
 };
 
 /// Sections that say what the fabric is, and those that say how it is settled as well.
@@ -98,10 +96,9 @@ inline void read_tow(SceneReader& file, const std::string& section, bool require
 }  // namespace detail
 
 /// Tolerances and limits of the iteration; what a program takes otherwise stands in `iteration`.
-/// @param strategies  of linear solution that the program has
-inline void read_iteration(SceneReader& file, std::string& linear_solver, fibrant::solver::IterationParameters& iteration,
-                           const std::vector<std::string>& strategies = example::linear_solvers()) {
-    example::read_linear_solver(file, linear_solver, strategies);
+inline void read_iteration(SceneReader& file, example::LinearSolver& linear_solver,
+                           fibrant::solver::IterationParameters& iteration) {
+    example::read_linear_solver(file, linear_solver);
     file.read("solver", "step_tolerance", iteration.step_tolerance, example::above(0.0, 1.0), "1",
               "largest last step of Newton's method, over the radius");
     file.read("solver", "residual_tolerance", iteration.residual_tolerance, example::above(0.0, 1.0), "1",
@@ -117,11 +114,10 @@ inline void read_iteration(SceneReader& file, std::string& linear_solver, fibran
 }
 
 /// Reads and checks what a file says of a fabric, before any work.
-/// @param more        reads what else the file may say
-/// @param strategies  of linear solution that the program has
+/// @param more  reads what else the file may say
 /// Throws std::invalid_argument, "file: section.key = value, but it must be bound".
 template <class More>
-Scene read_fabric(SceneReader& file, const More& more, const std::vector<std::string>& strategies = example::linear_solvers()) {
+Scene read_fabric(SceneReader& file, const More& more) {
     file.names({{"FabricParameters.warp.fibre_radius", "warp.radius"},
                 {"FabricParameters.weft.fibre_radius", "weft.radius"},
                 {"FabricParameters.warp.material", "material"},
@@ -207,7 +203,7 @@ Scene read_fabric(SceneReader& file, const More& more, const std::vector<std::st
     example::read_friction_shape(file, settle.friction_shape);
     example::read_allowed_penetration(file, settle.allowed_penetration_over_radius,
                                       "how deep a contact may be at the end, over the radius");
-    read_iteration(file, scene.linear_solver, scene.iteration, strategies);
+    read_iteration(file, scene.linear_solver, scene.iteration);
     file.read("solver", "threads", scene.threads, example::between(0, 100000), "0: as many as the machine has");
     file.read("output", "paraview", scene.paraview, "files for ParaView");
     file.read("output", "paraview_every", scene.paraview_every, example::increments(),

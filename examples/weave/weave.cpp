@@ -15,9 +15,6 @@
 #include <fibrant/observe/vtk_writer.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/solver/any_solver.hpp>
-#ifdef FIBRANT_WITH_MPI  // weave_mpi: the same program, whose linear systems are solved by all ranks
-#include "../support/ranks.hpp"
-#endif
 
 #include <cmath>
 #include <cstdio>
@@ -36,11 +33,7 @@ struct Weave {
     using Proximity = proximity::GridSearch;
     using Normal = law::LimitedGap<law::RegularisedPenalty>;
     using Friction = Law;
-#ifdef FIBRANT_WITH_MPI
-    using Solver = example::RankSolver;
-#else
-    using Solver = solver::AnySolver;
-#endif
+    using Solver = example::SceneSolver;
 };
 
 template <simulation::Model M>
@@ -48,14 +41,9 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     const double radius = weave::cloth::smallest_radius(scene.fabric);
     auto parameters = weave::cloth::model_parameters<M>(scene.fabric, scene.settle);
     parameters.iteration = scene.iteration;
-#ifdef FIBRANT_WITH_MPI
-    parameters.solver = {scene.linear_solver, scene.subdomains, scene.petsc_options};
+    example::choose_solver(parameters, scene.linear_solver);
     const example::RankFolder own(output);
     const bool paraview = scene.paraview && own.shown(), pictures = scene.pictures && own.shown();
-#else
-    parameters.solver.strategy = scene.linear_solver;
-    const bool paraview = scene.paraview, pictures = scene.pictures;
-#endif
     const scene::Assembly assembly = weave::cloth::flat_fabric(scene.fabric, scene.settle.tension_strain);
     simulation::Simulator<M> simulator(assembly, parameters);
 
@@ -69,9 +57,7 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     weave::Series series(folder / "paraview", start, paraview ? scene.paraview_every : 0);
     auto loading = weave::cloth::settling<M>(scene.fabric, scene.settle);
     output.tell(loading, 15.0);
-#ifdef FIBRANT_WITH_MPI
-    loading.stop = example::stopped_together;
-#endif
+    example::stop_together(loading);
     simulation::Report report = simulator.run(loading, progress, table, series);
     if (!report.converged)
         for (const std::string& doubt : doubts) report.reason += "; " + doubt;
@@ -114,23 +100,7 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
 }
 
 bool solve(example::SceneReader& file, example::Output& output) {
-#ifdef FIBRANT_WITH_MPI
-    Index subdomains = 64;
-    std::string petsc_options;
-    const auto more = [&] {
-        file.read("solver", "subdomains", subdomains, example::between(1, 4096),
-                  "parts that the scene is cut into for the ranks; results depend on it, and not on the ranks");
-#ifdef FIBRANT_WITH_PETSC
-        file.names({{"PetscKrylov.options", "solver.petsc_options"}});
-        file.read("solver", "petsc_options", petsc_options, {},
-                  "of PETSc where linear_solver is \"petsc\", as \"-ksp_type fgmres -ksp_monitor\"");
-#endif
-    };
-    weave::Scene scene = weave::read_fabric(file, more, example::RankSolver::strategies());
-    scene.subdomains = static_cast<int>(subdomains), scene.petsc_options = petsc_options;
-#else
     const weave::Scene scene = weave::read_fabric(file, [] {});
-#endif
     if (scene.own_laws()) return settle<Weave<law::ShapedFriction, material::Elastic>>(scene, file, output);
     return scene.settle.friction_coefficient > 0.0 ? settle<Weave<law::RegularisedCoulomb>>(scene, file, output)
                                                    : settle<Weave<law::Frictionless>>(scene, file, output);

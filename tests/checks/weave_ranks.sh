@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # A small weave on one, two and four ranks of one and two threads: the same results to the last bit, a run that is stopped and
 # resumed on another number of ranks among them; and what happens when a rank is killed.
-# usage: ranks.sh <mpirun> <weave_mpi> <scene file> <scratch folder> [tows [fibres a tow]]
+# usage: weave_ranks.sh <mpirun> <weave_mpi> <scene file> <scratch folder> [tows [fibres a tow]]
 mpirun=$1
 weave=$2
 scene=$3
