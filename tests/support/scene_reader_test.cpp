@@ -64,6 +64,22 @@ TEST_CASE("values are taken from the file, from the command line, or as they wer
     CHECK(!rod.bent);
 }
 
+TEST_CASE("that a file is read is told once, and only of a file whose keys are those of the program") {
+    const auto told = [](const std::string& text) {
+        example::SceneReader file(written(text).string(), {});
+        int times = 0;
+        file.when_read([&] { ++times; });
+        test::refusal([&] {
+            Rod().read(file);
+            Rod().read(file);
+        });
+        return times;
+    };
+    CHECK(told(sound) == 1);
+    CHECK(told("[rod]\nradius = 2\ncolour = 1\n") == 0);
+    CHECK(told("[rod]\nelements = 2\n") == 0);
+}
+
 TEST_CASE("a number is read whole, is one, and lies within its bound") {
     for (const char* text : {"0,5", "0.02 rad", "0.02 0.03", "\"0.2\"", "true", "[0.2]", "{a = 1}", "", "0.1\n[load]"})
         CHECK(!refused(sound, {std::string("rod.depth=") + text}).empty());
