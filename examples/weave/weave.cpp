@@ -4,6 +4,7 @@
 #include "../support/example.hpp"
 #include "../support/program.hpp"
 #include "../support/report_page.hpp"
+#include "../support/scene_solver.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
 
