@@ -131,7 +131,8 @@ struct Row {
     double length = 0.5, line = 40.0, overlap = 1e-4 * r;  // of each with either plate at the start
     scene::Assembly assembly;
     /// @param way  down, of a plate that nothing carries [length]; 0: it is carried
-    explicit Row(double way = 0.0) {
+    /// @param off  of a plate that is carried and tilts, from the middle of the row to the ram [length]
+    explicit Row(double way = 0.0, double off = 0.0) {
         for (Index f = 0; f < fibres; ++f) {
             const double y = 4.0 * r * static_cast<double>(f), z = r - overlap;
             scene::FibreSpecification fibre = test::straight_fibre({0, y, z}, {length, y, z}, r, 2);
@@ -147,13 +148,16 @@ struct Row {
         if (way > 0.0) {
             plate.displacement = {0, 0, -way};
         } else {
-            scene::FibreSpecification ram = test::straight_fibre({0.5 * length, 0, 4.0 * r}, {0.5 * length, 0, 12.0 * r}, r, 1);
+            const double y = 2.0 * r * static_cast<double>(fibres - 1) + off;
+            scene::FibreSpecification ram = test::straight_fibre({0.5 * length, y, 4.0 * r}, {0.5 * length, y, 12.0 * r}, r, 1);
             ram.director = Vec3::UnitX();
             const Index f = assembly.add(ram);
             for (const double end : {0.0, 1.0}) {
+                if (off != 0.0 && end == 1.0) continue;
                 assembly.hold_position({f, end}, Vec3(1, 1, 0).asDiagonal());
-                assembly.hold_rotation({f, end});
+                off != 0.0 ? assembly.hold_axial_rotation({f, end}) : assembly.hold_rotation({f, end});
             }
+            plate.turns = off != 0.0;
             plate.carrier = scene::Station{f, 0.0};
         }
         assembly.add(plate);
@@ -191,6 +195,29 @@ TEST_CASE("a plate that presses with a force sinks by what the contacts give way
     report = other.run(test::stage<Pressing>({{"tools", 1.0}}, 4));
     REQUIRE_MESSAGE(report.converged, report.reason);
     CHECK(other.contacts().tools().reaction(1).force.z() == test::near(force, 1e-8));
+}
+
+TEST_CASE("a plate that is pressed beside the middle tilts by the moment over the stiffness of the row against it") {
+    const double force = 0.004, off = 1.5 * r;
+    Row row(0.0, off);
+    row.assembly.apply(scene::DeadForce{.at = {row.fibres, 0.0}, .force = {0, 0, -force}});
+    auto smooth = row.parameters();
+    smooth.friction.friction_coefficient = 0.0;  // the plate turns about the ram's end above it
+    simulation::Simulator<Pressing> simulator(row.assembly, smooth);
+    const simulation::Report report = simulator.run(test::stage<Pressing>({{"load", 1.0}}, 4));
+    REQUIRE_MESSAGE(report.converged, report.reason);
+    // A rod between floor and plate is two springs in a row; y of the rods from their middle: 0, 4 r, 8 r.
+    const double spring = 0.5 * row.line * row.length, tilt = force * off / (spring * 160.0 * r * r),
+                 way = force / (static_cast<double>(row.fibres) * spring) - 2.0 * row.overlap + tilt * off;
+    const double sinks = 4.0 * r - simulator.value({row.fibres, 0.0}).z(),
+                 turned = -simulator.contacts().tools().pose(1).turn(2, 1);
+    const contact::ToolReaction felt = simulator.contacts().tools().reaction(1);
+    std::printf("tilt: %.6e of %.6e, sinks by %.6e of %.6e, feels %.10f of %.10f; energy misses %.1e of the work\n", turned, tilt,
+                sinks, way, felt.force.z(), force, report.energy.error() / report.energy.external);
+    CHECK(felt.force.z() == test::near(force, 1e-8));
+    CHECK(turned == test::near(tilt, 2e-3));  // the plate touches rods beside their middles, by the tilt times r
+    CHECK(sinks == test::near(way, 2e-3));
+    CHECK(std::abs(report.energy.error()) < 1e-3 * report.energy.external);
 }
 
 /// A plate of mass that falls on rods that are held.
@@ -264,6 +291,55 @@ TEST_CASE("a plate that falls on springs sinks as deep as the closed form says, 
     CHECK(std::abs(report.energy.error()) < 1e-3 * work);
 }
 
+TEST_CASE("a ball that strikes a rod loses speed along it by friction, and spins by that impulse times its radius") {
+    const double R = 0.3, mass = 1.0, mu = 0.05, T = 0.08, length = 0.1, thin = 0.02, wave = 50.0,
+                 density = 1e-6 * mass / (std::numbers::pi * thin * thin * length), inertia = 0.4 * mass * R * R;
+    const Vec3 velocity(0.2, 0, -0.3), start(0.5, 0, 2.0 * r + R + 1e-3);
+    scene::Assembly assembly;
+    scene::FibreSpecification rail = test::straight_fibre({0, 0, r}, {1, 0, r}, r, 50);
+    rail.director = Vec3::UnitZ();
+    assembly.add(rail);
+    for (Index node = 0; node <= 50; ++node) assembly.clamp({0, static_cast<double>(node) / 50.0});
+    scene::FibreSpecification pin = test::straight_fibre(start, start + Vec3(0, 0, length), thin, 1);
+    pin.director = Vec3::UnitX(), pin.material.young_modulus = wave * wave * density;
+    assembly.add(pin);
+    scene::Tool ball;
+    ball.shape = scene::ToolShape::sphere, ball.origin = start, ball.radius = R, ball.carrier = scene::first_end(1),
+    ball.turns = true;
+    assembly.add(ball);
+    simulation::ModelParameters<Falling> with = Drop().with;
+    with.normal.law = {.line_stiffness = 6e4, .line_exponent = 1.0, .crossing_stiffness = 6e4, .crossing_exponent = 1.0};
+    with.friction = {.friction_coefficient = mu, .reversible_displacement = 1e-3 * r};
+    with.acts.inertia.density = density, with.acts.gravity.weight = Vec3::Zero();
+    with.acts.inertia.bodies = {{.at = scene::first_end(1), .mass = mass, .moments = Vec3::Constant(inertia)}};
+    with.acts.inertia.starts = {{.fibre = 1, .velocity = velocity}};
+    simulation::Simulator<Falling> simulator(assembly, with);
+    double deepest = 0.0;
+    struct Seen {
+        const simulation::Simulator<Falling>* of;
+        double* deepest;
+        void reported(const simulation::IncrementReport& increment) {
+            *deepest = std::max(*deepest, increment.contact.greatest_penetration);
+        }
+    } seen{&simulator, &deepest};
+    const simulation::Report report = simulator.run(Drop().lasting(T, 160), seen);
+    REQUIRE_MESSAGE(report.converged, report.reason);
+    const inertia::Motion motion = simulator.equilibrium().terms().get<Falling::Motion>().motion(simulator.state());
+    const Vec3 impulse = motion.momentum - mass * velocity,
+               spin = motion.angular_momentum - simulator.value(scene::first_end(1)).cross(motion.momentum);
+    const double arm = spin.y() / -impulse.x(), kinetic = 0.5 * mass * velocity.squaredNorm();
+    std::printf(
+        "ball: pushed by %.4f, friction %.5f of it; arm %.4f of %.4f, %.4f deep; energy misses %.1e, dissipated %.2e of it\n",
+        impulse.z(), -impulse.x() / impulse.z(), arm, R, deepest, report.energy.error() / kinetic,
+        report.energy.dissipated / kinetic);
+    CHECK(impulse.z() > 1.9 * mass * -velocity.z());            // nothing is lost along the normal
+    CHECK(-impulse.x() == test::near(mu * impulse.z(), 1e-2));  // it slides all along, but for the reversible way
+    CHECK(arm < R);
+    CHECK(arm > R - deepest);
+    CHECK(std::abs(spin.x()) + std::abs(spin.z()) < 1e-6 * spin.y());
+    CHECK(std::abs(report.energy.error()) < 1e-3 * kinetic);
+}
+
 TEST_CASE("a plate that is stopped while it touches and resumed goes on to the same bits") {
     const Drop drop;
     simulation::Simulator<Falling> whole(drop.assembly, drop.with), first(drop.assembly, drop.with),
@@ -296,6 +372,17 @@ TEST_CASE("a tool with a carrier that is none, or with a path as well, and a mod
     CHECK(test::refusal([&] { assembly.add(tool); }) ==
           "Tool.carrier = given, but it must be left out, for a tool that is driven along a path (tool 0)");
     tool.displacement = Vec3::Zero();
+    scene::Assembly turning = assembly;
+    tool.turns = true;
+    turning.add(tool);
+    CHECK(test::refusal([&] {
+              const test::Mesh mesh(turning, test::Beam{});
+              contact::CarriedToolContacts<test::Beam, law::RegularisedPenalty, law::RegularisedCoulomb>(turning, mesh, {}, 2.0);
+          }) == "Tool.turns = true, but it must be false, for a beam whose nodes have no rotation (tool 0)");
+    tool.carrier.reset();
+    CHECK(test::refusal([&] { assembly.add(tool); }) ==
+          "Tool.turns = true, but it must be false, for a tool without a carrier (tool 0)");
+    tool.carrier = scene::Station{0, 0.0}, tool.turns = false;
     assembly.add(tool);
     auto all = test::tight_parameters<test::RoughPressing>(r);
     all.friction = {.friction_coefficient = 0.3, .reversible_displacement = 0.02 * r};

@@ -238,10 +238,14 @@ public:
         });
     }
     /// Half of the work that the forces of the last evaluation do on the way from the last accepted state: of the state that
-    /// an increment ends with and, against the tools as they were, of that which it starts from [force * length].
+    /// an increment ends with and, against the tools as they were, that which it starts from [force * length].
     double half_work() const {
+        return half_work([](std::size_t) { return true; });
+    }
+    double half_work(const auto& counts) const {
         double sum = 0.0;
         for (std::size_t t = 0; t < tools_.size(); ++t) {
+            if (!counts(t)) continue;
             const ToolReaction felt = reaction(static_cast<Index>(t));
             const Vec3 way = pose_[t].place(tools_[t].origin) - accepted_pose_[t].place(tools_[t].origin);
             const Eigen::AngleAxisd turn(Mat3(pose_[t].turn * accepted_pose_[t].turn.transpose()));

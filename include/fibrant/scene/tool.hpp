@@ -32,8 +32,9 @@ struct Tool {
     std::function<Vec3(double)> path{};  ///< displacement at amplitude a, where it is not proportional
     std::function<Mat3(double)> rotation{};  ///< at amplitude a, about the origin; none: identity
     /// Particle of a centreline that carries it, for models whose part Tools is contact::CarriedTools: the tool moves as that
-    /// does, without turning, and pushes it with what it feels. The fibre itself does not touch the tool.
+    /// does and pushes it with what it feels. The fibre itself does not touch the tool.
     std::optional<Station> carrier{};
+    bool turns = false;  ///< with the section of its carrier as well, a node of a rod
 
     void validate() const {
         require_finite("Tool.origin", origin);
@@ -44,6 +45,7 @@ struct Tool {
         core::require_not_negative("Tool.friction_factor", friction_factor);
         if (carrier && (!displacement.isZero(0.0) || path || rotation))
             core::refuse("Tool.carrier", "given", "left out, for a tool that is driven along a path");
+        if (turns && !carrier) core::refuse("Tool.turns", "true", "false, for a tool without a carrier");
     }
 };
 
