@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A nest of fibres falls into a drum under its weight, and may be pressed there by a lid. Prints where its energy went.
+// A nest of fibres falls into a drum under its weight, and may be pressed there by a lid: one that is driven, or one that falls
+// onto it and is pressed by a force. Prints where its energy went.
 //   fall SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/example.hpp"
 #include "../support/program.hpp"
@@ -7,8 +8,8 @@
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/with_law.hpp>
-#include <fibrant/contact/contacts_with_tools.hpp>
-#include <fibrant/inertia/inertia.hpp>
+#include <fibrant/contact/carried_tools.hpp>
+#include <fibrant/inertia/bodies.hpp>
 #include <fibrant/law/impact.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/load/gravity.hpp>
@@ -32,19 +33,24 @@ struct Nest {
     using Normal = law::Impact<law::PowerNormal>;
     using Friction = law::RegularisedCoulomb;
     using Solver = solver::SparseCholesky;
-    using Tools = contact::RigidTools;
-    using Acts = term::List<inertia::Inertia<inertia::Midpoint>, load::Gravity>;
+    using Tools = contact::CarriedTools;
+    using Motion = inertia::WithBodies<inertia::Midpoint>;
+    using Acts = term::List<Motion, load::Gravity>;
 };
 
 struct Shape {
     Index fibres = 10, elements = 6;
     double radius = core::unset, length = core::unset, spacing = 2.5, turn_deg = 137.5, height = core::unset, drum = core::unset,
            pressed = 0.0;
+    double lid_mass = 0.0, lid_height = 0.0, lid_weight = 0.0, lid_force = 0.0;  // of a lid that falls, beside its ram
+    bool lid_falls() const { return lid_mass > 0.0; }
+    double ram_length() const { return 10.0 * radius; }
+    double lid_start() const { return start(fibres - 1) + radius + lid_height; }
     double start(Index fibre) const { return radius + height + spacing * radius * static_cast<double>(fibre); }
 };
 
 /// Level fibres above each other, each turned against the one below; a floor (tool 0), a drum around them (tool 1), and a lid
-/// above that comes down (tool 2).
+/// above that comes down (tool 2). One that falls is on the lower end of a ram, an upright fibre behind the others.
 scene::Assembly nest(const Shape& shape, const scene::ElasticMaterial& material) {
     scene::Assembly assembly;
     for (Index f = 0; f < shape.fibres; ++f) {
@@ -66,6 +72,24 @@ scene::Assembly nest(const Shape& shape, const scene::ElasticMaterial& material)
         lid.origin = Vec3(0, 0, shape.start(shape.fibres)), lid.axis = -Vec3::UnitZ(), lid.channel = "lid";
         lid.displacement = Vec3(0, 0, shape.pressed - lid.origin.z());
         assembly.add(lid);
+    }
+    if (shape.lid_falls()) {
+        const double below = shape.lid_start() + 2.0 * shape.radius;
+        const Index ram = assembly.add({.from = {0, 0, below},
+                                        .to = {0, 0, below + shape.ram_length()},
+                                        .section = scene::circular(shape.radius),
+                                        .material = material,
+                                        .elements = 1,
+                                        .director = Vec3::UnitX()});
+        for (const double end : {0.0, 1.0}) {
+            assembly.hold_position({ram, end}, Vec3(1, 1, 0).asDiagonal());
+            assembly.hold_rotation({ram, end});
+        }
+        scene::Tool lid;
+        lid.origin = Vec3(0, 0, shape.lid_start()), lid.axis = -Vec3::UnitZ(), lid.carrier = scene::first_end(ram);
+        assembly.add(lid);
+        assembly.apply(scene::DeadForce{.at = scene::first_end(ram), .force = {0, 0, -shape.lid_weight}, .channel = "gravity"});
+        assembly.apply(scene::DeadForce{.at = scene::first_end(ram), .force = {0, 0, -shape.lid_force}, .channel = "lid"});
     }
     return assembly;
 }
@@ -111,12 +135,26 @@ bool solve(example::SceneReader& file, example::Output& output) {
         "another, and of all there is by the step's part of the stage; left out: none is cut for that");
     file.read("motion", "missing_energy", missing, example::above(0.0, 1.0), "1",
               "part of the work that the balance of energy may miss at the end; more fails the run");
+    file.read("lid", "mass", shape.lid_mass, example::not_negative(), "mass",
+              "mass of a lid that falls onto the nest, with its ram, and stays level; 0: there is none");
+    const bool above = file.read("lid", "height", shape.lid_height, example::not_negative(), "length",
+                                 "height at which it begins, above the uppermost fibre");
+    file.read("press", "force", shape.lid_force, example::not_negative(), "force",
+              "force that presses a lid that has fallen, more and more; 0: none does");
     file.read("press", "height", shape.pressed, example::not_negative(), "length",
               "height above the floor to which a lid comes down after the fall; 0: none does");
     const bool timed = file.read("press", "duration", pressing, example::positive(), "time", "how long it takes");
     file.complete();
     material.validate();
-    file.check(timed == (shape.pressed > 0.0), "press", "duration", timed ? "left out, for no lid" : "given, for a lid");
+    const double ram = density * std::numbers::pi * shape.radius * shape.radius * shape.ram_length();
+    file.check(!shape.lid_falls() || shape.lid_mass > ram, "lid", "mass", "> " + core::text(ram) + ", that of its ram, or 0");
+    file.check(!above || shape.lid_falls(), "lid", "height", "left out, for no lid.mass");
+    file.check(shape.lid_force == 0.0 || shape.lid_falls(), "press", "force", "0, for no lid.mass");
+    file.check(shape.pressed == 0.0 || !shape.lid_falls(), "press", "height", "0, for a lid that falls");
+    shape.lid_weight = shape.lid_falls() ? (shape.lid_mass - ram) * gravity : 0.0;
+    const bool presses = shape.pressed > 0.0 || shape.lid_force > 0.0;
+    file.check(timed == presses, "press", "duration",
+               timed ? "left out, for no lid that presses" : "given, for a lid that presses");
     const double reach = std::hypot(0.5 * shape.length, shape.radius);
     file.check(shape.drum > reach, "drum", "radius", "> " + core::text(reach) + ", or the fibres are not in it");
     example::require_element(file, "nest", shape.elements, shape.length, shape.radius);
@@ -130,6 +168,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     model.contact.stiffness.allowed_penetration = depth * shape.radius;
     model.acts.inertia.density = density, model.acts.inertia.allowed_error = error * shape.radius;
     model.acts.inertia.allowed_loss = loss;
+    if (shape.lid_falls()) model.acts.inertia.bodies = {{.at = scene::first_end(shape.fibres), .mass = shape.lid_mass - ram}};
     model.acts.gravity.weight = Vec3(0, 0, -density * gravity);
     simulation::Simulator<Nest> simulator(nest(shape, material), model);
     output.open(file);
@@ -138,7 +177,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     stage.name = "fall", stage.increments = steps, stage.duration = duration, stage.most_increments = 20 * steps;
     stage.ramps = {{.channel = "gravity", .to = 1.0, .at_once = true}};
     loading.stages = {stage};
-    if (shape.pressed > 0.0) {
+    if (presses) {
         stage.name = "press", stage.duration = pressing, stage.ramps = {{.channel = "lid", .to = 1.0}};
         loading.stages.push_back(stage);
     }
@@ -150,11 +189,15 @@ bool solve(example::SceneReader& file, example::Output& output) {
             for (const double at : {0.0, 0.5, 1.0}) most = std::max(most, simulator.value({f, at}).z());
         return most;
     };
-    const auto& moving = simulator.equilibrium().terms().get<inertia::Inertia<inertia::Midpoint>>();
+    const auto& moving = simulator.equilibrium().terms().get<Nest::Motion>();
     const auto motion = [&] { return moving.motion(simulator.state()); };
+    const auto lid_height = [&] { return simulator.value(scene::first_end(shape.fibres)).z() - 2.0 * shape.radius; };
+    const auto lid_force = [&] { return simulator.contacts().tools().reaction(2).force.z(); };
     example::Recorder recorder(output, shape.radius, [&]() -> std::vector<observe::Column> {
-        return {
+        std::vector<observe::Column> columns{
             {"top", top()}, {"kinetic", motion().kinetic}, {"floor_force", simulator.contacts().tools().reaction(0).force.z()}};
+        if (shape.lid_falls()) columns.push_back({"lid_height", lid_height()}), columns.push_back({"lid_force", lid_force()});
+        return columns;
     });
     const simulation::Report report = simulator.run(loading, recorder);
     example::write_pictures(output, simulator.snapshot(), -60.0, 25.0);
@@ -162,7 +205,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     const simulation::EnergyBalance& energy = report.energy;
     const double off = std::abs(energy.error()) / std::abs(energy.external);
     const double weight =
-        density * gravity * std::numbers::pi * shape.radius * shape.radius * shape.length * static_cast<double>(shape.fibres);
+        density * gravity * std::numbers::pi * shape.radius * shape.radius * shape.length * static_cast<double>(shape.fibres) +
+        shape.lid_mass * gravity;
     const observe::JsonObject summary = example::write_summary(output, report, audit, shape.radius,
                                                                {{"top", top()},
                                                                 {"kinetic_energy", motion().kinetic},

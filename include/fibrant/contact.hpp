@@ -4,6 +4,7 @@
 
 #include <fibrant/contact/acting_state.hpp>
 #include <fibrant/contact/allowed_depth.hpp>
+#include <fibrant/contact/carried_tools.hpp>
 #include <fibrant/contact/closest_places.hpp>
 #include <fibrant/contact/contact_detection.hpp>
 #include <fibrant/contact/contact_element.hpp>

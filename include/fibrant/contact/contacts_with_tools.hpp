@@ -14,21 +14,25 @@ namespace fibrant::contact {
 struct RigidTools {
     using Parameters = core::NoParameters;
     explicit RigidTools(const Parameters& = {}) {}
+    template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
+    using Of = ToolContacts<B, Normal, Friction>;
 };
 
 /// A ContactSet whose loops take the tools along. Its functions hide those of the set: it is used by its own type.
-template <beam::BeamElement B, proximity::ProximitySearch Search, law::NormalLaw Normal, law::FrictionLaw Friction>
+/// @tparam Part  RigidTools, or what has more of tools
+template <beam::BeamElement B, proximity::ProximitySearch Search, law::NormalLaw Normal, law::FrictionLaw Friction, class Part>
 class ContactsWithTools : public ContactSet<B, Search, Normal, Friction> {
 public:
     using Base = ContactSet<B, Search, Normal, Friction>;
+    using Tools = typename Part::template Of<B, Normal, Friction>;
 
     ContactsWithTools(const scene::Assembly& assembly, const beam::Mesh<B>& mesh, const ContactParameters& parameters,
                       Search search, Normal normal, Friction friction)
         : Base(assembly, mesh, parameters, std::move(search), normal, friction),
           tools_(assembly, mesh, parameters.stiffness, parameters.spacing.points_per_element) {}
 
-    ToolContacts<B, Normal, Friction>& tools() noexcept { return tools_; }
-    const ToolContacts<B, Normal, Friction>& tools() const noexcept { return tools_; }
+    Tools& tools() noexcept { return tools_; }
+    const Tools& tools() const noexcept { return tools_; }
 
     void detect(const Vector& state, const Vector& accepted, double reach, bool forced) {
         Base::detect(state, accepted, reach, forced);
@@ -76,7 +80,7 @@ public:
     }
 
 private:
-    ToolContacts<B, Normal, Friction> tools_;
+    Tools tools_;
     double reach_ = 0.0;
 };
 

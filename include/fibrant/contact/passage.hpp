@@ -280,6 +280,8 @@ struct Swept {
                 mesh_->fibre_count(),
                 [&](Index f) {
                     for (Index t = 0; t < core::count(tools.tools()); ++t) {
+                        if constexpr (requires { tools.carries(f, t); })
+                            if (tools.carries(f, t)) continue;
                         const scene::Tool& tool = tools.tools()[core::at(t)];
                         const scene::ToolPose &now = tools.pose(t), &before = moved ? tools.accepted_pose(t) : now;
                         for (Index k = lines.first[core::at(f)]; k < lines.first[core::at(f) + 1]; ++k) {

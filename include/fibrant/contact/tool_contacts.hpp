@@ -84,9 +84,9 @@ public:
                         element.fibre = static_cast<std::int32_t>(f), element.tool = static_cast<std::int32_t>(t);
                         element.station = static_cast<std::int32_t>(s);
                         element.first = static_cast<std::int32_t>(mesh_->first_unknown(f, mesh_->locate(f, u).first));
-                        const Record key = key_of(element);
+                        const Record key = Record::key_of(element);
                         if constexpr (law::Augmenting<Normal>) {
-                            const Record* record = find(last, key);
+                            const Record* record = Record::find(last, key);
                             element.shift.multiplier = record ? record->multiplier : 0.0;
                         }
                         const bool end_one = s == 0 || s == stations;  // half of a step, but of closed fibres
@@ -94,7 +94,7 @@ public:
                                    (end_one && !mesh_->fibre(f).closed ? 0.5 : 1.0) * step_ * mesh_->fibre(f).element_length);
                         place_particle(element, state, accepted, normal);
                         if constexpr (core::Active<Friction>) {
-                            if (const Record* record = find(accepted_, key)) {
+                            if (const Record* record = Record::find(accepted_, key)) {
                                 const TangentPlane plane(tangent(element, state), element.normal);
                                 record->friction.give(plane, element.friction.history);
                             }
@@ -134,7 +134,7 @@ public:
             const bool starting = std::exchange(starting_, false);
             for (std::size_t k = 0; k < std::min(elements_.size(), responses_.size()); ++k) {
                 Element& element = elements_[k];
-                const Record* record = starting ? find(accepted_, key_of(element)) : nullptr;
+                const Record* record = starting ? Record::find(accepted_, Record::key_of(element)) : nullptr;
                 element.friction.bound = !starting ? bound_of(k) : record ? record->multiplier : 0.0;
             }
             see_pressed_lengths(*mesh_, elements_, step_);
@@ -193,21 +193,26 @@ public:
             },
             mesh_->grain());
     }
+    /// Of element k's force by where its particle is against the tool, symmetric and positive semidefinite [force / length].
+    Mat3 tangent_of(Index k) const noexcept {
+        const Vec3& normal = elements_[core::at(k)].normal;
+        Mat3 sum = -responses_[core::at(k)].slope * normal * normal.transpose();
+        if constexpr (core::Active<Friction>) {
+            const Mat3 plane = Mat3::Identity() - normal * normal.transpose();
+            sum += plane * frictions_[core::at(k)].tangent * plane;
+        }
+        return sum;
+    }
     /// Tangent on a fibre, symmetric and positive semidefinite: add(first unknown, weights, stiffness) of rank-one terms.
     template <class Add>
     void stiffness_terms(Index fibre, const Vector& state, const Add& add) const {
         if (fibre >= mesh_->fibre_count()) return;  // images do not touch tools
         for (Index k = first_[core::at(fibre)]; k < first_[core::at(fibre + 1)]; ++k) {
             const Element& element = elements_[core::at(k)];
-            const ContactResponse& response = responses_[core::at(k)];
-            Mat3 sum = -response.slope * element.normal * element.normal.transpose();
-            if constexpr (core::Active<Friction>) {
-                const Mat3 plane = Mat3::Identity() - element.normal * element.normal.transpose();
-                sum += plane * frictions_[core::at(k)].tangent * plane;
-            }
+            const Mat3 sum = tangent_of(k);
             if (!sum.isZero(0.0)) add(element.first, element.weights, sum);
-            section_stiffness_term(*mesh_, state, fibre, element.u, element.first, element.normal, response.reaction, element.end,
-                                   add);
+            section_stiffness_term(*mesh_, state, fibre, element.u, element.first, element.normal,
+                                   responses_[core::at(k)].reaction, element.end, add);
         }
     }
 
@@ -233,10 +238,14 @@ public:
         });
     }
     /// Half of the work that the forces of the last evaluation do on the way from the last accepted state: of the state that
-    /// an increment ends with and, against the tools as they were, of that which it starts from [force * length].
+    /// an increment ends with and, against the tools as they were, that which it starts from [force * length].
     double half_work() const {
+        return half_work([](std::size_t) { return true; });
+    }
+    double half_work(const auto& counts) const {
         double sum = 0.0;
         for (std::size_t t = 0; t < tools_.size(); ++t) {
+            if (!counts(t)) continue;
             const ToolReaction felt = reaction(static_cast<Index>(t));
             const Vec3 way = pose_[t].place(tools_[t].origin) - accepted_pose_[t].place(tools_[t].origin);
             const Eigen::AngleAxisd turn(Mat3(pose_[t].turn * accepted_pose_[t].turn.transpose()));
@@ -333,7 +342,7 @@ public:
         restore();
     }
 
-private:
+protected:  // for tools that fibres carry
     template <class Self, class See>
     static void visit_accepted(Self& self, const See& see) {
         for (auto& record : self.accepted_) Record::each(record, see);
@@ -400,15 +409,6 @@ private:
         }
     }
 
-    static Record key_of(const Element& element) {
-        Record key;
-        key.fibre = element.fibre, key.tool = element.tool, key.station = element.station;
-        return key;
-    }
-    static const Record* find(const std::vector<Record>& records, const Record& key) {
-        const auto found = std::lower_bound(records.begin(), records.end(), key);
-        return found != records.end() && !(key < *found) ? &*found : nullptr;
-    }
     std::vector<Record> records(const Vector& state) const {
         std::vector<Record> list(elements_.size());
         for (std::size_t k = 0; k < elements_.size(); ++k) {

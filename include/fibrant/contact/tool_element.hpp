@@ -5,8 +5,10 @@
 #include <fibrant/contact/contact_element.hpp>
 #include <fibrant/contact/contact_record.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <tuple>
+#include <vector>
 
 namespace fibrant::contact {
 
@@ -51,6 +53,17 @@ struct ToolRecord {
             see(self.friction.along), see(self.friction.across);
             RecordedNumbers<typename Friction::History>::each(self.friction.numbers, see);
         }
+    }
+    /// Of an element, with nothing remembered yet.
+    static ToolRecord key_of(const auto& element) {
+        ToolRecord key;
+        key.fibre = element.fibre, key.tool = element.tool, key.station = element.station;
+        return key;
+    }
+    /// The record of a key among ordered ones; null if there is none.
+    static const ToolRecord* find(const std::vector<ToolRecord>& records, const ToolRecord& key) {
+        const auto found = std::lower_bound(records.begin(), records.end(), key);
+        return found != records.end() && !(key < *found) ? &*found : nullptr;
     }
     friend bool operator<(const ToolRecord& a, const ToolRecord& b) noexcept {
         return std::tie(a.fibre, a.tool, a.station) < std::tie(b.fibre, b.tool, b.station);

@@ -247,7 +247,7 @@ public:
         }
     }
 
-private:
+protected:                                   // for what has masses beside those of fibres
     static constexpr double shorter = 0.75;  // than a step that is halved, or cut by more
     static constexpr double hardly_less =
         0.4;  // of what that missed: an eighth it should be, a quarter by a scheme of first order

@@ -81,6 +81,8 @@ ToolGap least_tool_gap(const Snapshot& shot, const Tools& tools) {
         core::count(shot.fibres),
         [&](Index f) {
             for (Index t = 0; t < core::count(tools.tools()); ++t) {
+                if constexpr (requires { tools.carries(f, t); })
+                    if (tools.carries(f, t)) continue;
                 const ToolGap here = tool_gap(shot.fibres[core::at(f)], tools.tools()[core::at(t)], tools.pose(t));
                 if (here.gap < least[core::at(f)].gap) least[core::at(f)] = {here.gap, f, t, here.position};
             }

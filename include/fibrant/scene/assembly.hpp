@@ -264,7 +264,11 @@ public:
     /// A rigid tool, for models that have a part `Tools`.
     /// @returns index of the tool, counted from 0
     Index add(Tool tool) {
-        core::with_place([&] { return label("tool", core::count(tools_), tool.name); }, [&] { tool.validate(); });
+        core::with_place([&] { return label("tool", core::count(tools_), tool.name); },
+                         [&] {
+                             tool.validate();
+                             if (tool.carrier) check(*tool.carrier);
+                         });
         tool.axis.normalize();
         tools_.push_back(std::move(tool));
         return core::count(tools_) - 1;

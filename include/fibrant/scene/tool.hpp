@@ -7,6 +7,7 @@
 #include <fibrant/scene/conditions.hpp>
 
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace fibrant::scene {
@@ -30,6 +31,10 @@ struct Tool {
     Vec3 displacement = Vec3::Zero();    ///< at amplitude 1 [length]
     std::function<Vec3(double)> path{};  ///< displacement at amplitude a, where it is not proportional
     std::function<Mat3(double)> rotation{};  ///< at amplitude a, about the origin; none: identity
+    /// Particle of a centreline that carries it, for models whose part Tools is contact::CarriedTools: the tool moves as that
+    /// does and pushes it with what it feels. The fibre itself does not touch the tool.
+    std::optional<Station> carrier{};
+    bool turns = false;  ///< with the section of its carrier as well, a node of a rod
 
     void validate() const {
         require_finite("Tool.origin", origin);
@@ -38,6 +43,9 @@ struct Tool {
         core::require_positive("Tool.axis: length", axis.norm());
         if (shape != ToolShape::plane) core::require_positive("Tool.radius", radius);
         core::require_not_negative("Tool.friction_factor", friction_factor);
+        if (carrier && (!displacement.isZero(0.0) || path || rotation))
+            core::refuse("Tool.carrier", "given", "left out, for a tool that is driven along a path");
+        if (turns && !carrier) core::refuse("Tool.turns", "true", "false, for a tool without a carrier");
     }
 };
 

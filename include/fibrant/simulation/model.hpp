@@ -16,7 +16,7 @@
 
 namespace fibrant::contact {
 // Comes with RigidTools, which a model that has tools names; others are spared its compilation.
-template <beam::BeamElement B, proximity::ProximitySearch Search, law::NormalLaw Normal, law::FrictionLaw Friction>
+template <beam::BeamElement B, proximity::ProximitySearch Search, law::NormalLaw Normal, law::FrictionLaw Friction, class Part>
 class ContactsWithTools;
 }  // namespace fibrant::contact
 
@@ -145,7 +145,8 @@ struct ContactsOf {
 template <Model M>
     requires HasTools<M>
 struct ContactsOf<M> {
-    using Type = contact::ContactsWithTools<typename M::Beam, typename M::Proximity, typename M::Normal, typename M::Friction>;
+    using Type = contact::ContactsWithTools<typename M::Beam, typename M::Proximity, typename M::Normal, typename M::Friction,
+                                            typename M::Tools>;
 };
 template <Model M>
 struct PassageOf {

@@ -22,6 +22,11 @@ void require_parts(const scene::Assembly& assembly) {
     };
     if (assembly.fibres().empty()) core::refuse("assembly.fibres", "none", "at least one fibre");
     if (!HasTools<M>) refuse_if(assembly.tools().size(), "assembly.tools", "none, for a model without a part Tools");
+    if constexpr (HasTools<M>)
+        if (!requires { M::Tools::carried; })
+            for (const scene::Tool& tool : assembly.tools())
+                if (tool.carrier)
+                    core::refuse("Tool.carrier", "given", "left out, for a model whose part Tools is not CarriedTools");
     if (!HasConnections<M>)
         refuse_if(assembly.bodies().size() + assembly.cells().size(), "assembly.bodies",
                   "none, for a model without a part Connections");
