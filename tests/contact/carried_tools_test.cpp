@@ -393,7 +393,7 @@ TEST_CASE("a tool with a carrier that is none, or with a path as well, and a mod
               const test::Mesh mesh(turning, test::Beam{});
               contact::CarriedToolContacts<test::Beam, law::RegularisedPenalty, law::RegularisedCoulomb>(turning, mesh, {}, 2.0);
           }) == "Tool.turns = true, but it must be false, for a beam whose nodes have no rotation (tool 0)");
-    tool.carrier.reset();
+    tool.carrier = {};
     CHECK(test::refusal([&] { assembly.add(tool); }) ==
           "Tool.turns = true, but it must be false, for a tool without a carrier (tool 0)");
     tool.carrier = scene::Station{0, 0.0}, tool.turns = false;

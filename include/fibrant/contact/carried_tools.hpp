@@ -28,8 +28,8 @@ public:
                         double points_per_element)
         : Base(assembly, mesh, adaptation, points_per_element), of_tool_(this->tools_.size(), -1) {
         for (std::size_t t = 0; t < of_tool_.size(); ++t) {
-            if (!this->tools_[t].carrier) continue;
-            const scene::Station& at = *this->tools_[t].carrier;
+            if (!this->tools_[t].carried()) continue;
+            const scene::Station& at = this->tools_[t].carrier;
             const double u = at.fraction * static_cast<double>(mesh.fibre(at.fibre).elements);
             Carrier one;
             one.tool = t, one.fibre = at.fibre, one.first = mesh.first_unknown(at.fibre, mesh.locate(at.fibre, u).first);

@@ -267,7 +267,7 @@ public:
         core::with_place([&] { return label("tool", core::count(tools_), tool.name); },
                          [&] {
                              tool.validate();
-                             if (tool.carrier) check(*tool.carrier);
+                             if (tool.carried()) check(tool.carrier);
                          });
         tool.axis.normalize();
         tools_.push_back(std::move(tool));

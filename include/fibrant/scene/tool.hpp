@@ -7,7 +7,6 @@
 #include <fibrant/scene/conditions.hpp>
 
 #include <functional>
-#include <optional>
 #include <string>
 
 namespace fibrant::scene {
@@ -32,10 +31,11 @@ struct Tool {
     std::function<Vec3(double)> path{};  ///< displacement at amplitude a, where it is not proportional
     std::function<Mat3(double)> rotation{};  ///< at amplitude a, about the origin; none: identity
     /// Particle of a centreline that carries it, for models whose part Tools is contact::CarriedTools: the tool moves as that
-    /// does and pushes it with what it feels. The fibre itself does not touch the tool.
-    std::optional<Station> carrier{};
+    /// does and pushes it with what it feels. The fibre itself does not touch the tool. Without a fibre there is none.
+    Station carrier{};
     bool turns = false;  ///< with the section of its carrier as well, a node of a rod
 
+    bool carried() const noexcept { return carrier.fibre != Station{}.fibre; }
     void validate() const {
         require_finite("Tool.origin", origin);
         require_finite("Tool.displacement", displacement);
@@ -43,9 +43,9 @@ struct Tool {
         core::require_positive("Tool.axis: length", axis.norm());
         if (shape != ToolShape::plane) core::require_positive("Tool.radius", radius);
         core::require_not_negative("Tool.friction_factor", friction_factor);
-        if (carrier && (!displacement.isZero(0.0) || path || rotation))
+        if (carried() && (!displacement.isZero(0.0) || path || rotation))
             core::refuse("Tool.carrier", "given", "left out, for a tool that is driven along a path");
-        if (turns && !carrier) core::refuse("Tool.turns", "true", "false, for a tool without a carrier");
+        if (turns && !carried()) core::refuse("Tool.turns", "true", "false, for a tool without a carrier");
     }
 };
 

@@ -25,7 +25,7 @@ void require_parts(const scene::Assembly& assembly) {
     if constexpr (HasTools<M>)
         if (!requires { M::Tools::carried; })
             for (const scene::Tool& tool : assembly.tools())
-                if (tool.carrier)
+                if (tool.carried())
                     core::refuse("Tool.carrier", "given", "left out, for a model whose part Tools is not CarriedTools");
     if (!HasConnections<M>)
         refuse_if(assembly.bodies().size() + assembly.cells().size(), "assembly.bodies",
