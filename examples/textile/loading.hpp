@@ -7,6 +7,7 @@
 #include "scene_file.hpp"
 
 #include <fibrant/compositions/textile/audit.hpp>
+#include <fibrant/compositions/textile/cell_prestress.hpp>
 #include <fibrant/compositions/textile/load_cases.hpp>
 #include <fibrant/observe/svg_curves.hpp>
 #include <fibrant/simulation/programme.hpp>
@@ -46,24 +47,6 @@ inline fibrant::simulation::LoadProgramme programme_of(const Scene& scene, const
     return programme;
 }
 
-/// A cell under tension that bends stretches by the square of its slopes: so much of its stiffness against curvatures grows with
-/// the square of its size, and is none of the fabric's own.
-inline void tell_tension(const cloth::CellStiffness& stiffness, const std::vector<fibrant::Vec3>& periods,
-                         observe::JsonObject& json) {
-    const double n_x = stiffness.before.front()[0], n_y = stiffness.before.front()[1];
-    const double x = periods[0].squaredNorm() / 12.0, y = periods[1].squaredNorm() / 12.0;
-    const std::vector<double> most{n_x * x, n_y * y, n_x * y + n_y * x};
-    json.add("tension", std::vector<double>{n_x, n_y}).add("tension_in_bending", most);
-    constexpr double small = 0.05;
-    for (Index c = 0; c < 3; ++c)
-        if (const double own = stiffness.matrix(3 + c, 3 + c); std::abs(most[fibrant::core::at(c)]) > small * std::abs(own))
-            std::fprintf(
-                stderr,
-                "textile: note: the stiffness against %s, %.3g, has up to %.3g in it that the cell's tension makes and that "
-                "grows with the square of its size: ends.tension_strain near 0 leaves it out\n",
-                cloth::cell_channels()[fibrant::core::at(3 + c)].c_str(), own, most[fibrant::core::at(c)]);
-}
-
 /// Six small strains of a cell that repeats, one by one, in the folder "loading" of the results: stiffness.csv.
 ///
 /// Friction at rest depends on the pressure of its contact, and creeps as normals turn: the cell rests without, and no contact
@@ -84,10 +67,10 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
     // Forces of contacts that slide have to be those of an energy, or the stiffness is not symmetric: places and normals of
     // crossings are followed.
     parameters.contact.places = fibrant::contact::Places::followed;
-    const auto cell_of = [&](const Simulator& from, bool kept_along) {
+    const auto cell_of = [&](const Simulator& from, bool kept_along, bool kept_spin) {
         fibrant::scene::Assembly cell =
             cloth::assemble(scene.textile, scene.fineness,
-                            {true, cloth::images_of(scene.textile, assembled, from.snapshot()), kept_along})
+                            {true, cloth::images_of(scene.textile, assembled, from.snapshot()), kept_along, kept_spin})
                 .assembly;
         cell.begin_at(from.state());  // where it is kept
         return cell;
@@ -102,7 +85,7 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
     programme.rest_share = 1e-6, programme.rest_motion = 1e-9 * radius;  // until nothing moves by itself
     programme.stages.resize(1);
     programme.stages[0].friction = 0.0;
-    Simulator resting(cell_of(settled_by, true), parameters);
+    Simulator resting(cell_of(settled_by, true, true), parameters);
     resting.start_from(whole.checkpoint());
     simulation::Loading<Model> rest = simulation::loading_of<Model>(programme);
     output.tell(rest, 20.0);
@@ -117,7 +100,12 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
     // Sections that contact presses flat stand where they are while a strain grows: to take them anew where a place has slid to
     // does work that no strain does.
     parameters.iteration.normal_limit = 1;
-    Simulator simulator(cell_of(resting, scene.settle.friction_coefficient == 0.0), parameters);
+    const bool smooth = scene.settle.friction_coefficient == 0.0;
+    cloth::CellPrestress prestress(resting);
+    fibrant::scene::Assembly cell = cell_of(resting, false, smooth);
+    prestress.apply(cell);
+    if (smooth) prestress.keep_along(cell);
+    Simulator simulator(cell, parameters);
     simulator.start_from(output.checkpoint());
     simulation::ProgrammeStage stage;
     stage.name = "hold", stage.increments = 1, stage.looseness = 1.0;
@@ -144,7 +132,7 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
             row.push_back({name, simulator.amplitude(name)});
             strained = strained || simulator.amplitude(name) != 0.0;
         }
-        const cloth::CellVector efforts = cloth::cell_efforts(simulator, area);
+        const cloth::CellVector efforts = cloth::cell_efforts(simulator, area, prestress);
         if (strained) stiffness.before.push_back(last), stiffness.efforts.push_back(efforts);
         last = efforts;
         for (std::size_t c = 0; c < 6; ++c) row.push_back({names[c], efforts[static_cast<Index>(c)]});
@@ -156,8 +144,13 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
     const simulation::Audit audit = example::audit(output, simulator, radius);
     observe::JsonObject json;
     json.add("case", "cell").add("area", area);
+    bool symmetric = false, stable = false;
     if (report.converged) {
         stiffness.evaluate();
+        // Yarns that leap as they slide by themselves, or normals in the kinks between long elements, make it differ by more.
+        constexpr double allowed = 1e-3;
+        symmetric = stiffness.asymmetry <= allowed;
+        stable = (stiffness.matrix.diagonal().array() > 0.0).all();
         observe::CsvWriter table(output.folder / "stiffness.csv");
         for (Index c = 0; c < 6; ++c) {
             std::vector<observe::Column> row{{"strain", cloth::cell_channels()[static_cast<std::size_t>(c)]}};
@@ -165,18 +158,11 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
             table.row(row);
         }
         json.add("asymmetry", stiffness.asymmetry).add("creep", stiffness.creep);
-        tell_tension(stiffness, periods, json);
-        constexpr double checked = 0.1;  // with less, planes of symmetry are not kept
-        if (const double mu = scene.settle.friction_coefficient; mu < checked)
-            std::fprintf(stderr,
-                         "textile: note: bending and twist of a cell are not to be relied on with so little friction, "
-                         "contact.friction_coefficient = %g: from %g on they are checked\n",
-                         mu, checked);
+        const cloth::CellVector& before = stiffness.before.front();
+        json.add("tension", std::vector<double>{before[0], before[1]}).add("symmetric", symmetric).add("stable", stable);
     }
     example::write_summary(output, report, audit, radius, {}, json);
-    // Yarns that leap as they slide by themselves, or normals in the kinks between long elements, make it differ by more.
-    constexpr double symmetric = 1e-3;
-    if (report.converged && stiffness.asymmetry > symmetric)
+    if (report.converged && !symmetric)
         std::fprintf(stderr,
                      "textile: the stiffness of the cell is not symmetric, by %.3g: elements are too long, or it is not at rest "
                      "without friction\n",
@@ -185,7 +171,7 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
         if (stiffness.matrix(c, c) <= 0.0)
             std::fprintf(stderr, "textile: the cell is not stable: its stiffness against %s is %.3g\n",
                          cloth::cell_channels()[static_cast<std::size_t>(c)].c_str(), stiffness.matrix(c, c));
-    return report.converged && audit.clean() && stiffness.asymmetry <= symmetric;
+    return report.converged && audit.clean() && symmetric && stable;
 }
 
 /// Runs it in the folder "loading" of the results.

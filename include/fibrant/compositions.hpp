@@ -22,6 +22,7 @@
 #include <fibrant/compositions/textile/assemble.hpp>
 #include <fibrant/compositions/textile/audit.hpp>
 #include <fibrant/compositions/textile/braids.hpp>
+#include <fibrant/compositions/textile/cell_prestress.hpp>
 #include <fibrant/compositions/textile/crossings.hpp>
 #include <fibrant/compositions/textile/imported.hpp>
 #include <fibrant/compositions/textile/interlaced.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rigid bodies that hold fibre ends on the average, and periodic cells, against closed forms of cantilevers and bars.
 #include <fibrant/beam/director_beam.hpp>
+#include <fibrant/compositions/textile/cell_prestress.hpp>
 #include <fibrant/compositions/weave/periodic.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/law/frictionless.hpp>
@@ -427,6 +428,65 @@ TEST_CASE("a cell that bends stretches, bends and twists a bar off its middle pl
     scene::PeriodicCell loose;
     loose.curvature[1] = scene::Coordinate::loose();
     CHECK(test::refusal([&] { scene::Assembly().add(loose); }).find("PeriodicCell.curvature") != std::string::npos);
+}
+
+TEST_CASE("what a thread bears changes nothing of its stiffness against bending and twist, wherever it lies in its cell") {
+    // E I of the curvature along it and G J of the twist about it; the tension over them is e L^2 / 3 r^2 = 3.3.
+    namespace textile = compositions::textile;
+    const double tension = 1e-3, bent = 1e-4, bending = young * inertia(), torsion = young / 2.6 * 2.0 * inertia();
+    for (const double angle : {0.0, 0.5 * std::numbers::pi, 0.6}) {
+        const Vec3 t(std::cos(angle), std::sin(angle), 0), n(-t.y(), t.x(), 0), period = length * t;
+        const Vec3 along(t.x() * t.x(), t.y() * t.y(), 2.0 * t.x() * t.y());
+        const Vec3 about(t.x() * n.x(), t.y() * n.y(), t.x() * n.y() + t.y() * n.x());
+        const auto thread = [&](const Mat3& gradient, const Vec3& apart_now) {
+            scene::Assembly assembly;
+            scene::PeriodicCell cell;
+            for (int i = 0; i < 9; ++i) cell.gradient[core::at(i)] = scene::Coordinate::held_at(gradient.data()[i], "pull");
+            for (std::size_t k = 0; k < 3; ++k)
+                cell.curvature[k] = scene::Coordinate::held_at(1.0, textile::cell_channels()[3 + k]);
+            assembly.add(cell);
+            const Vec3 middle(0.3, -0.7, 0.0);
+            const Index f = assembly.add({.from = middle - 0.5 * period,
+                                          .to = middle + 0.5 * period,
+                                          .section = scene::circular(radius),
+                                          .material = {young, 0.3},
+                                          .elements = 4,
+                                          .director = Vec3::UnitZ()});
+            assembly.connect(scene::PeriodicPair{scene::first_end(f), scene::last_end(f), apart_now, 0});
+            assembly.hold_axial_rotation({f, 0.5});
+            assembly.hold_position({f, 0.5});
+            return assembly;
+        };
+        const auto run = [](simulation::Simulator<Tied>& simulator, const std::string& channel, double to) {
+            simulation::LoadProgramme programme;
+            programme.stages = {{.name = channel, .increments = 2, .ramps = {{channel, to}}}};
+            REQUIRE(simulator.run(simulation::loading_of<Tied>(programme)).converged);
+        };
+        simulation::Simulator<Tied> stretching(thread(tension * t * t.transpose(), period), parameters());
+        run(stretching, "pull", 1.0);
+        scene::Assembly cell = thread(Mat3::Zero(), (1.0 + tension) * period);
+        cell.begin_at(stretching.state());
+        simulation::Simulator<Tied> resting(cell, parameters());
+        run(resting, textile::cell_channels()[3], 0.0);
+        const textile::CellPrestress prestress(resting);
+        const double stretched = (1.0 + tension) * length;
+        for (Index k = 0; k < 3; ++k) {
+            Vec3 found = Vec3::Zero();
+            for (const double side : {1.0, -1.0}) {
+                scene::Assembly assembly = cell;
+                prestress.apply(assembly);
+                simulation::Simulator<Tied> simulator(assembly, parameters());
+                run(simulator, textile::cell_channels()[core::at(3 + k)], side * bent);
+                found += 0.5 * side / bent * textile::cell_efforts(simulator, 1.0, prestress).tail<3>();
+            }
+            const Vec3 expected = (bending * along[k] * along + torsion * about[k] * about) * stretched * stretched / length;
+            CAPTURE(angle);
+            CAPTURE(k);
+            CAPTURE(found.transpose());
+            CAPTURE(expected.transpose());
+            CHECK((found - expected).norm() < 5e-3 * bending * length);  // sections stretch by e and contract by 0.3 e
+        }
+    }
 }
 
 TEST_CASE("contact across the seams of a cell is contact: where a cell is cut changes nothing") {

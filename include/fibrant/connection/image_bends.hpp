@@ -32,11 +32,11 @@ public:
     /// Curvatures count from this state.
     void anchor(const scene::DofLayout& layout, const Vector& state) {
         if (none()) return;
-        bends_.clear();
+        bends_.clear(), wholes_.clear();
         Index shift = -1;
         for (const scene::ImageVector& one : layout.images) {
             if (one.shift < 0 && shift < 0) {  // of a closed chain
-                bends_.push_back(Mat3::Zero());
+                bends_.push_back(Mat3::Zero()), wholes_.push_back(Vec3::Zero());
                 continue;
             }
             const bool director = one.shift < 0;  // of the same fibre: its nodes begin with a position
@@ -50,7 +50,7 @@ public:
                 const Vec3 period = periods[k] / pair.times;
                 bend -= pair.times * bend_jump(state.segment<3>(3 * pair.first), period, false);
             }
-            bends_.push_back(bend);
+            bends_.push_back(bend), wholes_.push_back(whole);
             of_.resize(bends_.size(), 0), of_.back() = cell_[core::at(shift)];
         }
         of_.resize(bends_.size(), 0);
@@ -62,8 +62,17 @@ public:
     void see(const scene::DofLayout& layout, const Vector& forces) {
         if (none()) return;
         moments_.assign(core::at(*std::max_element(cell_.begin(), cell_.end())) + 1, Vec3::Zero());
-        for (std::size_t k = 0; k < bends_.size(); ++k)
-            moments_[core::at(of_[k])] += bends_[k].transpose() * forces.segment<3>(3 * layout.images[k].image);
+        forces_.resize(bends_.size());
+        for (std::size_t k = 0; k < bends_.size(); ++k) {
+            forces_[k] = forces.segment<3>(3 * layout.images[k].image);
+            moments_[core::at(of_[k])] += bends_[k].transpose() * forces_[k];
+        }
+    }
+    /// Calls see(image vector, period from its source, force on it) for the images beside a cell.
+    template <class See>
+    void each(const scene::DofLayout& layout, Index cell, const See& see) const {
+        for (std::size_t k = 0; k < forces_.size(); ++k)
+            if (of_[k] == cell) see(layout.images[k], wholes_[k], forces_[k]);
     }
     /// Work of contact with images for each curvature of a cell, beside that of its ties [force * length^2].
     Vec3 moment(Index cell) const noexcept {
@@ -74,6 +83,7 @@ private:
     std::vector<std::vector<Vec3>> shifts_;  // of each image of a fibre
     std::vector<Index> cell_, of_;           // of each image, and of each image vector
     std::vector<Mat3> bends_;                // of each image vector: what a curvature of 1 adds, a column each
+    std::vector<Vec3> wholes_, forces_;      // of each image vector: its period, and what contact exerts on it
     std::vector<Vec3> moments_;              // of each cell
 };
 

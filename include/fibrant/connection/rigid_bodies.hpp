@@ -275,23 +275,28 @@ public:
     }
     Wrench wrench(Index body) const { return wrench(body, motion_.position(body)); }
 
-    /// Work of the ties of a cell for each component of its gradient: volume times nominal stress [force * length].
+    /// Calls see(tie, condition, force on its last vector) for a cell's pairs.
+    template <class See>
+    void each_pair(Index cell, const See& see) const {
+        for (std::size_t k = 0; k < conditions_.size() && forces_.size() > 0; ++k)
+            if (auto& one = conditions_[k]; one.periodic && one.owner == cell)
+                see(ties_[k], one, force_of(static_cast<Index>(k)) / one.root);
+    }
+    /// Work of a cell's ties for each component of its gradient: volume times nominal stress [force * length].
     Mat3 cell_force(Index cell) const {
         Mat3 sum = Mat3::Zero();
-        for (std::size_t k = 0; k < conditions_.size() && forces_.size() > 0; ++k)
-            if (conditions_[k].periodic && conditions_[k].owner == cell && !conditions_[k].director)
-                sum += force_of(static_cast<Index>(k)) * conditions_[k].period.transpose() / conditions_[k].root;
+        each_pair(cell, [&](auto&, auto& one, const Vec3& f) {
+            if (!one.director) sum += f * one.period.transpose();
+        });
         return sum;
     }
-
-    /// The same for each of its curvatures: the moments per length of w,xx, w,yy and w,xy times the area of the cell.
+    /// The same for its curvatures w,xx, w,yy and w,xy [force * length^2].
     Vec3 cell_moment(Index cell) const {
-        Vec3 sum = Vec3::Zero();
-        for (std::size_t k = 0; k < conditions_.size() && forces_.size() > 0; ++k)
-            if (conditions_[k].periodic && conditions_[k].owner == cell)
-                sum += conditions_[k].bend.transpose() * force_of(static_cast<Index>(k)) / conditions_[k].root;
-        return sum + images_.moment(cell);
+        Vec3 sum = images_.moment(cell);
+        each_pair(cell, [&](auto&, auto& one, const Vec3& f) { sum += one.bend.transpose() * f; });
+        return sum;
     }
+    const ImageBends& images() const noexcept { return images_; }
 
 private:
     struct Condition {

@@ -95,6 +95,8 @@ struct CellDrive {
     /// Fibres that repeat keep their places along their paths. Without friction nothing resists that they slide through their own
     /// waves, and no force is needed to hold them.
     bool kept_along = false;
+    /// Fibres that repeat keep their spin in their middles. Friction holds it as well, and lets it go with the fabric.
+    bool kept_spin = true;
 };
 
 /// Channels of the strains of a cell in the plane of x and y: of its lengths, and of the right angle between them, [1]; and the
@@ -228,7 +230,7 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
                         carrier[k] = core::count(assembly.pairs());
                 assembly.connect(
                     scene::PeriodicPair{first, last, drive.images.empty() ? path.image : drive.images[core::at(p)], cell_of()});
-                assembly.hold_axial_rotation({f, 0.5});
+                if (drive.kept_spin) assembly.hold_axial_rotation({f, 0.5});
                 middle.ends.push_back({f, 0.5});
                 if (drive.kept_along) {
                     const Vec3 along = path.image.normalized();
