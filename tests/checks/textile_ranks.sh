@@ -9,30 +9,15 @@ out=$4
 rm -rf "$out"
 mkdir -p "$out" || exit 1
 small="--set solver.subdomains=8 --set output.paraview=false --set output.pictures=false --quiet"
-fail() {
-  echo "textile_ranks: $*"
-  exit 1
-}
-# MPI does not run as root unless it is told to; it ties threads to one core unless it is told not to.
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 OMP_WAIT_POLICY=passive
-on() { # ranks threads program ...
-  ranks=$1
-  threads=$2
-  shift 2
-  OMP_NUM_THREADS=$threads "$mpirun" -n "$ranks" "$@"
-}
-# All columns of a table but the one of seconds, which depends on the clock.
-figures() {
-  awk -F, 'NR == 1 { for (k = 1; k <= NF; ++k) if ($k == "seconds") left = k } { $left = ""; print }' "$1/increments.csv"
-  cat "$1/yarns.csv" "$1/centrelines.csv" "$1/crossings.csv"
-}
+. "$(dirname "$0")/ranks.sh"
+tables="yarns centrelines crossings"
 
 on 1 1 "$textile" "$scene" --output "$out/1" $small || fail "the braid did not settle on one rank"
-figures "$out/1" >"$out/expected" || fail "tables are missing"
+figures "$out/1" $tables >"$out/expected" || fail "tables are missing"
 for run in "2 1" "2 2" "4 1"; do
   set -- $run
   on "$1" "$2" "$textile" "$scene" --output "$out/$1x$2" $small || fail "the braid did not settle on $1 ranks of $2 threads"
-  figures "$out/$1x$2" | cmp -s - "$out/expected" || fail "$1 ranks of $2 threads have other bits than one of one"
+  figures "$out/$1x$2" $tables | cmp -s - "$out/expected" || fail "$1 ranks of $2 threads have other bits than one of one"
 done
 
 refused() { # key settings ...

@@ -14,37 +14,22 @@ mkdir -p "$out" || exit 1
 small="--set fabric.warp_tows=$tows --set fabric.weft_tows=$tows --set fabric.elements=20 --set warp.fibres=$fibres
   --set warp.real_fibres=$((20 * fibres)) --set warp.aspect=1 --set solver.subdomains=8 --set output.paraview=false
   --set output.pictures=false --quiet"
-fail() {
-  echo "ranks: $*"
-  exit 1
-}
-# MPI does not run as root unless it is told to; it ties threads to one core unless it is told not to.
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 OMP_WAIT_POLICY=passive
-on() { # ranks threads program ...
-  ranks=$1
-  threads=$2
-  shift 2
-  OMP_NUM_THREADS=$threads "$mpirun" -n "$ranks" "$@"
-}
-# All columns of a table but the one of seconds, which depends on the clock.
-figures() {
-  awk -F, 'NR == 1 { for (k = 1; k <= NF; ++k) if ($k == "seconds") left = k } { $left = ""; print }' "$1/increments.csv"
-  cat "$1/fibres.csv" "$1/tows.csv" "$1/sections.csv"
-}
+. "$(dirname "$0")/ranks.sh"
+tables="fibres tows sections"
 
 on 1 1 "$weave" "$scene" --output "$out/1" $small || fail "the small scene did not settle on one rank"
-figures "$out/1" >"$out/expected"
+figures "$out/1" $tables >"$out/expected"
 for run in "2 1" "2 2" "4 1"; do
   set -- $run
   on "$1" "$2" "$weave" "$scene" --output "$out/$1x$2" $small || fail "the small scene did not settle on $1 ranks of $2 threads"
-  figures "$out/$1x$2" | cmp -s - "$out/expected" || fail "$1 ranks of $2 threads have other bits than one of one"
+  figures "$out/$1x$2" $tables | cmp -s - "$out/expected" || fail "$1 ranks of $2 threads have other bits than one of one"
 done
 
 # Stopped on two ranks, gone on with on one: the checkpoint has all that a state is.
 on 2 1 "$weave" "$scene" --output "$out/parts" $small --set settle.separation_increments=6
 [ $? -eq 1 ] || fail "a run that was stopped early did not say so"
 on 1 1 "$weave" "$scene" --output "$out/parts" $small --resume --other-scene || fail "the resumed run did not settle"
-figures "$out/parts" | cmp -s - "$out/expected" || fail "a run resumed on another number of ranks has other bits"
+figures "$out/parts" $tables | cmp -s - "$out/expected" || fail "a run resumed on another number of ranks has other bits"
 
 # Input that all ranks refuse, said once; what ranks cannot share; nothing is left of the folders of other ranks.
 on 2 1 "$weave" "$scene" --output "$out/refused" $small --set solver.linear_solver=sparse_cholesky 2>"$out/message" &&
@@ -68,7 +53,7 @@ signal_first_rank stopped TERM
 wait $run
 [ -s "$out/stopped/checkpoint.bin" ] || fail "a rank that was told to stop left no checkpoint"
 on 4 1 "$weave" "$scene" --output "$out/stopped" $small --resume || fail "the run that was told to stop did not settle in the end"
-figures "$out/stopped" | cmp -s - "$out/expected" || fail "the run that was told to stop has other bits"
+figures "$out/stopped" $tables | cmp -s - "$out/expected" || fail "the run that was told to stop has other bits"
 
 # One rank is killed: the run ends, and goes on from its checkpoint.
 on 2 1 "$weave" "$scene" --output "$out/killed" $small 2>"$out/message" &
@@ -76,5 +61,5 @@ run=$!
 signal_first_rank killed KILL
 wait $run && fail "a run whose rank was killed ended well"
 on 2 1 "$weave" "$scene" --output "$out/killed" $small --resume || fail "the run whose rank was killed did not settle in the end"
-figures "$out/killed" | cmp -s - "$out/expected" || fail "the run whose rank was killed has other bits"
+figures "$out/killed" $tables | cmp -s - "$out/expected" || fail "the run whose rank was killed has other bits"
 exit 0

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rigid bodies on nodes of fibres: they fall, spin, precess and ring as closed forms say.
+#include <inertia/lasting.hpp>
 #include <near.hpp>
 #include <refusal.hpp>
 #include <term/term_contract.hpp>
@@ -52,15 +53,7 @@ simulation::ModelParameters<Carrying> parameters(double radius, double density, 
     all.acts.inertia.density = density, all.acts.inertia.bodies = {body};
     return all;
 }
-simulation::Loading<Carrying> lasting(double duration, Index steps) {
-    simulation::Loading<Carrying> loading;
-    loading.stages.push_back({.name = "move",
-                              .increments = steps,
-                              .duration = duration,
-                              .ramps = {{.channel = "load", .at_once = true}},
-                              .most_increments = 20 * steps});
-    return loading;
-}
+simulation::Loading<Carrying> lasting(double duration, Index steps) { return test::lasting<Carrying>(duration, steps, "load"); }
 inertia::Motion motion_of(const simulation::Simulator<Carrying>& simulator) {
     return simulator.equilibrium().terms().get<Carrying::Motion>().motion(simulator.state());
 }

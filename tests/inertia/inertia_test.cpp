@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Fibres that move in time: what they weigh, fall, swing, spin, ring and hit as closed forms say, and that energy and momenta are
 // kept.
+#include <inertia/lasting.hpp>
 #include <near.hpp>
 #include <refusal.hpp>
 #include <term/term_contract.hpp>
@@ -92,13 +93,7 @@ simulation::ModelParameters<M> parameters(double radius, double density, const V
 /// Weight acts in full from the start.
 template <class M>
 simulation::Loading<M> lasting(double duration, Index steps) {
-    simulation::Loading<M> loading;
-    loading.stages.push_back({.name = "move",
-                              .increments = steps,
-                              .duration = duration,
-                              .ramps = {{.channel = "gravity", .at_once = true}},
-                              .most_increments = 20 * steps});
-    return loading;
+    return test::lasting<M>(duration, steps, "gravity");
 }
 template <class M>
 struct Moved {
