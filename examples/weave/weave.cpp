@@ -15,7 +15,6 @@
 #include <fibrant/material/elastic.hpp>
 #include <fibrant/observe/vtk_writer.hpp>
 #include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/any_solver.hpp>
 
 #include <cmath>
 #include <cstdio>

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# A nest falls as a user would let it; a lid that has fallen onto one and come to rest is carried by what it weighs and is pressed by.
+# A nest falls as a user would let it; one on which a lid has come to rest pushes it up by what it weighs and is pressed by.
 # usage: fall_example.sh <the program> <a scene in the folder of scenes> <scratch folder>
 program=$1
 scenes=$(dirname "$2")

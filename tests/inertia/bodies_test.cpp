@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rigid bodies on nodes of fibres: they fall, spin, precess and ring as closed forms say.
-#include <inertia/lasting.hpp>
+#include <inertia/moving_fibre.hpp>
 #include <near.hpp>
 #include <refusal.hpp>
 #include <term/term_contract.hpp>
@@ -36,15 +36,8 @@ struct Carrying {
     using Acts = term::List<Motion>;
 };
 static_assert(simulation::MovesInTime<Carrying>);
+using test::along_x;
 
-scene::FibreSpecification along_x(double length, double radius, double young, Index elements) {
-    return {.from = {0, 0, 0},
-            .to = {length, 0, 0},
-            .section = scene::circular(radius),
-            .material = {young, 0.3},
-            .elements = elements,
-            .director = Vec3::UnitZ()};
-}
 simulation::ModelParameters<Carrying> parameters(double radius, double density, const inertia::Body& body) {
     simulation::ModelParameters<Carrying> all;
     all.normal.regularisation_depth = 1e-3 * radius;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Fibres that move in time: what they weigh, fall, swing, spin, ring and hit as closed forms say, and that energy and momenta are
 // kept.
-#include <inertia/lasting.hpp>
+#include <inertia/moving_fibre.hpp>
 #include <near.hpp>
 #include <refusal.hpp>
 #include <term/term_contract.hpp>
@@ -67,15 +67,8 @@ struct Still : Falling {
     using Acts = term::List<load::Gravity>;
 };
 static_assert(simulation::MovesInTime<Falling> && simulation::MovesInTime<Hitting> && !simulation::MovesInTime<Still>);
+using test::along_x;
 
-scene::FibreSpecification along_x(double length, double radius, double young, Index elements) {
-    return {.from = {0, 0, 0},
-            .to = {length, 0, 0},
-            .section = scene::circular(radius),
-            .material = {young, 0.3},
-            .elements = elements,
-            .director = Vec3::UnitZ()};
-}
 template <class M>
 simulation::ModelParameters<M> parameters(double radius, double density, const Vec3& acceleration = Vec3::Zero()) {
     simulation::ModelParameters<M> all;

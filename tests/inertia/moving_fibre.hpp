@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file A loading of one stage that lasts.
+/// @file A fibre that moves, and for how long.
 
+#include <fibrant/scene/assembly.hpp>
 #include <fibrant/simulation/loading.hpp>
 
 namespace fibrant::test {
+
+/// A round fibre from the origin.
+inline scene::FibreSpecification along_x(double length, double radius, double young, Index elements) {
+    return {.from = {0, 0, 0},
+            .to = {length, 0, 0},
+            .section = scene::circular(radius),
+            .material = {young, 0.3},
+            .elements = elements,
+            .director = Vec3::UnitZ()};
+}
 
 /// What a channel drives acts in full from the start.
 template <class M>
