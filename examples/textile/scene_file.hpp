@@ -131,7 +131,8 @@ inline void read_load(SceneReader& file, Load& load) {
 
 inline void read_height(SceneReader& file, const std::string& section, double& height) {
     file.read(section, "height_over_radius", height, example::above(0.0, 10.0), "1",
-              "height of yarns at crossings above the middle surface, over their half width; below 1 they start in each other");
+              "height of yarns at crossings above the middle surface, over their half thickness; below 1 they start in each "
+              "other: single fibres, since yarns of several are drawn at 1.05 at least");
 }
 
 inline void read_overhang(SceneReader& file, const std::string& section, double& overhang) {

@@ -22,6 +22,7 @@ template <simulation::Model Yarns>
 bool settle(const textile::Scene& scene, example::SceneReader& file, example::Output& output) {
     const double radius = scene.textile.smallest_radius();
     const textile::cloth::Assembled assembled = textile::cloth::assemble(scene.textile, scene.fineness);
+    textile::cloth::require_ends_apart(scene.textile, assembled, 2.0 * scene.settle.allowed_penetration_over_radius * radius);
     auto parameters = textile::cloth::model_parameters<Yarns>(scene.textile, scene.settle);
     example::choose_solver(parameters, scene.linear_solver);
     const example::RankFolder own(output);

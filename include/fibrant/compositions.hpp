@@ -35,6 +35,8 @@
 #include <fibrant/compositions/textile/textile.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
 #include <fibrant/compositions/textile/yarn_contacts.hpp>
+#include <fibrant/compositions/textile/yarn_fibres.hpp>
+#include <fibrant/compositions/textile/yarn_section.hpp>
 
 #include <fibrant/compositions/two_ply/two_ply.hpp>
 

@@ -28,6 +28,7 @@
 #include <fibrant/simulation/settling_scales.hpp>
 #include <fibrant/simulation/simulator.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
+#include <fibrant/simulation/stall.hpp>
 #include <fibrant/simulation/state_file.hpp>
 #include <fibrant/simulation/step_control.hpp>
 #include <fibrant/simulation/stored_state.hpp>

@@ -156,6 +156,17 @@ inline double length_of(const Curve& curve, Index pieces = 512) {
     return (4.0 * fine - coarse) / 3.0;
 }
 
+/// A curve beside frames of a path, which are apart by equal arcs: offset in its sections.
+/// @param x,y  offset along the two directors [length]
+inline Curve beside(const std::vector<NodeFrame>& frames, double x, double y, SplineEnds ends = SplineEnds::parabolic) {
+    std::vector<Vec3> points;
+    points.reserve(frames.size());
+    for (const NodeFrame& frame : frames) points.push_back(frame.position + x * frame.director_1 + y * frame.director_2);
+    // What a path that repeats is shifted by, and no more, so that a closed one closes.
+    if (ends == SplineEnds::repeating) points.back() = points.front() + (frames.back().position - frames.front().position);
+    return curve_through(std::move(points), ends, SplineSteps::even, "beside");
+}
+
 /// A curve beside a path: offset in its sections, which do not twist about it but for what is asked.
 ///
 /// Sections of the path are carried along by parallel transport; of a path that repeats they are turned evenly, so that the last
@@ -167,17 +178,11 @@ inline double length_of(const Curve& curve, Index pieces = 512) {
 inline Curve beside(const Curve& path, double x, double y, double turns, Index samples, const Vec3& director = Vec3::Zero(),
                     SplineEnds ends = SplineEnds::parabolic) {
     core::require_at_least("beside.samples", samples, 8);
-    const bool repeating = ends == SplineEnds::repeating;
     std::vector<NodeFrame> frames = reference_frames(path, samples + 1, director, false);
-    if (repeating) turn_along(frames, closing_angle(frames));
+    if (ends == SplineEnds::repeating) turn_along(frames, closing_angle(frames));
     constexpr double full_turn = 6.283185307179586;
     turn_along(frames, full_turn * turns);
-    std::vector<Vec3> points;
-    points.reserve(frames.size());
-    for (const NodeFrame& frame : frames) points.push_back(frame.position + x * frame.director_1 + y * frame.director_2);
-    // What a path that repeats is shifted by, and no more, so that a closed one closes.
-    if (repeating) points.back() = points.front() + (frames.back().position - frames.front().position);
-    return curve_through(std::move(points), ends, SplineSteps::even, "beside");
+    return beside(frames, x, y, ends);
 }
 
 }  // namespace fibrant::scene

@@ -2,6 +2,7 @@
 #pragma once
 /// @file The true gap as part of what a run ends with: pairs of fibres that are too deep unseen are mended, or named.
 
+#include <fibrant/contact/overlaps.hpp>
 #include <fibrant/contact/watched_places.hpp>
 #include <fibrant/simulation/audit.hpp>
 #include <fibrant/simulation/loading.hpp>
@@ -60,6 +61,14 @@ std::string mend_deep_places(const Loading<M>& loading, const std::vector<Stage<
            core::text(-worst.gap / radius) + " radii deep in each other at (" + core::text(worst.position.x()) + ", " +
            core::text(worst.position.y()) + ", " + core::text(worst.position.z()) + "), allowed are " +
            core::text(allowed / radius) + ": more elements a fibre, or a greater allowed penetration";
+}
+
+/// The two fibres that are deepest in each other as contact sees them, in words; empty of a stage that parts nothing.
+template <Model M, class Simulator>
+std::string deepest_unparted(const Stage<M>& stage, const Simulator& simulator) {
+    if (!stage.gap_limit || stage.gap_limit_when_cut) return {};
+    const auto& mesh = simulator.mesh();
+    return ": " + contact::text(contact::deepest_overlap(simulator.contacts(), mesh, simulator.state(), false), mesh);
 }
 
 }  // namespace fibrant::simulation

@@ -92,6 +92,11 @@ struct Stage {
     /// no longer.
     Index enough_increments = std::numeric_limits<Index>::max();
     Index most_increments = 100;  ///< of the whole stage, beyond which the run stops unconverged
+    /// Increments that part nothing (`stalled`) after which the stage ends, if nothing is deeper than `goes_on_below`; after
+    /// twice as many the run stops, and names what is deepest, >= 1.
+    Index stalled_increments = std::numeric_limits<Index>::max() / 2;
+    double goes_on_below = 0.0;  ///< what follows parts in another way what is less deep [length], >= 0
+    bool if_needed = false;      ///< left out where its `until` is true of the increment before it
 };
 
 /// What a simulator runs. With no stages, one that takes all channels to 1 in `increments`.
@@ -139,6 +144,8 @@ struct Loading {
             core::require_at_least("Stage.increments", stage.increments, 1);
             core::require_at_least("Stage.most_increments", stage.most_increments, stage.increments);
             core::require_at_least("Stage.enough_increments", stage.enough_increments, 1);
+            core::require_at_least("Stage.stalled_increments", stage.stalled_increments, 1);
+            core::require_not_negative("Stage.goes_on_below", stage.goes_on_below);
             core::require_not_negative("Stage.damping", stage.damping);
             core::require_not_negative("Stage.duration", stage.duration);
             core::require(stage.damping_decay > 0.0 && stage.damping_decay <= 1.0, "Stage.damping_decay", stage.damping_decay,
@@ -189,7 +196,9 @@ double part_done(const std::vector<Stage<M>>& stages, Index stage, double part) 
     const double mean = ramps > 0 ? foretold / static_cast<double>(ramps) : 1.0;
     double done = 0.0, whole = 0.0;
     for (Index k = 0; k < core::count(stages); ++k) {
-        const double size = stages[core::at(k)].until ? mean : static_cast<double>(stages[core::at(k)].increments);
+        const double size = stages[core::at(k)].if_needed ? 0.0
+                            : stages[core::at(k)].until   ? mean
+                                                          : static_cast<double>(stages[core::at(k)].increments);
         if (k == stage) done = whole + part * size;
         whole += size;
     }

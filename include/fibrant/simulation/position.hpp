@@ -5,6 +5,7 @@
 #include <fibrant/connection/channels.hpp>
 #include <fibrant/simulation/calming.hpp>
 #include <fibrant/simulation/loading.hpp>
+#include <fibrant/simulation/stall.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -95,9 +96,40 @@ struct Position {
         return mends > 1 ? 1.0 : present.looseness;
     }
 
+    /// Twice as many increments of a stage have parted nothing as it takes to end it: the run gives up.
+    template <Model M>
+    bool stands_still(const Stage<M>& present, const Report& report) const {
+        const Index twice = 2 * present.stalled_increments;
+        return in_stage > twice && stalled(report.increments, in_stage, twice);
+    }
+    /// A stage is given up, unended.
+    template <Model M>
+    bool gives_up(const Stage<M>& present, const Report& report) const {
+        return in_stage >= present.most_increments || mends > most_mends || stands_still(present, report);
+    }
+    /// A stage ends unsettled: what follows goes on from where it is. @param report  all but the last increment
+    template <Model M>
+    bool enough(const Stage<M>& present, const Report& report) const {
+        const Index before = in_stage - 1;
+        const auto parts_nothing = [&] {
+            return before > present.stalled_increments &&
+                   report.increments.back().contact.greatest_penetration <= present.goes_on_below &&
+                   stalled(report.increments, before, present.stalled_increments);
+        };
+        return progress >= 1.0 && (in_stage >= present.enough_increments || parts_nothing());
+    }
+    template <Model M>
+    bool needless(const Stage<M>& present, const Report& report) const {
+        return present.if_needed && in_stage == 0 && !report.increments.empty() && present.until(report.increments.back());
+    }
+
     /// Why a stage is given up, before what else is known.
-    std::string not_ended(const std::string& name) const {
-        return "stage " + name + " did not reach its end in " + std::to_string(in_stage) + " increments";
+    template <Model M>
+    std::string not_ended(const Stage<M>& present, const Report& report) const {
+        const std::string still = stands_still(present, report) ? ", the last " + std::to_string(2 * present.stalled_increments) +
+                                                                      " of which parted nothing"
+                                                                : "";
+        return "stage " + present.name + " did not reach its end in " + std::to_string(in_stage) + " increments" + still;
     }
 
     /// Damping of each fibre over that of all. @param own  what each has by itself; empty: 1

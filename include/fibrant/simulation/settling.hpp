@@ -70,6 +70,15 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
                  mean_radius = scales.thickest > r ? 0.5 * (1.0 + scales.thickest / r) : 1.0;
     separation.largest_fraction = std::min(most_fraction, std::max(whole_radius, mean_radius));
     separation.most_increments = settle.separation_increments;
+    // Orders part crossings and see nothing beside them: fibres of two yarns that lie along each other cross in plan to and fro,
+    // and those that do not cross there meet no contact. Where that does not get on, ordinary contact does from there.
+    constexpr Index still = 30;  // increments; parting by a quarter of a radius in each, they would be free long ago
+    Stage<M> parting = separation;
+    parting.name = "parting";
+    parting.forced_orders = false, parting.if_needed = true;
+    // Of what is deeper than a radius the centres do not tell the side.
+    if (scales.ordered) separation.goes_on_below = r;
+    separation.stalled_increments = parting.stalled_increments = still;
     Stage<M> tension = common;
     tension.name = "tension";
     ramped(tension, settle.tension_increments);
@@ -124,6 +133,7 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     loading.damping_of_fibres = scales.over_softest;
     if (pulled && pull.first) loading.stages.push_back(tension);
     loading.stages.push_back(separation);
+    if (scales.ordered) loading.stages.push_back(parting);
     if (pulled && !pull.first) loading.stages.push_back(tension);
     loading.stages.push_back(handover);
     if (released) loading.stages.push_back(release), loading.stages.push_back(relaxation);

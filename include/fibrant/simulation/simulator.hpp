@@ -124,8 +124,8 @@ private:
         const std::string present = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": ";
         const bool touching = mesh_.line_count() > 1 || parameters_.contact.detection.self_contact || HasTools<M>;
         while (true) {
-            if (position_.in_stage >= stage.most_increments || position_.mends > Position::most_mends) {
-                report.reason = position_.not_ended(stage.name) + deep_;
+            if (position_.gives_up(stage, report)) {
+                report.reason = position_.not_ended(stage, report) + (deep_.empty() ? deepest_unparted(stage, *this) : deep_);
                 return false;
             }
             const double progress = laws_.again() ? position_.progress : position_.next(stage);
@@ -234,8 +234,7 @@ private:
         deep_ = touching && reached && !held && !laws_.again()
                     ? mend_deep_places(loading, stages, *this, contacts_, radius_, position_)
                     : std::string();
-        position_.stage_over = !laws_.again() && ((reached && !held && deep_.empty()) ||
-                                                  (position_.progress >= 1.0 && position_.in_stage >= stage.enough_increments));
+        position_.stage_over = !laws_.again() && ((reached && !held && deep_.empty()) || position_.enough(stage, report));
         steps_.adapt_damping(position_, stage, increment, effort);
         contacts_.accept(state_), equilibrium_.accept(state_);
         if constexpr (HasSolid<M>)
@@ -376,6 +375,7 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
     for (Index k = 0; k < position_.stage; ++k) take_laws(stages[core::at(k)]);  // which stay
     for (; position_.stage < core::count(stages); position_.next_stage(stages, amplitudes_)) {
         const Stage<M>& stage = stages[core::at(position_.stage)];
+        if (position_.needless(stage, report)) continue;
         take_laws(stage);
         while (!position_.stage_over) {
             const auto gave_up = [&](const FailedAttempt& attempt) {

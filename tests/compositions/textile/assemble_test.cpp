@@ -7,6 +7,7 @@
 #include <fibrant/compositions/textile/audit.hpp>
 #include <fibrant/compositions/textile/braids.hpp>
 #include <fibrant/compositions/textile/imported.hpp>
+#include <fibrant/compositions/textile/knits.hpp>
 #include <fibrant/compositions/textile/load_cases.hpp>
 #include <fibrant/compositions/textile/periodic.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
@@ -73,8 +74,15 @@ TEST_CASE(
                                  .weft = yarn(7)});
     CHECK(assemble(weave, {}).assembly.orders().size() == 3 * 4 * 2);
     const Textile braid = flat_braid({.yarns = 3, .half_width = 0.8, .period = 8.0, .type = yarn(7)});
-    CHECK(assemble(braid, {}).assembly.orders().size() == 3);  // of three strands each lies above the next, for good
-    const Textile four = flat_braid({.yarns = 4, .half_width = 1.2, .period = 12.0, .type = yarn(7)});
+    CHECK(assemble(braid, {}).assembly.orders().empty());  // drawn apart: each fibre is on its side
+    // Drawn lower, fibres of yarns lie between each other.
+    const auto lower = [](Textile textile) {
+        for (Path& path : textile.paths)
+            path.curve = [curve = path.curve](double t) { return Vec3(curve(t).cwiseProduct(Vec3(1.0, 1.0, 0.3))); };
+        return textile;
+    };
+    CHECK(assemble(lower(braid), {}).assembly.orders().size() == 3);  // of three strands each lies above the next, for good
+    const Textile four = lower(flat_braid({.yarns = 4, .half_width = 1.2, .period = 12.0, .type = yarn(7)}));
     const auto placed = assemble(four, {}).assembly.orders();
     CHECK(std::any_of(placed.begin(), placed.end(), [](const scene::ForcedOrder& order) { return order.placed(); }));
     for (const scene::ForcedOrder& order : placed)  // groups are numbered as yarns
@@ -85,6 +93,43 @@ TEST_CASE(
                        std::abs(crossing.at_above / length - order.at_above) < 1e-9;
             }));
     CHECK(assemble(flat_braid({.yarns = 3, .half_width = 0.18, .period = 1.8, .type = yarn(1)}), {}).assembly.orders().empty());
+}
+
+TEST_CASE("three fibres of a yarn touch each other, four lie in a square: in the least circle that holds them") {
+    const double pitch = 2.0 * 0.05 * 1.02;
+    for (const auto& [fibres, circle] : {std::pair{Index{3}, 1.0 / std::sqrt(3.0)}, {Index{4}, 1.0 / std::sqrt(2.0)}}) {
+        const std::vector<Eigen::Vector2d> centres = section_of(yarn(fibres));
+        REQUIRE(core::count(centres) == fibres);
+        Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+        for (const Eigen::Vector2d& centre : centres) {
+            sum += centre;
+            CHECK(centre.norm() == test::near(circle * pitch, 1e-12));
+        }
+        CHECK(sum.norm() < 1e-12 * pitch);
+    }
+    // Side by side, on each other, and going round each other.
+    CHECK(half_thickness(yarn(2)) == test::near(0.05, 1e-12));
+    CHECK(half_thickness(yarn(4)) == test::near(0.05 + 0.5 * pitch, 1e-12));
+    YarnType twisted = yarn(2);
+    twisted.twist = 1.0;
+    CHECK(half_thickness(twisted) == test::near(0.05 + 0.5 * pitch, 1e-12));
+}
+
+TEST_CASE("sections of yarns lie level however their paths bend, and fibres drawn apart cross as yarns do, without an order") {
+    for (const Index fibres : {2, 3, 4}) {
+        CAPTURE(fibres);
+        WeftKnit plain{
+            .courses = 3, .wales = 3, .wale_spacing = 1.6, .course_spacing = 1.2, .loop_height = 1.0, .type = yarn(fibres)};
+        const Textile knit = weft_knit(plain);
+        const Assembled assembled = assemble(knit, {});
+        const std::vector<Line> drawn = drawn_lines(assembled);
+        CHECK(audit_topology(knit, assembled, drawn, drawn).clean());
+        CHECK(assembled.assembly.orders().empty());
+        // Of a pair side by side neither lies above the other, anywhere: but for what splines miss between their points.
+        if (fibres == 2)
+            for (std::size_t k = 0; k < drawn[0].points.size(); ++k)
+                CHECK(std::abs(drawn[0].points[k].z() - drawn[1].points[k].z()) < 1e-3 * 0.05);
+    }
 }
 
 TEST_CASE("the audit of crossings sees two fibres that changed places, one that is gone, and the drawn state as right") {

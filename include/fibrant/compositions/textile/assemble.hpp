@@ -2,8 +2,7 @@
 #pragma once
 /// @file A textile as a scene: fibres along paths, what holds their ends, orders of yarns of several fibres, and the cell.
 
-#include <fibrant/compositions/textile/textile.hpp>
-#include <fibrant/compositions/weave/packing.hpp>
+#include <fibrant/compositions/textile/yarn_fibres.hpp>
 #include <fibrant/scene/assembly.hpp>
 
 #include <algorithm>
@@ -41,26 +40,6 @@ struct Assembled {
 };
 
 namespace detail {
-/// Lines of the fibres of a yarn. Rows of its packing lie across `upward`, along the second director.
-inline std::vector<scene::Curve> fibre_curves(const Textile& textile, Index p) {
-    const Path& path = textile.paths[core::at(p)];
-    const YarnType& type = textile.type_of(p);
-    if (type.fibres == 1) return {path.curve};
-    const weave::Packing packing = weave::compact_packing(type.fibres, type.radius, type.aspect, type.packing_gap);
-    const double length = scene::length_of(path.curve), turns = type.twist * length;
-    const auto samples = std::max<Index>(64, static_cast<Index>(length / type.radius));
-    const bool repeats = path.kind != PathKind::open;
-    if (repeats)
-        core::require(std::abs(turns - std::round(turns)) < 1e-9, textile.label(p) + ": turns of its twist over its length",
-                      turns, "whole, of a path that repeats");
-    std::vector<scene::Curve> curves;
-    for (const Eigen::Vector2d& centre : packing.centres)
-        // g_1 is the direction of the thickness: across it lies -g_2.
-        curves.push_back(scene::beside(path.curve, centre.y(), -centre.x(), turns, samples, path.upward,
-                                       repeats ? scene::SplineEnds::repeating : scene::SplineEnds::parabolic));
-    return curves;
-}
-
 /// Angle by which a curve turns in all, by chords [radian].
 inline double turning(const scene::Curve& curve, Index chords) {
     double sum = 0.0;
@@ -192,12 +171,14 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
     scene::AverageConnection middle;
     std::vector<Index> carrier(textile.lattice.size(), -1);
     std::vector<Index> group;
+    std::vector<std::vector<scene::Curve>> lines;
     for (Index p = 0; p < core::count(textile.paths); ++p) {
         const Path& path = textile.paths[core::at(p)];
         const YarnType& type = textile.type_of(p);
         group.push_back(assembly.add_group(path.name.empty() ? "yarn " + std::to_string(p) : path.name));
         answer.first_fibre.push_back(core::count(answer.path_of));
-        const std::vector<scene::Curve> curves = detail::fibre_curves(textile, p);
+        lines.push_back(detail::fibre_curves(textile, p));
+        const std::vector<scene::Curve>& curves = lines.back();
         const double path_length = scene::length_of(path.curve, 128);
         // Steep helices turn by more than elements of a given length can follow: their fibres would go through each other.
         const auto by_length = static_cast<Index>(std::ceil(path_length / (fineness.element_over_radius * type.radius)));
@@ -270,23 +251,35 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
     answer.first_fibre.push_back(core::count(answer.path_of));
     answer.longest_spacing = detail::crossing_spacing(textile);
 
-    // One order a pair; pairs that cross both ways have one a crossing, with its places.
+    // One order a pair; pairs that cross both ways have one a crossing, with its places. Pairs that cross more than once and
+    // whose fibres do so rightly as they are drawn have none: they keep their sides, and touch beside crossings as well.
     std::vector<Crossing> orders;
     for (const Crossing& crossing : textile.crossings)
         if (!textile.view.radial && crossing.above != crossing.below &&
             (textile.type_of(crossing.above).fibres > 1 || textile.type_of(crossing.below).fibres > 1))
             orders.push_back(crossing);
-    const auto pair_of = [](const Crossing& crossing) { return std::pair{crossing.above, crossing.below}; };
+    using Pair = std::pair<Index, Index>;
+    const auto pair_of = [](const Crossing& crossing) { return Pair{crossing.above, crossing.below}; };
     std::stable_sort(orders.begin(), orders.end(), [&](const Crossing& a, const Crossing& b) { return pair_of(a) < pair_of(b); });
-    const auto crosses = [&](const std::pair<Index, Index>& pair) {
+    const auto crosses = [&](const Pair& pair) {
         const auto at = std::lower_bound(orders.begin(), orders.end(), pair,
                                          [&](const Crossing& a, const auto& wanted) { return pair_of(a) < wanted; });
         return at != orders.end() && pair_of(*at) == pair;
     };
+    std::vector<Pair> all, again;  // pairs of each crossing, and those that cross more than once
+    for (const Crossing& crossing : orders)
+        all.emplace_back(std::min(crossing.above, crossing.below), std::max(crossing.above, crossing.below));
+    std::sort(all.begin(), all.end());
+    for (std::size_t k = 1; k < all.size(); ++k)
+        if (all[k] == all[k - 1] && (again.empty() || again.back() != all[k])) again.push_back(all[k]);
+    std::vector<Pair> right;
+    if (!again.empty()) right = detail::crossing_as_drawn(textile, again, lines);
     for (std::size_t k = 0; k < orders.size(); ++k) {
         const auto [above, below] = pair_of(orders[k]);
+        const Pair pair{std::min(above, below), std::max(above, below)};
         const bool both_ways = crosses({below, above});
         if (!both_ways && k > 0 && pair_of(orders[k - 1]) == pair_of(orders[k])) continue;
+        if (std::binary_search(right.begin(), right.end(), pair)) continue;
         scene::ForcedOrder order{group[core::at(above)], group[core::at(below)], textile.view.axis.normalized()};
         if (both_ways) {
             const auto part = [&](double at, Index path) {
@@ -297,6 +290,38 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
         assembly.force_order(order);
     }
     return answer;
+}
+
+/// Refuses ends of different yarns that lie in each other and keep their places: nothing can part them.
+/// @param allowed  how deep fibres may be in each other at the end [length], >= 0
+/// @throws std::invalid_argument naming the two yarns
+inline void require_ends_apart(const Textile& textile, const Assembled& assembled, double allowed) {
+    struct End {
+        Vec3 place;
+        Index yarn;
+    };
+    std::vector<End> ends;
+    for (std::size_t f = 0; f < assembled.path_of.size(); ++f) {
+        const Index p = assembled.path_of[f];
+        const Path& path = textile.paths[core::at(p)];
+        const scene::FibreSpecification& fibre = assembled.assembly.fibres()[f];
+        const scene::Curve& curve = fibre.start ? fibre.start : fibre.curve;
+        if (path.kind != PathKind::open || path.ends == Ends::free || !curve) continue;
+        ends.push_back({curve(0.0), p}), ends.push_back({curve(1.0), p});
+    }
+    std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.place.x() < b.place.x(); });
+    double widest = 0.0;
+    for (const YarnType& type : textile.types) widest = std::max(widest, 2.0 * type.radius);
+    for (std::size_t i = 0; i < ends.size(); ++i)
+        for (std::size_t j = i + 1; j < ends.size() && ends[j].place.x() - ends[i].place.x() < widest; ++j) {
+            if (ends[i].yarn == ends[j].yarn) continue;
+            const double apart = (ends[j].place - ends[i].place).norm(),
+                         touching = textile.type_of(ends[i].yarn).radius + textile.type_of(ends[j].yarn).radius;
+            core::require(apart >= touching - allowed,
+                          textile.name + ": distance of ends of fibres of " + textile.label(ends[i].yarn) + " and " +
+                              textile.label(ends[j].yarn),
+                          apart, ">= " + core::text(touching - allowed) + ", since they keep their places: yarns further apart");
+        }
 }
 
 }  // namespace fibrant::compositions::textile

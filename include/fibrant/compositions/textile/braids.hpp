@@ -132,7 +132,7 @@ inline Textile drawn(const FlatBraid& braid) {
             const bool right_above = (column / braid.over) % 2 == 0;
             return one_above((crossing.along_first.x() > 0.0) == right_above);
         },
-        braid.height_over_radius * half_width(braid.type));
+        crossing_height(braid.type, braid.height_over_radius));
     along.grip(textile);
     return textile;
 }
@@ -234,7 +234,7 @@ inline Textile drawn(const TubularBraid& braid) {
             const double high = braid.axials && rest == 1 ? 2.0 : 1.0;
             return rest < braid.over ? std::array{high, -high} : std::array{-high, high};
         },
-        braid.height_over_radius* half_width(braid.type));
+        crossing_height(braid.type, braid.height_over_radius));
     along.grip(textile);
     return textile;
 }

@@ -2,7 +2,7 @@
 #pragma once
 /// @file Where paths cross as seen along an axis or from a line outwards, and which is above: found from their points.
 
-#include <fibrant/compositions/textile/textile.hpp>
+#include <fibrant/compositions/textile/yarn_section.hpp>
 
 #include <Eigen/Geometry>
 

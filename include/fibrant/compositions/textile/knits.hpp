@@ -4,6 +4,7 @@
 
 #include <fibrant/compositions/textile/crossings.hpp>
 #include <fibrant/compositions/textile/interlaced.hpp>
+#include <fibrant/compositions/textile/yarn_fibres.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +49,7 @@ struct WeftKnit {
         core::require_positive("WeftKnit.height_over_radius", height_over_radius);
         type.validate();
         // Beside each other lie courses, and legs of one course: an eighth of a wale and the bulge beside the middle of a foot.
-        const double w = half_width(type);
+        const double w = std::max(half_width(type), half_breadth(type));
         core::require(course_spacing >= 2.0 * w, "WeftKnit.course_spacing", course_spacing,
                       ">= " + core::text(2.0 * w) + ", the thickness of the yarn");
         if (std::isnan(bulge)) {
@@ -84,8 +85,18 @@ Textile looped(const Knit& knit, Textile (*draw)(const Knit&), const std::string
             });
         return textile;
     };
+    const auto require_fibres = [&](const Textile& textile) {
+        if (knit.type.fibres == 1 || fibres_cross_rightly(textile)) return;
+        Knit thinner = knit;
+        constexpr double step = 0.95, thinnest = 0.2;
+        while ((thinner.type.radius *= step) > thinnest * knit.type.radius && !fibres_cross_rightly(draw(thinner))) continue;
+        core::refuse(field + ", " + fields + ": radius of the fibres of a yarn", core::text(knit.type.radius),
+                     "<= " + core::text(thinner.type.radius) + ", for fibres to cross as their yarns do");
+    };
     constexpr double tallest = 8.0;  // over the least height: a loop that is taller crosses those beyond its neighbours
-    return laid(knit, &Knit::loop_height, field, bend, std::move(lengths), knit.type, crossed, tallest * low);
+    Textile textile = laid(knit, &Knit::loop_height, field, bend, std::move(lengths), knit.type, crossed, tallest * low);
+    require_fibres(textile);
+    return textile;
 }
 
 /// A weft knit as it is drawn, however often it crosses itself.
@@ -94,7 +105,7 @@ inline Textile drawn(const WeftKnit& knit) {
     textile.name = "weft knit";
     textile.types = {knit.type};
     const double w = knit.wale_spacing, c = knit.course_spacing, hh = knit.loop_height, a = knit.width(), tail = 0.75 * w;
-    const double h = knit.height_over_radius * half_width(knit.type);
+    const double h = crossing_height(knit.type, knit.height_over_radius);
     constexpr Index per_loop = 32;
     for (Index k = 0; k < knit.courses; ++k) {
         Path path;
@@ -176,7 +187,7 @@ struct Tricot {
         core::require_positive("Tricot.height_over_radius", height_over_radius);
         type.validate();
         // Feet lie beside each other, 0.14 of the spacing beside a needle.
-        const double w = half_width(type);
+        const double w = std::max(half_width(type), half_breadth(type));
         core::require(needle_spacing >= w / 0.14, "Tricot.needle_spacing", needle_spacing,
                       ">= " + core::text(w / 0.14) + ", for feet of loops to lie beside each other");
         core::require(course_spacing >= 2.0 * w, "Tricot.course_spacing", course_spacing,
@@ -191,7 +202,7 @@ inline Textile drawn(const Tricot& knit) {
     textile.name = "tricot";
     textile.types = {knit.type};
     const double w = knit.needle_spacing, c = knit.course_spacing, top = knit.loop_height,
-                 h = knit.height_over_radius * half_width(knit.type);
+                 h = crossing_height(knit.type, knit.height_over_radius);
     const double neck = 0.14 * w, head = 0.30 * w;
     for (Index m = 0; m < knit.needles; ++m) {
         Path path;

@@ -65,7 +65,7 @@ inline Textile plied(const Plied& rope) {
     Textile textile;
     textile.name = rope.strands > 1 ? "rope" : "plied yarn";
     textile.types = {rope.type};
-    const double thick = half_width(rope.type), a = rope.lay_radius(rope.plies, thick, rope.pitch);
+    const double thick = outermost(rope.type), a = rope.lay_radius(rope.plies, thick, rope.pitch);
     core::require(2.0 * std::numbers::pi * a / rope.pitch < 2.0, "Plied.pitch", rope.pitch,
                   "> " + core::text(rope.least_pitch(rope.plies, thick)) + ", or plies lie at more than 63 degrees");
     const double b = rope.strands > 1 ? rope.lay_radius(rope.strands, a + thick, rope.strand_pitch) : 0.0;
@@ -215,7 +215,7 @@ inline Textile drawn(const Net& given) {
             const bool left_above = crossing.place.y() < turn;
             return one_above((crossing.first < crossing.second) == left_above);
         },
-        given.height_over_radius * half_width(given.type));
+        crossing_height(given.type, given.height_over_radius));
     return textile;
 }
 }  // namespace detail

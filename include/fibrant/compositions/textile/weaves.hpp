@@ -321,7 +321,7 @@ inline Textile drawn(const TriaxialWeave& weave) {
             const Index a = family[core::at(crossing.first)], b = family[core::at(crossing.second)];
             return one_above((a + 1) % 3 == b);
         },
-        weave.height_over_radius * half_width(weave.type));
+        crossing_height(weave.type, weave.height_over_radius));
     return textile;
 }
 }  // namespace detail
