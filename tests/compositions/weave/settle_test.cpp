@@ -202,26 +202,4 @@ TEST_CASE("fibres of a tow that crosses count once, and its pull is that of its 
     CHECK(loading.damping_of_fibres.back() == 1.0);
 }
 
-// Two fibres on each other, held at all nodes: nothing can part them.
-TEST_CASE("fibres that are held in each other are given up after some tens of increments, by name, depth and place") {
-    constexpr double r = 0.05, deep = 1.2 * r;
-    scene::Assembly assembly;
-    for (const bool upper : {false, true}) {
-        scene::FibreSpecification fibre;
-        fibre.from = Vec3(0.0, upper ? 2.0 * r - deep : 0.0, 0.0), fibre.to = fibre.from + Vec3(1.0, 0.0, 0.0);
-        fibre.section = scene::circular(r), fibre.material = {3000.0, 0.3}, fibre.elements = 4;
-        const Index f = assembly.add(fibre);
-        for (int node = 0; node <= 8; ++node) assembly.hold_position({f, 0.125 * node});
-        assembly.hold_axial_rotation(scene::first_end(f));
-    }
-    simulation::SettleParameters settle;
-    simulation::Simulator<Model> simulator(assembly, simulation::settling_parameters<Model>(r, settle));
-    const simulation::Report report = simulator.run(simulation::settling<Model>(assembly, settle));
-    CHECK_FALSE(report.converged);
-    CHECK(report.increments.size() < 100);  // of 250 that a separation may take
-    CAPTURE(report.reason);
-    for (const char* said : {"parted nothing", "fibre 0 and fibre 1 are 0.06", "1.2 radii", ", in elements"})
-        CHECK(report.reason.find(said) != std::string::npos);
-}
-
 }  // namespace settle_test
