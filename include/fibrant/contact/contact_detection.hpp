@@ -234,8 +234,8 @@ double clearance(const beam::Mesh<B>& mesh, const Vector& state, const ForcedOrd
            mesh.fibre(zone.span.fibre_j).section.radius();
 }
 
-/// Pairs in a forced order that are further apart than this have no zone: thick tows have a hundred thousand pairs a crossing, of
-/// which half are in order from the start, and all but those that face each other in the end [radii].
+/// Pairs in a forced order that are further apart than this have no zone: two thick bundles that cross have a hundred thousand
+/// pairs, of which half are in order from the start, and all but those that face each other in the end [radii].
 inline constexpr double clear_over_radius = 2.0;
 
 /// Zones of a state, sorted by fibres and abscissa.
