@@ -89,7 +89,7 @@ bool run(const fabric_loading::LoadFile& load, example::SceneReader& file, examp
     return report.converged && audit.clean();
 }
 
-bool solve(example::SceneReader& file, example::Output& output) {
+bool solve_fabric_loading(example::SceneReader& file, example::Output& output) {
     const fabric_loading::LoadFile load = fabric_loading::read_load_file(file, output.scene.parent_path());
     return load.scene.own_laws() ? run<example::LoadedFibres<true>>(load, file, output)
                                  : run<example::LoadedFibres<false>>(load, file, output);
@@ -98,5 +98,5 @@ bool solve(example::SceneReader& file, example::Output& output) {
 }  // namespace
 
 example::Program fabric_loading_program() {
-    return {"fabric_loading", "Loads a settled woven fabric through bodies at its edges.", solve};
+    return {"fabric_loading", "Loads a settled woven fabric through bodies at its edges.", solve_fabric_loading};
 }

@@ -77,7 +77,7 @@ void require_open(const textile::Scene& scene, const example::SceneReader& file)
         file.refuse("textile", "generator", "of open yarns that do not repeat: rings and cells are not shared among ranks");
 }
 
-bool solve(example::SceneReader& file, example::Output& output) {
+bool solve_textile(example::SceneReader& file, example::Output& output) {
     const textile::Scene scene = textile::read_scene(file);
     if (example::run_by_ranks) require_open(scene, file);
     if (scene.generator == "file" && !scene.textile.crossings.empty()) {
@@ -94,5 +94,5 @@ bool solve(example::SceneReader& file, example::Output& output) {
 }  // namespace
 
 example::Program textile_program() {
-    return {"textile", "Settles a textile of any kind from the paths of its yarns, and audits it.", solve};
+    return {"textile", "Settles a textile of any kind from the paths of its yarns, and audits it.", solve_textile};
 }

@@ -99,7 +99,7 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     return summary.converged && summary.clean;
 }
 
-bool solve(example::SceneReader& file, example::Output& output) {
+bool solve_weave(example::SceneReader& file, example::Output& output) {
     const weave::Scene scene = weave::read_fabric(file, [] {});
     if (scene.own_laws()) return settle<Weave<law::ShapedFriction, material::Elastic>>(scene, file, output);
     return scene.settle.friction_coefficient > 0.0 ? settle<Weave<law::RegularisedCoulomb>>(scene, file, output)
@@ -109,5 +109,5 @@ bool solve(example::SceneReader& file, example::Output& output) {
 }  // namespace
 
 example::Program weave_program() {
-    return {"weave", "Finds the initial state of a woven fabric from flat, interpenetrating tows.", solve};
+    return {"weave", "Finds the initial state of a woven fabric from flat, interpenetrating tows.", solve_weave};
 }

@@ -5,9 +5,11 @@
 
 #include <cmath>
 
-using namespace fibrant::beam;
+using namespace fibrant;
 
 namespace lagrange_test {
+
+using namespace fibrant::beam;
 
 template <int Nodes>
 double interpolated(const std::array<double, Nodes>& weights, int power) {

@@ -14,7 +14,7 @@ namespace fibrant::test {
 
 /// @param allowed  penetration [length]
 template <simulation::Model M>
-simulation::ModelParameters<M> tight_parameters(double allowed) {
+simulation::ModelParameters<M> pressed_parameters(double allowed) {
     simulation::ModelParameters<M> parameters;
     parameters.normal.regularisation_depth = 0.1 * allowed;
     parameters.contact.stiffness.allowed_penetration = allowed;

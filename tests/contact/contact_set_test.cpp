@@ -587,6 +587,36 @@ TEST_CASE("a forced order gives the normal wherever fibres are, and every crossi
     CHECK(crossings == 16);
 }
 
+TEST_CASE("a pair in a forced order has a zone however deep it is on the wrong side, and none where it is clear by two radii") {
+    struct Case {
+        double clear;
+        Index zones, elements;
+    };
+    for (const Case& known : {Case{-30.0, 1, 1}, {-1.0, 1, 1}, {1.9, 1, 0}, {2.1, 0, 0}, {30.0, 0, 0}}) {
+        const double clear = known.clear;
+        CAPTURE(clear);
+        scene::Assembly assembly;
+        const Index one = assembly.add_group("one"), other = assembly.add_group("other");
+        for (const bool upper : {false, true}) {
+            const double height = upper ? (2.0 + clear) * r : 0.0;
+            scene::FibreSpecification fibre = test::curved_fibre(
+                [upper, height](double t) {
+                    const double along = 0.6 * (t - 0.5);
+                    return upper ? Vec3(0.1, along, height) : Vec3(along, 0.1, height);
+                },
+                r, 8);
+            fibre.group = upper ? one : other;
+            assembly.add(fibre);
+        }
+        assembly.force_order({one, other, Vec3::UnitZ()});
+        const Mesh mesh(assembly, Beam{});
+        const auto [elements, zones] = elements_by(assembly, mesh, proximity::GridSearch{{}}, true);
+        CHECK(core::count(zones) == known.zones);
+        CHECK(core::count(elements) == known.elements);
+        if (!elements.empty()) CHECK(elements.front().gap(mesh.rest_state()) == test::near(clear * r, 1e-12));
+    }
+}
+
 TEST_CASE("the order in which fibres are named changes no force") {
     const std::vector<scene::FibreSpecification> fibres = some_fibres();
     const std::vector<std::size_t> order{3, 0, 5, 2, 4, 1};

@@ -83,7 +83,7 @@ Vector forces(const Tools& tools, Index size) {
 }
 
 simulation::ModelParameters<Pressing> parameters(double mu) {
-    auto all = test::tight_parameters<Pressing>(1e-3 * r);
+    auto all = test::pressed_parameters<Pressing>(1e-3 * r);
     all.friction = {.friction_coefficient = mu, .reversible_displacement = 0.02 * r};
     // As it is given, or reactions would creep where nothing moves.
     all.contact.stiffness.initial_fraction = all.contact.stiffness.floor_fraction = all.contact.stiffness.cap_fraction = 10.0;
@@ -504,7 +504,7 @@ TEST_CASE("a tool that is not one, and a scene whose model knows no tools, are r
     assembly.add(straight_fibre({0, 0, r}, {0.5, 0, r}, r, 6));
     assembly.add(plane(Vec3::Zero(), Vec3::UnitZ()));
     CHECK(test::refusal([&] {
-              simulation::Simulator<test::Smooth>(assembly, test::tight_parameters<test::Smooth>(r));
+              simulation::Simulator<test::Smooth>(assembly, test::pressed_parameters<test::Smooth>(r));
           }).find("assembly.tools = 1") == 0);
 }
 

@@ -2,6 +2,7 @@
 #include "distributed/exchange_contract.hpp"
 #include "refusal.hpp"
 #include "support/fabric_system.hpp"
+#include "support/least_view.hpp"
 #include "support/synthetic_system.hpp"
 
 #include <fibrant/distributed/cut_report.hpp>
@@ -32,10 +33,10 @@ Solved solve(const test::FabricSystem& system, const distributed::Subdomains::Pa
     typename distributed::SubdomainPcg<E>::Parameters parameters;
     parameters.levels.cut = cut, parameters.levels.exchange = exchange;
     distributed::SubdomainPcg<E> pcg(parameters);
-    pcg.analyse(system);
+    pcg.analyse(test::least(system));
     Solved solved;
-    if (pcg.prepare(system) != solver::SolveStatus::converged) return solved;
-    solved.report = pcg.solve(system, test::pulled_middles(system.layout()), tolerance, solved.x);
+    if (pcg.prepare(test::least(system)) != solver::SolveStatus::converged) return solved;
+    solved.report = pcg.solve(test::least(system), test::pulled_middles(system.layout()), tolerance, solved.x);
     return solved;
 }
 
@@ -153,15 +154,15 @@ TEST_CASE("held vectors keep what they are told, in whole or in part, on any num
         Vector b(system.layout().unknowns()), left(b.size());
         for (Index k = 0; k < b.size(); ++k) b[k] = 0.001 * static_cast<double>((7919 * k) % 1000) - 0.5;
         distributed::SubdomainPcg<> alone({.levels = {.cut = {.parts = 6}}});
-        alone.analyse(system);
+        alone.analyse(test::least(system));
         try {
-            alone.prepare(system);
+            alone.prepare(test::least(system));
         } catch (const std::invalid_argument&) {  // a chain that touches itself
             continue;
         }
         ++solved_systems;
         Vector x;
-        const solver::SolveReport report = alone.solve(system, b, 1e-8, x);
+        const solver::SolveReport report = alone.solve(test::least(system), b, 1e-8, x);
         CHECK(report.status == solver::SolveStatus::converged);
         system.apply(x, left);
         left = b - left;
@@ -169,9 +170,9 @@ TEST_CASE("held vectors keep what they are told, in whole or in part, on any num
         distributed::run_on_threads(3, [&](const auto& own) {
             distributed::SubdomainPcg<distributed::ThreadRank> shared({.levels = {.cut = {.parts = 6}, .exchange = own}});
             Vector same;
-            shared.analyse(system);
-            shared.prepare(system);
-            shared.solve(system, b, 1e-8, same);
+            shared.analyse(test::least(system));
+            shared.prepare(test::least(system));
+            shared.solve(test::least(system), b, 1e-8, same);
             CHECK(same == x);
         });
     }
@@ -197,10 +198,10 @@ TEST_CASE("what ranks cannot share yet is refused by name") {
     const test::FabricSystem system(fabric);
     OtherLayout closed{system.layout(), &system};
     closed.own.chains[1].closed = true;
-    CHECK(test::refusal([&] { Pcg().analyse(closed); }).starts_with("SubdomainLevels.system"));
+    CHECK(test::refusal([&] { Pcg().analyse(test::least(closed)); }).starts_with("SubdomainLevels.system"));
     closed.own = system.layout();
     closed.own.ties.push_back({});
-    CHECK(test::refusal([&] { Pcg().analyse(closed); }).starts_with("SubdomainLevels.system"));
+    CHECK(test::refusal([&] { Pcg().analyse(test::least(closed)); }).starts_with("SubdomainLevels.system"));
     CHECK(test::refusal([] { Pcg({.levels = {.cut = {.parts = 0}}}); }).starts_with("Subdomains.parts"));
     CHECK(test::refusal([] { Pcg({.levels = {.cut = {.parts = 4097}}}); }).starts_with("Subdomains.parts"));
 }

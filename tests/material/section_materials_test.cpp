@@ -17,12 +17,12 @@
 #include <vector>
 
 using namespace fibrant;
-using beam::Drive;
-using beam::SectionStrains;
-namespace strain = beam::strain;
 
 namespace section_materials_test {
 
+using beam::Drive;
+using beam::SectionStrains;
+namespace strain = beam::strain;
 using test::refusal;
 const scene::ElasticMaterial isotropic{1000.0, 0.3};
 const scene::ElasticMaterial carbon{230.0, 0.2, {15.0, 0.3, 15.0}};

@@ -82,9 +82,9 @@ TEST_CASE_TEMPLATE("factors of chains solve closed ones, in every lane", B, beam
             Vector b = random(system.layout().unknowns(), 5), x;
             scene::project_free(system.layout(), b);
             const auto iterations = [&](auto& strategy) {
-                strategy.analyse(system);
-                REQUIRE(strategy.prepare(system) == solver::SolveStatus::converged);
-                const solver::SolveReport report = strategy.solve(system, b, 1e-10, x);
+                strategy.analyse(assembly::seen(system));
+                REQUIRE(strategy.prepare(assembly::seen(system)) == solver::SolveStatus::converged);
+                const solver::SolveReport report = strategy.solve(assembly::seen(system), b, 1e-10, x);
                 CHECK(report.status == solver::SolveStatus::converged);
                 Vector product(b.size());
                 system.apply(x, product);

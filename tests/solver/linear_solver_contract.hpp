@@ -2,6 +2,7 @@
 #pragma once
 /// @file What every linear solver owes, as functions.
 
+#include "support/least_view.hpp"
 #include "support/synthetic_system.hpp"
 
 #include <fibrant/solver/linear_solver.hpp>
@@ -75,14 +76,14 @@ inline double residual_of(const SyntheticSystem& system, const Vector& b, const 
     return std::sqrt(above / below);
 }
 
-template <solver::LinearSolver<SyntheticSystem> Solver>
+template <solver::LinearSolver<LeastView> Solver>
 solver::SolveReport solve(Solver& solver, const SyntheticSystem& system, const Vector& b, double tolerance, Vector& x) {
-    solver.analyse(system);
-    solver.prepare(system);
-    return solver.solve(system, b, tolerance, x);
+    solver.analyse(least(system));
+    solver.prepare(least(system));
+    return solver.solve(least(system), b, tolerance, x);
 }
 
-template <solver::LinearSolver<SyntheticSystem> Solver>
+template <solver::LinearSolver<LeastView> Solver>
 void check_reaches_solution(Solver solver) {
     for (const SyntheticSystem& system : solvable_systems()) {
         const Matrix a = dense_matrix(system);
@@ -91,9 +92,9 @@ void check_reaches_solution(Solver solver) {
         for (const double tolerance : {1e-2, 1e-6, 1e-10}) {
             CAPTURE(tolerance);
             Vector x = Vector::Constant(3, 1e30);  // neither size nor content of x matters
-            solver.analyse(system);
-            REQUIRE(solver.prepare(system) == solver::SolveStatus::converged);
-            const solver::SolveReport report = solver.solve(system, b, tolerance, x);
+            solver.analyse(least(system));
+            REQUIRE(solver.prepare(least(system)) == solver::SolveStatus::converged);
+            const solver::SolveReport report = solver.solve(least(system), b, tolerance, x);
             REQUIRE(report.status == solver::SolveStatus::converged);
             REQUIRE(x.size() == b.size());
             CHECK(report.residual <= tolerance);
@@ -107,7 +108,7 @@ void check_reaches_solution(Solver solver) {
             CHECK(report.curvature > 0.0);
         }
         Vector x;
-        const solver::SolveReport nothing = solver.solve(system, Vector::Zero(b.size()), 1e-6, x);
+        const solver::SolveReport nothing = solver.solve(least(system), Vector::Zero(b.size()), 1e-6, x);
         CHECK(nothing.status == solver::SolveStatus::converged);
         CHECK(nothing.residual == 0.0);
         CHECK(x.norm() == 0.0);
@@ -116,7 +117,7 @@ void check_reaches_solution(Solver solver) {
 }
 
 /// Held components of x are those of b, over the stiffness that A has there.
-template <solver::LinearSolver<SyntheticSystem> Solver>
+template <solver::LinearSolver<LeastView> Solver>
 void check_held(Solver solver) {
     for (const SyntheticSystem& system : solvable_systems()) {
         const Vector b = random_load(system.layout(), 5);
@@ -131,7 +132,7 @@ void check_held(Solver solver) {
     }
 }
 
-template <solver::LinearSolver<SyntheticSystem> Solver>
+template <solver::LinearSolver<LeastView> Solver>
 void check_indefinite(Solver solver) {
     // A compressed chain among sound ones, a system that is negative altogether, and one where only the coupling is wrong.
     const std::vector<scene::Chain> chains(3, {.nodes = 9, .vectors_per_node = 3, .reach = 2, .group = 0});
@@ -152,9 +153,9 @@ void check_indefinite(Solver solver) {
         for (const unsigned seed : {1u, 2u, 3u}) {
             const Vector b = random_load(system.layout(), seed);
             Vector x;
-            solver.analyse(system);
-            CHECK(solver.prepare(system) != solver::SolveStatus::not_finite);
-            const solver::SolveReport report = solver.solve(system, b, 1e-10, x);
+            solver.analyse(least(system));
+            CHECK(solver.prepare(least(system)) != solver::SolveStatus::not_finite);
+            const solver::SolveReport report = solver.solve(least(system), b, 1e-10, x);
             CHECK(report.status == solver::SolveStatus::indefinite);
             CHECK(report.curvature <= 0.0);
             REQUIRE(x.allFinite());
@@ -164,7 +165,7 @@ void check_indefinite(Solver solver) {
     }
 }
 
-template <solver::LinearSolver<SyntheticSystem> Solver>
+template <solver::LinearSolver<LeastView> Solver>
 void check_not_finite(Solver solver) {
     SyntheticSystem system = solvable_systems()[1];
     Vector b = random_load(system.layout(), 1), x;
@@ -174,13 +175,13 @@ void check_not_finite(Solver solver) {
     b[5] = 1.0;
     system.dense[2].stiffness(1, 1) = std::numeric_limits<double>::infinity();
     system.finish();
-    solver.analyse(system);
-    CHECK(solver.prepare(system) == solver::SolveStatus::not_finite);
-    CHECK(solver.solve(system, b, 1e-6, x).status == solver::SolveStatus::not_finite);
+    solver.analyse(least(system));
+    CHECK(solver.prepare(least(system)) == solver::SolveStatus::not_finite);
+    CHECK(solver.solve(least(system), b, 1e-6, x).status == solver::SolveStatus::not_finite);
     CHECK(x.allFinite());
 }
 
-template <solver::LinearSolver<SyntheticSystem> Solver>
+template <solver::LinearSolver<LeastView> Solver>
 void check_same_bits(const Solver& solver) {
     const std::vector<SyntheticSystem> systems = solvable_systems();
     const SyntheticSystem& system = systems[1];
@@ -191,8 +192,8 @@ void check_same_bits(const Solver& solver) {
     with_threads(2, [&] { solve(fresh, system, b, 1e-8, two); });
     solve(used, systems[2], random_load(systems[2].layout(), 4), 1e-8, after);
     solve(used, system, b, 1e-8, after);
-    used.solve(system, 2.0 * b, 1e-8, again);
-    used.solve(system, b, 1e-8, again);
+    used.solve(least(system), 2.0 * b, 1e-8, again);
+    used.solve(least(system), b, 1e-8, again);
     CHECK(one == two);
     CHECK(one == after);
     CHECK(one == again);
@@ -202,24 +203,24 @@ void check_same_bits(const Solver& solver) {
 }
 
 /// Contact elements come to carry force, or cease to, between two preparations.
-template <solver::LinearSolver<SyntheticSystem> Solver>
+template <solver::LinearSolver<LeastView> Solver>
 void check_changed_terms(Solver solver) {
     const SyntheticSystem all = solvable_systems()[1];
     SyntheticSystem few = all;
     few.points.resize(few.points.size() / 4);
     few.finish();
-    solver.analyse(few);
+    solver.analyse(least(few));
     const Vector b = random_load(all.layout(), 2);
     for (const SyntheticSystem* system : std::initializer_list<const SyntheticSystem*>{&few, &all, &few}) {
         Vector x;
-        CHECK(solver.prepare(*system) == solver::SolveStatus::converged);
-        CHECK(solver.solve(*system, b, 1e-8, x).status == solver::SolveStatus::converged);
+        CHECK(solver.prepare(least(*system)) == solver::SolveStatus::converged);
+        CHECK(solver.solve(least(*system), b, 1e-8, x).status == solver::SolveStatus::converged);
         CHECK(residual_of(*system, b, x) < 2e-8);
     }
 }
 
 /// All that a linear solver owes.
-template <solver::LinearSolver<SyntheticSystem> Solver>
+template <solver::LinearSolver<LeastView> Solver>
 void check_linear_solver(const Solver& solver) {
     check_reaches_solution(solver);
     check_held(solver);

@@ -35,9 +35,9 @@ int iterations(const assembly::ChainSystem<beam::DirectorBeam<>>& system, const 
     solver::TwoLevelPcg solver;
     Vector b = load, x;
     scene::project_free(system.layout(), b);
-    solver.analyse(system);
-    REQUIRE(solver.prepare(system) == solver::SolveStatus::converged);
-    const solver::SolveReport report = solver.solve(system, b, tolerance, x);
+    solver.analyse(assembly::seen(system));
+    REQUIRE(solver.prepare(assembly::seen(system)) == solver::SolveStatus::converged);
+    const solver::SolveReport report = solver.solve(assembly::seen(system), b, tolerance, x);
     CHECK(report.status == solver::SolveStatus::converged);
     return report.iterations;
 }

@@ -26,7 +26,7 @@ struct HeldTool : Held {
 
 template <simulation::Model M>
 simulation::ModelParameters<M> parameters(double fraction, double largest) {
-    auto all = test::tight_parameters<Smooth>(0.05 * r);
+    auto all = test::pressed_parameters<Smooth>(0.05 * r);
     simulation::ModelParameters<M> own;
     own.contact = all.contact, own.iteration = all.iteration;
     own.iteration.multiplier_limit = 40;

@@ -105,7 +105,7 @@ private:
     simulation::Simulator<M> simulator_;
 };
 
-const auto smooth = test::tight_parameters<Smooth>(1e-3 * r);
+const auto smooth = test::pressed_parameters<Smooth>(1e-3 * r);
 
 TEST_CASE("two crossed fibres push each other apart as the rods of the reference do") {
     for (const Case& c : cases) {
@@ -137,7 +137,7 @@ TEST_CASE("contact on centrelines needs no relief: the force of the reference is
         CAPTURE(c.length);
         CAPTURE(c.strain);
         CAPTURE(c.approach);
-        Crossing<Centred> crossing(c, 90.0, Pinch::kept, test::tight_parameters<Centred>(1e-3 * r));
+        Crossing<Centred> crossing(c, 90.0, Pinch::kept, test::pressed_parameters<Centred>(1e-3 * r));
         REQUIRE(crossing.press());
         const double force = crossing.support(0).z();
         std::printf("centrelines: L/r %3.0f, stretch %.3f, u %.5f: error %+.2e, lost %.2e r\n", c.length / r, c.strain,
@@ -159,7 +159,7 @@ TEST_CASE("the angle of the crossing changes nothing") {
 
 TEST_CASE("friction takes no part where symmetry leaves nothing to slide") {
     const Case& c = cases[4];
-    simulation::ModelParameters<Rough> rough = test::tight_parameters<Rough>(1e-3 * r);
+    simulation::ModelParameters<Rough> rough = test::pressed_parameters<Rough>(1e-3 * r);
     rough.friction = {.friction_coefficient = 0.3, .reversible_displacement = 0.01 * r};
     Crossing<Rough> crossing(c, 90.0, Pinch::relieved, rough);
     REQUIRE(crossing.press());
@@ -171,7 +171,7 @@ TEST_CASE("a small approach obeys beam theory") {
     // F = u / (2 L^3 / (192 E I)); shear takes 24 (1 + nu) (r / L)^2 = 7.8e-4 off it, the tension of the deflection adds 1e-6.
     const double length = 4.02, inertia = 0.25 * std::numbers::pi * r * r * r * r, approach = 1e-2 * r;
     const Case c{length, 0.0, approach, 96.0 * 7300.0 * inertia * approach / (length * length * length)};
-    simulation::ModelParameters<Smooth> parameters = test::tight_parameters<Smooth>(1e-3 * r);
+    simulation::ModelParameters<Smooth> parameters = test::pressed_parameters<Smooth>(1e-3 * r);
     Crossing<Smooth> crossing(c, 90.0, Pinch::kept, parameters);
     REQUIRE(crossing.press());
     std::printf("u 0.01 r: error %+.2e\n", crossing.support(0).z() / c.force - 1.0);

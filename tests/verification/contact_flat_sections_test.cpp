@@ -43,7 +43,7 @@ Outcome pressed(const std::vector<scene::FibreSpecification>& fibres, const Vec3
     for (const scene::FibreSpecification& fibre : fibres) assembly.add(fibre);
     assembly.clamp(scene::first_end(0)), assembly.clamp(scene::last_end(0));
     assembly.clamp(scene::first_end(1), way), assembly.clamp(scene::last_end(1), way);
-    simulation::Simulator<Smooth> simulator(assembly, test::tight_parameters<Smooth>(allowed));
+    simulation::Simulator<Smooth> simulator(assembly, test::pressed_parameters<Smooth>(allowed));
     const simulation::Report report = simulator.run(test::stage<Smooth>({{"motion", 1.0}}, increments));
     if (!report.converged) MESSAGE(report.reason);
     const observe::Snapshot snapshot = simulator.snapshot();

@@ -53,7 +53,7 @@ TEST_CASE(
                 assembly.clamp({places[k].fibres[above], end}, Vec3(0, 0, -side * 0.5 * r), Vec3::Zero(), Vec3::Zero(),
                                "squeeze");
         }
-    simulation::ModelParameters<Rough> parameters = test::tight_parameters<Rough>(allowed);
+    simulation::ModelParameters<Rough> parameters = test::pressed_parameters<Rough>(allowed);
     parameters.friction = {.friction_coefficient = mu, .reversible_displacement = range};
     simulation::Simulator<Rough> simulator(assembly, parameters);
     const simulation::Report squeezed = simulator.run(test::stage<Rough>({{"squeeze", 1.0}}, 8));

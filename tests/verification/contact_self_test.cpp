@@ -17,7 +17,7 @@ using test::Smooth;
 const double r = 0.0201, pi = std::numbers::pi;
 
 simulation::ModelParameters<Smooth> parameters() {
-    auto all = test::tight_parameters<Smooth>(1e-3 * r);
+    auto all = test::pressed_parameters<Smooth>(1e-3 * r);
     all.contact.detection.self_contact = true;
     return all;
 }

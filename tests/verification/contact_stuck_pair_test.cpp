@@ -82,7 +82,7 @@ void check_turning_pair(double angle_deg, Index increments) {
     moving.slide = (angle_deg > 30.0 ? 3.0 : 0.5) * range * Vec3(0.8, 0.6, 0.0);
     for (const double end : {0.0, 1.0}) still.clamp(assembly, {lower, end}), moving.clamp(assembly, {upper, end});
 
-    simulation::ModelParameters<Rough> parameters = test::tight_parameters<Rough>(1e-2 * r);
+    simulation::ModelParameters<Rough> parameters = test::pressed_parameters<Rough>(1e-2 * r);
     parameters.friction = {.friction_coefficient = 0.3, .reversible_displacement = range};
     // As it is given, or the penetration would creep while the pair turns.
     parameters.contact.stiffness.initial_fraction = parameters.contact.stiffness.floor_fraction =
@@ -141,7 +141,7 @@ TEST_CASE("a fibre between two others gives way elastically, slips at twice the 
     }
     // The drawn fibre is held along itself at one end only, so that all that holds it back is friction.
     assembly.clamp(scene::first_end(drawn), Vec3(range, 0, 0), Vec3::Zero(), Vec3::Zero(), "draw");
-    simulation::ModelParameters<Rough> parameters = test::tight_parameters<Rough>(1e-2 * r);
+    simulation::ModelParameters<Rough> parameters = test::pressed_parameters<Rough>(1e-2 * r);
     parameters.friction = {.friction_coefficient = mu, .reversible_displacement = range};
     simulation::Simulator<Rough> simulator(assembly, parameters);
     REQUIRE(simulator.run(test::stage<Rough>({{"squeeze", 1.0}}, 8)).converged);

@@ -224,10 +224,24 @@ bool is_joint(const beam::Mesh<B>& mesh, const proximity::ProximityZone& zone) n
     return arc * image.element_length < self_contact_arc(image.section.radius(), image.element_length);
 }
 
+/// Clearance of two fibres along the direction that a forced order asks for, where they cross in plan: negative by how deep they
+/// are, be they on the wrong side of each other by many radii [length].
+template <class B>
+double clearance(const beam::Mesh<B>& mesh, const Vector& state, const ForcedOrders& orders, const Zone& zone) noexcept {
+    const Vec3 between = mesh.position(state, zone.span.fibre_j, zone.span.closest_j) -
+                         mesh.position(state, zone.span.fibre_i, zone.span.closest_i);
+    return between.dot(orders.direction(zone.order, zone.span.fibre_i)) - mesh.fibre(zone.span.fibre_i).section.radius() -
+           mesh.fibre(zone.span.fibre_j).section.radius();
+}
+
+/// Pairs in a forced order that are further apart than this have no zone: two thick bundles that cross have a hundred thousand
+/// pairs, of which half are in order from the start, and all but those that face each other in the end [radii].
+inline constexpr double clear_over_radius = 2.0;
+
 /// Zones of a state, sorted by fibres and abscissa.
 ///
 /// @param reach   beyond the sum of the radii [length], >= 0
-/// @param forced  search pairs in a forced order across its axis, whatever their distance along it, and leave their
+/// @param forced  search pairs in a forced order across its axis, however deep they are on its wrong side, and leave their
 ///                ordinary zones out
 template <class B, proximity::ProximitySearch Search>
 std::vector<Zone> find_zones(const beam::Mesh<B>& mesh, const Vector& state, Search& search, const Detection& detection,
@@ -262,7 +276,12 @@ std::vector<Zone> find_zones(const beam::Mesh<B>& mesh, const Vector& state, Sea
             plan.centrelines[k].radius *= 1e-3;  // only where they cross in plan
         }
         const auto middle = static_cast<std::ptrdiff_t>(zones.size());
-        add(search.find(plan.centrelines, 0.0), plan, [](Zone& zone) { return zone.forced = zone.crossing = zone.order >= 0; });
+        add(search.find(plan.centrelines, 0.0), plan, [&](Zone& zone) {
+            zone.forced = zone.crossing = zone.order >= 0;
+            return zone.forced && clearance(mesh, state, orders, zone) <=
+                                      clear_over_radius * std::max(mesh.fibre(zone.span.fibre_i).section.radius(),
+                                                                   mesh.fibre(zone.span.fibre_j).section.radius());
+        });
         std::inplace_merge(zones.begin(), zones.begin() + middle, zones.end(), [](const Zone& a, const Zone& b) {
             return a.span.fibre_i != b.span.fibre_i ? a.span.fibre_i < b.span.fibre_i : a.span.fibre_j < b.span.fibre_j;
         });

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <type_traits>
 #include <vector>
 
 #if defined(_OPENMP)
@@ -34,34 +35,50 @@ enum class Share : std::uint8_t {
     turns,  ///< one by one, as they come to be free: for large items of uneven work
 };
 
+#if defined(_OPENMP)
+namespace detail {
+/// What OpenMP takes for a loop, compiled once and not once a loop: what a loop does is called by its address.
+/// @param run  does the items [first, last) of the loop
+inline void share_out(Index n, Index grain, Share share, const void* body, void (*run)(const void*, Index, Index)) {
+    if (n <= grain || threads() <= 1 || omp_in_parallel() != 0) return run(body, 0, n);
+    std::exception_ptr failure;
+    const auto guarded = [&](Index first, Index last) {
+        try {
+            run(body, first, last);
+        } catch (...) {
+#pragma omp critical(fibrant_parallel_for)
+            if (!failure) failure = std::current_exception();
+        }
+    };
+    if (share == Share::runs) {
+#pragma omp parallel
+        {
+            const Index thread = omp_get_thread_num(), all = omp_get_num_threads();
+            guarded(n / all * thread + std::min(n % all, thread), n / all * (thread + 1) + std::min(n % all, thread + 1));
+        }
+    } else {
+#pragma omp parallel for schedule(dynamic)
+        for (Index k = 0; k < n; ++k) guarded(k, k + 1);
+    }
+    if (failure) std::rethrow_exception(failure);
+}
+}  // namespace detail
+#endif
+
 /// Calls body(k) for k in [0, n), in any order and on any thread. Items must not share what they write.
-/// The first exception that a body throws is thrown again here.
+/// The first exception that a body throws is thrown again here; other items may be left out then.
 /// @param grain  items up to which one thread takes them all
 template <Share share = Share::runs, class Body>
 void parallel_for(Index n, const Body& body, [[maybe_unused]] Index grain = 1) {
 #if defined(_OPENMP)
-    if (n > grain && threads() > 1 && omp_in_parallel() == 0) {
-        std::exception_ptr failure;
-        const auto guarded = [&](Index k) {
-            try {
-                body(k);
-            } catch (...) {
-#pragma omp critical(fibrant_parallel_for)
-                if (!failure) failure = std::current_exception();
-            }
-        };
-        if constexpr (share == Share::runs) {
-#pragma omp parallel for schedule(static)
-            for (Index k = 0; k < n; ++k) guarded(k);
-        } else {
-#pragma omp parallel for schedule(dynamic)
-            for (Index k = 0; k < n; ++k) guarded(k);
-        }
-        if (failure) std::rethrow_exception(failure);
-        return;
-    }
-#endif
+    detail::share_out(n, grain, share, &body, [](const void* whole, Index first, Index last) {
+        // A copy of addresses, which no item can change.
+        const std::conditional_t<std::is_trivially_copyable_v<Body>, Body, const Body&> items = *static_cast<const Body*>(whole);
+        for (Index k = first; k < last; ++k) items(k);
+    });
+#else
     for (Index k = 0; k < n; ++k) body(k);
+#endif
 }
 
 /// While it lives, Eigen's dense products run on the thread that calls them. Left to itself Eigen cuts long sums where the

@@ -57,12 +57,12 @@ struct SamePreconditioner {
 /// by is seen in the true residual.
 ///
 /// @param precondition     precondition(r, z): z = M^-1 r, symmetric positive definite
-/// @param iteration_limit  > 0
 /// @param renewed          renewed(iterations) is asked before every iteration: true if the preconditioner is another one
 ///                         from now on, with which the iteration starts again where it is
 template <assembly::LinearSystem System, class Precondition, class Renewed = detail::SamePreconditioner>
 SolveReport conjugate_gradient(const System& system, const Precondition& precondition, const Vector& b, double tolerance,
-                               int iteration_limit, ConjugateGradientVectors& cg, Vector& x, const Renewed& renewed = {}) {
+                               const IterationLimit& limit, ConjugateGradientVectors& cg, Vector& x,
+                               const Renewed& renewed = {}) {
     const scene::DofLayout& layout = system.layout();
     const assembly::HeldProjector held(layout);
     x.setZero(b.size());
@@ -82,7 +82,7 @@ SolveReport conjugate_gradient(const System& system, const Precondition& precond
     double passing = std::numeric_limits<double>::infinity();  // error of that at the last first step, over the residual
     bool exact = true;                                         // whether the residual is that of x, not the recursive one
     double reached = std::numeric_limits<double>::infinity();  // true residual at the last restart
-    while (report.iterations < iteration_limit) {
+    while (!limit.ends(report)) {
         if (report.residual <= (given ? 0.9 : 1.0) * tolerance) {
             if (!exact) report.residual = relative_residual(system, b, norm, x, cg.r);
             held.project(cg.r);

@@ -29,6 +29,20 @@ struct SolveReport {
     double curvature = core::unset;  ///< least p.Ap / p.Mp met, M the preconditioner; `indefinite` if <= 0
 };
 
+/// Of a solve that has reached its limit: its step still leads down [1].
+inline constexpr double useful_residual = 0.3;
+
+/// How many iterations a solve may take.
+struct IterationLimit {
+    int most;   ///< > 0
+    int trial;  ///< after so many it ends where it has not come to a `useful_residual`; 0: there is no trial
+
+    IterationLimit(int iterations, int trial_iterations = 0) noexcept : most{iterations}, trial{trial_iterations} {}
+    bool ends(const SolveReport& report) const noexcept {
+        return report.iterations >= most || (report.iterations == trial && trial > 0 && report.residual >= useful_residual);
+    }
+};
+
 /// Solves A x = b.
 ///
 /// - analyse(system): the graph; once per set of contact elements, before the first prepare.

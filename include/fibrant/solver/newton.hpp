@@ -104,8 +104,7 @@ namespace newton_numbers {
 inline constexpr double forcing_factor = 0.9, loosest_forcing = 1e-2;
 inline constexpr double enough_of_residual = 0.1;  ///< what the residual may have left, times this, is as good as nothing [1]
 inline constexpr double undriven = 1e-6;           ///< square of what is prescribed over that of a step: it has one energy [1]
-inline constexpr double useful_residual = 0.3;  ///< of a linear solve that has reached its limit: its step still leads down [1]
-inline constexpr double inversion_cut = 0.25;   ///< of a step at whose end a cell is turned inside out [1]
+inline constexpr double inversion_cut = 0.25;      ///< of a step at whose end a cell is turned inside out [1]
 inline constexpr int most_inversion_cuts = 6;
 inline constexpr double reach_used = 0.5;  ///< part of a search's reach after which it is repeated: both fibres may move
 inline constexpr Index settling = 3;       ///< iterations in which residuals may rise: the mixed form starts with large ones
@@ -295,7 +294,7 @@ private:
             shifted_ = attempt;
             if (report.status == SolveStatus::converged) return true;
             // A step that is not exact is still a step, as long as it is a good part of one.
-            if (report.status == SolveStatus::iteration_limit && report.residual < newton_numbers::useful_residual) return true;
+            if (report.status == SolveStatus::iteration_limit && report.residual < useful_residual) return true;
             if (report.status == SolveStatus::not_finite) return false;
             ++counts.indefinite;
             if (attempt == 1) stiffness_ = stiffness_scale();

@@ -24,10 +24,9 @@ struct BiconjugateVectors {
 /// Solves (A + S) x = b from x = 0 by BiCGStab (van der Vorst 1992), preconditioned from the right; all vectors in double.
 /// An iteration is two products. A breakdown starts again from the present residual.
 /// @param precondition     precondition(r, z): z = M^-1 r
-/// @param iteration_limit  > 0
 template <UnsymmetricSystem System, class Precondition>
 SolveReport stabilised_biconjugate_gradient(const System& system, const Precondition& precondition, const Vector& b,
-                                            double tolerance, int iteration_limit, BiconjugateVectors& work, Vector& x) {
+                                            double tolerance, const IterationLimit& limit, BiconjugateVectors& work, Vector& x) {
     const scene::DofLayout& layout = system.layout();
     const assembly::HeldProjector held(layout);
     x.setZero(b.size());
@@ -45,7 +44,7 @@ SolveReport stabilised_biconjugate_gradient(const System& system, const Precondi
     SolveReport report{SolveStatus::iteration_limit, 0, scaled_norm(layout, work.r) / norm, core::unset};
     double rho = 0.0, alpha = 0.0, omega = 0.0;
     bool fresh = true;  // begin with the residual as the only direction
-    while (report.residual > tolerance && report.iterations < iteration_limit) {
+    while (report.residual > tolerance && !limit.ends(report)) {
         if (fresh) work.shadow = work.r, work.p = work.r, rho = core::dot(work.shadow, work.r);
         precondition(std::as_const(work.p), work.preconditioned_p);
         held.project(work.preconditioned_p);

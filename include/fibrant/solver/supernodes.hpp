@@ -16,6 +16,14 @@
 
 namespace fibrant::solver {
 
+/// The order of elimination of large graphs that a program has from elsewhere, METIS with FIBRANT_WITH_METIS; null: the headers'
+/// own. What is compiled without it, such as fibrant::compiled, takes it where the program has it.
+using OtherOrder = std::vector<int> (*)(const SparseMatrix& graph);
+inline OtherOrder other_order = nullptr;
+#if defined(FIBRANT_WITH_METIS)
+inline const bool metis_orders = (other_order = metis_order) != nullptr;
+#endif
+
 /// Order of elimination of the vertices of a graph, and the columns of the factor that share their rows.
 class Supernodes {
 public:
@@ -29,20 +37,17 @@ public:
     /// @param vertices  of the graph
     /// @param pairs     neighbours, in either order, each once or several times; loops may be there
     /// @param places    of the vertices in space, if they are known: an order by dissection is then tried too, which is
-    ///                  better the larger the graph; with FIBRANT_WITH_METIS its order is taken instead
-    void analyse(int vertices, const std::vector<Pair>& pairs, [[maybe_unused]] std::span<const Vec3> places = {}) {
+    ///                  better the larger the graph; `other_order` is taken instead where there is one
+    void analyse(int vertices, const std::vector<Pair>& pairs, std::span<const Vec3> places = {}) {
         const SparseMatrix graph = matrix_of(vertices, pairs);
-#if defined(FIBRANT_WITH_METIS)
-        const std::vector<int> order = vertices > 1000 ? metis_order(graph) : std::vector<int>{};
+        const bool large = vertices > 1000;
+        const std::vector<int> order = large && other_order != nullptr ? other_order(graph) : std::vector<int>{};
         eliminate(graph, order.empty() ? minimum_degree(graph) : order);
-#else
-        eliminate(graph, minimum_degree(graph));
-        if (!places.empty() && vertices > 1000) {
+        if (large && order.empty() && other_order == nullptr && !places.empty()) {
             Supernodes other;
             other.eliminate(graph, Dissection(graph, places).order());
             if (other.operations() < operations()) *this = std::move(other);
         }
-#endif
         merge_supernodes();
         sorted_ = !places.empty();
         if (sorted_) sort_by_place(graph, places);

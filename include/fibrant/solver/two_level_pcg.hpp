@@ -51,8 +51,8 @@ public:
         apply(system.layout(), work_->coarse, r, z);
     }
 
-    /// From the next solve on so many iterations at most, > 0.
-    void limit(int iterations) { parameters_.iteration_limit = iterations; }
+    /// From the next solve on so many iterations at most, > 0, and a trial of so many, >= 0: as of `IterationLimit`.
+    void limit(int iterations, int trial = 0) { parameters_.iteration_limit = iterations, trial_ = trial; }
     /// Clusters of the last analysis.
     Index clusters() const { return work_->coarse.clusters(); }
     /// Unknowns of the coarse space.
@@ -118,6 +118,7 @@ private:
     }
 
     Parameters parameters_;
+    int trial_ = 0;
     Workspace<Work> work_;
 };
 
@@ -154,16 +155,16 @@ SolveReport TwoLevelPcg::solve(const System& system, const Vector& b, double tol
     }
     RigidCoarseSpace<>* space = &work.coarse;
     const Cycle precondition{this, &system.layout(), &space};
+    const IterationLimit limit(parameters_.iteration_limit, trial_);
     if constexpr (UnsymmetricSystem<System>)
         if (parameters_.unsymmetric && system.unsymmetric())
-            return stabilised_biconjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit,
-                                                   work.biconjugate, x);
+            return stabilised_biconjugate_gradient(system, precondition, b, tolerance, limit, work.biconjugate, x);
     const auto renewed = [&](int iterations) {
         if (iterations != parameters_.refine_after || space == &work.finer || !refine(system)) return false;
         space = &work.finer;
         return true;
     };
-    return conjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit, work.vectors, x, renewed);
+    return conjugate_gradient(system, precondition, b, tolerance, limit, work.vectors, x, renewed);
 }
 
 }  // namespace fibrant::solver
