@@ -132,6 +132,31 @@ TEST_CASE("sections of yarns lie level however their paths bend, and fibres draw
     }
 }
 
+TEST_CASE(
+    "held ends of two yarns that lie in each other are refused by yarn, on either side of a cell's wall; free ones are not") {
+    const double r = 0.05, deep = 1e-3;
+    for (const double at : {0.0, 1.99 * r, 2.0 * r, -2.01 * r})
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto apart = [&](double distance, Ends ends) {
+                Textile textile;
+                textile.name = "two";
+                textile.types = {yarn(1, r)};
+                for (const double aside : {at, at + distance}) {
+                    const Vec3 from = aside * Vec3::Unit(axis), way = 2.0 * Vec3::Unit((axis + 1) % 3);
+                    Path path;
+                    path.ends = ends, path.curve = [=](double t) { return Vec3(from + t * way); };
+                    textile.paths.push_back(path);
+                }
+                require_ends_apart(textile, assemble(textile, {}), deep);
+            };
+            apart(2.0 * r - 0.9 * deep, Ends::held);
+            apart(-2.0 * r + 0.9 * deep, Ends::held);
+            apart(0.5 * r, Ends::free);
+            for (const double distance : {0.5 * r, -0.5 * r, 2.0 * r - 1.1 * deep})
+                CHECK(refusal([&] { apart(distance, Ends::held); }).find("distance of ends of fibres of") != std::string::npos);
+        }
+}
+
 TEST_CASE("the audit of crossings sees two fibres that changed places, one that is gone, and the drawn state as right") {
     const Textile weave = woven(
         {.levels = levels_of({"0101", "1010"}), .column_spacing = 0.6, .warp_spacing = 0.3, .warp = yarn(1), .weft = yarn(1)});

@@ -292,35 +292,47 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
     return answer;
 }
 
-/// Refuses ends of different yarns that lie in each other and keep their places: nothing can part them.
+/// Refuses ends of different yarns that lie in each other and keep their places: nothing can part them. Ends are sorted by cells
+/// of a cube grid, so that its time is in proportion to them, however many lie on one line.
 /// @param allowed  how deep fibres may be in each other at the end [length], >= 0
 /// @throws std::invalid_argument naming the two yarns
 inline void require_ends_apart(const Textile& textile, const Assembled& assembled, double allowed) {
+    double widest = 0.0;
+    for (const YarnType& type : textile.types) widest = std::max(widest, 2.0 * type.radius);
     struct End {
+        std::array<double, 3> cell;  // whole numbers
         Vec3 place;
         Index yarn;
     };
     std::vector<End> ends;
+    const auto add = [&](const Vec3& place, Index yarn) {
+        ends.push_back(
+            {{std::floor(place.x() / widest), std::floor(place.y() / widest), std::floor(place.z() / widest)}, place, yarn});
+    };
     for (std::size_t f = 0; f < assembled.path_of.size(); ++f) {
         const Index p = assembled.path_of[f];
         const Path& path = textile.paths[core::at(p)];
         const scene::FibreSpecification& fibre = assembled.assembly.fibres()[f];
         const scene::Curve& curve = fibre.start ? fibre.start : fibre.curve;
         if (path.kind != PathKind::open || path.ends == Ends::free || !curve) continue;
-        ends.push_back({curve(0.0), p}), ends.push_back({curve(1.0), p});
+        add(curve(0.0), p), add(curve(1.0), p);
     }
-    std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.place.x() < b.place.x(); });
-    double widest = 0.0;
-    for (const YarnType& type : textile.types) widest = std::max(widest, 2.0 * type.radius);
-    for (std::size_t i = 0; i < ends.size(); ++i)
-        for (std::size_t j = i + 1; j < ends.size() && ends[j].place.x() - ends[i].place.x() < widest; ++j) {
-            if (ends[i].yarn == ends[j].yarn) continue;
-            const double apart = (ends[j].place - ends[i].place).norm(),
-                         touching = textile.type_of(ends[i].yarn).radius + textile.type_of(ends[j].yarn).radius;
-            core::require(apart >= touching - allowed,
-                          textile.name + ": distance of ends of fibres of " + textile.label(ends[i].yarn) + " and " +
-                              textile.label(ends[j].yarn),
-                          apart, ">= " + core::text(touching - allowed) + ", since they keep their places: yarns further apart");
+    const auto before = [](const End& a, const End& b) { return a.cell < b.cell; };
+    std::stable_sort(ends.begin(), ends.end(), before);
+    const auto require_apart = [&](const End& a, const End& b) {
+        const double least = textile.type_of(a.yarn).radius + textile.type_of(b.yarn).radius - allowed;
+        if (const double apart = (b.place - a.place).norm(); apart < least)
+            core::refuse(
+                textile.name + ": distance of ends of fibres of " + textile.label(a.yarn) + " and " + textile.label(b.yarn),
+                core::text(apart), ">= " + core::text(least) + ", since they keep their places: yarns further apart");
+    };
+    for (const End& end : ends)
+        for (int neighbour = 0; neighbour < 27; ++neighbour) {
+            End other = end;
+            other.cell = {end.cell[0] + neighbour % 3 - 1, end.cell[1] + neighbour / 3 % 3 - 1, end.cell[2] + neighbour / 9 - 1};
+            const auto [from, to] = std::equal_range(ends.begin(), ends.end(), other, before);
+            for (auto it = from; it != to; ++it)
+                if (it->yarn > end.yarn) require_apart(end, *it);
         }
 }
 
