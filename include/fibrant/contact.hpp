@@ -14,6 +14,7 @@
 #include <fibrant/contact/contact_set.hpp>
 #include <fibrant/contact/contact_tangent.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
+#include <fibrant/contact/deepest_overlap.hpp>
 #include <fibrant/contact/element_directions.hpp>
 #include <fibrant/contact/element_normal.hpp>
 #include <fibrant/contact/element_placing.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 /// @file The true gap as part of what a run ends with: pairs of fibres that are too deep unseen are mended, or named.
 
-#include <fibrant/contact/overlaps.hpp>
+#include <fibrant/contact/deepest_overlap.hpp>
 #include <fibrant/contact/watched_places.hpp>
 #include <fibrant/simulation/audit.hpp>
 #include <fibrant/simulation/loading.hpp>
