@@ -146,6 +146,9 @@ struct Loading {
             core::require_at_least("Stage.enough_increments", stage.enough_increments, 1);
             core::require_at_least("Stage.stalled_increments", stage.stalled_increments, 1);
             core::require_not_negative("Stage.goes_on_below", stage.goes_on_below);
+            if (stage.if_needed && !stage.until)
+                core::refuse("Stage.if_needed of stage " + stage.name, "true",
+                             "false without `until`, which says what is needed");
             core::require_not_negative("Stage.damping", stage.damping);
             core::require_not_negative("Stage.duration", stage.duration);
             core::require(stage.damping_decay > 0.0 && stage.damping_decay <= 1.0, "Stage.damping_decay", stage.damping_decay,

@@ -375,8 +375,8 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
     for (Index k = 0; k < position_.stage; ++k) take_laws(stages[core::at(k)]);  // which stay
     for (; position_.stage < core::count(stages); position_.next_stage(stages, amplitudes_)) {
         const Stage<M>& stage = stages[core::at(position_.stage)];
+        take_laws(stage);  // of one that is left out as well: a run that is resumed has them
         if (position_.needless(stage, report)) continue;
-        take_laws(stage);
         while (!position_.stage_over) {
             const auto gave_up = [&](const FailedAttempt& attempt) {
                 for (const Watcher& watcher : watchers)
