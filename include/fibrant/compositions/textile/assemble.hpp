@@ -3,11 +3,13 @@
 /// @file A textile as a scene: fibres along paths, what holds their ends, orders of yarns of several fibres, and the cell.
 
 #include <fibrant/compositions/textile/yarn_fibres.hpp>
+#include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/scene/assembly.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <string>
 #include <utility>
@@ -273,7 +275,10 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
     for (std::size_t k = 1; k < all.size(); ++k)
         if (all[k] == all[k - 1] && (again.empty() || again.back() != all[k])) again.push_back(all[k]);
     std::vector<Pair> right;
-    if (!again.empty()) right = detail::crossing_as_drawn(textile, again, lines);
+    if (!again.empty()) {
+        const detail::FibreCrossings drawn(textile, lines);
+        std::copy_if(again.begin(), again.end(), std::back_inserter(right), [&](const Pair& pair) { return drawn.right(pair); });
+    }
     for (std::size_t k = 0; k < orders.size(); ++k) {
         const auto [above, below] = pair_of(orders[k]);
         const Pair pair{std::min(above, below), std::max(above, below)};
@@ -292,48 +297,32 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
     return answer;
 }
 
-/// Refuses ends of different yarns that lie in each other and keep their places: nothing can part them. Ends are sorted by cells
-/// of a cube grid, so that its time is in proportion to them, however many lie on one line.
+/// Refuses ends of different yarns that lie in each other and keep their places: nothing can part them.
 /// @param allowed  how deep fibres may be in each other at the end [length], >= 0
 /// @throws std::invalid_argument naming the two yarns
 inline void require_ends_apart(const Textile& textile, const Assembled& assembled, double allowed) {
-    double widest = 0.0;
-    for (const YarnType& type : textile.types) widest = std::max(widest, 2.0 * type.radius);
-    struct End {
-        std::array<double, 3> cell;  // whole numbers
-        Vec3 place;
-        Index yarn;
-    };
-    std::vector<End> ends;
-    const auto add = [&](const Vec3& place, Index yarn) {
-        ends.push_back(
-            {{std::floor(place.x() / widest), std::floor(place.y() / widest), std::floor(place.z() / widest)}, place, yarn});
-    };
+    std::vector<std::array<Vec3, 2>> ends;  // and a point a little inwards
+    std::vector<Index> yarn;
     for (std::size_t f = 0; f < assembled.path_of.size(); ++f) {
         const Index p = assembled.path_of[f];
         const Path& path = textile.paths[core::at(p)];
         const scene::FibreSpecification& fibre = assembled.assembly.fibres()[f];
         const scene::Curve& curve = fibre.start ? fibre.start : fibre.curve;
         if (path.kind != PathKind::open || path.ends == Ends::free || !curve) continue;
-        add(curve(0.0), p), add(curve(1.0), p);
+        constexpr double inwards = 1e-3;  // of the curve
+        ends.push_back({curve(0.0), curve(inwards)}), ends.push_back({curve(1.0), curve(1.0 - inwards)});
+        yarn.insert(yarn.end(), 2, p);
     }
-    const auto before = [](const End& a, const End& b) { return a.cell < b.cell; };
-    std::stable_sort(ends.begin(), ends.end(), before);
-    const auto require_apart = [&](const End& a, const End& b) {
-        const double least = textile.type_of(a.yarn).radius + textile.type_of(b.yarn).radius - allowed;
-        if (const double apart = (b.place - a.place).norm(); apart < least)
-            core::refuse(
-                textile.name + ": distance of ends of fibres of " + textile.label(a.yarn) + " and " + textile.label(b.yarn),
-                core::text(apart), ">= " + core::text(least) + ", since they keep their places: yarns further apart");
-    };
-    for (const End& end : ends)
-        for (int neighbour = 0; neighbour < 27; ++neighbour) {
-            End other = end;
-            other.cell = {end.cell[0] + neighbour % 3 - 1, end.cell[1] + neighbour / 3 % 3 - 1, end.cell[2] + neighbour / 9 - 1};
-            const auto [from, to] = std::equal_range(ends.begin(), ends.end(), other, before);
-            for (auto it = from; it != to; ++it)
-                if (it->yarn > end.yarn) require_apart(end, *it);
-        }
+    std::vector<proximity::Centreline> lines;
+    for (std::size_t k = 0; k < ends.size(); ++k) lines.push_back({.points = ends[k], .radius = textile.type_of(yarn[k]).radius});
+    for (const proximity::SegmentPair& pair : proximity::GridSearch{}.pairs(lines, 0.0)) {
+        const Index a = yarn[core::at(pair.i)], b = yarn[core::at(pair.j)];
+        const double apart = (ends[core::at(pair.j)][0] - ends[core::at(pair.i)][0]).norm(),
+                     least = textile.type_of(a).radius + textile.type_of(b).radius - allowed;
+        if (a != b && apart < least)
+            core::refuse(textile.name + ": distance of ends of fibres of " + textile.label(a) + " and " + textile.label(b),
+                         core::text(apart), ">= " + core::text(least) + ", since they keep their places: yarns further apart");
+    }
 }
 
 }  // namespace fibrant::compositions::textile

@@ -53,58 +53,62 @@ inline std::vector<scene::Curve> fibre_curves(const Textile& textile, Index p) {
     return curves;
 }
 
-/// Pairs of yarns, the lower number first, whose fibres cross where they are drawn as the yarns do, and no more often.
-/// @param pairs    that are looked at, sorted
-/// @param fibres   lines of each yarn
-inline std::vector<std::pair<Index, Index>> crossing_as_drawn(const Textile& textile,
-                                                              const std::vector<std::pair<Index, Index>>& pairs,
-                                                              const std::vector<std::vector<scene::Curve>>& fibres) {
+/// Crossings of fibres of different yarns where they are drawn, as their yarns ask for them and as they are; sorted by yarns, the
+/// lower number first.
+struct FibreCrossings {
     using Pair = std::pair<Index, Index>;
-    std::vector<Line> lines;
-    std::vector<Index> yarn, first;
-    for (Index p = 0; p < core::count(fibres); ++p) {
-        first.push_back(core::count(lines));
-        const double length = scene::length_of(textile.paths[core::at(p)].curve, 128);
-        const auto pieces = std::max<Index>(64, static_cast<Index>(2.0 * length / textile.type_of(p).radius));
-        for (const scene::Curve& curve : fibres[core::at(p)]) {
-            std::vector<Vec3> points;
-            for (Index k = 0; k <= pieces; ++k) points.push_back(curve(static_cast<double>(k) / static_cast<double>(pieces)));
-            lines.push_back(line_of(std::move(points))), yarn.push_back(p);
-        }
-    }
-    first.push_back(core::count(lines));
-    const auto of = [](Index a, Index b) { return Pair{std::min(a, b), std::max(a, b)}; };
     std::vector<std::pair<Pair, Crossing>> asked, found;
-    for (const Crossing& crossing : textile.crossings)
-        for (Index i = first[core::at(crossing.above)]; i < first[core::at(crossing.above + 1)]; ++i)
-            for (Index j = first[core::at(crossing.below)]; j < first[core::at(crossing.below + 1)]; ++j)
-                asked.push_back(
-                    {of(crossing.above, crossing.below), {i, j, crossing.at_above, crossing.at_below, crossing.axis}});
-    for (const Crossing& crossing : crossings_of(lines, textile.view))
-        found.push_back({of(yarn[core::at(crossing.above)], yarn[core::at(crossing.below)]), crossing});
-    const auto by_pair = [](const auto& a, const auto& b) { return a.first < b.first; };
-    std::stable_sort(asked.begin(), asked.end(), by_pair), std::stable_sort(found.begin(), found.end(), by_pair);
-    const auto part = [&](const std::vector<std::pair<Pair, Crossing>>& all, const Pair& pair) {
-        const auto [from, to] = std::equal_range(all.begin(), all.end(), std::pair{pair, Crossing{}}, by_pair);
-        std::vector<Crossing> own;
-        for (auto at = from; at != to; ++at) own.push_back(at->second);
-        return own;
-    };
-    std::vector<Pair> right;
-    for (const Pair& pair : pairs)
-        if (audit_crossings(part(asked, pair), part(found, pair)).clean()) right.push_back(pair);
-    return right;
-}
 
-/// Whether all fibres of different yarns cross where they are drawn as their yarns do.
-inline bool fibres_cross_rightly(const Textile& textile) {
-    std::vector<std::pair<Index, Index>> pairs;
-    std::vector<std::vector<scene::Curve>> fibres;
-    for (Index p = 0; p < core::count(textile.paths); ++p) {
-        for (Index q = p + 1; q < core::count(textile.paths); ++q) pairs.emplace_back(p, q);
-        fibres.push_back(fibre_curves(textile, p));
+    /// @param fibres  lines of each yarn
+    FibreCrossings(const Textile& textile, const std::vector<std::vector<scene::Curve>>& fibres) {
+        std::vector<Line> lines;
+        std::vector<Index> yarn, first;
+        for (Index p = 0; p < core::count(fibres); ++p) {
+            first.push_back(core::count(lines));
+            const double length = scene::length_of(textile.paths[core::at(p)].curve, 128);
+            const auto pieces = std::max<Index>(64, static_cast<Index>(2.0 * length / textile.type_of(p).radius));
+            for (const scene::Curve& curve : fibres[core::at(p)]) {
+                std::vector<Vec3> points;
+                for (Index k = 0; k <= pieces; ++k) points.push_back(curve(static_cast<double>(k) / static_cast<double>(pieces)));
+                lines.push_back(line_of(std::move(points))), yarn.push_back(p);
+            }
+        }
+        first.push_back(core::count(lines));
+        for (const Crossing& yarns : textile.crossings)
+            for (Index i = first[core::at(yarns.above)]; i < first[core::at(yarns.above + 1)]; ++i)
+                for (Index j = first[core::at(yarns.below)]; j < first[core::at(yarns.below + 1)]; ++j)
+                    add(asked, yarns.above, yarns.below, {i, j, yarns.at_above, yarns.at_below, yarns.axis});
+        for (const Crossing& crossing : crossings_of(lines, textile.view))
+            add(found, yarn[core::at(crossing.above)], yarn[core::at(crossing.below)], crossing);
+        std::stable_sort(asked.begin(), asked.end(), by_pair), std::stable_sort(found.begin(), found.end(), by_pair);
     }
-    return crossing_as_drawn(textile, pairs, fibres).size() == pairs.size();
+    bool right() const { return audit_crossings(plain(asked.begin(), asked.end()), plain(found.begin(), found.end())).clean(); }
+    bool right(const Pair& pair) const {
+        const auto part = [&](const auto& all) {
+            const auto [from, to] = std::equal_range(all.begin(), all.end(), std::pair{pair, Crossing{}}, by_pair);
+            return plain(from, to);
+        };
+        return audit_crossings(part(asked), part(found)).clean();
+    }
+
+private:
+    static bool by_pair(const std::pair<Pair, Crossing>& a, const std::pair<Pair, Crossing>& b) { return a.first < b.first; }
+    static void add(std::vector<std::pair<Pair, Crossing>>& list, Index a, Index b, const Crossing& crossing) {
+        if (a != b) list.push_back({{std::min(a, b), std::max(a, b)}, crossing});
+    }
+    template <class Iterator>
+    static std::vector<Crossing> plain(Iterator from, Iterator to) {
+        std::vector<Crossing> crossings;
+        for (; from != to; ++from) crossings.push_back(from->second);
+        return crossings;
+    }
+};
+
+/// Whether all fibres of different yarns cross where they are drawn as their yarns do, and no more often.
+inline bool fibres_cross_rightly(const Textile& textile) {
+    std::vector<std::vector<scene::Curve>> fibres;
+    for (Index p = 0; p < core::count(textile.paths); ++p) fibres.push_back(fibre_curves(textile, p));
+    return FibreCrossings(textile, fibres).right();
 }
 
 }  // namespace fibrant::compositions::textile::detail
