@@ -104,6 +104,46 @@ TEST_CASE_TEMPLATE("a macro-fibre keeps its area and is softer in bending and tw
     CHECK(resistance<B>(macro, at_rest, stretch) == resistance<B>(solid, at_rest, stretch));
 }
 
+TEST_CASE(
+    "under a pull a turn of sections dies away over fewer elements of three nodes, and over more again beyond a third of one") {
+    // The turn phi of sections obeys E I phi'' = T phi, shear being stiff. With phi = w' at two Gauss points and both ends at 1
+    // the energy E I (16 / 3 l) c^2 + T l (1 - 2 c / 3)^2 of phi = 1 - c + c xi^2 is least at c = 3 b / (24 + 2 b), b = T l^2 /
+    // (E I): the middle is at (24 - b) / (24 + 2 b), upright at b = 24, and against its ends beyond. Without it the energy of
+    // ends at m - d and m + d is E I / 2 l ((4 + b / 3) d^2 + 12 b / (12 + b) m^2): a row of nodes obeys cosh(t) = 1 + 72 b /
+    // (b^2 - 12 b + 144), and exp(-t) of a turn is left at the next one. That is least at b = 12.
+    using B = DirectorBeam<3>;
+    const double strain = 1e-5;  // of the pull: forces change by as much, and by T / G A
+    const beam::ElementVector<B> at_rest = straight_element<B>(length);
+    for (const double b : {0.1, 6.0, 12.0, 24.0, 56.0, 143.6, 600.0}) {
+        const double factor = 4.0 * strain * length * length / (radius * radius * b);  // b of a round section
+        const B::Rest rest = B{}.rest(scene::circular(radius, factor), material, at_rest);
+        beam::ElementVector<B> pulled = at_rest;
+        for (int I = 0; I < B::nodes; ++I) {
+            pulled.segment<3>(9 * I) *= 1.0 + strain;
+            pulled.segment<6>(9 * I + 3) *= 1.0 - poisson * strain;
+        }
+        const auto tangent = B{}.tangent_stiffness(rest, pulled);
+        // In the plane of x and z: the first end stays, x of the others and z of the middle's first director are free.
+        const std::array<int, 3> free{9, 18, 14};
+        const std::array<int, 2> ends{5, 23};
+        Mat3 among;
+        Eigen::Matrix<double, 3, 2> between;
+        Eigen::Matrix2d of_ends;
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) among(i, j) = tangent(free[core::at(i)], free[core::at(j)]);
+            for (int j = 0; j < 2; ++j) between(i, j) = tangent(free[core::at(i)], ends[core::at(j)]);
+        }
+        for (int i = 0; i < 2; ++i)
+            for (int j = 0; j < 2; ++j) of_ends(i, j) = tangent(ends[core::at(i)], ends[core::at(j)]);
+        const Eigen::Matrix<double, 3, 2> follow = -among.ldlt().solve(between);
+        of_ends += between.transpose() * follow;
+        const double tolerance = 1e-3;  // ten times the pull over shear's resistance, and more
+        CAPTURE(b);
+        CHECK(std::abs(follow.row(2).sum() - (24.0 - b) / (24.0 + 2.0 * b)) < tolerance);
+        CHECK(-of_ends(0, 0) / of_ends(0, 1) == test::near(1.0 + 72.0 * b / (b * b - 12.0 * b + 144.0), tolerance));
+    }
+}
+
 TEST_CASE("the element of three nodes has no soft mode beyond the rigid ones") {
     // A reference trial of this element measured 5e-3 for an element of 6 radii.
     const DirectorBeam<3> beam;
