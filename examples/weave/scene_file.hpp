@@ -6,6 +6,7 @@
 #include "../support/scene_reader.hpp"
 #include "../support/usual_keys.hpp"
 
+#include <fibrant/compositions/weave/fabric_limits.hpp>
 #include <fibrant/compositions/weave/fabric_parameters.hpp>
 #include <fibrant/scene/cross_section.hpp>
 #include <fibrant/solver/newton.hpp>
@@ -255,6 +256,7 @@ Scene read_fabric(SceneReader& file, const More& more) {
                "<= settle.gap_limit_over_radius = " + fibrant::core::text(settle.gap_limit_over_radius));
     fabric.validate();
     settle.validate();
+    cloth::require_turns(fabric, settle);
     scene.iteration.validate();
     scene.told = file.scene(settled_sections);
     return scene;

@@ -141,21 +141,47 @@ TEST_CASE("an overhang that ends may slip out of is told") {
     CHECK(doubts(fabric).size() == 2);
 }
 
-TEST_CASE("fibres that kink under the tension at the end are told, with the elements that they would need") {
+TEST_CASE(
+    "fibres that turn over less than a fifth of an element under the tension at the end are told, and over a twelfth refused") {
     FabricParameters fabric = small_fabric(4, 19);
     SettleParameters settle;
     CHECK(doubts(fabric, settle).empty());
-    // A round fibre turns over sqrt(E I / T) = r / 2 sqrt(factor / strain): 1 / 0.08 of them on its length are as many elements
-    // as it needs.
-    const double length = fabric.fibre_length(Family::warp), turn = 0.041 * length / static_cast<double>(fabric.elements);
-    const double strain = settle.tension_strain * settle.final_tension_factor, r = fabric.warp.fibre_radius;
-    fabric.warp.inertia_factor = strain * std::pow(2.0 * turn / r, 2);
-    REQUIRE(doubts(fabric, settle).size() == 1);
-    const std::string needed =
-        std::to_string(static_cast<Index>(std::ceil(0.08 / 0.041 * static_cast<double>(fabric.elements)))) + " elements";
-    CHECK(doubts(fabric, settle).front().find(needed) != std::string::npos);
-    settle.final_tension_factor /= 5.0;
-    CHECK(doubts(fabric, settle).empty());
+    // A round fibre turns over sqrt(E I / T) = r / 2 sqrt(factor / strain).
+    const double elements = static_cast<double>(fabric.elements), r = fabric.warp.fibre_radius;
+    const double element = fabric.fibre_length(Family::warp) / elements;
+    const double strain = settle.tension_strain * settle.final_tension_factor;
+    const auto turning = [&](double part) {
+        FabricParameters other = fabric;
+        other.warp.inertia_factor = strain * std::pow(2.0 * part * element / r, 2);
+        return other;
+    };
+    CHECK(doubts(turning(0.205), settle).empty());
+    REQUIRE(doubts(turning(0.2), settle).size() == 1);
+    const std::string told = doubts(turning(0.2), settle).front(),
+                      factor = core::text(strain * std::pow(2.0 * element / r, 2) / 24.0);
+    CAPTURE(told);
+    CHECK(told.find("warp.inertia_factor >= " + factor.substr(0, 4)) != std::string::npos);
+    // As many elements as it takes, or none are named where they would be shorter than a diameter.
+    CHECK(told.find(std::to_string(static_cast<Index>(std::ceil(0.2041 / 0.2 * elements))) + " elements") != std::string::npos);
+    CHECK(doubts(turning(0.09), settle).front().find(" elements") == std::string::npos);
+    settle.final_tension_factor /= 1.1;
+    CHECK(doubts(turning(0.2), settle).empty());
+    settle.final_tension_factor *= 1.1;
+
+    // 1 / e is left an element further.
+    CHECK(std::abs(turn_left(least_turn) - std::exp(-1.0)) < 1e-3);  // four digits of the bound
+    CHECK(std::abs(even_turn - 1.0 / std::sqrt(24.0)) < 1e-4);
+    CHECK_NOTHROW(require_turns(turning(0.084), settle));
+    std::string said;
+    try {
+        require_turns(turning(0.0412), settle);
+    } catch (const std::invalid_argument& error) {
+        said = error.what();
+    }
+    CAPTURE(said);
+    CHECK(said.find("SettleParameters.final_tension_factor = 0.01, but it must be <= 0.0024") == 0);
+    settle.final_tension_factor = 0.0024;
+    CHECK_NOTHROW(require_turns(turning(0.0412), settle));
 }
 
 TEST_CASE("a programme of settling that cannot be is refused") {

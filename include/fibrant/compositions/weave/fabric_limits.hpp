@@ -66,23 +66,61 @@ inline std::vector<std::string> doubts(const FabricParameters& fabric) {
     return said;
 }
 
-/// The same of a fabric and of how it is settled: fibres that turn over a small part of an element, sqrt(E I / T), kink at every
-/// crossing under what pulls them at the end.
-inline std::vector<std::string> doubts(const FabricParameters& fabric, const SettleParameters& settle) {
-    const double least_turn = 0.08;  // of an element, by trial: 0.13 settles, 0.04 does not
-    std::vector<std::string> said = doubts(fabric);
+/// Length over which a section's turn dies away along a fibre under the tension at the end, sqrt(E I / T), over an element [1].
+inline double turn_over_element(const FabricParameters& fabric, const SettleParameters& settle, Family family) {
+    const scene::CrossSection section = fabric.tow(family).section();
+    const double strain = settle.tension_strain * settle.final_tension_factor;
+    const double element = fabric.fibre_length(family) / static_cast<double>(fabric.elements_of(family));
+    return std::sqrt(section.second_moment_1() / (strain * section.area())) / element;
+}
+
+/// Part of a turn of sections that is left an element of three nodes further, under a pull T. The turn obeys E I phi'' = T phi,
+/// and is w' at both Gauss points; without the middle node nodes obey cosh(t) = 1 + 72 b / (b^2 - 12 b + 144), b = T l^2 / (E I),
+/// and exp(-t) is left. It is least at b = 12: what resists bending still less turns over more elements, not over less of one.
+/// @param turn  sqrt(E I / T) over an element [1], > 0
+inline double turn_left(double turn) noexcept {
+    const double b = 1.0 / (turn * turn);
+    return std::exp(-std::acosh(1.0 + 72.0 * b / (b * b - 12.0 * b + 144.0)));
+}
+
+/// Where more than 1 / e is left an element further, at b = 144 [1]: kinks at crossings reach the ones beside them.
+inline constexpr double least_turn = 0.08346;
+/// Where the middle of an element turns against its ends, which is at (24 - b) / (24 + 2 b) of them [1]: 1 / sqrt(24).
+inline constexpr double even_turn = 0.2041;
+
+/// What helps fibres that turn over too little of an element, but less tension. Elements are no shorter than a diameter.
+inline std::string remedy_of_turn(const FabricParameters& fabric, Family family, double turn, double least) {
+    const std::string name = family == Family::warp ? "warp" : "weft";
+    const double factor = least / turn, length = fabric.fibre_length(family);
+    const double elements = std::ceil(factor * static_cast<double>(fabric.elements_of(family)));
+    std::string said = name + ".inertia_factor >= " + core::text(factor * factor * fabric.tow(family).inertia_factor);
+    if (elements * 2.0 * fabric.tow(family).fibre_radius <= length)
+        said += ", or " + std::to_string(static_cast<Index>(elements)) + " elements";
+    return said;
+}
+
+/// Refuses fibres that turn over less than `least_turn` of an element under the tension at the end.
+inline void require_turns(const FabricParameters& fabric, const SettleParameters& settle) {
     for (const Family family : {Family::warp, Family::weft}) {
-        const scene::CrossSection section = fabric.tow(family).section();
-        const double turn =
-            std::sqrt(section.second_moment_1() / (settle.tension_strain * settle.final_tension_factor * section.area()));
-        const double element = fabric.fibre_length(family) / static_cast<double>(fabric.elements_of(family));
-        if (turn < least_turn * element)
-            said.push_back(
-                std::string(family == Family::warp ? "warp" : "weft") + " fibres turn over " + core::text(turn / element) +
-                " of an element under the tension at the end, and kink where that is less than " + core::text(least_turn) +
-                ": less tension, a greater inertia factor, or " +
-                std::to_string(static_cast<Index>(std::ceil(least_turn * fabric.fibre_length(family) / turn))) + " elements");
+        const double turn = turn_over_element(fabric, settle, family), part = turn / least_turn;
+        core::require(part >= 1.0, "SettleParameters.final_tension_factor", settle.final_tension_factor,
+                      "<= " + core::text(part * part * settle.final_tension_factor) + ", for " +
+                          (family == Family::warp ? "warp" : "weft") + " fibres turn over " + core::text(turn) +
+                          " of an element under the tension at the end, and elements follow no less than " +
+                          core::text(least_turn) + "; or " + remedy_of_turn(fabric, family, turn, least_turn));
     }
+}
+
+/// The same of a fabric and of how it is settled: fibres that turn over a small part of an element, at crossings, under what
+/// pulls them at the end.
+inline std::vector<std::string> doubts(const FabricParameters& fabric, const SettleParameters& settle) {
+    std::vector<std::string> said = doubts(fabric);
+    for (const Family family : {Family::warp, Family::weft})
+        if (const double turn = turn_over_element(fabric, settle, family); turn < even_turn)
+            said.push_back(
+                std::string(family == Family::warp ? "warp" : "weft") + " fibres turn over " + core::text(turn) +
+                " of an element under the tension at the end, and may kink and creep for ever where that is less than " +
+                core::text(even_turn) + ": less tension, " + remedy_of_turn(fabric, family, turn, even_turn));
     return said;
 }
 
