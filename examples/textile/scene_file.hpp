@@ -129,10 +129,17 @@ inline void read_load(SceneReader& file, Load& load) {
         load.parameters.validate();
 }
 
-inline void read_height(SceneReader& file, const std::string& section, double& height) {
-    file.read(section, "height_over_radius", height, example::above(0.0, 10.0), "1",
-              "height of yarns at crossings above the middle surface, over their half thickness; below 1 they start in each "
-              "other: single fibres, since yarns of several are drawn at 1.05 at least");
+/// @param single  height of yarns of one fibre where the scene says none
+inline void read_height(SceneReader& file, const std::string& section, double& height, const cloth::YarnType& yarn, double single,
+                        const std::string& more = "") {
+    double given = fibrant::core::unset;
+    const std::string several = fibrant::core::text(cloth::apart_height),
+                      sentence =
+                          "height of yarns at crossings above the middle surface, over their half thickness; below 1 they start "
+                          "in each other; of yarns of several fibres at least " +
+                          several + ". Left out: " + several + ", and of single fibres " + fibrant::core::text(single) + more;
+    file.read(section, "height_over_radius", given, example::above(0.0, 10.0), "1", sentence.c_str());
+    height = std::isnan(given) ? (yarn.fibres > 1 ? cloth::apart_height : single) : given;
 }
 
 inline void read_overhang(SceneReader& file, const std::string& section, double& overhang) {
@@ -169,7 +176,7 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.read("flat_braid", "periods", braid.periods, example::above(0.0, 1e4), "1", "number of periods");
         file.read("flat_braid", "over", braid.over, example::between(1, 2), "how many yarns in turn a yarn passes above");
         read_overhang(file, "flat_braid", braid.overhang);
-        read_height(file, "flat_braid", braid.height_over_radius);
+        read_height(file, "flat_braid", braid.height_over_radius, yarn, 0.3);
         if (!all) file.complete(), made = cloth::flat_braid(braid);
     }
     if (wanted("tubular_braid")) {
@@ -185,7 +192,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.read("tubular_braid", "axials", braid.axials,
                   "add straight yarns along the axis, one for each yarn of one way, where over is 1");
         read_overhang(file, "tubular_braid", braid.overhang);
-        read_height(file, "tubular_braid", braid.height_over_radius);
+        read_height(file, "tubular_braid", braid.height_over_radius, yarn, braid.axials ? cloth::apart_height : 0.05,
+                    ", 1.05 with axial yarns");
         if (!all) file.complete(), made = cloth::tubular_braid(braid);
     }
     if (wanted("levels")) {
@@ -250,7 +258,7 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.require("triaxial_weave", "spacing", weave.spacing, positive, "length",
                      "distance of neighbouring yarns of a family");
         file.require("triaxial_weave", "radius", weave.radius, positive, "length", "radius of the round sample");
-        read_height(file, "triaxial_weave", weave.height_over_radius);
+        read_height(file, "triaxial_weave", weave.height_over_radius, yarn, 0.5);
         if (!all) file.complete(), made = cloth::triaxial_weave(weave);
     }
     if (wanted("weft_knit")) {
@@ -265,7 +273,7 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.require("weft_knit", "loop_height", knit.loop_height, positive, "length", "half of a loop's height in the plane");
         file.read("weft_knit", "bulge", knit.bulge, positive, "length",
                   "how much a loop is wider than its neck, on each side; left out: a fifth of wale_spacing");
-        read_height(file, "weft_knit", knit.height_over_radius);
+        read_height(file, "weft_knit", knit.height_over_radius, yarn, 0.9);
         if (!all) file.complete(), made = cloth::weft_knit(knit);
     }
     if (wanted("tricot")) {
@@ -276,7 +284,7 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.require("tricot", "needle_spacing", knit.needle_spacing, positive, "length", "distance of neighbouring needles");
         file.require("tricot", "course_spacing", knit.course_spacing, positive, "length", "distance of neighbouring courses");
         file.require("tricot", "loop_height", knit.loop_height, positive, "length", "height of a loop above its feet");
-        read_height(file, "tricot", knit.height_over_radius);
+        read_height(file, "tricot", knit.height_over_radius, yarn, 0.95);
         if (!all) file.complete(), made = cloth::tricot(knit);
     }
     if (wanted("plied")) {
@@ -315,7 +323,7 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.read("net", "periods", net.periods, example::above(0.0, 1e4), "1", "number of periods");
         file.read("net", "overlap", net.overlap, example::not_negative(), "length",
                   "how far yarns reach beyond the turns of their neighbours; 0: four half widths");
-        read_height(file, "net", net.height_over_radius);
+        read_height(file, "net", net.height_over_radius, yarn, 0.5);
         if (!all) file.complete(), made = cloth::net(net);
     }
     if (wanted("stitched")) {
@@ -396,6 +404,7 @@ inline Scene read_scene(SceneReader& file) {
                 {"ChainMail.", "chain_mail."},
                 {"Net.", "net."},
                 {"StitchedPlies.", "stitched."},
+                {"YarnType.", "yarn."},
                 {"SettleParameters.", "settle."},
                 {"Fineness.", "yarn."},
                 {"LoadCaseParameters.name", "loading.case"},

@@ -157,6 +157,67 @@ TEST_CASE(
         }
 }
 
+TEST_CASE("ends that lie in each other are refused by the field that they are apart by, and the least value named does") {
+    const double deep = 1e-3;
+    // The value that a message names, and what it says where that is taken.
+    const auto named = [](const std::string& message) { return std::stod(message.substr(message.find(">= ") + 3)); };
+    const auto ends_of = [&](const Textile& textile) {
+        Textile held = textile;
+        for (Path& path : held.paths) path.ends = Ends::held;
+        return refusal([&] { require_ends_apart(held, assemble(held, {}), deep); });
+    };
+    const auto expect = [&](const std::string& field, double given, const auto& draw) {
+        CAPTURE(field);
+        const std::string message = ends_of(draw(given));
+        REQUIRE(message.find(field + " = ") == 0);
+        const double least = named(message);
+        CHECK(least > given);
+        CHECK(ends_of(draw(least * 1.001)).empty());
+        CHECK_FALSE(ends_of(draw(given + 0.97 * (least - given))).empty());
+    };
+    const auto woven_at = [&](double column, double warp, double layer) {
+        return woven({.levels = levels_of({"02", "02"}),
+                      .layers = 2,
+                      .column_spacing = column,
+                      .warp_spacing = warp,
+                      .layer_spacing = layer,
+                      .warp = yarn(1),
+                      .weft = yarn(1)});
+    };
+    expect("FlatBraid.half_width", 0.151, [&](double x) {
+        return flat_braid({.yarns = 3, .half_width = x, .period = 4.0, .type = yarn(1), .height_over_radius = 0.1});
+    });
+    expect("LevelPlan.warp_spacing", 0.08, [&](double x) { return woven_at(0.8, x, 0.0); });
+    expect("LevelPlan.layer_spacing", 0.09, [&](double x) { return woven_at(0.8, 0.3, x); });
+    // Fibres of a yarn stay beside its path as they are: rows of two that lie side by side.
+    expect("LevelPlan.warp_spacing", 0.17, [&](double x) {
+        return woven(
+            {.levels = levels_of({"01", "01"}), .column_spacing = 0.8, .warp_spacing = x, .warp = yarn(2), .weft = yarn(1)});
+    });
+    // Of paths that no generator has drawn fibres are to be thinner.
+    Textile two;
+    two.types = {yarn(1)};
+    for (const double y : {0.0, 0.09}) {
+        Path path;
+        path.curve = [=](double t) { return Vec3(2.0 * t, y, 0.0); };
+        two.paths.push_back(path);
+    }
+    const std::string message = ends_of(two);
+    REQUIRE(message.find("YarnType.radius = 0.05, but it must be <= ") == 0);
+    two.types[0].radius = std::stod(message.substr(message.find("<= ") + 3)) * 0.999;
+    CHECK(ends_of(two).empty());
+    // So are the two ends of one path that comes round.
+    Textile ring;
+    ring.types = {yarn(1)};
+    Path round;
+    round.curve = [](double t) { return Vec3(std::cos(6.2 * t), std::sin(6.2 * t), 0.0); };
+    ring.paths = {round};
+    const std::string own = ends_of(ring);
+    REQUIRE(own.find("YarnType.radius = 0.05, but it must be <= ") == 0);
+    ring.types[0].radius = std::stod(own.substr(own.find("<= ") + 3)) * 0.99;
+    CHECK(ends_of(ring).empty());
+}
+
 TEST_CASE("the audit of crossings sees two fibres that changed places, one that is gone, and the drawn state as right") {
     const Textile weave = woven(
         {.levels = levels_of({"0101", "1010"}), .column_spacing = 0.6, .warp_spacing = 0.3, .warp = yarn(1), .weft = yarn(1)});

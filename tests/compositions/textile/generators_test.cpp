@@ -474,6 +474,30 @@ TEST_CASE("each loop of a tricot crosses that drawn through it four times") {
     CHECK(refusal([&] { validate(knit); }).empty());
 }
 
+TEST_CASE("underlaps of a tricot pass the head of their own yarn's loop, with room for two fibres side by side") {
+    const double r = 0.05;
+    YarnType two = yarn(r);
+    two.fibres = 2;
+    for (const YarnType& type : {yarn(r), two}) {
+        const Textile knit =
+            tricot({.needles = 3, .courses = 3, .needle_spacing = 1.0, .course_spacing = 0.8, .loop_height = 1.1, .type = type});
+        constexpr int pieces = 600;
+        const double length = scene::length_of(knit.paths[0].curve), far = 0.8;  // along the yarn, beyond the turn of a foot
+        std::vector<std::vector<Vec3>> fibres;
+        for (const scene::Curve& curve : detail::fibre_curves(knit, 0)) {
+            fibres.emplace_back();
+            for (int k = 0; k <= pieces; ++k) fibres.back().push_back(curve(k / double(pieces)));
+        }
+        double least = 1e9;
+        for (const auto& one : fibres)
+            for (const auto& other : fibres)
+                for (int k = 0; k <= pieces; ++k)
+                    for (int l = k + static_cast<int>(far / length * pieces) + 1; l <= pieces; ++l)
+                        least = std::min(least, (one[core::at(k)] - other[core::at(l)]).norm());
+        CHECK(least >= 2.0 * r);
+    }
+}
+
 TEST_CASE("plies lie on helices as long as their angle says, and do not touch") {
     const double r = 0.05, pitch = 40.0 * r, length = 3.0 * pitch;
     const Plied parameters{.plies = 3, .pitch = pitch, .length = length, .type = yarn(r)};
@@ -639,9 +663,43 @@ TEST_CASE("loops, ends and rings that do not reach each other, or reach too far,
     CHECK(message.find("for 36 crossings, not ") != std::string::npos);
     warp.loop_height = named(message);
     CHECK(refusal([&] { tricot(warp); }).empty());
+    // Right crossings, but underlaps that lie in the heads of their own yarn's loops.
+    warp.loop_height = 26.0 * r;
+    message = refusal([&] { tricot(warp); });
+    CHECK(message.find("Tricot.loop_height = 1.3, but it must be <= ") == 0);
+    CHECK(message.find("heads of their own yarn's loops") != std::string::npos);
+    warp.loop_height = named(message);
+    CHECK(refusal([&] { tricot(warp); }).empty());
     CHECK(refusal([&] {
               chain_mail({.rows = 2, .columns = 2, .ring_radius = 1.0, .pitch = 4.5, .row_pitch = 1.9, .type = yarn(r)});
           }).find("links of yarn 0 'ring 0.0' with yarn 2 'ring 1.0' = 0, but it must be 1 or -1") != std::string::npos);
+}
+
+TEST_CASE("heights at which fibres of several would lie on the wrong side are refused by field, value and bound") {
+    const double r = 0.05;
+    for (const Index fibres : {1, 2, 7}) {
+        YarnType type = yarn(r);
+        type.fibres = fibres;
+        const auto said = [&](double h) {
+            FlatBraid flat{.yarns = 3, .half_width = 1.0, .period = 9.0, .type = type, .height_over_radius = h};
+            TubularBraid tube{.carriers = 4, .radius = 1.0, .pitch = 6.0, .type = type, .height_over_radius = h};
+            TriaxialWeave weave{.spacing = 2.0, .radius = 3.0, .type = type, .height_over_radius = h};
+            WeftKnit knit{.wale_spacing = 2.0, .course_spacing = 1.6, .loop_height = 1.4, .height_over_radius = h, .type = type};
+            Tricot warp{.needle_spacing = 3.0, .course_spacing = 2.4, .loop_height = 3.3, .height_over_radius = h, .type = type};
+            Net net{.spacing = 2.0, .period = 9.0, .type = type, .height_over_radius = h};
+            return std::vector<std::pair<std::string, std::string>>{
+                {"FlatBraid", refusal([&] { flat.validate(); })},      {"TubularBraid", refusal([&] { tube.validate(); })},
+                {"TriaxialWeave", refusal([&] { weave.validate(); })}, {"WeftKnit", refusal([&] { knit.validate(); })},
+                {"Tricot", refusal([&] { warp.validate(); })},         {"Net", refusal([&] { net.validate(); })}};
+        };
+        for (const auto& [name, message] : said(0.9)) {
+            if (fibres == 1)
+                CHECK(message.empty());
+            else
+                CHECK(message.find(name + ".height_over_radius = 0.9, but it must be >= 1.05 ") == 0);
+        }
+        for (const auto& [name, message] : said(1.05)) CHECK_MESSAGE(message.empty(), name << ": " << message);
+    }
 }
 
 }  // namespace textile_generators_test

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <string>
 
 using namespace fibrant;
 
@@ -200,6 +201,35 @@ TEST_CASE("fibres of a tow that crosses count once, and its pull is that of its 
     CHECK(loading.stages[1].damping == test::near(equal.stages[1].damping / 100.0, 1e-12));
     CHECK(loading.damping_of_fibres.front() == test::near(100.0, 1e-12));
     CHECK(loading.damping_of_fibres.back() == 1.0);
+}
+
+TEST_CASE("fibres that are held on the wrong side of their order are given up once 60 increments have parted nothing, by name") {
+    // At a right angle, middles held half a radius apart, the first one below: nothing takes it above the second.
+    constexpr double radius = 0.05;
+    scene::Assembly assembly;
+    const Index first = assembly.add_group("first"), second = assembly.add_group("second");
+    for (const Index k : {0, 1}) {
+        const Vec3 middle = 0.5 * radius * static_cast<double>(k) * Vec3::UnitZ(),
+                   half = 20.0 * radius * (k == 0 ? Vec3::UnitX() : Vec3::UnitY());
+        const Index fibre = assembly.add({.from = middle - half,
+                                          .to = middle + half,
+                                          .section = scene::circular(radius),
+                                          .material = {1e4, 0.3},
+                                          .elements = 10,
+                                          .director = Vec3::UnitZ(),
+                                          .group = k == 0 ? first : second});
+        assembly.clamp(scene::first_end(fibre)), assembly.clamp(scene::last_end(fibre));
+        assembly.hold_position({fibre, 0.5});
+    }
+    assembly.force_order({first, second, Vec3::UnitZ()});
+    const simulation::SettleParameters settle;
+    simulation::Simulator<Model> simulator(assembly, simulation::settling_parameters<Model>(radius, settle));
+    const simulation::Report report = simulator.run(simulation::settling<Model>(assembly, settle));
+    CAPTURE(report.reason);
+    CHECK_FALSE(report.converged);
+    CHECK(core::count(report.increments) < settle.separation_increments);
+    CHECK(report.reason.find("stage separation did not reach its end in ") == 0);
+    CHECK(report.reason.find(", the last 60 of which parted nothing: fibre 0 and fibre 1 are ") != std::string::npos);
 }
 
 }  // namespace settle_test

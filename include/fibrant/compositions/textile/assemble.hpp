@@ -297,9 +297,9 @@ inline Assembled assemble(const Textile& textile, const Fineness& fineness, cons
     return answer;
 }
 
-/// Refuses ends of different yarns that lie in each other and keep their places: nothing can part them.
+/// Refuses ends of yarns that lie in each other and keep their places: nothing can part them.
 /// @param allowed  how deep fibres may be in each other at the end [length], >= 0
-/// @throws std::invalid_argument naming the two yarns
+/// @throws std::invalid_argument naming the length that they are apart by, the value that would do, and the two yarns
 inline void require_ends_apart(const Textile& textile, const Assembled& assembled, double allowed) {
     std::vector<std::array<Vec3, 2>> ends;  // and a point a little inwards
     std::vector<Index> yarn;
@@ -319,9 +319,25 @@ inline void require_ends_apart(const Textile& textile, const Assembled& assemble
         const Index a = yarn[core::at(pair.i)], b = yarn[core::at(pair.j)];
         const double apart = (ends[core::at(pair.j)][0] - ends[core::at(pair.i)][0]).norm(),
                      least = textile.type_of(a).radius + textile.type_of(b).radius - allowed;
-        if (a != b && apart < least)
-            core::refuse(textile.name + ": distance of ends of fibres of " + textile.label(a) + " and " + textile.label(b),
-                         core::text(apart), ">= " + core::text(least) + ", since they keep their places: yarns further apart");
+        if ((a == b && pair.i % 2 == pair.j % 2) || apart >= least)
+            continue;  // fibres of one yarn at one end, as they are packed
+        // Fibres of a yarn stay beside its path as they are where paths go apart.
+        const auto end = [&](Index k) { return textile.paths[core::at(yarn[core::at(k)])].curve(k % 2 == 0 ? 0.0 : 1.0); };
+        const Vec3 between = end(pair.j) - end(pair.i);
+        const double whole = between.norm() + least - apart;  // that is needed
+        const std::string why = "distance of ends of fibres of " + textile.label(a) + " and " + textile.label(b) + ", which " +
+                                "keep their places, is " + core::text(apart) + " where " + core::text(least) + " is needed";
+        Index axis = 0;
+        const double along = between.cwiseAbs().maxCoeff(&axis);
+        const ApartBy& by = textile.apart_by[core::at(axis)];
+        const double radius = textile.type_of(a).radius;
+        if (by.field.empty() || a == b || !(along > 0.0))
+            core::refuse("YarnType.radius", core::text(radius),
+                         (along > 0.0 ? "<= " + core::text(radius * between.norm() / whole) : std::string("less")) + ": " + why);
+        const double factor = std::sqrt(whole * whole - between.squaredNorm() + along * along) / along;  // along that axis alone
+        core::refuse(by.field, core::text(by.given),
+                     ">= " + core::text(by.given + by.whole * (factor - 1.0)) + " with fibres of radius " + core::text(radius) +
+                         ": " + why);
     }
 }
 

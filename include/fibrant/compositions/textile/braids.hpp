@@ -24,7 +24,7 @@ struct FlatBraid {
     double overhang = 0.0;
     bool periodic = false;             ///< goes on at both ends; whole periods
     YarnType type{};                   ///< of all yarns
-    double height_over_radius = 1.05;  ///< of a yarn at a crossing out of the middle plane [1], > 0
+    double height_over_radius = 1.05;  ///< of a yarn at a crossing out of the middle plane [1], > 0; of several fibres >= 1.05
 
     void validate() const {
         core::require_at_least("FlatBraid.yarns", yarns, 3);
@@ -35,9 +35,10 @@ struct FlatBraid {
         if (periodic && overhang > 0.0) core::refuse("FlatBraid.overhang", core::text(overhang), "0, of a braid that goes on");
         if (periodic) require_whole("FlatBraid.periods, of a braid that goes on", periods);
         if (over != 1 && over != 2) core::refuse("FlatBraid.over", std::to_string(over), "1 or 2");
-        core::require_positive("FlatBraid.height_over_radius", height_over_radius);
         type.validate();
-        const double least = static_cast<double>(yarns) * textile::half_width(type);
+        core::require_positive("FlatBraid.height_over_radius", height_over_radius);
+        require_height("FlatBraid.height_over_radius", height_over_radius, type);
+        const double least = static_cast<double>(yarns) * half_room(type);
         core::require(half_width >= least, "FlatBraid.half_width", half_width,
                       ">= " + core::text(least) + ", that of the yarns side by side");
     }
@@ -106,6 +107,7 @@ namespace detail {
 inline Textile drawn(const FlatBraid& braid) {
     Textile textile;
     textile.name = "flat braid";
+    textile.apart_by.fill({"FlatBraid.half_width", braid.half_width});
     textile.types = {braid.type};
     const double n = static_cast<double>(braid.yarns);
     const double tip = 0.4 / n;  // within the outermost meetings, which are half of 1 / N from a tip
@@ -132,7 +134,7 @@ inline Textile drawn(const FlatBraid& braid) {
             const bool right_above = (column / braid.over) % 2 == 0;
             return one_above((crossing.along_first.x() > 0.0) == right_above);
         },
-        crossing_height(braid.type, braid.height_over_radius));
+        braid.height_over_radius * half_thickness(braid.type));
     along.grip(textile);
     return textile;
 }
@@ -153,16 +155,17 @@ inline Textile flat_braid(const FlatBraid& braid) {
 
 /// A tubular braid: as many carriers one way round as the other, and straight axial yarns if wanted.
 struct TubularBraid {
-    Index carriers = 8;                ///< each way, >= 2
-    double radius = core::unset;       ///< of the middle surface [length], > 0
-    double pitch = core::unset;        ///< length of a full turn along the axis [length], > 0
-    double turns = 0.5;                ///< > 0
-    Index over = 1;                    ///< 1: 1x1; 2: 2x2; divides the carriers
-    bool axials = false;               ///< an axial yarn at every other line of meetings, with 1x1 only
-    double overhang = 0.0;             ///< of ends along the tube, beyond the turns [length]; 0: as of FlatBraid
-    bool periodic = false;             ///< goes on at both ends; whole turns
-    YarnType type{};                   ///< of all yarns
-    double height_over_radius = 1.05;  ///< of a yarn at a crossing out of the middle of the tube [1], > 0
+    Index carriers = 8;           ///< each way, >= 2
+    double radius = core::unset;  ///< of the middle surface [length], > 0
+    double pitch = core::unset;   ///< length of a full turn along the axis [length], > 0
+    double turns = 0.5;           ///< > 0
+    Index over = 1;               ///< 1: 1x1; 2: 2x2; divides the carriers
+    bool axials = false;          ///< an axial yarn at every other line of meetings, with 1x1 only
+    double overhang = 0.0;        ///< of ends along the tube, beyond the turns [length]; 0: as of FlatBraid
+    bool periodic = false;        ///< goes on at both ends; whole turns
+    YarnType type{};              ///< of all yarns
+    double height_over_radius =
+        1.05;  ///< of a yarn at a crossing out of the middle of the tube [1], > 0; of several fibres >= 1.05
 
     void validate() const {
         core::require_at_least("TubularBraid.carriers", carriers, 2);
@@ -176,9 +179,10 @@ struct TubularBraid {
         if (carriers % over != 0)
             core::refuse("TubularBraid.over", std::to_string(over), "a divisor of the carriers, " + std::to_string(carriers));
         if (axials && over != 1) core::refuse("TubularBraid.over", std::to_string(over), "1 with axial yarns");
-        core::require_positive("TubularBraid.height_over_radius", height_over_radius);
         type.validate();
-        const double least = static_cast<double>(carriers) * half_width(type) / std::numbers::pi;
+        core::require_positive("TubularBraid.height_over_radius", height_over_radius);
+        require_height("TubularBraid.height_over_radius", height_over_radius, type);
+        const double least = static_cast<double>(carriers) * half_room(type) / std::numbers::pi;
         core::require(radius > least, "TubularBraid.radius", radius,
                       "> " + core::text(least) + ", that of the carriers side by side around the tube");
     }
@@ -194,6 +198,7 @@ namespace detail {
 inline Textile drawn(const TubularBraid& braid) {
     Textile textile;
     textile.name = "tubular braid";
+    textile.apart_by.fill({"TubularBraid.radius", braid.radius});
     textile.types = {braid.type};
     textile.view = {Vec3::UnitZ(), true, Vec3::Zero()};
     const double n = static_cast<double>(braid.carriers), full = 2.0 * std::numbers::pi;
@@ -234,7 +239,7 @@ inline Textile drawn(const TubularBraid& braid) {
             const double high = braid.axials && rest == 1 ? 2.0 : 1.0;
             return rest < braid.over ? std::array{high, -high} : std::array{-high, high};
         },
-        crossing_height(braid.type, braid.height_over_radius));
+        braid.height_over_radius* half_thickness(braid.type));
     along.grip(textile);
     return textile;
 }

@@ -25,8 +25,8 @@ struct WeftKnit {
     double course_spacing = core::unset;     ///< C [length], > 0
     double loop_height = core::unset;        ///< H, half of a loop's height in the plane [length], > C / 2
     double bulge = core::unset;              ///< a [length]; unset: W / 5
-    double height_over_radius = 1.05;        ///< of yarns at crossings out of the middle plane [1], > 0
-    YarnType type{};                         ///< of all yarns
+    double height_over_radius = 1.05;  ///< of yarns at crossings out of the middle plane [1], > 0; of several fibres >= 1.05
+    YarnType type{};                   ///< of all yarns
 
     bool face(Index course, Index wale) const {
         const std::string& row = stitches[core::at(course % core::count(stitches))];
@@ -46,8 +46,9 @@ struct WeftKnit {
         core::require_positive("WeftKnit.course_spacing", course_spacing);
         core::require(loop_height > 0.5 * course_spacing, "WeftKnit.loop_height", loop_height,
                       "> half of course_spacing, or loops do not reach the next course");
-        core::require_positive("WeftKnit.height_over_radius", height_over_radius);
         type.validate();
+        core::require_positive("WeftKnit.height_over_radius", height_over_radius);
+        require_height("WeftKnit.height_over_radius", height_over_radius, type);
         // Beside each other lie courses, and legs of one course: an eighth of a wale and the bulge beside the middle of a foot.
         const double w = std::max(half_width(type), half_breadth(type));
         core::require(course_spacing >= 2.0 * w, "WeftKnit.course_spacing", course_spacing,
@@ -70,18 +71,25 @@ namespace detail {
 /// @param fields   that crossings follow from as well
 /// @param draw     draws it, however often it crosses itself
 /// @param bend     height at which a loop is as sharp as its yarn is thick [length]
+/// @param fits     whether a height that is named would do beside its crossings; null: it would
 template <class Knit>
 Textile looped(const Knit& knit, Textile (*draw)(const Knit&), const std::string& field, Index asked, double low,
-               const std::string& fields, const std::string& why, std::vector<DrawnLength> lengths, double bend = 0.0) {
+               const std::string& fields, const std::string& why, std::vector<DrawnLength> lengths, double bend = 0.0,
+               bool (*fits)(const Knit&) = nullptr) {
     const auto crossed = [&](const Knit& one) {
-        Textile textile = draw(one);
+        const auto fitting = [&](const Knit& changed) {
+            Textile other = draw(changed);
+            if (fits != nullptr && core::count(other.crossings) == asked && !fits(changed)) other.crossings.clear();
+            return other;
+        };
+        Textile textile = &one == &knit ? draw(one) : fitting(one);
         if (&one != &knit)
             require_crossings(textile, asked, "crossings", why);
         else
-            require_crossings(textile, asked, field, one.loop_height, low, fields, why, [other = one, draw](double height) {
-                auto changed = other;
+            require_crossings(textile, asked, field, one.loop_height, low, fields, why, [&](double height) {
+                auto changed = one;
                 changed.loop_height = height;
-                return draw(changed);
+                return fitting(changed);
             });
         return textile;
     };
@@ -90,8 +98,9 @@ Textile looped(const Knit& knit, Textile (*draw)(const Knit&), const std::string
         Knit thinner = knit;
         constexpr double step = 0.95, thinnest = 0.2;
         while ((thinner.type.radius *= step) > thinnest * knit.type.radius && !fibres_cross_rightly(draw(thinner))) continue;
-        core::refuse(field + ", " + fields + ": radius of the fibres of a yarn", core::text(knit.type.radius),
-                     "<= " + core::text(thinner.type.radius) + ", for fibres to cross as their yarns do");
+        core::refuse("YarnType.radius", core::text(knit.type.radius),
+                     "<= " + core::text(thinner.type.radius) + " at this " + field.substr(field.find('.') + 1) + ", " + fields +
+                         ", for the " + std::to_string(knit.type.fibres) + " fibres of a yarn to cross as their yarns do");
     };
     constexpr double tallest = 8.0;  // over the least height: a loop that is taller crosses those beyond its neighbours
     Textile textile = laid(knit, &Knit::loop_height, field, bend, std::move(lengths), knit.type, crossed, tallest * low);
@@ -103,9 +112,10 @@ Textile looped(const Knit& knit, Textile (*draw)(const Knit&), const std::string
 inline Textile drawn(const WeftKnit& knit) {
     Textile textile;
     textile.name = "weft knit";
+    textile.apart_by.fill({"WeftKnit.course_spacing", knit.course_spacing});
     textile.types = {knit.type};
     const double w = knit.wale_spacing, c = knit.course_spacing, hh = knit.loop_height, a = knit.width(), tail = 0.75 * w;
-    const double h = crossing_height(knit.type, knit.height_over_radius);
+    const double h = knit.height_over_radius * half_thickness(knit.type);
     constexpr Index per_loop = 32;
     for (Index k = 0; k < knit.courses; ++k) {
         Path path;
@@ -174,7 +184,7 @@ struct Tricot {
     double needle_spacing = core::unset;  ///< W [length], > 0
     double course_spacing = core::unset;  ///< C [length], > 0
     double loop_height = core::unset;     ///< of a loop above its feet [length], > C
-    double height_over_radius = 1.05;     ///< of yarns at crossings out of the middle plane [1], > 0
+    double height_over_radius = 1.05;     ///< of yarns at crossings out of the middle plane [1], > 0; of several fibres >= 1.05
     YarnType type{};                      ///< of all yarns
 
     void validate() const {
@@ -184,8 +194,9 @@ struct Tricot {
         core::require_positive("Tricot.course_spacing", course_spacing);
         core::require(loop_height > course_spacing, "Tricot.loop_height", loop_height,
                       "> course_spacing, or loops do not reach the next course");
-        core::require_positive("Tricot.height_over_radius", height_over_radius);
         type.validate();
+        core::require_positive("Tricot.height_over_radius", height_over_radius);
+        require_height("Tricot.height_over_radius", height_over_radius, type);
         // Feet lie beside each other, 0.14 of the spacing beside a needle.
         const double w = std::max(half_width(type), half_breadth(type));
         core::require(needle_spacing >= w / 0.14, "Tricot.needle_spacing", needle_spacing,
@@ -200,9 +211,10 @@ namespace detail {
 inline Textile drawn(const Tricot& knit) {
     Textile textile;
     textile.name = "tricot";
+    textile.apart_by.fill({"Tricot.needle_spacing", knit.needle_spacing});
     textile.types = {knit.type};
     const double w = knit.needle_spacing, c = knit.course_spacing, top = knit.loop_height,
-                 h = crossing_height(knit.type, knit.height_over_radius);
+                 h = knit.height_over_radius * half_thickness(knit.type);
     const double neck = 0.14 * w, head = 0.30 * w;
     for (Index m = 0; m < knit.needles; ++m) {
         Path path;
@@ -224,7 +236,15 @@ inline Textile drawn(const Tricot& knit) {
             points.emplace_back(x + way * head, y + 0.72 * top, -h);
             points.emplace_back(x + way * neck, y + 0.30 * top, -h);
             points.emplace_back(x + way * neck, y, h);
-            if (k + 1 == knit.courses) points.emplace_back(x + way * (neck + 0.5 * w), y - 0.2 * c, h);
+            if (k + 1 == knit.courses) {
+                points.emplace_back(x + way * (neck + 0.5 * w), y - 0.2 * c, h);
+                continue;
+            }
+            // Round the foot, then well above the head of its own yarn's loop on the next needle: an underlap that sags lies on
+            // that head.
+            points.emplace_back(x + way * 0.32 * w, y - 0.07 * c, h);
+            points.emplace_back(x + way * 0.65 * w, y + 0.5 * c, h);
+            points.emplace_back(x + way * 1.12 * w, y + 0.8 * c, h);
         }
         const Line line = line_of(points);
         path.guides.push_back({line.arc[heads.back()] / line.arc.back()});
@@ -236,13 +256,50 @@ inline Textile drawn(const Tricot& knit) {
 }
 }  // namespace detail
 
+namespace detail {
+/// Whether underlaps lie beside the heads of their own yarns' loops, which they pass two courses above.
+inline bool underlaps_beside(const Tricot& given) {
+    Tricot knit = given;
+    knit.needles = 2, knit.courses = 3;  // all are alike
+    const Textile textile = drawn(knit);
+    constexpr Index pieces = 400;
+    const double length = scene::length_of(textile.paths[0].curve);
+    const auto far = static_cast<Index>(2.0 * knit.loop_height / length * static_cast<double>(pieces));  // along the yarn
+    std::vector<std::vector<Vec3>> fibres;
+    for (const scene::Curve& curve : fibre_curves(textile, 0)) {
+        fibres.emplace_back();
+        for (Index k = 0; k <= pieces; ++k) fibres.back().push_back(curve(static_cast<double>(k) / static_cast<double>(pieces)));
+    }
+    for (const std::vector<Vec3>& one : fibres)
+        for (const std::vector<Vec3>& other : fibres)
+            for (Index k = 0; k <= pieces; ++k)
+                for (Index l = k + far; l <= pieces; ++l)
+                    if ((one[core::at(k)] - other[core::at(l)]).norm() < 2.0 * knit.type.radius) return false;
+    return true;
+}
+}  // namespace detail
+
 /// Yarn m lays its loops on needles m and m + 1 by turns. Loops are closed: feet lie side by side, heads above the legs of the
 /// loop that is drawn through them, underlaps and feet above the legs of the loop below.
 inline Textile tricot(const Tricot& knit) {
-    return detail::looped(knit, &detail::drawn, "Tricot.loop_height", 4 * (knit.needles - 1) * (knit.courses - 1),
-                          knit.course_spacing, "needle_spacing and course_spacing",
-                          "four of each loop with that drawn through it",
-                          {{"needle_spacing", knit.needle_spacing}, {"course_spacing", knit.course_spacing}});
+    const std::string others = "needle_spacing and course_spacing";
+    const Index asked = 4 * (knit.needles - 1) * (knit.courses - 1);
+    Textile textile = detail::looped(knit, &detail::drawn, "Tricot.loop_height", asked, knit.course_spacing, others,
+                                     "four of each loop with that drawn through it",
+                                     {{"needle_spacing", knit.needle_spacing}, {"course_spacing", knit.course_spacing}}, 0.0,
+                                     &detail::underlaps_beside);
+    if (detail::underlaps_beside(knit)) return textile;
+    const double nearest = nearest_that_holds(knit.loop_height, knit.course_spacing, knit.loop_height, [&](double height) {
+        Tricot changed = knit;
+        changed.loop_height = height;
+        return height > knit.course_spacing && core::count(detail::drawn(changed).crossings) == asked &&
+               detail::underlaps_beside(changed);
+    });
+    const std::string why = ", for underlaps to lie beside the heads of their own yarn's loops";
+    if (std::isnan(nearest))
+        core::refuse("Tricot.needle_spacing", core::text(knit.needle_spacing),
+                     "more at this course_spacing and loop_height" + why);
+    core::refuse("Tricot.loop_height", core::text(knit.loop_height), "<= " + core::text(nearest) + " at this " + others + why);
 }
 
 }  // namespace fibrant::compositions::textile

@@ -75,6 +75,7 @@ inline Textile stitched(const StitchedPlies& plies) {
 inline Textile detail::drawn(const StitchedPlies& plies) {
     Textile textile;
     textile.name = "stitched plies";
+    textile.apart_by.fill({"StitchedPlies.yarn_spacing", plies.yarn_spacing});
     textile.types = {plies.yarn, plies.thread};
     const double s = plies.yarn_spacing, overhang = 0.75 * s, reach = half_width(plies.yarn) + half_width(plies.thread);
     const auto half_extent = [&](int axis) { return 0.5 * (axis == 0 ? plies.length : plies.width); };

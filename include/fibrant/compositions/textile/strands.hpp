@@ -64,6 +64,7 @@ inline Textile plied(const Plied& rope) {
     rope.validate();
     Textile textile;
     textile.name = rope.strands > 1 ? "rope" : "plied yarn";
+    textile.apart_by.fill({"Plied.slack", rope.slack, 1.0});
     textile.types = {rope.type};
     const double thick = outermost(rope.type), a = rope.lay_radius(rope.plies, thick, rope.pitch);
     core::require(2.0 * std::numbers::pi * a / rope.pitch < 2.0, "Plied.pitch", rope.pitch,
@@ -119,7 +120,7 @@ struct ChainMail {
         core::require_positive("ChainMail.pitch", along());
         core::require_positive("ChainMail.row_pitch", across());
         core::require(tilt_deg > 0.0 && tilt_deg <= 80.0, "ChainMail.tilt_deg", tilt_deg, "> 0 and <= 80");
-        if (type.fibres != 1) core::refuse("ChainMail.type.fibres", std::to_string(type.fibres), "1");
+        if (type.fibres != 1) core::refuse("YarnType.fibres", std::to_string(type.fibres), "1, of a ring of chain mail");
     }
 };
 
@@ -170,7 +171,7 @@ struct Net {
     double periods = 2.0;              ///< >= 0.5
     double overlap = 0.0;              ///< by which a yarn reaches beyond its neighbour's turns [length]; 0: four half widths
     YarnType type{};                   ///< of all yarns
-    double height_over_radius = 1.05;  ///< of yarns at crossings out of the middle plane [1], > 0
+    double height_over_radius = 1.05;  ///< of yarns at crossings out of the middle plane [1], > 0; of several fibres >= 1.05
 
     void validate() const {
         core::require_at_least("Net.yarns", yarns, 2);
@@ -178,8 +179,9 @@ struct Net {
         core::require_positive("Net.period", period);
         core::require(std::isfinite(periods) && periods >= 0.5, "Net.periods", periods, ">= 0.5, which is one turn");
         core::require_not_negative("Net.overlap", overlap);
-        core::require_positive("Net.height_over_radius", height_over_radius);
         type.validate();
+        core::require_positive("Net.height_over_radius", height_over_radius);
+        require_height("Net.height_over_radius", height_over_radius, type);
         // At a turn a yarn reaches half of the overlap beyond its neighbour's line, and so does the next but two.
         const double w = half_width(type), least = yarns > 3 ? 0.5 * reach() + w : w;
         core::require(spacing >= least, "Net.spacing", spacing,
@@ -193,6 +195,7 @@ namespace detail {
 inline Textile drawn(const Net& given) {
     Textile textile;
     textile.name = "net";
+    textile.apart_by.fill({"Net.spacing", given.spacing});
     textile.types = {given.type};
     const double overlap = given.reach(), length = given.period * given.periods;
     for (Index k = 0; k < given.yarns; ++k) {
@@ -215,7 +218,7 @@ inline Textile drawn(const Net& given) {
             const bool left_above = crossing.place.y() < turn;
             return one_above((crossing.first < crossing.second) == left_above);
         },
-        crossing_height(given.type, given.height_over_radius));
+        given.height_over_radius * half_thickness(given.type));
     return textile;
 }
 }  // namespace detail

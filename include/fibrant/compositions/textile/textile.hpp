@@ -96,6 +96,15 @@ struct View {
     Vec3 centre = Vec3::Zero();  ///< a point of the line [length]
 };
 
+/// A length that neighbouring paths are apart by, for messages that say how far they should be.
+struct ApartBy {
+    std::string field{};         ///< of a generator; none: of its own
+    double given = core::unset;  ///< value of it
+    double whole = core::unset;  ///< what the distance of paths is proportional to, which is `given` and as much more as ever
+    ApartBy() = default;
+    ApartBy(std::string name, double value, double more = 0.0) : field{std::move(name)}, given{value}, whole{value + more} {}
+};
+
 /// A textile: all that its fibres are made from.
 struct Textile {
     std::string name = "textile";
@@ -107,6 +116,7 @@ struct Textile {
     /// scene::PeriodicCell), under the tension of these paths.
     std::vector<Vec3> lattice{};
     std::array<bool, 9> free_gradient{};
+    std::array<ApartBy, 3> apart_by{};  ///< along x, y and z
 
     /// What repeats along an axis may grow and shrink there, so that tension rules its length.
     void free_lengths() noexcept {

@@ -146,6 +146,9 @@ namespace detail {
 inline Textile drawn(const LevelPlan& plan) {
     Textile textile;
     textile.name = "weave";
+    textile.apart_by = {ApartBy{"LevelPlan.column_spacing", plan.column_spacing},
+                        ApartBy{"LevelPlan.warp_spacing", plan.warp_spacing},
+                        ApartBy{"LevelPlan.layer_spacing", plan.layer_spacing, plan.pitch() - plan.layer_spacing}};
     textile.types = {plan.warp, plan.weft};
     if (!plan.warp_types.empty()) plan.binder.validate(), textile.types.push_back(plan.binder);
     const Index warps = plan.warps(), columns = plan.column_count(), layers = plan.layers;
@@ -230,6 +233,7 @@ namespace detail {
 inline Textile drawn(const LenoWeave& weave) {
     Textile textile;
     textile.name = "leno";
+    textile.apart_by = {ApartBy{"LenoWeave.pick_spacing", weave.pick_spacing}, ApartBy{"LenoWeave.aside", weave.aside}, {}};
     textile.types = {weave.type};
     const double p = weave.pick_spacing, s = weave.aside, h = 2.1 * half_width(weave.type), beyond = p;
     const double length = p * static_cast<double>(weave.picks - 1) + 2.0 * beyond;
@@ -277,7 +281,7 @@ struct TriaxialWeave {
     double spacing = core::unset;      ///< of a family, across it [length], > 0
     double radius = core::unset;       ///< of the circle within which yarns cross [length], > spacing
     YarnType type{};                   ///< of all yarns
-    double height_over_radius = 1.05;  ///< of yarns at crossings out of the middle plane [1], > 0
+    double height_over_radius = 1.05;  ///< of yarns at crossings out of the middle plane [1], > 0; of several fibres >= 1.05
 
     void validate() const {
         core::require_positive("TriaxialWeave.spacing", spacing);
@@ -285,8 +289,9 @@ struct TriaxialWeave {
         constexpr double most = 10000.0;  // yarns of a family
         core::require(radius <= 0.5 * most * spacing, "TriaxialWeave.radius", radius,
                       "<= " + core::text(0.5 * most * spacing) + ", 5000 spacings");
-        core::require_positive("TriaxialWeave.height_over_radius", height_over_radius);
         type.validate();
+        core::require_positive("TriaxialWeave.height_over_radius", height_over_radius);
+        require_height("TriaxialWeave.height_over_radius", height_over_radius, type);
     }
 };
 
@@ -294,6 +299,7 @@ namespace detail {
 inline Textile drawn(const TriaxialWeave& weave) {
     Textile textile;
     textile.name = "triaxial weave";
+    textile.apart_by.fill({"TriaxialWeave.spacing", weave.spacing});
     textile.types = {weave.type};
     std::vector<Index> family;
     const double overhang = 0.75 * weave.spacing;
@@ -321,7 +327,7 @@ inline Textile drawn(const TriaxialWeave& weave) {
             const Index a = family[core::at(crossing.first)], b = family[core::at(crossing.second)];
             return one_above((a + 1) % 3 == b);
         },
-        crossing_height(weave.type, weave.height_over_radius));
+        weave.height_over_radius * half_thickness(weave.type));
     return textile;
 }
 }  // namespace detail

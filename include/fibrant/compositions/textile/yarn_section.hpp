@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -45,12 +46,21 @@ inline double half_extent(const YarnType& type, int direction) {
 inline double half_breadth(const YarnType& type) { return half_extent(type, 0); }
 inline double half_thickness(const YarnType& type) { return half_extent(type, 1); }
 
-/// Height of a yarn at a crossing out of the middle [length]: a single fibre keeps its side however low it is drawn; fibres of
-/// yarns that start in each other lie between each other, some on the wrong side, so that yarns of several are drawn apart.
-/// @param over_half_thickness  that is asked for [1], > 0
-inline double crossing_height(const YarnType& type, double over_half_thickness) {
-    constexpr double apart = 1.05;
-    return (type.fibres > 1 ? std::max(over_half_thickness, apart) : over_half_thickness) * half_thickness(type);
+/// Height over half a yarn's thickness at which yarns that cross do not touch: what is drawn where nothing else is said [1].
+inline constexpr double apart_height = 1.05;
+
+/// Refuses a height of yarns at crossings that would not keep their sides: a single fibre does however low it is drawn; fibres of
+/// yarns that start in each other lie between each other, some on the wrong side.
+/// @param over_half_thickness  of a crossing out of the middle [1]
+/// @param field                that says so
+inline void require_height(const std::string& field, double over_half_thickness, const YarnType& type) {
+    if (type.fibres > 1)
+        core::require(over_half_thickness >= apart_height, field, over_half_thickness,
+                      ">= " + core::text(apart_height) + " of yarns of " + std::to_string(type.fibres) +
+                          " fibres: lower ones start in each other, and fibres lie on the wrong side");
 }
+
+/// Half of the room that yarns side by side take, as they lie or, if that is more, packed as densely as circles can be [length].
+inline double half_room(const YarnType& type) { return std::max(half_width(type), half_breadth(type)); }
 
 }  // namespace fibrant::compositions::textile
