@@ -37,9 +37,9 @@ TEST_CASE_TEMPLATE("the product is that of the matrix of all terms, held compone
     }
 }
 
-TEST_CASE_TEMPLATE("bands of fibres are those of their terms, with their own part of every contact", Pressed, Smooth, Rough,
-                   Centred) {
-    const Pressed fibres(true);
+/// Each band is what the terms couple within its reach.
+template <class Fibres>
+void check_bands(const Fibres& fibres) {
     const auto& system = fibres.equilibrium.system();
     std::vector<Matrix> expected;
     assembly::chain_bands_from_terms(system, expected);
@@ -51,6 +51,20 @@ TEST_CASE_TEMPLATE("bands of fibres are those of their terms, with their own par
         system.node_blocks(f, blocks);
         CHECK(blocks == band.leftCols(9));
     }
+}
+
+TEST_CASE_TEMPLATE("bands of fibres are those of their terms, with their own part of every contact", Pressed, Smooth, Rough,
+                   Centred) {
+    check_bands(Pressed(true));
+}
+
+TEST_CASE_TEMPLATE("and of every crossing whose place slides: else what couples two fibres would count without what each resists",
+                   Pressed, Smooth, Centred) {
+    const Pressed fibres(true, Vec3::Zero(), true);
+    Index sliding = 0;
+    for (Index k = 0; k < core::count(fibres.contacts.elements()); ++k) sliding += fibres.contacts.slides(k) ? 1 : 0;
+    REQUIRE(sliding == 2);
+    check_bands(fibres);
 }
 
 TEST_CASE("held components answer with a stiffness of the scene, and take nothing from the rest") {

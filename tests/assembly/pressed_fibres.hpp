@@ -27,7 +27,9 @@ struct PressedFibres {
     using Equilibrium = assembly::Equilibrium<Beam, Contacts>;
     static constexpr double radius = 0.02;
 
-    explicit PressedFibres(bool held, const Vec3& moment = Vec3::Zero()) : assembly_{scene(held, moment)} {
+    /// @param followed  the places where they cross slide with them
+    explicit PressedFibres(bool held, const Vec3& moment = Vec3::Zero(), bool followed = false)
+        : assembly_{scene(held, moment)} {
         amplitudes.assign(channels.names().size(), 1.0);
         accepted = mesh.rest_state();
         state = accepted;
@@ -38,6 +40,7 @@ struct PressedFibres {
             state.segment<3>(3 * v) += 0.01 * (v % 3 == 0 ? radius : 1.0) * step;
         }
         equilibrium.begin(amplitudes, accepted);
+        contacts.places().follow(followed);
         contacts.detect(state, accepted, 0.5 * radius, false);
         linearise(state);
     }

@@ -62,8 +62,8 @@ public:
     std::vector<Point>& points() noexcept { return points_; }
     const std::vector<Point>& points() const noexcept { return points_; }
 
-    /// Stiffness of contacts whose places slide: few scenes have any. It reaches beyond elements: bands and node blocks do
-    /// without, products and terms have it.
+    /// Stiffness of contacts whose places slide: few scenes have any. It reaches beyond elements: bands and node blocks have what
+    /// lies within them, products and terms the whole.
     std::vector<contact::SlidingStiffness>& slides() noexcept { return slides_; }
 
     /// Part of a point term that is not symmetric: `column` (x) `row` beside its stiffness [force / length, 1].
@@ -133,6 +133,7 @@ public:
         band_.pack(layout_, [this](Index fibre, Index node) -> const Row& { return row(fibre, node); });
         pairs_.pack(points_, core::count(rows_),
                     [](const Point& point, int side) { return (side == 0 ? point.first_i : point.first_j) / block; });
+        slides_of_.index(slides_, layout_, [this](Index v) { return source(v); });
         supports_.clear();
         for (const scene::Tie& tie : layout_.ties)
             for (const Index vector : tie.vectors)
@@ -278,6 +279,7 @@ private:
         blocks.setZero(nodes(fibre) * block, (reach + 1) * block);
         add_band(fibre, blocks);
         for (const Index image : images_of_[core::at(fibre)]) add_band(image, blocks);
+        slides_of_.add(slides_, layout_, fibre, [this](Index v) { return source(v); }, blocks);
     }
     void add_band(Index fibre, Matrix& blocks) const {
         for (Index a = 0; a < nodes(fibre); ++a)
@@ -297,6 +299,7 @@ private:
         if (source_.empty()) return;
         for (Index& vector : numbers) vector = source_[core::at(vector)];
     }
+    Index source(Index vector) const noexcept { return source_.empty() ? vector : source_[core::at(vector)]; }
     /// Of each vector that which it is an image of, or itself; and of each chain its images beside the cell.
     void find_sources() {
         if (layout_.images.empty()) return;
@@ -420,6 +423,7 @@ private:
     std::vector<Point> points_;
     std::vector<Skew> skews_;
     std::vector<contact::SlidingStiffness> slides_;
+    SlidesOfChains slides_of_;
     std::vector<std::pair<Index, double>> supports_;  // of tied vectors, sorted
     BandProduct<block, reach> band_;
     PointProduct<vectors, beam::Particle<B>> pairs_;
