@@ -28,8 +28,7 @@ struct PressedFibres {
     static constexpr double radius = 0.02;
 
     /// @param followed  the places where they cross slide with them
-    explicit PressedFibres(bool held, const Vec3& moment = Vec3::Zero(), bool followed = false)
-        : assembly_{scene(held, moment)} {
+    explicit PressedFibres(bool held, const Vec3& moment = Vec3::Zero(), bool followed = false) : assembly_{scene(held, moment)} {
         amplitudes.assign(channels.names().size(), 1.0);
         accepted = mesh.rest_state();
         state = accepted;

@@ -279,7 +279,8 @@ private:
         blocks.setZero(nodes(fibre) * block, (reach + 1) * block);
         add_band(fibre, blocks);
         for (const Index image : images_of_[core::at(fibre)]) add_band(image, blocks);
-        slides_of_.add(slides_, layout_, fibre, [this](Index v) { return source(v); }, blocks);
+        slides_of_.add(
+            slides_, layout_, fibre, [this](Index v) { return source(v); }, blocks);
     }
     void add_band(Index fibre, Matrix& blocks) const {
         for (Index a = 0; a < nodes(fibre); ++a)
