@@ -67,9 +67,8 @@ Index count_couplings(const System& system) {
 ///
 /// Systems that follow one another are alike: where iterations have failed, the systems until the next analysis begin with what
 /// took over, so a hard one pays for iterations in vain once. Where a factor would be larger than allowed, two levels may take as
-/// long as they do alone, unless they have come to nothing at their first limit: tangents that are nearly singular, where
-/// Newton's method has to shift, have residuals of 0.8 after 300 iterations and after 2,000. What a strategy calls indefinite is
-/// Confirmed first, and then reported at once: that is for Newton's iteration to mend.
+/// long as they do alone, unless they have come to nothing at their first limit: that is for Newton's method to shift. What a
+/// strategy calls indefinite is Confirmed first, and then reported at once: that is for Newton's iteration to mend.
 class AutomaticSolver {
 public:
     struct Parameters {
