@@ -43,10 +43,7 @@ inline constexpr double kept = 0.25;  ///< part of a search's reach that is move
 inline constexpr Index most_moves = 6, most_moves_bounded = 2;  ///< searches after such motions; where displacements are bounded
 inline constexpr Index first_searches = 2;                      ///< of an increment, which no small motion makes up for
 inline constexpr double coarsest_step = 0.02;                   ///< of an iteration within a pass [radius]
-// A path that is only a means goes on from what the last iteration of an increment would still move.
-inline constexpr double coarser = 0.005;      ///< times the looseness, above 1: that step may be so much larger [1]
-inline constexpr double coarsest_part = 0.1;  ///< of the motion that is expected, which it stays within [1]
-inline constexpr double finer = 0.1;          ///< part of a tolerance that a loop inside need not go below [1]
+inline constexpr double finer = 0.1;                            ///< part of a tolerance that a loop inside need not go below [1]
 // Extrapolation of passes that follow one mode, as a geometric series (Aitken 1926).
 inline constexpr double least_ratio = 0.4;  ///< of two travels, from which it pays [1]
 inline constexpr double largest_ratio =
@@ -95,8 +92,6 @@ public:
         contacts_->parameters().detection.wanted = with::both * expected;
         const double bound = contact_possible_ ? std::max(reach, radius_) : std::numeric_limits<double>::infinity();
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
-        const double coarsest = with::coarsest_step * radius_;
-        coarsest_ = std::clamp(with::coarsest_part * expected, coarsest, std::max(1.0, with::coarser * looseness) * coarsest);
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
         Vector searched, travel, last_travel;  // state of the last search, displacements of the last pass and of the one before
         const bool strict = looseness <= 1.0;
@@ -273,8 +268,8 @@ private:
             }
             ++report.counts.normal_passes;
             const Vector before = state;
-            const double loose = std::isfinite(change) ? parameters_.inexact * change : coarsest_;
-            const double tolerance = contact_possible_ ? std::clamp(loose, finest, coarsest_) : finest;
+            const double loose = std::isfinite(change) ? parameters_.inexact * change : with::coarsest_step * radius_;
+            const double tolerance = contact_possible_ ? std::clamp(loose, finest, with::coarsest_step * radius_) : finest;
             const NewtonReport inner = newton.solve(state, tolerance, searched, bound, report.counts);
             if (inner.status == NewtonStatus::converged) equilibrium_->close_ties(state);
             report.residual = inner.residual.relative(), report.force_scale = inner.residual.scale, report.step = inner.step;
@@ -340,7 +335,6 @@ private:
     double turn_ = 0.0;  // of normals, in the last normal pass
     bool contact_possible_;
     core::StageClock* clock_;
-    double coarsest_ = 0.0;  // step that an iteration of the present attempt may leave [length]
 };
 
 }  // namespace fibrant::solver
