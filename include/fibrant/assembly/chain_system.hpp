@@ -133,7 +133,7 @@ public:
         band_.pack(layout_, [this](Index fibre, Index node) -> const Row& { return row(fibre, node); });
         pairs_.pack(points_, core::count(rows_),
                     [](const Point& point, int side) { return (side == 0 ? point.first_i : point.first_j) / block; });
-        slides_of_.index(slides_, layout_, [this](Index v) { return source(v); });
+        if (!slides_.empty()) slides_of_.index(slides_, layout_, [this](Index v) { return source(v); });
         supports_.clear();
         for (const scene::Tie& tie : layout_.ties)
             for (const Index vector : tie.vectors)
@@ -279,8 +279,9 @@ private:
         blocks.setZero(nodes(fibre) * block, (reach + 1) * block);
         add_band(fibre, blocks);
         for (const Index image : images_of_[core::at(fibre)]) add_band(image, blocks);
-        slides_of_.add(
-            slides_, layout_, fibre, [this](Index v) { return source(v); }, blocks);
+        if (!slides_.empty())
+            slides_of_.add(
+                slides_, layout_, fibre, [this](Index v) { return source(v); }, blocks);
     }
     void add_band(Index fibre, Matrix& blocks) const {
         for (Index a = 0; a < nodes(fibre); ++a)
@@ -424,7 +425,7 @@ private:
     std::vector<Point> points_;
     std::vector<Skew> skews_;
     std::vector<contact::SlidingStiffness> slides_;
-    SlidesOfChains slides_of_;
+    SlidesOfChains<contact::SlidingStiffness> slides_of_;
     std::vector<std::pair<Index, double>> supports_;  // of tied vectors, sorted
     BandProduct<block, reach> band_;
     PointProduct<vectors, beam::Particle<B>> pairs_;
