@@ -65,6 +65,9 @@ public:
     /// Stiffness of contacts whose places slide: few scenes have any. It reaches beyond elements: bands and node blocks have what
     /// lies within them, products and terms the whole.
     std::vector<contact::SlidingStiffness>& slides() noexcept { return slides_; }
+    /// Unknowns beyond which bands have them. Smaller systems are factored where a preconditioner is indefinite without them:
+    /// crossings at the limit of jamming need such exact steps.
+    Index slides_in_bands_beyond = 6000;
 
     /// Part of a point term that is not symmetric: `column` (x) `row` beside its stiffness [force / length, 1].
     struct Skew {
@@ -133,7 +136,7 @@ public:
         band_.pack(layout_, [this](Index fibre, Index node) -> const Row& { return row(fibre, node); });
         pairs_.pack(points_, core::count(rows_),
                     [](const Point& point, int side) { return (side == 0 ? point.first_i : point.first_j) / block; });
-        if (!slides_.empty()) slides_of_.index(slides_, layout_, [this](Index v) { return source(v); });
+        if (banded_slides()) slides_of_.index(slides_, layout_, [this](Index v) { return source(v); });
         supports_.clear();
         for (const scene::Tie& tie : layout_.ties)
             for (const Index vector : tie.vectors)
@@ -279,7 +282,7 @@ private:
         blocks.setZero(nodes(fibre) * block, (reach + 1) * block);
         add_band(fibre, blocks);
         for (const Index image : images_of_[core::at(fibre)]) add_band(image, blocks);
-        if (!slides_.empty())
+        if (banded_slides())
             slides_of_.add(
                 slides_, layout_, fibre, [this](Index v) { return source(v); }, blocks);
     }
@@ -296,6 +299,7 @@ private:
                            });
                        });
     }
+    bool banded_slides() const noexcept { return !slides_.empty() && layout_.unknowns() > slides_in_bands_beyond; }
     /// Vectors of images become those of their sources: what shifts them is left to products.
     void replace_images(std::span<Index> numbers) const noexcept {
         if (source_.empty()) return;
