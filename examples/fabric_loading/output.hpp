@@ -29,7 +29,7 @@ inline std::vector<observe::Column> columns(const std::vector<cloth::Figure>& fi
     std::vector<observe::Column> row;
     for (const auto& [name, value] : figures) row.push_back({name, value});
     for (const cloth::Family family : {cloth::Family::warp, cloth::Family::weft}) {
-        const std::string name = family == cloth::Family::warp ? "warp" : "weft";
+        const std::string name = name_of(family);
         const cloth::TowFigures tows = cloth::tow_figures(snapshot, fabric, family);
         row.push_back({name + "_width", tows.width}), row.push_back({name + "_thickness", tows.thickness});
         row.push_back({name + "_fibre_volume_fraction", tows.fibre_volume_fraction}), row.push_back({name + "_gap", tows.gap});

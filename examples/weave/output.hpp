@@ -51,14 +51,14 @@ inline void write_measures(const std::filesystem::path& folder, const observe::S
         const cloth::FibrePlace place = fabric.place(number);
         const auto curvature = cloth::curvature_statistics(snapshot, {&number, 1});
         fibres.row({{"fibre", number},
-                    {"family", place.family == Family::warp ? "warp" : "weft"},
+                    {"family", name_of(place.family)},
                     {"tow", place.tow},
                     {"crimp", crimp.fibres[fibrant::core::at(number)]},
                     {"mean_curvature", curvature.mean},
                     {"greatest_curvature", curvature.greatest}});
     }
     for (const Family family : {Family::warp, Family::weft}) {
-        const std::string name = family == Family::warp ? "warp" : "weft";
+        const std::string name = name_of(family);
         for (Index tow = 0; tow < fabric.tows(family); ++tow) {
             const auto curvature = cloth::curvature_statistics(snapshot, fabric, family, tow);
             tows.row({{"family", name},

@@ -50,7 +50,7 @@ struct WeftKnit {
         core::require_positive("WeftKnit.height_over_radius", height_over_radius);
         require_height("WeftKnit.height_over_radius", height_over_radius, type);
         // Beside each other lie courses, and legs of one course: an eighth of a wale and the bulge beside the middle of a foot.
-        const double w = std::max(half_width(type), half_breadth(type));
+        const double w = half_room(type);
         core::require(course_spacing >= 2.0 * w, "WeftKnit.course_spacing", course_spacing,
                       ">= " + core::text(2.0 * w) + ", the thickness of the yarn");
         if (std::isnan(bulge)) {
@@ -198,7 +198,7 @@ struct Tricot {
         core::require_positive("Tricot.height_over_radius", height_over_radius);
         require_height("Tricot.height_over_radius", height_over_radius, type);
         // Feet lie beside each other, 0.14 of the spacing beside a needle.
-        const double w = std::max(half_width(type), half_breadth(type));
+        const double w = half_room(type);
         core::require(needle_spacing >= w / 0.14, "Tricot.needle_spacing", needle_spacing,
                       ">= " + core::text(w / 0.14) + ", for feet of loops to lie beside each other");
         core::require(course_spacing >= 2.0 * w, "Tricot.course_spacing", course_spacing,

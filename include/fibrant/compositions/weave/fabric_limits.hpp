@@ -58,7 +58,7 @@ inline std::vector<std::string> doubts(const FabricParameters& fabric) {
         const double needed =
             0.55 * fabric.tow(family).packing().width + 0.5 * expected_crimp(fabric, across) * fabric.fibre_length(across);
         if (fabric.overhang < needed)
-            said.push_back(std::string("the outermost ") + (family == Family::warp ? "warp" : "weft") +
+            said.push_back(std::string("the outermost ") + name_of(family) +
                            " fibres may slip off the ends of those that they cross: an overhang of " +
                            core::text(fabric.overhang) + " is less than half the width of a tow and what ends draw in, about " +
                            core::text(needed));
@@ -90,10 +90,10 @@ inline constexpr double even_turn = 0.2041;
 
 /// What helps fibres that turn over too little of an element, but less tension. Elements are no shorter than a diameter.
 inline std::string remedy_of_turn(const FabricParameters& fabric, Family family, double turn, double least) {
-    const std::string name = family == Family::warp ? "warp" : "weft";
     const double factor = least / turn, length = fabric.fibre_length(family);
     const double elements = std::ceil(factor * static_cast<double>(fabric.elements_of(family)));
-    std::string said = name + ".inertia_factor >= " + core::text(factor * factor * fabric.tow(family).inertia_factor);
+    std::string said =
+        std::string(name_of(family)) + ".inertia_factor >= " + core::text(factor * factor * fabric.tow(family).inertia_factor);
     if (elements * 2.0 * fabric.tow(family).fibre_radius <= length)
         said += ", or " + std::to_string(static_cast<Index>(elements)) + " elements";
     return said;
@@ -104,8 +104,8 @@ inline void require_turns(const FabricParameters& fabric, const SettleParameters
     for (const Family family : {Family::warp, Family::weft}) {
         const double turn = turn_over_element(fabric, settle, family), part = turn / least_turn;
         core::require(part >= 1.0, "SettleParameters.final_tension_factor", settle.final_tension_factor,
-                      "<= " + core::text(part * part * settle.final_tension_factor) + ", for " +
-                          (family == Family::warp ? "warp" : "weft") + " fibres turn over " + core::text(turn) +
+                      "<= " + core::text(part * part * settle.final_tension_factor) + ", for " + name_of(family) +
+                          " fibres turn over " + core::text(turn) +
                           " of an element under the tension at the end, and elements follow no less than " +
                           core::text(least_turn) + "; or " + remedy_of_turn(fabric, family, turn, least_turn));
     }
@@ -118,7 +118,7 @@ inline std::vector<std::string> doubts(const FabricParameters& fabric, const Set
     for (const Family family : {Family::warp, Family::weft})
         if (const double turn = turn_over_element(fabric, settle, family); turn < even_turn)
             said.push_back(
-                std::string(family == Family::warp ? "warp" : "weft") + " fibres turn over " + core::text(turn) +
+                std::string(name_of(family)) + " fibres turn over " + core::text(turn) +
                 " of an element under the tension at the end, and may kink and creep for ever where that is less than " +
                 core::text(even_turn) + ": less tension, " + remedy_of_turn(fabric, family, turn, even_turn));
     return said;

@@ -17,6 +17,8 @@ namespace fibrant::compositions::weave {
 
 /// The two families of tows: warp runs along x, weft along y.
 enum class Family { warp, weft };
+/// As keys and files have it.
+inline const char* name_of(Family family) noexcept { return family == Family::warp ? "warp" : "weft"; }
 
 /// One tow: equal fibres in a compact packing.
 struct TowParameters {
@@ -108,7 +110,7 @@ struct FabricParameters {
         core::require_at_least("FabricParameters.weft_elements", weft_elements, 0);
         pattern.require_holding(warp_tows, weft_tows);
         for (const Family family : {Family::warp, Family::weft}) {
-            const std::string name = family == Family::warp ? "warp" : "weft";
+            const std::string name = name_of(family);
             const Packing packing = tow(family).packing();
             const double spacing = family == Family::warp ? warp_spacing : weft_spacing;
             if (tows(family) > 1)

@@ -42,7 +42,7 @@ inline std::vector<TowSlice> tow_slices(const observe::Snapshot& snapshot, const
             double middle = 0.0;
             const std::vector<Vec3> nodes = tow_centreline(snapshot, fabric, family, tow);
             for (const Vec3& node : nodes) middle += node[axis];
-            const std::string number = std::to_string(tow), name = family == Family::warp ? "warp" : "weft";
+            const std::string number = std::to_string(tow), name = name_of(family);
             observe::SliceParameters parameters;
             parameters.axis = axis;
             parameters.position = middle / static_cast<double>(nodes.size());
