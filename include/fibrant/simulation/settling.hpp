@@ -121,7 +121,7 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     rest.name = "rest";
     rest.until = until_settled(settle.rest_motion_over_radius * r, parted, share_at_rest);
     rest.enough_increments = std::numeric_limits<Index>::max();
-    rest.deepest = allowed, rest.looseness = 5.0, rest.damping_goes_on = true;
+    rest.deepest = allowed, rest.looseness = 5.0, rest.exact_end = true, rest.damping_goes_on = true;
     // Fibres that nothing holds, at rest as they begin, push on each other less and less while they part: no force is left that
     // damping could be small against, and rest is that they move no more.
     if (!scales.driven)
