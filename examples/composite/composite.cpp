@@ -49,7 +49,8 @@ std::string settled_of(const composite::Scene& scene, const example::Output& out
 /// Settles the fabric, or takes it from where an earlier run left it.
 template <simulation::Model Dry>
 void settle(simulation::Simulator<Dry>& dry, const composite::Scene& scene, const example::Output& output) {
-    auto loading = cloth::settling<Dry>(scene.weave.fabric, scene.weave.settle);
+    auto loading =
+        cloth::settling<Dry>(scene.weave.fabric, scene.weave.settle, cloth::begins_waved(scene.weave.fabric, scene.weave.settle));
     loading.checkpoint = settled_of(scene, output);
     loading.checkpoint_seconds = 1e9, loading.resume = output.resume || !scene.settled.empty();
     loading.scene = scene.weave.told, loading.other_scene = output.other_scene, loading.stop = example::stopped;
@@ -70,7 +71,7 @@ bool run(const composite::Scene& scene, const example::SceneReader& file, exampl
         throw std::invalid_argument("--other-scene: " + output.checkpoint() + " goes on from the settled fabric in " +
                                     settled_of(scene, output) + ", which is missing: --overwrite begins anew");
     output.open(file);
-    const scene::Assembly flat = cloth::flat_fabric(fabric, scene.weave.settle.tension_strain);
+    const scene::Assembly flat = cloth::unsettled_fabric(fabric, scene.weave.settle);
     auto dry_parameters = cloth::model_parameters<Dry>(fabric, scene.weave.settle);
     dry_parameters.iteration = scene.weave.iteration;
     dry_parameters.solver.strategy = scene.weave.linear_solver.strategy;

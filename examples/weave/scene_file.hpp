@@ -176,6 +176,10 @@ Scene read_fabric(SceneReader& file, const More& more) {
     cloth::SettleParameters& settle = scene.settle;
     file.read("settle", "tension_strain", settle.tension_strain, example::above(0.0, 0.2), "1",
               "tension of a tow while tows part, over its E A");
+    std::string start = "automatic";
+    file.read("settle", "start", start, {"automatic", "flat", "waved"},
+              "where tows begin: straight in the plane; over and under each other, about as they come to lie; or by which pays");
+    settle.start = start == "flat" ? cloth::Start::flat : start == "waved" ? cloth::Start::waved : cloth::Start::automatic;
     file.read("settle", "final_tension_factor", settle.final_tension_factor, example::above(0.0, 1.0), "1",
               "tension at the end, over that while tows part");
     file.read("settle", "tension_increments", settle.tension_increments, example::increments(),
@@ -257,6 +261,9 @@ Scene read_fabric(SceneReader& file, const More& more) {
     fabric.validate();
     settle.validate();
     cloth::require_turns(fabric, settle);
+    if (settle.start == cloth::Start::waved)
+        if (const std::string why = cloth::no_wave(fabric); !why.empty())
+            file.refuse("settle", "start", "flat or automatic: " + why);
     scene.iteration.validate();
     scene.told = file.scene(settled_sections);
     return scene;

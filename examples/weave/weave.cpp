@@ -44,7 +44,7 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     example::choose_solver(parameters, scene.linear_solver);
     const example::RankFolder own(output);
     const bool paraview = scene.paraview && own.shown(), pictures = scene.pictures && own.shown();
-    const scene::Assembly assembly = weave::cloth::flat_fabric(scene.fabric, scene.settle.tension_strain);
+    const scene::Assembly assembly = weave::cloth::unsettled_fabric(scene.fabric, scene.settle);
     simulation::Simulator<M> simulator(assembly, parameters);
 
     output.open(file);
@@ -55,7 +55,7 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     auto progress = example::progress_printer(radius, 0, output.quiet);
     weave::IncrementTable table(folder, radius, start);
     weave::Series series(folder / "paraview", start, paraview ? scene.paraview_every : 0);
-    auto loading = weave::cloth::settling<M>(scene.fabric, scene.settle);
+    auto loading = weave::cloth::settling<M>(scene.fabric, scene.settle, weave::cloth::begins_waved(scene.fabric, scene.settle));
     output.tell(loading, 15.0);
     example::stop_together(loading);
     simulation::Report report = simulator.run(loading, progress, table, series);

@@ -170,6 +170,24 @@ TEST_CASE("a stage that is loose by its own word is taken by its word, and the r
     CHECK(report.use.greatest() <= 1.0);
 }
 
+TEST_CASE("a loose stage that is asked for an exact end goes on at what is stated, and ends once its condition holds there") {
+    for (const bool exact : {false, true}) {
+        simulation::Simulator<Smooth> simulator(crossed(50, 0, 30, 16), test::model_parameters<Smooth>(r));
+        simulation::Loading<Smooth> loading;
+        loading.audited = false;
+        loading.stages.resize(1);
+        loading.stages[0].increments = 1, loading.stages[0].looseness = 20.0, loading.stages[0].ramps = {{"motion", 1.0}};
+        loading.stages[0].until = [](const simulation::IncrementReport&) { return true; };
+        loading.stages[0].exact_end = exact;
+        const simulation::Report report = simulator.run(loading);
+        CAPTURE(exact);
+        REQUIRE(report.converged);
+        CHECK(report.increments.size() == (exact ? 2 : 1));
+        CHECK(report.increments[0].use.penetration > 1.0);
+        CHECK((report.use.greatest() <= 1.0) == exact);
+    }
+}
+
 TEST_CASE("a penalty that is given as one number stays it, however deep that is, and the report says so") {
     auto parameters = test::model_parameters<Smooth>(r);
     parameters.contact.stiffness.initial_fraction = parameters.contact.stiffness.floor_fraction =

@@ -83,7 +83,10 @@ struct Stage {
     /// says so.
     std::optional<double> deepest{};
     double patience = 1.0;  ///< on the limit of Newton's iterations: what hardly resists bending converges slowly [1], in [1, 10]
-    double looseness = 1.0;                          ///< on the tolerances of contact and normal passes, >= 1
+    double looseness = 1.0;  ///< on the tolerances of contact and normal passes, >= 1
+    /// Where `until` is true of a loose increment, the stage goes on at looseness 1, and ends once it is true of such a one: what
+    /// it ends with is an answer, within the tolerances that are stated.
+    bool exact_end = false;
     std::optional<typename M::Normal> normal{};      ///< law from this stage on, for the model's
     std::optional<typename M::Friction> friction{};  ///< likewise
     /// Once the ramps are over: goes on, all else constant, until this is true. None: ends with the ramps.

@@ -27,6 +27,7 @@ struct Position {
     Index mends = 0;  ///< of pairs that are too deep unseen, since that last became better
     double mended = std::numeric_limits<double>::infinity();  ///< how deep they are then [length]
     bool following = false;                                   ///< places of crossings are followed
+    bool exact = false;                                       ///< the next increment is solved to what is stated
     std::pair<Index, double> tried{-1, 0.0};  ///< accepted increments and fraction at which another following was tried last
     std::vector<double> from;                 ///< amplitudes at the start of the stage
     std::vector<double> holding;              ///< damping of each fibre over that of all, >= 1
@@ -80,7 +81,7 @@ struct Position {
             const Stage<M>& next = stages[core::at(stage)];
             if (next.damping_goes_on && next.damping > 0.0) damping = std::min(left / next.damping, 1.0);
         }
-        stage_over = false;
+        stage_over = exact = false;
         from = amplitudes;
     }
 
@@ -93,7 +94,16 @@ struct Position {
     /// does.
     template <Model M>
     double looseness(const Stage<M>& present) const noexcept {
-        return mends > 1 ? 1.0 : present.looseness;
+        return mends > 1 || exact ? 1.0 : present.looseness;
+    }
+
+    /// Whether a stage ends with an increment of which its `until` holds: one that is asked for an exact end with one that is
+    /// within what is stated. Till then it goes on at looseness 1, but after an increment that had to be cut.
+    template <Model M>
+    bool ends(const Stage<M>& present, bool settled, const IncrementReport& increment) noexcept {
+        const bool stated = !present.exact_end || looseness(present) <= 1.0 || increment.use.greatest() <= 1.0;
+        exact = present.exact_end && ((settled && !stated) || (exact && increment.cuts == 0));
+        return settled && stated;
     }
 
     /// Twice as many increments of a stage have parted nothing as it takes to end it: the run gives up.
@@ -165,8 +175,8 @@ private:
         body(self.stage), body(self.in_stage), body(self.accepted), body(self.easy);
         body(self.progress), body(self.fraction), body(self.displacement), body(self.mends), body(self.mended);
         Calming::each_of(self.calming, body);
-        body(self.damping), body(self.damping_floor), body(self.stage_over), body(self.following), body(self.tried.first),
-            body(self.tried.second);
+        body(self.damping), body(self.damping_floor), body(self.stage_over), body(self.following), body(self.exact),
+            body(self.tried.first), body(self.tried.second);
         for (auto& amplitude : self.from) body(amplitude);
         for (auto& factor : self.holding) body(factor);
     }

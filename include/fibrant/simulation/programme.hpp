@@ -86,6 +86,7 @@ Loading<M> loading_of(const LoadProgramme& programme) {
             stage.until = until_settled(programme.rest_motion, programme.rest_penetration, programme.rest_share);
             stage.damping_decay = stage.damping > 0.0 ? 0.5 : 1.0;
             stage.damping_share = programme.rest_share, stage.damping_calm = programme.calm;
+            stage.exact_end = true;
         }
         for (Index cycle = 0; cycle < std::max<Index>(1, given.cycles); ++cycle)
             for (const bool forth : {true, false}) {

@@ -70,6 +70,8 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
                  mean_radius = scales.thickest > r ? 0.5 * (1.0 + scales.thickest / r) : 1.0;
     separation.largest_fraction = std::min(most_fraction, std::max(whole_radius, mean_radius));
     separation.most_increments = settle.separation_increments;
+    // Slack ones would straighten before they are pulled.
+    if (pull.drawn) separation.ramps = {{.channel = pull.channel, .to = scales.parting, .at_once = true}};
     // Orders part crossings and see nothing beside them: fibres of two yarns that lie along each other cross in plan to and fro,
     // and those that do not cross there meet no contact. Where that does not get on, ordinary contact does from there.
     constexpr Index still = 30;  // increments; parting by a quarter of a radius in each, they would be free long ago
@@ -102,7 +104,9 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     handover.enough_increments = std::max<Index>(1, settle.rest_increments / 2);  // what creeps for ever does so no longer
     // After the pull damping falls, at first until it holds a thousandth of the forces, then, contact being stiff, a
     // ten-thousandth, which is what the balance of forces is solved to: rest is an equilibrium.
-    handover.damping_decay = 0.5, handover.damping_calm = 0.6 * limit, handover.damping_share = share_on_the_way;
+    // What begins drawn has not spread yet, and goes twice as far an increment: larger steps cost less there.
+    const double calm = pull.drawn ? 1.2 : 0.6;
+    handover.damping_decay = 0.5, handover.damping_calm = calm * limit, handover.damping_share = share_on_the_way;
     Stage<M> release = common;
     release.name = "release";
     ramped(release, settle.release_increments);
@@ -121,7 +125,7 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     rest.name = "rest";
     rest.until = until_settled(settle.rest_motion_over_radius * r, parted, share_at_rest);
     rest.enough_increments = std::numeric_limits<Index>::max();
-    rest.deepest = allowed, rest.looseness = 5.0, rest.damping_goes_on = true;
+    rest.deepest = allowed, rest.looseness = 5.0, rest.exact_end = true, rest.damping_goes_on = true;
     // Fibres that nothing holds, at rest as they begin, push on each other less and less while they part: no force is left that
     // damping could be small against, and rest is that they move no more.
     if (!scales.driven)
@@ -131,7 +135,7 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
         }
     Loading<M> loading;
     loading.damping_of_fibres = scales.over_softest;
-    if (pulled && pull.first) loading.stages.push_back(tension);
+    if (pulled && pull.first && !pull.drawn) loading.stages.push_back(tension);
     loading.stages.push_back(separation);
     if (scales.ordered) loading.stages.push_back(parting);
     if (pulled && !pull.first) loading.stages.push_back(tension);

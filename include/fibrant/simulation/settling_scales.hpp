@@ -42,6 +42,8 @@ struct Pull {
     std::string channel{};  ///< empty: they are not
     bool first =
         false;  ///< they are pulled before they part: right where forced orders part them, drawn fibres may go through each other
+    bool drawn =
+        false;  ///< of those that are pulled first: fibres begin about where they come to, and are pulled while they part
 };
 
 /// A fibre that is to settle.

@@ -234,7 +234,8 @@ private:
         deep_ = touching && reached && !held && !laws_.again()
                     ? mend_deep_places(loading, stages, *this, contacts_, radius_, position_)
                     : std::string();
-        position_.stage_over = !laws_.again() && ((reached && !held && deep_.empty()) || position_.enough(stage, report));
+        const bool ends = position_.ends(stage, reached && !held && deep_.empty(), increment);
+        position_.stage_over = !laws_.again() && (ends || position_.enough(stage, report));
         steps_.adapt_damping(position_, stage, increment, effort);
         contacts_.accept(state_), equilibrium_.accept(state_);
         if constexpr (HasSolid<M>)

@@ -37,6 +37,9 @@ TEST_CASE("a settled fabric's fibres cross as the pattern says and are nowhere d
     CHECK(audit.crossings == 100);  // 10 warp fibres over or under 10 weft fibres
     CHECK(audit.clean(settle.allowed_penetration_over_radius * r));
     CHECK(audit.least_gap.gap < 0.0);  // fibres touch: the bound is one that could be broken
+    // What rest ends with is an answer: it balances to what is stated, however loose the way was.
+    CHECK(report.most_use.residual > 1.0);
+    CHECK(report.use.greatest() <= 1.0);
 }
 
 TEST_CASE(

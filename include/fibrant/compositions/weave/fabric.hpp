@@ -2,12 +2,13 @@
 #pragma once
 /// @file A woven fabric as a scene: flat, interpenetrating tows and the order that its pattern asks of them.
 
-#include <fibrant/compositions/weave/fabric_parameters.hpp>
+#include <fibrant/compositions/weave/waved_path.hpp>
 #include <fibrant/scene/assembly.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,28 +17,11 @@ namespace fibrant::compositions::weave {
 /// Channel that scales the tension of all tows.
 inline constexpr const char* tension_channel = "tension";
 
-/// How high the ends of a tow are held: in the plane where the overhang leaves room to come back to it, the nearer to their
-/// height at the last crossing, half of the mean thickness, the less it does. Ends that are all held in the plane beside a
-/// crossing lie in each other whatever fibres do: at a corner, two that cross d before their ends have these sqrt(2) d apart.
-/// @returns z of the first end and of the last one [length]
-inline std::array<double, 2> end_heights(const FabricParameters& fabric, Family family, Index tow) {
-    const double steepest = 0.5;  // at which a fibre comes down from a crossing to the plane [1], by trial
-    const bool warp = family == Family::warp;
-    const Family across = warp ? Family::weft : Family::warp;
-    const double high = 0.25 * (fabric.warp.packing().thickness + fabric.weft.packing().thickness);
-    const double free = fabric.overhang - 0.5 * fabric.tow(across).packing().width;
-    const double height = std::max(0.0, high - steepest * free);
-    const auto side = [&](Index crossed) {
-        const bool warp_above = warp ? fabric.pattern.over(tow, crossed) : fabric.pattern.over(crossed, tow);
-        return warp_above == warp ? height : -height;
-    };
-    return {side(0), side(fabric.tows(across) - 1)};
-}
-
 /// Adds all fibres, straight in the plane z = 0, in groups by tow. @returns the groups of the warp and of the weft tows
 /// @param lifted  they begin turned, so that their ends lie as high as they are to be held
+/// @param waved   they begin over and under each other, as high as that at their ends (`WavedPath`)
 inline std::array<std::vector<Index>, 2> add_flat_fibres(scene::Assembly& assembly, const FabricParameters& fabric,
-                                                         bool lifted = false) {
+                                                         bool lifted = false, bool waved = false) {
     const Index cloth = assembly.add_group("fabric");
     std::array<std::vector<Index>, 2> groups;
     for (const Family family : {Family::warp, Family::weft}) {
@@ -57,7 +41,14 @@ inline std::array<std::vector<Index>, 2> add_flat_fibres(scene::Assembly& assemb
                 const Vec3 centre = (fabric.tow_position(family, t) + offset.x()) * across + offset.y() * Vec3::UnitZ();
                 scene::FibreSpecification fibre;
                 fibre.from = centre - half * along, fibre.to = centre + half * along;
-                if (lifted && (first != 0.0 || last != 0.0)) {
+                if (waved) {
+                    const Vec3 middle = fabric.tow_position(family, t) * across;
+                    const auto path = std::make_shared<const WavedPath>(tow_wave(fabric, family, t), offset, 2.0 * half);
+                    fibre.start = [middle, along, across, path](double part) {
+                        const Vec3 at = path->at(part);
+                        return Vec3(middle + at.x() * along + at.y() * across + at.z() * Vec3::UnitZ());
+                    };
+                } else if (lifted && (first != 0.0 || last != 0.0)) {
                     const Vec3 middle = centre + 0.5 * (first + last) * Vec3::UnitZ();
                     const Vec3 way = half * (flat * along + turned * Vec3::UnitZ());
                     fibre.start = [middle, way](double s) { return Vec3(middle + (2.0 * s - 1.0) * way); };
@@ -84,17 +75,12 @@ inline void force_pattern(scene::Assembly& assembly, const FabricParameters& fab
         }
 }
 
-/// Scene of a fabric before it is settled (Durville, section 15.3.5): all tows straight in the plane z = 0, but for those whose
-/// ends have no room to come back to it (`end_heights`).
-///
-/// The ends of a fibre keep their place across the fibre and are pulled along it by a dead force; its middle keeps its
-/// place along it. Ends are free to turn and to draw in, so nothing but the tension holds a fibre's length.
-/// @param tension_strain  pull of a fibre over its E A at amplitude 1 of the tension channel [1], > 0
-inline scene::Assembly flat_fabric(const FabricParameters& fabric, double tension_strain) {
+namespace detail {
+inline scene::Assembly unsettled(const FabricParameters& fabric, double tension_strain, bool waved) {
     fabric.validate();
     core::require_positive("flat_fabric.tension_strain", tension_strain);
     scene::Assembly assembly;
-    const std::array<std::vector<Index>, 2> groups = add_flat_fibres(assembly, fabric, true);
+    const std::array<std::vector<Index>, 2> groups = add_flat_fibres(assembly, fabric, true, waved);
     for (Index f = 0; f < fabric.fibres(); ++f) {
         const Family family = fabric.place(f).family;
         const TowParameters& tow = fabric.tow(family);
@@ -111,6 +97,23 @@ inline scene::Assembly flat_fabric(const FabricParameters& fabric, double tensio
     }
     force_pattern(assembly, fabric, groups);
     return assembly;
+}
+}  // namespace detail
+
+/// Scene of a fabric before it is settled (Durville, section 15.3.5): all tows straight in the plane z = 0, but for those whose
+/// ends have no room to come back to it (`end_heights`).
+///
+/// The ends of a fibre keep their place across the fibre and are pulled along it by a dead force; its middle keeps its
+/// place along it. Ends are free to turn and to draw in, so nothing but the tension holds a fibre's length.
+/// @param tension_strain  pull of a fibre over its E A at amplitude 1 of the tension channel [1], > 0
+inline scene::Assembly flat_fabric(const FabricParameters& fabric, double tension_strain) {
+    return detail::unsettled(fabric, tension_strain, false);
+}
+
+/// The same, where its settling begins: flat, or with tows that pass over and under each other (`begins_waved`).
+/// @throws std::invalid_argument if tows are to be waved, and cannot be
+inline scene::Assembly unsettled_fabric(const FabricParameters& fabric, const SettleParameters& settle) {
+    return detail::unsettled(fabric, settle.tension_strain, begins_waved(fabric, settle));
 }
 
 }  // namespace fibrant::compositions::weave

@@ -131,10 +131,14 @@ struct FabricParameters {
     }
 };
 
+/// Where tows are when a settling begins: straight in the plane, waved about as they come to lie, or by whether that pays.
+enum class Start { automatic, flat, waved };
+
 /// How flat interpenetrating tows become a fabric (Durville, section 15.3.5): pulled while they part, and let go to a hundredth.
 struct SettleParameters : simulation::SettleParameters {
     SettleParameters() { final_tension_factor = 1e-2; }
-    double tension_strain = 2e-3;  ///< tension of a tow over its E A while tows part [1], > 0
+    double tension_strain = 2e-3;    ///< tension of a tow over its E A while tows part [1], > 0
+    Start start = Start::automatic;  ///< flat or waved; automatic: waved where tows are thick and can be (`begins_waved`)
 
     void validate() const {
         core::require_positive("SettleParameters.tension_strain", tension_strain);

@@ -55,16 +55,17 @@ simulation::ModelParameters<M> model_parameters(const FabricParameters& fabric, 
     return simulation::settling_parameters<M>(smallest_radius(fabric), settle);
 }
 
-/// The stages of settling: tension, separation, handover, release, relaxation, stiffening and rest.
+/// The stages of settling a flat fabric: tension, separation, handover, release, relaxation, stiffening and rest.
+/// @param waved  the fabric begins waved: tows are pulled while they part
 template <simulation::Model M>
-simulation::Loading<M> settling(const FabricParameters& fabric, const SettleParameters& settle) {
+simulation::Loading<M> settling(const FabricParameters& fabric, const SettleParameters& settle, bool waved = false) {
     settle.validate();
     std::vector<simulation::SettledFibre> fibres;
     for (Index f = 0; f < fabric.fibres(); ++f)
         fibres.push_back(settled_fibre(fabric, fabric.place(f).family, settle.tension_strain));
     simulation::SettlingScales scales = simulation::scales_of(fibres, true);
     scales.driven = scales.ordered = true;
-    return simulation::settling<M>(scales, settle, {tension_channel, true});
+    return simulation::settling<M>(scales, settle, {tension_channel, true, waved});
 }
 
 }  // namespace fibrant::compositions::weave
