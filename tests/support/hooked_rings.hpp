@@ -19,6 +19,7 @@ struct Hooks {
     double slant = 0.0;                             ///< the same across it, along the plane of the first ring
     double angle_deg = 90.0;                        ///< between the planes of both
     double radius = 0.05, ring_over_radius = 20.0;  // mm
+    double lower_radius = 1.0;                      ///< of the second ring's fibre, over that of the first
     contact::Places places = contact::Places::as_needed;
 };
 
@@ -29,7 +30,7 @@ struct Hooked {
     double crossing =
         0.0;  ///< by how much the lower one's lowest point lies below the upper one's highest [radius], > 0: still hooked
     double closest = 0.0;    ///< least distance of the centrelines, by brute force [radius]
-    double asymmetry = 0.0;  ///< of both halves of each [radius]
+    double asymmetry = 0.0;  ///< of both halves of each, unless they are pulled at a slant [radius]
     double bend = 0.0;       ///< radius over the radius of curvature at the tip [1]
 };
 
@@ -42,19 +43,26 @@ Hooked pull_hooks(const Hooks& hooks) {
     scene::FibreSpecification ring;
     ring.section = scene::circular(r), ring.material = {1e4, 0.3}, ring.elements = hooks.elements;
     ring.curve = [=](double t) { return Vec3(-R * std::cos(pi * t), 0.0, R - R * std::sin(pi * t)); };
+    // A clamp holds the angle of its directors and leaves their lengths: across the plane of a ring it holds both halves alike.
+    const bool alike = hooks.slant == 0.0;
+    if (alike) ring.director = Vec3::UnitY();
     const Index upper = assembly.add(ring);
+    const double r_2 = hooks.lower_radius * r;
+    ring.section = scene::circular(r_2);
+    if (alike) ring.director = Vec3::UnitZ().cross(along);
     ring.curve = [=](double t) {
-        return Vec3(R * std::cos(pi * t) * along + (2.0 * r - R + R * std::sin(pi * t)) * Vec3::UnitZ());
+        return Vec3(R * std::cos(pi * t) * along + (r + r_2 - R + R * std::sin(pi * t)) * Vec3::UnitZ());
     };
     const Index lower = assembly.add(ring);
     for (const Index fibre : {upper, lower})
         for (const scene::Station& end : {scene::first_end(fibre), scene::last_end(fibre)})
             assembly.clamp(end, (fibre == upper ? 0.5 : -0.5) * R * Vec3(hooks.slant, 0.0, hooks.pull));
     simulation::ModelParameters<M> parameters;
-    parameters.normal.regularisation_depth = 1e-3 * r;
+    const double thin = std::min(r, r_2);
+    parameters.normal.regularisation_depth = 1e-3 * thin;
     if constexpr (core::Active<typename M::Friction>)
-        parameters.friction = {.friction_coefficient = hooks.friction, .reversible_displacement = 0.02 * r};
-    parameters.contact.stiffness.allowed_penetration = 1e-2 * r;
+        parameters.friction = {.friction_coefficient = hooks.friction, .reversible_displacement = 0.02 * thin};
+    parameters.contact.stiffness.allowed_penetration = 1e-2 * thin;
     parameters.contact.places = hooks.places;
     simulation::Simulator<M> simulator(assembly, parameters);
     Hooked out;
@@ -78,7 +86,9 @@ Hooked pull_hooks(const Hooks& hooks) {
         for (std::size_t k = 0; k < points[fibre].size(); ++k) {
             const Vec3 a = points[fibre][k], b = points[fibre][points[fibre].size() - 1 - k];
             const Vec3 mirrored = b - 2.0 * b.dot(plane) * plane;  // through the plane across the ring's own
-            out.asymmetry = std::max(out.asymmetry, hooks.angle_deg == 90.0 ? (a - mirrored).norm() / r : 0.0);
+            const Vec3 turned(-b.x(), -b.y(), b.z());              // by half a turn about the pull
+            const Vec3 other = hooks.angle_deg == 90.0 ? mirrored : turned;
+            if (alike) out.asymmetry = std::max(out.asymmetry, (a - other).norm() / r);
         }
     }
     out.force = (simulator.reaction(scene::first_end(upper)) + simulator.reaction(scene::last_end(upper))).z();
