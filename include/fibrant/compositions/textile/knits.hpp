@@ -5,6 +5,7 @@
 #include <fibrant/compositions/textile/crossings.hpp>
 #include <fibrant/compositions/textile/interlaced.hpp>
 #include <fibrant/compositions/textile/yarn_fibres.hpp>
+#include <fibrant/proximity/grid_search.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -208,7 +209,8 @@ struct Tricot {
 
 namespace detail {
 /// A tricot as it is drawn, however often it crosses itself.
-inline Textile drawn(const Tricot& knit) {
+/// @param raise  factor on all heights
+inline Textile drawn(const Tricot& knit, double raise) {
     Textile textile;
     textile.name = "tricot";
     textile.apart_by.fill({"Tricot.needle_spacing", knit.needle_spacing});
@@ -246,6 +248,8 @@ inline Textile drawn(const Tricot& knit) {
             points.emplace_back(x + way * 0.65 * w, y + 0.5 * c, h);
             points.emplace_back(x + way * 1.12 * w, y + 0.8 * c, h);
         }
+        if (raise != 1.0)
+            for (Vec3& point : points) point.z() *= raise;
         const Line line = line_of(points);
         path.guides.push_back({line.arc[heads.back()] / line.arc.back()});
         path.curve = scene::curve_through(std::move(points));
@@ -253,6 +257,24 @@ inline Textile drawn(const Tricot& knit) {
     }
     textile.crossings = crossings_of(textile);
     return textile;
+}
+/// A tricot whose yarns of several fibres are as high at each crossing as asked for: between their knots yarns are lower, and
+/// fibres would start in each other.
+inline Textile drawn(const Tricot& knit) {
+    Textile textile = drawn(knit, 1.0);
+    if (knit.type.fibres == 1 || textile.crossings.empty()) return textile;
+    const double asked = 2.0 * knit.height_over_radius * half_thickness(knit.type);
+    double least = asked;
+    std::vector<Line> lines = lines_of(textile);
+    const auto height = [&](Index path, double at) {
+        const Line& line = lines[core::at(path)];
+        const auto after = std::upper_bound(line.arc.begin() + 1, line.arc.end() - 1, at);
+        return line.points[core::at(after - line.arc.begin())].z();
+    };
+    for (const Crossing& crossing : textile.crossings)
+        least = std::min(least, height(crossing.above, crossing.at_above) - height(crossing.below, crossing.at_below));
+    constexpr double most = 2.0;  // more has other causes
+    return least >= asked ? textile : drawn(knit, std::min(most, asked / std::max(least, asked / most)));
 }
 }  // namespace detail
 
@@ -270,11 +292,17 @@ inline bool underlaps_beside(const Tricot& given) {
         fibres.emplace_back();
         for (Index k = 0; k <= pieces; ++k) fibres.back().push_back(curve(static_cast<double>(k) / static_cast<double>(pieces)));
     }
-    for (const std::vector<Vec3>& one : fibres)
-        for (const std::vector<Vec3>& other : fibres)
-            for (Index k = 0; k <= pieces; ++k)
-                for (Index l = k + far; l <= pieces; ++l)
-                    if ((one[core::at(k)] - other[core::at(l)]).norm() < 2.0 * knit.type.radius) return false;
+    std::vector<proximity::Centreline> lines;
+    for (const std::vector<Vec3>& fibre : fibres)
+        lines.push_back({.points = fibre, .radius = knit.type.radius, .self_skip = 0.0});
+    // Points that are near are ends of pieces that are.
+    for (const proximity::SegmentPair& pair : proximity::GridSearch{}.pairs(lines, 1e-6 * knit.type.radius))
+        for (const Index k : {pair.i % pieces, pair.i % pieces + 1})
+            for (const Index l : {pair.j % pieces, pair.j % pieces + 1}) {
+                const Vec3 &one = fibres[core::at(pair.i / pieces)][core::at(k)],
+                           &other = fibres[core::at(pair.j / pieces)][core::at(l)];
+                if (std::abs(k - l) >= far && (one - other).norm() < 2.0 * knit.type.radius) return false;
+            }
     return true;
 }
 }  // namespace detail

@@ -94,6 +94,8 @@ inline Textile plied(const Plied& rope) {
             textile.paths.push_back(std::move(path));
         }
     }
+    for (const Path& path : textile.paths)
+        detail::require_bends(path, rope.type, scene::length_of(path.curve, 128), "Plied.pitch, strand_pitch: ");
     if (rope.periodic) textile.lattice = {rope.length * Vec3::UnitZ()};
     return textile;
 }
@@ -118,6 +120,9 @@ struct ChainMail {
         core::require(ring_radius > 4.0 * type.radius && ring_radius <= widest * type.radius, "ChainMail.ring_radius",
                       ring_radius, "> 4 and <= 1e5 radii of the wire, " + core::text(type.radius));
         core::require_positive("ChainMail.pitch", along());
+        core::require(along() >= 2.0 * ring_radius, "ChainMail.pitch", along(),
+                      ">= " + core::text(2.0 * ring_radius) +
+                          ", two ring radii: rings of a row lie in one plane, and nearer ones " + "go through each other");
         core::require_positive("ChainMail.row_pitch", across());
         core::require(tilt_deg > 0.0 && tilt_deg <= 80.0, "ChainMail.tilt_deg", tilt_deg, "> 0 and <= 80");
         if (type.fibres != 1) core::refuse("YarnType.fibres", std::to_string(type.fibres), "1, of a ring of chain mail");
@@ -183,7 +188,7 @@ struct Net {
         core::require_positive("Net.height_over_radius", height_over_radius);
         require_height("Net.height_over_radius", height_over_radius, type);
         // At a turn a yarn reaches half of the overlap beyond its neighbour's line, and so does the next but two.
-        const double w = half_width(type), least = yarns > 3 ? 0.5 * reach() + w : w;
+        const double w = half_room(type), least = yarns > 3 ? 0.5 * reach() + w : w;
         core::require(spacing >= least, "Net.spacing", spacing,
                       ">= " + core::text(least) + ", for yarns to meet none but their neighbours");
     }
