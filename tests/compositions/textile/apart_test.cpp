@@ -139,12 +139,57 @@ TEST_CASE("five, six, eight and nine fibres of a yarn lie in rings, as broad as 
     }
 }
 
+TEST_CASE("underlaps that lie in loops of their own yarn are found among near points as among all") {
+    const auto among_all = [](const Tricot& given) {
+        Tricot knit = given;
+        knit.needles = 2, knit.courses = 3;
+        const Textile textile = detail::drawn(knit);
+        constexpr Index pieces = 400;
+        const double length = scene::length_of(textile.paths[0].curve);
+        const auto far = static_cast<Index>(2.0 * knit.loop_height / length * static_cast<double>(pieces));
+        std::vector<std::vector<Vec3>> fibres;
+        for (const scene::Curve& curve : detail::fibre_curves(textile, 0)) {
+            fibres.emplace_back();
+            for (Index k = 0; k <= pieces; ++k)
+                fibres.back().push_back(curve(static_cast<double>(k) / static_cast<double>(pieces)));
+        }
+        for (const std::vector<Vec3>& one : fibres)
+            for (const std::vector<Vec3>& other : fibres)
+                for (Index k = 0; k <= pieces; ++k)
+                    for (Index l = k + far; l <= pieces; ++l)
+                        if ((one[core::at(k)] - other[core::at(l)]).norm() < 2.0 * knit.type.radius) return false;
+        return true;
+    };
+    Index beside = 0, within = 0;
+    for (const Index fibres : {1, 2, 3})
+        for (double height = 0.9; height < 1.6; height += 0.1) {
+            const Tricot knit{.needles = 2,
+                              .courses = 3,
+                              .needle_spacing = 1.0,
+                              .course_spacing = 0.8,
+                              .loop_height = height,
+                              .type = yarn(fibres)};
+            const bool found = detail::underlaps_beside(knit);
+            CHECK(found == among_all(knit));
+            ++(found ? beside : within);
+        }
+    CHECK(beside > 3);
+    CHECK(within > 3);
+}
+
 TEST_CASE("rings of mail that go through others of their row are refused by their pitch, value and bound") {
     const auto said = [](double pitch) {
         return refusal([&] { chain_mail({.rows = 2, .columns = 2, .ring_radius = 1.0, .pitch = pitch, .type = yarn(1)}); });
     };
     CHECK(said(1.9).find("ChainMail.pitch = 1.9, but it must be >= 2, two ring radii") == 0);
     CHECK(said(2.0) == "");
+    // Rows so far apart that rings do not reach each other, tilted as they are.
+    ChainMail steep{
+        .rows = 2, .columns = 2, .ring_radius = 1.0, .pitch = 2.0, .row_pitch = 0.9, .tilt_deg = 60.0, .type = yarn(1)};
+    const std::string message = refusal([&] { chain_mail(steep); });
+    REQUIRE(message.find("ChainMail.row_pitch = 0.9, but it must be <= ") == 0);
+    steep.row_pitch = std::stod(message.substr(message.find("<= ") + 3));
+    CHECK(refusal([&] { chain_mail(steep); }) == "");
 }
 
 TEST_CASE("warps of a cell that go past each other have room side by side, or are refused by their spacing") {

@@ -209,8 +209,7 @@ struct Tricot {
 
 namespace detail {
 /// A tricot as it is drawn, however often it crosses itself.
-/// @param raise  factor on all heights
-inline Textile drawn(const Tricot& knit, double raise) {
+inline Textile drawn(const Tricot& knit) {
     Textile textile;
     textile.name = "tricot";
     textile.apart_by.fill({"Tricot.needle_spacing", knit.needle_spacing});
@@ -248,8 +247,6 @@ inline Textile drawn(const Tricot& knit, double raise) {
             points.emplace_back(x + way * 0.65 * w, y + 0.5 * c, h);
             points.emplace_back(x + way * 1.12 * w, y + 0.8 * c, h);
         }
-        if (raise != 1.0)
-            for (Vec3& point : points) point.z() *= raise;
         const Line line = line_of(points);
         path.guides.push_back({line.arc[heads.back()] / line.arc.back()});
         path.curve = scene::curve_through(std::move(points));
@@ -257,24 +254,6 @@ inline Textile drawn(const Tricot& knit, double raise) {
     }
     textile.crossings = crossings_of(textile);
     return textile;
-}
-/// A tricot whose yarns of several fibres are as high at each crossing as asked for: between their knots yarns are lower, and
-/// fibres would start in each other.
-inline Textile drawn(const Tricot& knit) {
-    Textile textile = drawn(knit, 1.0);
-    if (knit.type.fibres == 1 || textile.crossings.empty()) return textile;
-    const double asked = 2.0 * knit.height_over_radius * half_thickness(knit.type);
-    double least = asked;
-    std::vector<Line> lines = lines_of(textile);
-    const auto height = [&](Index path, double at) {
-        const Line& line = lines[core::at(path)];
-        const auto after = std::upper_bound(line.arc.begin() + 1, line.arc.end() - 1, at);
-        return line.points[core::at(after - line.arc.begin())].z();
-    };
-    for (const Crossing& crossing : textile.crossings)
-        least = std::min(least, height(crossing.above, crossing.at_above) - height(crossing.below, crossing.at_below));
-    constexpr double most = 2.0;  // more has other causes
-    return least >= asked ? textile : drawn(knit, std::min(most, asked / std::max(least, asked / most)));
 }
 }  // namespace detail
 

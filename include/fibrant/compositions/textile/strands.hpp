@@ -129,10 +129,8 @@ struct ChainMail {
     }
 };
 
-/// Row j is shifted by half a pitch where j is odd, and tilted the other way: a ring inside is linked with two of each row beside
-/// its own.
-inline Textile chain_mail(const ChainMail& mail) {
-    mail.validate();
+namespace detail {
+inline Textile drawn(const ChainMail& mail) {
     Textile textile;
     textile.name = "chain mail";
     textile.types = {mail.type};
@@ -151,6 +149,10 @@ inline Textile chain_mail(const ChainMail& mail) {
             };
             textile.paths.push_back(std::move(path));
         }
+    return textile;
+}
+/// Of rings that should be linked and are not, the first two; nothing where all are.
+inline std::string loose_rings(const Textile& textile, const ChainMail& mail) {
     constexpr double points = 256.0;  // of a ring, to find its links
     const std::vector<Line> lines =
         lines_of(textile, std::max(0.5, 2.0 * std::numbers::pi * mail.ring_radius / (points * mail.type.radius)));
@@ -161,11 +163,31 @@ inline Textile chain_mail(const ChainMail& mail) {
                 const Index one = i + mail.columns * j, two = k + mail.columns * (j + 1);
                 const Index links = observe::linking_number(lines[core::at(one)].points, lines[core::at(two)].points);
                 if (links * links != 1)
-                    core::refuse("ChainMail.ring_radius, pitch, row_pitch, tilt_deg: links of " + textile.label(one) + " with " +
-                                     textile.label(two),
-                                 std::to_string(links), "1 or -1, or the rings come apart");
+                    return "links of " + textile.label(one) + " with " + textile.label(two) + " = " + std::to_string(links) +
+                           ", but it must be 1 or -1, or the rings come apart";
             }
-    return textile;
+    return {};
+}
+}  // namespace detail
+
+/// Row j is shifted by half a pitch where j is odd, and tilted the other way: a ring inside is linked with two of each row beside
+/// its own.
+inline Textile chain_mail(const ChainMail& mail) {
+    mail.validate();
+    Textile textile = detail::drawn(mail);
+    const std::string loose = detail::loose_rings(textile, mail);
+    if (loose.empty()) return textile;
+    ChainMail two = mail;
+    two.rows = two.columns = 2;  // all are alike
+    const double nearest = nearest_that_holds(mail.across(), 0.0, 2.0 * mail.ring_radius, [&](double distance) {
+        two.row_pitch = distance;
+        return distance > 0.0 && detail::loose_rings(detail::drawn(two), two).empty();
+    });
+    if (std::isnan(nearest))
+        core::refuse("ChainMail.pitch", core::text(mail.along()), "less at this ring_radius, row_pitch and tilt_deg: " + loose);
+    core::refuse(
+        "ChainMail.row_pitch", core::text(mail.across()),
+        (nearest < mail.across() ? "<= " : ">= ") + core::text(nearest) + " at this ring_radius, pitch and tilt_deg: " + loose);
 }
 
 /// A net of clasped yarns: each goes to and fro, and hooks into its neighbours at its turns, as in chain link fences and sprang.
