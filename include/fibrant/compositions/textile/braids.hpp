@@ -146,7 +146,7 @@ inline Textile drawn(const FlatBraid& braid) {
 inline Textile flat_braid(const FlatBraid& braid) {
     // Across neighbours of one direction, 4 A / N over the length of a slope of 4 A / P, is a diameter; tips are as wide as
     // yarns.
-    const double a = braid.half_width, n = static_cast<double>(braid.yarns), w = half_width(braid.type), k = 2.0 * a / (n * w);
+    const double a = braid.half_width, n = static_cast<double>(braid.yarns), w = half_room(braid.type), k = 2.0 * a / (n * w);
     const double beside = k > 1.0 ? 4.0 * a / std::sqrt(k * k - 1.0) : 0.0, tips = std::sqrt(10.0 * a * n * w / 0.95);
     return laid(braid, &FlatBraid::period, "FlatBraid.period", std::max(beside, tips),
                 {{"half_width", a}, {"overhang", braid.overhang}}, braid.type,
@@ -251,7 +251,7 @@ inline Textile drawn(const TubularBraid& braid) {
 inline Textile tubular_braid(const TubularBraid& braid) {
     // The spacing of carriers of one way is a diameter.
     const double round = 2.0 * std::numbers::pi * braid.radius,
-                 k = round / (2.0 * half_width(braid.type) * static_cast<double>(braid.carriers));
+                 k = round / (2.0 * half_room(braid.type) * static_cast<double>(braid.carriers));
     return laid(braid, &TubularBraid::pitch, "TubularBraid.pitch", k > 1.0 ? round / std::sqrt(k * k - 1.0) : 0.0,
                 {{"radius", braid.radius}, {"overhang", braid.overhang}}, braid.type,
                 [](const TubularBraid& one) { return detail::drawn(one); });

@@ -5,6 +5,7 @@
 #include <fibrant/compositions/textile/crossings.hpp>
 #include <fibrant/compositions/textile/interlaced.hpp>
 #include <fibrant/compositions/textile/yarn_fibres.hpp>
+#include <fibrant/proximity/grid_search.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -270,11 +271,17 @@ inline bool underlaps_beside(const Tricot& given) {
         fibres.emplace_back();
         for (Index k = 0; k <= pieces; ++k) fibres.back().push_back(curve(static_cast<double>(k) / static_cast<double>(pieces)));
     }
-    for (const std::vector<Vec3>& one : fibres)
-        for (const std::vector<Vec3>& other : fibres)
-            for (Index k = 0; k <= pieces; ++k)
-                for (Index l = k + far; l <= pieces; ++l)
-                    if ((one[core::at(k)] - other[core::at(l)]).norm() < 2.0 * knit.type.radius) return false;
+    std::vector<proximity::Centreline> lines;
+    for (const std::vector<Vec3>& fibre : fibres)
+        lines.push_back({.points = fibre, .radius = knit.type.radius, .self_skip = 0.0});
+    // Points that are near are ends of pieces that are.
+    for (const proximity::SegmentPair& pair : proximity::GridSearch{}.pairs(lines, 1e-6 * knit.type.radius))
+        for (const Index k : {pair.i % pieces, pair.i % pieces + 1})
+            for (const Index l : {pair.j % pieces, pair.j % pieces + 1}) {
+                const Vec3 &one = fibres[core::at(pair.i / pieces)][core::at(k)],
+                           &other = fibres[core::at(pair.j / pieces)][core::at(l)];
+                if (std::abs(k - l) >= far && (one - other).norm() < 2.0 * knit.type.radius) return false;
+            }
     return true;
 }
 }  // namespace detail

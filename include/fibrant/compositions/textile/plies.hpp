@@ -39,7 +39,7 @@ struct StitchedPlies {
         core::require_positive("StitchedPlies.row_spacing", row_spacing);
         core::require(sideways >= 0.0 && sideways <= row_spacing, "StitchedPlies.sideways", sideways, "in [0, row_spacing]");
         yarn.validate(), thread.validate();
-        const double room = 2.0 * (half_width(yarn) + half_width(thread));
+        const double room = 2.0 * (half_room(yarn) + half_room(thread));
         core::require(std::isfinite(yarn_spacing) && yarn_spacing >= room, "StitchedPlies.yarn_spacing", yarn_spacing,
                       ">= " + core::text(room) + ", for threads to pass between yarns");
         core::require(length >= 2.0 * stitch_length, "StitchedPlies.length", length, ">= two stitches");
@@ -54,7 +54,7 @@ struct StitchedPlies {
                       ">= " + core::text(width / most) + ", a ten thousandth of width");
     }
     /// From one ply to the next: a twentieth more than their thickness [length].
-    double pitch() const { return 2.1 * half_width(yarn); }
+    double pitch() const { return 2.1 * half_height(yarn); }
 };
 
 namespace detail {
@@ -77,7 +77,7 @@ inline Textile detail::drawn(const StitchedPlies& plies) {
     textile.name = "stitched plies";
     textile.apart_by.fill({"StitchedPlies.yarn_spacing", plies.yarn_spacing});
     textile.types = {plies.yarn, plies.thread};
-    const double s = plies.yarn_spacing, overhang = 0.75 * s, reach = half_width(plies.yarn) + half_width(plies.thread);
+    const double s = plies.yarn_spacing, overhang = 0.75 * s, reach = half_room(plies.yarn) + half_room(plies.thread);
     const auto half_extent = [&](int axis) { return 0.5 * (axis == 0 ? plies.length : plies.width); };
     const double middle = 0.5 * static_cast<double>(plies.angles_deg.size() - 1);
     double steepest = 0.0;  // sine of the angle of yarns to the threads
@@ -111,8 +111,12 @@ inline Textile detail::drawn(const StitchedPlies& plies) {
             textile.paths.push_back(std::move(path));
         }
     }
-    const double high = plies.pitch() * middle + 1.05 * reach, size = plies.length + 2.0 * overhang;
-    const double turn = steepest > 0.0 ? 0.5 * s / steepest : 2.0 * high;  // half of the length in which a thread goes through
+    const double high = plies.pitch() * middle + 1.05 * (half_height(plies.yarn) + half_height(plies.thread)),
+                 size = plies.length + 2.0 * overhang;
+    // Half of the length in which a thread goes through: from the middle of a yarn, or a quarter of the breadth of a yarn of
+    // several fibres nearer, to that of the next one.
+    const double beside = plies.yarn.fibres > 1 ? 0.5 * half_breadth(plies.yarn) : 0.0;
+    const double turn = steepest > 0.0 ? (0.5 * s - beside) / steepest : 2.0 * high;
     core::require(plies.stitch_length >= 2.0 * turn * (1.0 - 1e-9), "StitchedPlies.stitch_length", plies.stitch_length,
                   ">= " + core::text(2.0 * turn) + ", for threads to come up again");
     const auto rows = static_cast<Index>(std::floor(0.5 * plies.width / plies.row_spacing - 1e-9)),

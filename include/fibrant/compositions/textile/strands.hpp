@@ -94,6 +94,8 @@ inline Textile plied(const Plied& rope) {
             textile.paths.push_back(std::move(path));
         }
     }
+    for (const Path& path : textile.paths)
+        detail::require_bends(path, rope.type, scene::length_of(path.curve, 128), "Plied.pitch, strand_pitch: ");
     if (rope.periodic) textile.lattice = {rope.length * Vec3::UnitZ()};
     return textile;
 }
@@ -118,16 +120,17 @@ struct ChainMail {
         core::require(ring_radius > 4.0 * type.radius && ring_radius <= widest * type.radius, "ChainMail.ring_radius",
                       ring_radius, "> 4 and <= 1e5 radii of the wire, " + core::text(type.radius));
         core::require_positive("ChainMail.pitch", along());
+        core::require(along() >= 2.0 * ring_radius, "ChainMail.pitch", along(),
+                      ">= " + core::text(2.0 * ring_radius) +
+                          ", two ring radii: rings of a row lie in one plane, and nearer ones " + "go through each other");
         core::require_positive("ChainMail.row_pitch", across());
         core::require(tilt_deg > 0.0 && tilt_deg <= 80.0, "ChainMail.tilt_deg", tilt_deg, "> 0 and <= 80");
         if (type.fibres != 1) core::refuse("YarnType.fibres", std::to_string(type.fibres), "1, of a ring of chain mail");
     }
 };
 
-/// Row j is shifted by half a pitch where j is odd, and tilted the other way: a ring inside is linked with two of each row beside
-/// its own.
-inline Textile chain_mail(const ChainMail& mail) {
-    mail.validate();
+namespace detail {
+inline Textile drawn(const ChainMail& mail) {
     Textile textile;
     textile.name = "chain mail";
     textile.types = {mail.type};
@@ -146,6 +149,10 @@ inline Textile chain_mail(const ChainMail& mail) {
             };
             textile.paths.push_back(std::move(path));
         }
+    return textile;
+}
+/// Of rings that should be linked and are not, the first two; nothing where all are.
+inline std::string loose_rings(const Textile& textile, const ChainMail& mail) {
     constexpr double points = 256.0;  // of a ring, to find its links
     const std::vector<Line> lines =
         lines_of(textile, std::max(0.5, 2.0 * std::numbers::pi * mail.ring_radius / (points * mail.type.radius)));
@@ -156,11 +163,31 @@ inline Textile chain_mail(const ChainMail& mail) {
                 const Index one = i + mail.columns * j, two = k + mail.columns * (j + 1);
                 const Index links = observe::linking_number(lines[core::at(one)].points, lines[core::at(two)].points);
                 if (links * links != 1)
-                    core::refuse("ChainMail.ring_radius, pitch, row_pitch, tilt_deg: links of " + textile.label(one) + " with " +
-                                     textile.label(two),
-                                 std::to_string(links), "1 or -1, or the rings come apart");
+                    return "links of " + textile.label(one) + " with " + textile.label(two) + " = " + std::to_string(links) +
+                           ", but it must be 1 or -1, or the rings come apart";
             }
-    return textile;
+    return {};
+}
+}  // namespace detail
+
+/// Row j is shifted by half a pitch where j is odd, and tilted the other way: a ring inside is linked with two of each row beside
+/// its own.
+inline Textile chain_mail(const ChainMail& mail) {
+    mail.validate();
+    Textile textile = detail::drawn(mail);
+    const std::string loose = detail::loose_rings(textile, mail);
+    if (loose.empty()) return textile;
+    ChainMail two = mail;
+    two.rows = two.columns = 2;  // all are alike
+    const double nearest = nearest_that_holds(mail.across(), 0.0, 2.0 * mail.ring_radius, [&](double distance) {
+        two.row_pitch = distance;
+        return distance > 0.0 && detail::loose_rings(detail::drawn(two), two).empty();
+    });
+    if (std::isnan(nearest))
+        core::refuse("ChainMail.pitch", core::text(mail.along()), "less at this ring_radius, row_pitch and tilt_deg: " + loose);
+    core::refuse(
+        "ChainMail.row_pitch", core::text(mail.across()),
+        (nearest < mail.across() ? "<= " : ">= ") + core::text(nearest) + " at this ring_radius, pitch and tilt_deg: " + loose);
 }
 
 /// A net of clasped yarns: each goes to and fro, and hooks into its neighbours at its turns, as in chain link fences and sprang.
@@ -183,7 +210,7 @@ struct Net {
         core::require_positive("Net.height_over_radius", height_over_radius);
         require_height("Net.height_over_radius", height_over_radius, type);
         // At a turn a yarn reaches half of the overlap beyond its neighbour's line, and so does the next but two.
-        const double w = half_width(type), least = yarns > 3 ? 0.5 * reach() + w : w;
+        const double w = half_room(type), least = yarns > 3 ? 0.5 * reach() + w : w;
         core::require(spacing >= least, "Net.spacing", spacing,
                       ">= " + core::text(least) + ", for yarns to meet none but their neighbours");
     }

@@ -35,14 +35,21 @@ struct LevelPlan {
     Index column_count() const noexcept { return columns > 0 ? columns : levels.empty() ? 0 : core::count(levels.front()); }
     Index level(Index w, Index c) const { return levels[core::at(w)][core::at(c % core::count(levels[core::at(w)]))]; }
     bool bound(Index w) const { return !warp_types.empty() && warp_types[core::at(w)] == 1; }
+    /// Whether two warps come to one level: somewhere the one is not lower, and somewhere not higher.
+    bool pass(Index w, Index v) const {
+        bool low = false, high = false;
+        for (Index c = 0; c < column_count(); ++c)
+            low = low || level(w, c) <= level(v, c), high = high || level(w, c) >= level(v, c);
+        return low && high;
+    }
     double thickest() const {
-        double most = warp.fibres == 1 ? warp.radius : half_width(warp);
+        double most = half_height(warp);
         for (Index w = 0; w < warps(); ++w)
-            if (bound(w)) most = std::max(most, half_width(binder));
+            if (bound(w)) most = std::max(most, half_height(binder));
         return most;
     }
     /// A twentieth of a diameter more than thickness of warp and weft.
-    double pitch() const { return layer_spacing > 0.0 ? layer_spacing : 2.1 * (thickest() + half_width(weft)); }
+    double pitch() const { return layer_spacing > 0.0 ? layer_spacing : 2.1 * (thickest() + half_height(weft)); }
 
     void validate() const {
         if (levels.empty()) core::refuse("LevelPlan.levels", "none", "at least one warp");
@@ -69,8 +76,17 @@ struct LevelPlan {
             core::refuse("LevelPlan.warp_types", std::to_string(warp_types.size()),
                          "one for each warp, " + std::to_string(levels.size()));
         warp.validate(), weft.validate();
+        // Ends of a cell do not keep neighbours apart that go past each other.
+        for (Index w = 0; periodic && w < warps(); ++w) {
+            const Index v = (w + 1) % warps();
+            const double side = half_breadth(bound(w) ? binder : warp) + half_breadth(bound(v) ? binder : warp);
+            if (warp_spacing < side && pass(w, v))
+                core::refuse("LevelPlan.warp_spacing", core::text(warp_spacing),
+                             ">= " + core::text(side) + ", the breadth of warps " + std::to_string(w) + " and " +
+                                 std::to_string(v) + ", which go past each other");
+        }
         // Between two wefts side by side a warp passes only if their surfaces are two warps' radii apart.
-        const double least = 2.0 * (half_width(weft) + thickest());
+        const double least = 2.0 * (half_room(weft) + thickest());
         core::require(std::isfinite(column_spacing) && column_spacing >= least, "LevelPlan.column_spacing", column_spacing,
                       ">= " + core::text(least) + ", for warps to pass between wefts");
     }
@@ -222,8 +238,8 @@ struct LenoWeave {
         core::require_at_least("LenoWeave.picks", picks, 2);
         core::require_positive("LenoWeave.pick_spacing", pick_spacing);
         type.validate();
-        core::require(aside >= 2.4 * half_width(type), "LenoWeave.aside", aside,
-                      ">= " + core::text(2.4 * half_width(type)) + ", 1.2 diameters");
+        core::require(aside >= 2.4 * half_room(type), "LenoWeave.aside", aside,
+                      ">= " + core::text(2.4 * half_room(type)) + ", 1.2 times the breadth of the yarn");
         core::require(pair_spacing > 2.0 * aside, "LenoWeave.pair_spacing", pair_spacing,
                       "> 2 aside = " + core::text(2.0 * aside));
     }
@@ -235,9 +251,10 @@ inline Textile drawn(const LenoWeave& weave) {
     textile.name = "leno";
     textile.apart_by = {ApartBy{"LenoWeave.pick_spacing", weave.pick_spacing}, ApartBy{"LenoWeave.aside", weave.aside}, {}};
     textile.types = {weave.type};
-    const double p = weave.pick_spacing, s = weave.aside, h = 2.1 * half_width(weave.type), beyond = p;
+    const double p = weave.pick_spacing, s = weave.aside, h = 2.1 * half_height(weave.type), beyond = p;
     const double length = p * static_cast<double>(weave.picks - 1) + 2.0 * beyond;
     const double width = weave.pair_spacing * static_cast<double>(weave.pairs - 1) + 4.0 * s + 2.0 * p;
+    const bool several = weave.type.fibres > 1;
     for (Index k = 0; k < weave.pairs; ++k) {
         const double y = weave.pair_spacing * static_cast<double>(k);
         Path ground, doup;
@@ -248,7 +265,11 @@ inline Textile drawn(const LenoWeave& weave) {
         // crossing.
         doup.curve = [=](double t) {
             const double x = length * t - beyond, f = std::numbers::pi * std::clamp(x, 0.0, length - 2.0 * beyond) / p;
-            return Vec3(x, y + s * std::cos(f), h * (-0.5 + 1.5 * std::cos(2.0 * f)));
+            const double c = std::cos(f), u = c * c;
+            // A single fibre parts from its ground end. Yarns of several fibres go round it in an ellipse, which is as far to
+            // the side where they are at its height as it is below: u of 1/3.
+            const double way = !several || u >= 1.0 / 3.0 ? (several ? std::copysign(1.0, c) : c) : c * std::sqrt(6.0 - 9.0 * u);
+            return Vec3(x, y + s * way, h * (-0.5 + 1.5 * std::cos(2.0 * f)));
         };
         textile.paths.push_back(std::move(ground)), textile.paths.push_back(std::move(doup));
     }
@@ -271,7 +292,7 @@ inline Textile drawn(const LenoWeave& weave) {
 /// Each pair of yarns has one order for good: doup above wefts, wefts above ground, ground above doup. 2 crossings a pick and one
 /// a gap for each pair.
 inline Textile leno(const LenoWeave& weave) {
-    return laid(weave, &LenoWeave::pick_spacing, "LenoWeave.pick_spacing", 2.0 * half_width(weave.type),
+    return laid(weave, &LenoWeave::pick_spacing, "LenoWeave.pick_spacing", 2.0 * half_room(weave.type),
                 {{"pair_spacing", weave.pair_spacing}, {"aside", weave.aside}}, weave.type,
                 [](const LenoWeave& one) { return detail::drawn(one); });
 }
@@ -306,8 +327,10 @@ inline Textile drawn(const TriaxialWeave& weave) {
     for (Index f = 0; f < 3; ++f) {
         const double angle = std::numbers::pi / 3.0 * (f == 0 ? 0.0 : f == 1 ? 1.0 : -1.0);
         const Vec3 along(std::cos(angle), std::sin(angle), 0.0), across(-along.y(), along.x(), 0.0);
-        // With a quarter of the spacing, and one family by half of it more, lines of three families never meet in one point.
-        const double shift = (0.25 + (f == 2 ? 0.5 : 0.0)) * weave.spacing;
+        // With a quarter of the spacing, and one family by half of it more, lines of three families never meet in one point. By
+        // a quarter more all ways from crossing to crossing are alike and as long as can be, which yarns of several fibres need.
+        const bool several = weave.type.fibres > 1;
+        const double more = several ? 0.25 : 0.5, shift = (0.25 + (f == 2 ? more : 0.0)) * weave.spacing;
         const auto most = static_cast<Index>(std::floor(weave.radius / weave.spacing)) + 1;
         for (Index k = -most; k <= most; ++k) {
             const double d = shift + weave.spacing * static_cast<double>(k), chord = weave.radius * weave.radius - d * d;
@@ -316,7 +339,16 @@ inline Textile drawn(const TriaxialWeave& weave) {
             Path path;
             path.name = std::string(1, static_cast<char>('A' + f)) + std::to_string(k);
             path.family = f;
-            path.curve = [=](double t) { return Vec3(d * across + half * (2.0 * t - 1.0) * along); };
+            double from = -half, to = half;
+            if (several) {  // ends lie half way between crossings: some fibres of a yarn would cross another, and some not
+                const double other = std::numbers::pi / 3.0 * (f == 1 ? -1.0 : 1.0);  // a family beside this one
+                const Vec3 beside(-std::sin(other), std::cos(other), 0.0);
+                const double offset = (f == 1 ? 0.25 + more : 0.25) * weave.spacing, step = weave.spacing / std::sqrt(3.0),
+                             first = (offset - d * across.dot(beside)) / along.dot(beside);
+                for (double* end : {&from, &to}) *end = first + step * (std::floor((*end - first) / step) + 0.5);
+            }
+            const double middle = 0.5 * (from + to), reach = 0.5 * (to - from);
+            path.curve = [=](double t) { return Vec3(d * across + (middle + reach * (2.0 * t - 1.0)) * along); };
             textile.paths.push_back(std::move(path));
             family.push_back(f);
         }
@@ -335,7 +367,7 @@ inline Textile drawn(const TriaxialWeave& weave) {
 /// Orders are cyclic by families: the first above the second, the second above the third, the third above the first. One crossing
 /// a pair that meets.
 inline Textile triaxial_weave(const TriaxialWeave& weave) {
-    return laid(weave, &TriaxialWeave::spacing, "TriaxialWeave.spacing", 2.0 * half_width(weave.type), {{"radius", weave.radius}},
+    return laid(weave, &TriaxialWeave::spacing, "TriaxialWeave.spacing", 2.0 * half_room(weave.type), {{"radius", weave.radius}},
                 weave.type, [](const TriaxialWeave& one) { return detail::drawn(one); });
 }
 

@@ -38,9 +38,10 @@ inline std::vector<scene::Curve> fibre_curves(const Textile& textile, Index p) {
     const double length = scene::length_of(path.curve), turns = type.twist * length;
     const auto samples = std::max<Index>(64, static_cast<Index>(length / type.radius));
     const bool repeats = path.kind != PathKind::open;
-    if (repeats)
-        core::require(std::abs(turns - std::round(turns)) < 1e-9, textile.label(p) + ": turns of its twist over its length",
-                      turns, "whole, of a path that repeats");
+    if (repeats && !(std::abs(turns - std::round(turns)) < 1e-9))
+        core::refuse("YarnType.twist", core::text(type.twist),
+                     core::text(std::round(turns) / length) + " or another one that makes whole turns over the length of " +
+                         textile.label(p) + ", " + core::text(length) + ", which repeats");
     const auto ends = repeats ? scene::SplineEnds::repeating : scene::SplineEnds::parabolic;
     std::vector<scene::NodeFrame> level;
     if (!textile.crossings.empty() && path.upward.isZero() && type.twist == 0.0)

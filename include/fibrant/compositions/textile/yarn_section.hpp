@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,7 +15,8 @@
 namespace fibrant::compositions::textile {
 
 /// Centres of the fibres of a yarn: across it, and along its thickness [length]. Three and four fibres of a round yarn lie in the
-/// least circle that holds them, a triangle and a square; a compact packing about one fibre would have three in a row.
+/// least circle that holds them, a triangle and a square; a compact packing about one fibre would have three in a row. Five lie
+/// in a ring, and six, eight and nine in a ring about one: a compact packing of them is a slanted row, far broader than thick.
 inline std::vector<Eigen::Vector2d> section_of(const YarnType& type) {
     const double half_pitch = type.radius * (1.0 + type.packing_gap);
     if (type.aspect == 1.0 && type.fibres == 3) {
@@ -23,6 +25,17 @@ inline std::vector<Eigen::Vector2d> section_of(const YarnType& type) {
     }
     if (type.aspect == 1.0 && type.fibres == 4)
         return {{-half_pitch, -half_pitch}, {half_pitch, -half_pitch}, {-half_pitch, half_pitch}, {half_pitch, half_pitch}};
+    if (const Index n = type.fibres; type.aspect == 1.0 && (n == 5 || n == 6 || n == 8 || n == 9)) {
+        const Index inside = n == 5 ? 0 : 1, around = n - inside;
+        const double step = 2.0 * std::numbers::pi / static_cast<double>(around),
+                     ring = half_pitch * std::max(inside > 0 ? 2.0 : 0.0, 1.0 / std::sin(0.5 * step));
+        std::vector<Eigen::Vector2d> centres(core::at(inside), Eigen::Vector2d::Zero());
+        for (Index k = 0; k < around; ++k) {
+            const double angle = step * (static_cast<double>(k) + 0.5) - 0.5 * std::numbers::pi;
+            centres.emplace_back(ring * std::cos(angle), ring * std::sin(angle));
+        }
+        return centres;
+    }
     return weave::compact_packing(type.fibres, type.radius, type.aspect, type.packing_gap).centres;
 }
 
@@ -62,5 +75,15 @@ inline void require_height(const std::string& field, double over_half_thickness,
 
 /// Half of the room that yarns side by side take, as they lie or, if that is more, packed as densely as circles can be [length].
 inline double half_room(const YarnType& type) { return std::max(half_width(type), half_breadth(type)); }
+
+/// The same of yarns that lie on each other, from the path to the higher side: a triangle does not reach as far down as up
+/// [length].
+inline double half_height(const YarnType& type) {
+    if (type.fibres == 1) return type.radius;
+    if (type.twist != 0.0) return outermost(type);
+    double furthest = 0.0;
+    for (const Eigen::Vector2d& centre : section_of(type)) furthest = std::max(furthest, std::abs(centre.y()));
+    return std::max(half_width(type) / type.aspect, type.radius + furthest);
+}
 
 }  // namespace fibrant::compositions::textile
