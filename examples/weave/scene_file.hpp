@@ -8,6 +8,7 @@
 
 #include <fibrant/compositions/weave/fabric_limits.hpp>
 #include <fibrant/compositions/weave/fabric_parameters.hpp>
+#include <fibrant/compositions/weave/waved_path.hpp>
 #include <fibrant/scene/cross_section.hpp>
 #include <fibrant/solver/newton.hpp>
 

@@ -56,3 +56,4 @@
 #include <fibrant/compositions/weave/slices.hpp>
 #include <fibrant/compositions/weave/tow_geometry.hpp>
 #include <fibrant/compositions/weave/tow_section.hpp>
+#include <fibrant/compositions/weave/waved_path.hpp>

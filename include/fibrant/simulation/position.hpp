@@ -82,6 +82,9 @@ struct Position {
             if (next.damping_goes_on && next.damping > 0.0) damping = std::min(left / next.damping, 1.0);
         }
         stage_over = exact = false;
+        // What an attempt that failed asked for is asked for again where it is needed: systems with all crossings followed take
+        // several times as many iterations where fibres are hardly held.
+        following = false, tried = {-1, 0.0};
         from = amplitudes;
     }
 

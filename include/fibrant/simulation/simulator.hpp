@@ -112,7 +112,7 @@ private:
         if (stage.friction) contacts_.friction_law() = *stage.friction;
     }
 
-    /// One accepted increment, after as many cuts as it takes; gave_up(attempt) hears of it.
+    /// One accepted increment, after the cuts it takes; gave_up(attempt) hears of it.
     template <class GaveUp>
     bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report,
                  const GaveUp& gave_up) {
@@ -158,7 +158,7 @@ private:
             const solver::IterationParameters iteration = parameters_.iteration.of_attempt(stage.patience, astray);
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
                 equilibrium_, contacts_, linear_, passage_, iteration, radius_, touching, clock_);
-            // A limited gap moves fibres by about the limit: the search looks that far ahead.
+            // A limited gap moves fibres by about the limit: the search looks so far.
             const double shown = stage.forced_orders ? stride * stage.gap_limit.value_or(0.0) : 0.0;
             const double ahead = std::max(position_.displacement, shown);
             solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, position_.looseness(stage),
@@ -376,7 +376,8 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
     for (Index k = 0; k < position_.stage; ++k) take_laws(stages[core::at(k)]);  // which stay
     for (; position_.stage < core::count(stages); position_.next_stage(stages, amplitudes_)) {
         const Stage<M>& stage = stages[core::at(position_.stage)];
-        take_laws(stage);  // of one that is left out as well: a run that is resumed has them
+        take_laws(stage);  // of one left out, too: a run that is resumed has them
+        contacts_.places().follow(position_.following);
         if (position_.needless(stage, report)) continue;
         while (!position_.stage_over) {
             const auto gave_up = [&](const FailedAttempt& attempt) {
@@ -389,7 +390,7 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
                 finish(report, start);
                 return report;
             }
-            // Observers first: an increment that a checkpoint holds has been shown, and one shown twice is told by its number.
+            // Observers first: what a checkpoint holds has been shown, and what is shown twice is told by its number.
             clock_.time(core::Part::output, [&] {
                 for (const Watcher& watcher : watchers) show(watcher, report.increments.back());
                 const auto now = std::chrono::steady_clock::now();
