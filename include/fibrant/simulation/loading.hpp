@@ -87,6 +87,9 @@ struct Stage {
     /// Where `until` is true of a loose increment, the stage goes on at looseness 1, and ends once it is true of such a one: what
     /// it ends with is an answer, within the tolerances that are stated.
     bool exact_end = false;
+    /// What a failed attempt asked for, that all crossings are followed, holds up to the next increment without a cut, not to the
+    /// end of the stage: of many fibres that are hardly held linear systems take several times as many iterations for it.
+    bool follows_briefly = false;
     std::optional<typename M::Normal> normal{};      ///< law from this stage on, for the model's
     std::optional<typename M::Friction> friction{};  ///< likewise
     /// Once the ramps are over: goes on, all else constant, until this is true. None: ends with the ramps.

@@ -101,11 +101,13 @@ struct Position {
     }
 
     /// Whether a stage ends with an increment of which its `until` holds: one that is asked for an exact end with one that is
-    /// within what is stated. Till then it goes on at looseness 1, but after an increment that had to be cut.
+    /// within what is stated. Till then it goes on at looseness 1, but after an increment that had to be cut. To be asked once an
+    /// increment.
     template <Model M>
     bool ends(const Stage<M>& present, bool settled, const IncrementReport& increment) noexcept {
         const bool stated = !present.exact_end || looseness(present) <= 1.0 || increment.use.greatest() <= 1.0;
         exact = present.exact_end && ((settled && !stated) || (exact && increment.cuts == 0));
+        if (present.follows_briefly && increment.cuts == 0) following = false;
         return settled && stated;
     }
 

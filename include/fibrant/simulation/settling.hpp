@@ -56,6 +56,7 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     // damping that waited for it to be quick would not fall.
     const double hardly = 0.1;  // of the pull, by trial
     common.patience = pulled && scales.parting < hardly ? 2.0 : 1.0;
+    common.follows_briefly = pull.drawn;
     // On the way contact is softer: contacts that change their status one by one are what Newton's method and the linear solver
     // spend their iterations on. Paths are only a means: an increment keeps its normals, and what it leaves over moves in the
     // next.

@@ -377,9 +377,9 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
     for (; position_.stage < core::count(stages); position_.next_stage(stages, amplitudes_)) {
         const Stage<M>& stage = stages[core::at(position_.stage)];
         take_laws(stage);  // of one left out, too: a run that is resumed has them
-        contacts_.places().follow(position_.following);
         if (position_.needless(stage, report)) continue;
         while (!position_.stage_over) {
+            contacts_.places().follow(position_.following);
             const auto gave_up = [&](const FailedAttempt& attempt) {
                 for (const Watcher& watcher : watchers)
                     if (watcher.gave_up) watcher.gave_up(watcher.observer, attempt);
@@ -390,7 +390,7 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
                 finish(report, start);
                 return report;
             }
-            // Observers first: what a checkpoint holds has been shown, and what is shown twice is told by its number.
+            // Observers first: what a checkpoint holds has been shown, and what is shown twice is told by number.
             clock_.time(core::Part::output, [&] {
                 for (const Watcher& watcher : watchers) show(watcher, report.increments.back());
                 const auto now = std::chrono::steady_clock::now();
