@@ -133,7 +133,8 @@ struct Summary {
     fibrant::Vec3 least_gap_place = fibrant::Vec3::Zero();           ///< and where [length]
     double crimp_warp = fibrant::core::unset, crimp_weft = fibrant::core::unset;
     double thickness = fibrant::core::unset;
-    double energy_error_over_work = fibrant::core::unset;  ///< of the report's energy balance [1]
+    double energy_error_over_work = fibrant::core::unset;              ///< of the report's energy balance [1]
+    double residual_over_tolerance = 0, penetration_over_allowed = 0;  ///< of the last increment, at most 1 of an answer [1]
     double wall_seconds = 0, cpu_seconds = 0;
     std::int64_t peak_memory_bytes = 0;
     std::array<double, fibrant::core::part_count> seconds_by_stage{};  ///< by core::Part
@@ -150,6 +151,8 @@ inline void fill(Summary& summary, const fibrant::simulation::Report& report, co
     summary.contact_elements = report.contact.elements;
     summary.increments = report.increments.empty() ? 0 : report.increments.back().number;
     summary.rejected_increments = report.rejected_increments;
+    summary.residual_over_tolerance = report.use.residual;
+    summary.penetration_over_allowed = report.use.penetration;
     summary.newton_iterations = report.counts.newton;
     summary.linear_solves = report.counts.linear_solves;
     summary.linear_iterations = report.counts.linear_iterations;
@@ -202,6 +205,8 @@ inline observe::JsonObject write_summary(const std::filesystem::path& folder, co
         .add("crimp_weft", summary.crimp_weft)
         .add("thickness", summary.thickness)
         .add("energy_error_over_work", summary.energy_error_over_work)
+        .add("residual_over_tolerance", summary.residual_over_tolerance)
+        .add("penetration_over_allowed", summary.penetration_over_allowed)
         .add("wall_seconds", summary.wall_seconds)
         .add("cpu_seconds", summary.cpu_seconds)
         .add("peak_memory_bytes", summary.peak_memory_bytes)
