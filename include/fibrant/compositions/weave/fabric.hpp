@@ -36,6 +36,7 @@ inline std::array<std::vector<Index>, 2> add_flat_fibres(scene::Assembly& assemb
             groups[warp ? 0 : 1].push_back(group);
             const auto [first, last] = end_heights(fabric, family, t);
             const double turned = 0.5 * (last - first) / half, flat = std::sqrt(1.0 - turned * turned);
+            const TowWave wave = waved ? tow_wave(fabric, family, t) : TowWave{};
             for (Index k = 0; k < tow.fibres; ++k) {
                 const auto& offset = packing.centres[core::at(k)];
                 const Vec3 centre = (fabric.tow_position(family, t) + offset.x()) * across + offset.y() * Vec3::UnitZ();
@@ -43,7 +44,7 @@ inline std::array<std::vector<Index>, 2> add_flat_fibres(scene::Assembly& assemb
                 fibre.from = centre - half * along, fibre.to = centre + half * along;
                 if (waved) {
                     const Vec3 middle = fabric.tow_position(family, t) * across;
-                    const auto path = std::make_shared<const WavedPath>(tow_wave(fabric, family, t), offset, 2.0 * half);
+                    const auto path = std::make_shared<const WavedPath>(wave, offset, 2.0 * half);
                     fibre.start = [middle, along, across, path](double part) {
                         const Vec3 at = path->at(part);
                         return Vec3(middle + at.x() * along + at.y() * across + at.z() * Vec3::UnitZ());

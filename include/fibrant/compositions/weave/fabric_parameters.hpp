@@ -10,6 +10,7 @@
 #include <fibrant/scene/elastic_material.hpp>
 #include <fibrant/simulation/settle_parameters.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -130,6 +131,11 @@ struct FabricParameters {
         }
     }
 };
+
+/// Smallest radius of a fabric's fibres [length].
+inline double smallest_radius(const FabricParameters& fabric) {
+    return std::min(fabric.warp.fibre_radius, fabric.weft.fibre_radius);
+}
 
 /// Where tows are when a settling begins: straight in the plane, waved about as they come to lie, or by whether that pays.
 enum class Start { automatic, flat, waved };

@@ -13,11 +13,6 @@
 
 namespace fibrant::compositions::weave {
 
-/// Smallest radius of a fabric's fibres [length].
-inline double smallest_radius(const FabricParameters& fabric) {
-    return std::min(fabric.warp.fibre_radius, fabric.weft.fibre_radius);
-}
-
 /// A fibre of a family, as a settling sees it.
 inline simulation::SettledFibre settled_fibre(const FabricParameters& fabric, Family family, double tension_strain) {
     const TowParameters& tow = fabric.tow(family);

@@ -194,12 +194,12 @@ inline std::string no_wave(const FabricParameters& fabric) {
 /// radius an increment, as flat ones are, would take more increments than waved ones need.
 /// @throws std::invalid_argument if it is asked for and cannot be
 inline bool begins_waved(const FabricParameters& fabric, const SettleParameters& settle) {
-    if (settle.start == Start::flat) return false;
-    const std::string why = no_wave(fabric);
-    if (settle.start == Start::waved && !why.empty()) core::refuse("SettleParameters.start", "waved", "flat: " + why);
     const double few = 8.0;  // increments in which waved tows part, by trial
-    const double radius = std::min(fabric.warp.fibre_radius, fabric.weft.fibre_radius);
-    return settle.start == Start::waved || (why.empty() && tows_apart(fabric) > few * radius);
+    const bool asked = settle.start == Start::waved;
+    if (settle.start == Start::flat || (!asked && tows_apart(fabric) <= few * smallest_radius(fabric))) return false;
+    const std::string why = no_wave(fabric);
+    if (asked && !why.empty()) core::refuse("SettleParameters.start", "waved", "flat: " + why);
+    return why.empty();
 }
 
 }  // namespace fibrant::compositions::weave
