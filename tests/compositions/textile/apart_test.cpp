@@ -231,6 +231,17 @@ TEST_CASE("radii that a file has are those of its fibres, where nobody says anot
     CHECK(refusal([&] { textile_of(curves, type, {}); }).find("radius of curve 0 = not given") == 0);
 }
 
+TEST_CASE("a net so short that neighbours do not hook into each other is refused by its periods") {
+    const auto said = [](double periods, Index yarns) {
+        return refusal([&] { net({.yarns = yarns, .spacing = 0.8, .period = 3.0, .periods = periods, .type = yarn(1)}); });
+    };
+    for (const Index yarns : {2, 3, 6})
+        CHECK(said(0.5, yarns).find("Net.periods = 0.5, but it must be >= 1, for yarn 0 'yarn 0' and yarn 1 'yarn 1' to hook") ==
+              0);
+    CHECK(said(1.0, 2) == "");
+    CHECK(said(1.0, 6) == "");
+}
+
 TEST_CASE("rings of mail that go through others of their row are refused by their pitch, value and bound") {
     const auto said = [](double pitch) {
         return refusal([&] { chain_mail({.rows = 2, .columns = 2, .ring_radius = 1.0, .pitch = pitch, .type = yarn(1)}); });
