@@ -252,8 +252,7 @@ inline Textile drawn(const Tricot& knit) {
         const Line line = line_of(points);
         path.guides.push_back({line.arc[heads.back()] / line.arc.back()});
         heights.emplace_back();
-        for (std::size_t k = 0; k < points.size(); ++k)
-            heights.back().emplace_back(line.arc[k] / line.arc.back(), points[k].z());
+        for (std::size_t k = 0; k < points.size(); ++k) heights.back().emplace_back(line.arc[k] / line.arc.back(), points[k].z());
         sketched.push_back(scene::curve_through(std::move(points)));
         path.curve = [sketch = sketched.back()](double t) {
             Vec3 place = sketch(t);
