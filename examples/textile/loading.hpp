@@ -162,6 +162,12 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
         json.add("tension", std::vector<double>{before[0], before[1]}).add("symmetric", symmetric).add("stable", stable);
     }
     example::write_summary(output, report, audit, radius, {}, json);
+    if (!report.converged && !example::stopped())
+        std::fprintf(stderr,
+                     "textile: the cell does not bear its six strains: %s; where efforts grow by themselves from increment to "
+                     "increment (loading/increments.csv), elements are too long for crossings that are so near: less of "
+                     "yarn.element_over_radius\n",
+                     report.reason.c_str());
     if (report.converged && !symmetric)
         std::fprintf(stderr,
                      "textile: the stiffness of the cell is not symmetric, by %.3g: elements are too long, or it is not at rest "

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <numbers>
 #include <stdexcept>
@@ -68,12 +69,15 @@ inline const std::vector<std::string> generators{"flat_braid",     "tubular_brai
 
 namespace detail {
 
-inline void read_type(SceneReader& file, const std::string& section, bool required, cloth::YarnType& type) {
+/// @param required  its radius is
+inline void read_type(SceneReader& file, const std::string& section, bool required, cloth::YarnType& type,
+                      const char* left_out = "radius of a fibre; left out: as in [yarn]") {
     const auto length = example::positive();
     if (required)
-        file.require(section, "radius", type.radius, length, "length", "radius of a fibre");
+        file.require(section, "radius", type.radius, length, "length",
+                     "radius of a fibre; of a file that has radii it may be left out");
     else
-        file.read(section, "radius", type.radius, length, "length", "radius of a fibre; left out: as in [yarn]");
+        file.read(section, "radius", type.radius, length, "length", left_out);
     file.read(section, "fibres", type.fibres, example::between(1, 10000), "fibres in a yarn");
     file.read(section, "inertia_factor", type.inertia_factor, example::between(1e-9, 1e3), "1",
               "factor on the bending stiffness, below 1 for a soft thread");
@@ -377,6 +381,11 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
                                               curve.points = cloth::smoothed(curve.points, smooth, curve.closed);
                                           fibrant::exchange::require_turns(after, whole.string(), clean.largest_turn_deg);
                                       });
+            for (const fibrant::exchange::FileCurve& curve : curves)
+                if (yarn.fibres == 1 && !std::isnan(yarn.radius) && !std::isnan(curve.radius) && curve.radius != yarn.radius) {
+                    std::fprintf(stderr, "textile: note: radii of %s are not used, for yarn.radius is given\n", path.c_str());
+                    break;
+                }
             made = cloth::textile_of(curves, yarn, {fibrant::Vec3::UnitZ(), seen == "tube", fibrant::Vec3::Zero()}, smooth);
             if (seen == "none") made.crossings.clear();
         }
@@ -415,8 +424,13 @@ inline Scene read_scene(SceneReader& file) {
     double tension = 0.0;
     bool straight = true;
     file.require("textile", "generator", scene.generator, generators, "what is made; the section of this name has its numbers");
-    if (scene.generator == "file") file.names({{"Path.", "file.path, scale: "}, {"yarn ", "file.path, scale: yarn "}});
-    detail::read_type(file, "yarn", true, yarn);
+    const bool of_file = scene.generator == "file" && !file.describes();
+    if (of_file)
+        file.names({{"Path.", "file.path, scale: "},
+                    {"yarn ", "file.path, scale: yarn "},
+                    {"radius of curve ", "yarn.radius: radius of curve "}});
+    detail::read_type(file, "yarn", !of_file, yarn, "radius of a fibre; left out: as the file has it");
+    if (of_file && yarn.fibres > 1) file.check(!std::isnan(yarn.radius), "yarn", "radius", "given, of yarns of several fibres");
     example::read_material(file, "yarn", yarn.material);
     std::string law = "isotropic";
     example::read_transverse(file, "yarn", law, yarn.material.transverse);

@@ -3,6 +3,7 @@
 #include "../../refusal.hpp"
 #include <near.hpp>
 
+#include <fibrant/compositions/textile/imported.hpp>
 #include <fibrant/compositions/textile/knits.hpp>
 #include <fibrant/compositions/textile/plies.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
@@ -175,6 +176,70 @@ TEST_CASE("underlaps that lie in loops of their own yarn are found among near po
         }
     CHECK(beside > 3);
     CHECK(within > 3);
+}
+
+TEST_CASE("yarns of a tricot lie level where they cross, so that fibres of other yarns start beside theirs") {
+    for (const Index fibres : {1, 2, 3, 4, 5, 6, 7, 9, 12}) {
+        CAPTURE(fibres);
+        const Textile knit = tricot(
+            {.needles = 4, .courses = 3, .needle_spacing = 1.0, .course_spacing = 0.8, .loop_height = 1.1, .type = yarn(fibres)});
+        // A row of two is twice as broad as it is thick, and lies a little in what comes past it before it crosses.
+        CHECK(touching(knit, fibres == 2 ? 0.3 : fibres == 4 ? 0.1 : 0.0) == 0);
+        CHECK(detail::fibres_cross_rightly(knit));
+    }
+}
+
+/// Two parallel curves of a file.
+std::vector<exchange::FileCurve> side_by_side(double apart) {
+    std::vector<exchange::FileCurve> curves(2);
+    for (const int k : {0, 1})
+        for (int n = 0; n <= 20; ++n) curves[core::at(k)].points.emplace_back(0.1 * n, apart * k, 0.0);
+    return curves;
+}
+
+TEST_CASE("how deep yarns start in each other is told in radii of their fibres") {
+    const auto depth = [](double apart) { return detail::deepest_start(textile_of(side_by_side(apart), yarn(1), {})); };
+    CHECK(depth(0.07) == test::near(0.6, 1e-9));
+    CHECK(depth(0.11) == 0.0);
+}
+
+TEST_CASE("curves of a file that are nearer than yarns of several fibres are broad are refused with a radius that would do") {
+    YarnType type = yarn(7);
+    type.radius = 0.05;
+    const std::vector<exchange::FileCurve> curves = side_by_side(0.09);
+    const std::string message = refusal([&] { textile_of(curves, type, {}); });
+    REQUIRE(message.find("YarnType.radius = 0.05, but it must be <= ") == 0);
+    CHECK(message.find("7 fibres of each curve of the file") != std::string::npos);
+    type.radius = std::stod(message.substr(message.find("<= ") + 3));
+    CHECK(type.radius > 0.015);  // 0.09 over the six radii of three in a row: they may start in each other by one
+    CHECK(refusal([&] { textile_of(curves, type, {}); }).empty());
+    type.fibres = 1, type.radius = 0.05;  // were measured, and are parted
+    CHECK(refusal([&] { textile_of(curves, type, {}); }).empty());
+}
+
+TEST_CASE("radii that a file has are those of its fibres, where nobody says another one") {
+    std::vector<exchange::FileCurve> curves = side_by_side(0.2);
+    curves[0].radius = 0.04;
+    curves[1].radius = 0.05, curves[1].radii.assign(curves[1].points.size(), 0.05), curves[1].radii.back() = 0.071;
+    YarnType type = yarn(1);
+    CHECK(textile_of(curves, type, {}).smallest_radius() == 0.05);
+    type.radius = core::unset;
+    const Textile textile = textile_of(curves, type, {});
+    CHECK(textile.type_of(0).radius == 0.04);
+    CHECK(textile.type_of(1).radius == test::near(0.051, 1e-12));
+    curves[0].radius = core::unset;
+    CHECK(refusal([&] { textile_of(curves, type, {}); }).find("radius of curve 0 = not given") == 0);
+}
+
+TEST_CASE("a net so short that neighbours do not hook into each other is refused by its periods") {
+    const auto said = [](double periods, Index yarns) {
+        return refusal([&] { net({.yarns = yarns, .spacing = 0.8, .period = 3.0, .periods = periods, .type = yarn(1)}); });
+    };
+    for (const Index yarns : {2, 3, 6})
+        CHECK(said(0.5, yarns).find("Net.periods = 0.5, but it must be >= 1, for yarn 0 'yarn 0' and yarn 1 'yarn 1' to hook") ==
+              0);
+    CHECK(said(1.0, 2) == "");
+    CHECK(said(1.0, 6) == "");
 }
 
 TEST_CASE("rings of mail that go through others of their row are refused by their pitch, value and bound") {

@@ -2,12 +2,13 @@
 #pragma once
 /// @file A textile from curves of a file, and curves of its fibres for files.
 
-#include <fibrant/compositions/textile/crossings.hpp>
+#include <fibrant/compositions/textile/yarn_fibres.hpp>
 #include <fibrant/exchange/curves.hpp>
 #include <fibrant/observe/snapshot.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,10 +46,29 @@ inline std::vector<Vec3> smoothed(const std::vector<Vec3>& points, double width,
     return answer;
 }
 
-/// A textile of single fibres, one a curve, at rest as they are drawn; crossings are those that their heights say.
-/// @param type    of all yarns; its radius, where it is not set, is that of the file
+/// Refuses yarns of several fibres, one a curve of a file, that lie in each other by more than a radius of a fibre: a curve is as
+/// far from others as what was measured is thick, and fibres would start on the wrong side of each other.
+/// @throws std::invalid_argument naming a radius that would do
+inline void require_room(const Textile& textile) {
+    constexpr double most = 1.0, step = 0.97, thinnest = 0.02;
+    const auto several = [](const YarnType& type) { return type.fibres > 1; };
+    if (std::none_of(textile.types.begin(), textile.types.end(), several) || detail::deepest_start(textile) <= most) return;
+    Textile thinner = textile;
+    double factor = 1.0;
+    do {
+        factor *= step;
+        for (std::size_t k = 0; k < textile.types.size(); ++k) thinner.types[k].radius = factor * textile.types[k].radius;
+    } while (factor > thinnest && detail::deepest_start(thinner) > most);
+    const YarnType& type = *std::find_if(textile.types.begin(), textile.types.end(), several);
+    core::refuse("YarnType.radius", core::text(type.radius),
+                 (factor > thinnest ? "<= " + core::text(factor * type.radius) : std::string("less")) + " for the " +
+                     std::to_string(type.fibres) + " fibres of each curve of the file to lie beside those of the next one");
+}
+
+/// A textile of yarns, one a curve, at rest as they are drawn; crossings are those that their heights say.
+/// @param type    of all yarns; its radius, where it is not set, is that of the file, the mean of its points
 /// @param smooth  width of the Gaussian that points are smoothed by [points], >= 0
-/// @throws std::invalid_argument naming the curve whose radius nobody says
+/// @throws std::invalid_argument naming the curve whose radius nobody says, or a radius of fibres at which yarns have room
 inline Textile textile_of(const std::vector<exchange::FileCurve>& curves, const YarnType& type, const View& view,
                           double smooth = 0.0) {
     Textile textile;
@@ -57,7 +77,10 @@ inline Textile textile_of(const std::vector<exchange::FileCurve>& curves, const 
     for (std::size_t c = 0; c < curves.size(); ++c) {
         const exchange::FileCurve& curve = curves[c];
         YarnType own = type;
-        if (std::isnan(own.radius)) own.radius = curve.radius;
+        if (std::isnan(own.radius))
+            own.radius = curve.radii.empty() ? curve.radius
+                                             : std::accumulate(curve.radii.begin(), curve.radii.end(), 0.0) /
+                                                   static_cast<double>(curve.radii.size());
         if (std::isnan(own.radius)) core::refuse("radius of curve " + std::to_string(c), "not given", "in the file, or told");
         Index number = 0;
         while (number < core::count(textile.types) && textile.types[core::at(number)].radius != own.radius) ++number;
@@ -74,6 +97,7 @@ inline Textile textile_of(const std::vector<exchange::FileCurve>& curves, const 
         textile.paths.push_back(std::move(path));
     }
     textile.crossings = crossings_of(textile);
+    require_room(textile);
     return textile;
 }
 

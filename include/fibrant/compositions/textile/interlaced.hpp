@@ -93,20 +93,22 @@ inline void require_whole(const std::string& field, double count) {
     core::require(count >= 1.0 && std::abs(count - std::round(count)) <= 1e-12 * count, field, count, "whole, and >= 1");
 }
 
-/// Gives the paths of a textile, all in one surface as yet, their heights at crossings, and finds the crossings.
-/// @param rule    of who is above
-/// @param height  unit of its heights [length], > 0
-/// @throws std::invalid_argument where the crossings of the raised paths are not those of the rule
-inline void interlace(Textile& textile, const HeightRule& rule, double height) {
-    core::require_positive("interlace.height", height);
+namespace detail {
+using Heights = std::vector<std::pair<double, double>>;  ///< parameter of a path in [0, 1], and height there [length]
+
+/// Gives the paths of a textile, all in one surface as yet, their heights at crossings.
+/// @param elsewhere  of each path: heights that it has farther than `clear` [length] from its crossings; or none
+/// @returns the crossings of the rule
+inline std::vector<Crossing> raise(Textile& textile, const HeightRule& rule, double height,
+                                   const std::vector<Heights>& elsewhere = {}, double clear = 0.0) {
     const std::vector<Line> lines = lines_of(textile);
-    const detail::Plan plan(lines, textile.view);
-    std::vector<std::vector<std::pair<double, double>>> knots(textile.paths.size());
+    const Plan plan(lines, textile.view);
+    std::vector<Heights> knots(textile.paths.size());
     std::vector<Crossing> asked;
-    for (const detail::Meeting& m : detail::meetings(plan)) {
+    for (const Meeting& m : meetings(plan)) {
         const Line &a = lines[core::at(m.line_a)], &b = lines[core::at(m.line_b)];
         const std::size_t i = core::at(m.piece_a), j = core::at(m.piece_b);
-        const detail::MeetingPlace place = detail::place_of(m, lines, plan, textile.view);
+        const MeetingPlace place = place_of(m, lines, plan, textile.view);
         PlanCrossing crossing{m.line_a,
                               m.line_b,
                               0.0,
@@ -124,8 +126,26 @@ inline void interlace(Textile& textile, const HeightRule& rule, double height) {
     }
     for (std::size_t p = 0; p < textile.paths.size(); ++p) {
         Path& path = textile.paths[p];
-        path.curve = detail::raised(path.curve, std::move(knots[p]), path.kind != PathKind::open, textile.view);
+        if (!elsewhere.empty()) {
+            const double far = clear / lines[p].arc.back();
+            const Heights at = knots[p];
+            for (const auto& more : elsewhere[p])
+                if (std::all_of(at.begin(), at.end(), [&](const auto& knot) { return std::abs(knot.first - more.first) > far; }))
+                    knots[p].push_back(more);
+        }
+        path.curve = raised(path.curve, std::move(knots[p]), path.kind != PathKind::open, textile.view);
     }
+    return asked;
+}
+}  // namespace detail
+
+/// Gives the paths of a textile, all in one surface as yet, their heights at crossings, and finds the crossings.
+/// @param rule    of who is above
+/// @param height  unit of its heights [length], > 0
+/// @throws std::invalid_argument where the crossings of the raised paths are not those of the rule
+inline void interlace(Textile& textile, const HeightRule& rule, double height) {
+    core::require_positive("interlace.height", height);
+    const std::vector<Crossing> asked = detail::raise(textile, rule, height);
     textile.crossings = crossings_of(textile);
     const CrossingAudit audit = audit_crossings(asked, textile.crossings);
     if (!audit.clean())

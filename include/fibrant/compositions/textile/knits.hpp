@@ -217,6 +217,8 @@ inline Textile drawn(const Tricot& knit) {
     const double w = knit.needle_spacing, c = knit.course_spacing, top = knit.loop_height,
                  h = knit.height_over_radius * half_thickness(knit.type);
     const double neck = 0.14 * w, head = 0.30 * w;
+    std::vector<scene::Curve> sketched;
+    std::vector<Heights> heights;  // of its points
     for (Index m = 0; m < knit.needles; ++m) {
         Path path;
         path.name = "end " + std::to_string(m), path.family = m % 2, path.straight = false;
@@ -230,15 +232,15 @@ inline Textile drawn(const Tricot& knit) {
             points.emplace_back(x - way * neck, y, h);
             points.emplace_back(x - way * neck, y + 0.30 * top, -h);
             points.emplace_back(x - way * head, y + 0.72 * top, -h);
-            points.emplace_back(x - way * 0.6 * head, y + 0.95 * top, h);
+            points.emplace_back(x - way * 0.68 * head, y + 0.95 * top, h);
             heads.push_back(points.size());
             points.emplace_back(x, y + top, h);
-            points.emplace_back(x + way * 0.6 * head, y + 0.95 * top, h);
+            points.emplace_back(x + way * 0.68 * head, y + 0.95 * top, h);
             points.emplace_back(x + way * head, y + 0.72 * top, -h);
             points.emplace_back(x + way * neck, y + 0.30 * top, -h);
             points.emplace_back(x + way * neck, y, h);
             if (k + 1 == knit.courses) {
-                points.emplace_back(x + way * (neck + 0.5 * w), y - 0.2 * c, h);
+                points.emplace_back(x + way * (neck + 0.4 * w), y - 0.2 * c, h);
                 continue;
             }
             // Round the foot, then well above the head of its own yarn's loop on the next needle: an underlap that sags lies on
@@ -249,9 +251,24 @@ inline Textile drawn(const Tricot& knit) {
         }
         const Line line = line_of(points);
         path.guides.push_back({line.arc[heads.back()] / line.arc.back()});
-        path.curve = scene::curve_through(std::move(points));
+        heights.emplace_back();
+        for (std::size_t k = 0; k < points.size(); ++k) heights.back().emplace_back(line.arc[k] / line.arc.back(), points[k].z());
+        sketched.push_back(scene::curve_through(std::move(points)));
+        path.curve = [sketch = sketched.back()](double t) {
+            Vec3 place = sketch(t);
+            place.z() = 0.0;
+            return place;
+        };
         textile.paths.push_back(std::move(path));
     }
+    // The points say who is above. Yarns lie level where they cross, for what crosses is as broad as it is thick.
+    raise(
+        textile,
+        [&](const PlanCrossing& crossing) {
+            const auto height = [&](Index path, double at) { return sketched[core::at(path)](at).z(); };
+            return one_above(height(crossing.first, crossing.at_first) > height(crossing.second, crossing.at_second));
+        },
+        h, heights, 6.0 * h);
     textile.crossings = crossings_of(textile);
     return textile;
 }

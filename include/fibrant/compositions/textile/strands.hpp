@@ -252,12 +252,20 @@ inline Textile drawn(const Net& given) {
 
 /// Yarn k lies at x = k p + (p + o) / 2 cos(2 pi y / P + pi k): neighbours cross twice at each of their turns, first the one
 /// above, then the other.
+/// @throws std::invalid_argument naming Net.periods where two neighbours have no turn in common
 inline Textile net(const Net& given) {
     const double turn = half_width(given.type) / 0.95,
                  a = 0.5 * (given.spacing + given.reach());  // radius at a turn: P^2 / 4 pi^2 a
-    return laid(given, &Net::period, "Net.period", 2.0 * std::numbers::pi * std::sqrt(a * turn),
-                {{"spacing", given.spacing}, {"overlap", given.overlap}}, given.type,
-                [](const Net& one) { return detail::drawn(one); });
+    Textile textile = laid(given, &Net::period, "Net.period", 2.0 * std::numbers::pi * std::sqrt(a * turn),
+                           {{"spacing", given.spacing}, {"overlap", given.overlap}}, given.type,
+                           [](const Net& one) { return detail::drawn(one); });
+    std::vector<Index> crossings(core::at(given.yarns), 0);  // of each yarn with the next one
+    for (const Crossing& crossing : textile.crossings) ++crossings[core::at(std::min(crossing.above, crossing.below))];
+    for (Index k = 0; k + 1 < given.yarns; ++k)
+        if (crossings[core::at(k)] < 2)
+            core::refuse("Net.periods", core::text(given.periods),
+                         ">= 1, for " + textile.label(k) + " and " + textile.label(k + 1) + " to hook into each other");
+    return textile;
 }
 
 }  // namespace fibrant::compositions::textile

@@ -3,9 +3,13 @@
 /// @file Lines of the fibres of each yarn, and whether they cross as their yarns do where they are drawn.
 
 #include <fibrant/compositions/textile/crossings.hpp>
+#include <fibrant/proximity/grid_search.hpp>
+#include <fibrant/proximity/segment_distance.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -110,6 +114,40 @@ inline bool fibres_cross_rightly(const Textile& textile) {
     std::vector<std::vector<scene::Curve>> fibres;
     for (Index p = 0; p < core::count(textile.paths); ++p) fibres.push_back(fibre_curves(textile, p));
     return FibreCrossings(textile, fibres).right();
+}
+
+/// How deep fibres of different yarns lie in each other where they are drawn, at most, over the radius of the thinner one [1]; 0
+/// where none do. Images of what repeats are not looked at.
+inline double deepest_start(const Textile& textile) {
+    std::vector<std::vector<Vec3>> points;
+    std::vector<proximity::Centreline> lines;
+    std::vector<std::size_t> line_of_piece, first;
+    for (Index p = 0; p < core::count(textile.paths); ++p) {
+        const double radius = textile.type_of(p).radius, length = scene::length_of(textile.paths[core::at(p)].curve, 128);
+        const auto pieces = std::max<Index>(64, static_cast<Index>(length / radius));
+        for (const scene::Curve& curve : fibre_curves(textile, p)) {
+            first.push_back(line_of_piece.size());
+            line_of_piece.insert(line_of_piece.end(), core::at(pieces), points.size());
+            points.emplace_back();
+            for (Index k = 0; k <= pieces; ++k)
+                points.back().push_back(curve(static_cast<double>(k) / static_cast<double>(pieces)));
+            lines.push_back({.points = {}, .radius = radius, .family = p});
+        }
+    }
+    for (std::size_t f = 0; f < lines.size(); ++f) lines[f].points = points[f];
+    double deepest = 0.0;
+    for (const proximity::SegmentPair& pair : proximity::GridSearch{}.pairs(lines, 0.0)) {
+        const auto piece = [&](std::int32_t number) {
+            const std::size_t f = line_of_piece[core::at(number)], k = core::at(number) - first[f];
+            return std::array{points[f][k], Vec3(points[f][k + 1] - points[f][k])};
+        };
+        const auto [a, along_a] = piece(pair.i);
+        const auto [b, along_b] = piece(pair.j);
+        const double one = lines[line_of_piece[core::at(pair.i)]].radius, other = lines[line_of_piece[core::at(pair.j)]].radius,
+                     distance = std::sqrt(proximity::segment_distance(a, along_a, b, along_b).squared);
+        deepest = std::max(deepest, (one + other - distance) / std::min(one, other));
+    }
+    return deepest;
 }
 
 }  // namespace fibrant::compositions::textile::detail
