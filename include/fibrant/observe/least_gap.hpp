@@ -208,8 +208,10 @@ private:
 /// Candidates whose lower bound exceeds the best gap so far are passed over. Never quadratic: the reach grows from zero until a
 /// pair is met.
 /// @param own_turns  counted: a fibre against itself, where two places of it beyond that arc are closer than those beside them
+/// @param furthest   gap beyond which pairs are not looked for, >= 0 [length]: where none is closer the answer may be infinite
 template <proximity::ProximitySearch Search>
-LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns = OwnTurns::left_out) {
+LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns = OwnTurns::left_out,
+                   double furthest = std::numeric_limits<double>::infinity()) {
     detail::SurfacePairs<Search> surfaces(snapshot, std::move(search), own_turns);
     LeastGap least;
     double best_reach = 0.0;
@@ -231,7 +233,7 @@ LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns =
                 if (found[k].gap < least.gap && surfaces.counts(candidates[start + k], found[k]))
                     least = surfaces.place(candidates[start + k], found[k]);
         }
-        if (reach > 2.0 * surfaces.extent()) break;  // a single fibre
+        if (reach > 2.0 * surfaces.extent() || reach >= furthest) break;  // a single fibre, or all that was asked for
     }
     return least;
 }
