@@ -146,7 +146,7 @@ TEST_CASE(
         scene::FibreSpecification half;
         half.section = scene::circular(r), half.material = {1e4, 0.3}, half.elements = 20;
         half.curve = [=](double t) { return Vec3(-ring * std::cos(pi * t), 0.0, -ring * std::sin(pi * t)); };
-        half.director = Vec3::UnitX() + Vec3::UnitY();  // oblique to the plane
+        half.director = Vec3::UnitX() + 0.4 * Vec3::UnitY();  // oblique to the plane, by another angle than half a right one
         assembly.add(half);
         for (const double end : {0.0, 1.0}) {
             const Vec3 apart((end - 0.5) * 0.5 * ring, 0.0, 0.0);

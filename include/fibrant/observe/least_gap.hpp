@@ -241,9 +241,11 @@ LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns =
 /// Every place where the surfaces of two fibres are deeper in each other than `depth`, the deepest first: of two of the same
 /// fibres that are less than a node interval apart on both, the deeper one.
 /// @param depth  >= 0 [length]
+/// @param apart  the same for places within their node intervals, which are deepest there by themselves: two of a state that is
+///               symmetric are mirrored, and equally deep, on either side of a node [node interval], in (0, 1]
 template <proximity::ProximitySearch Search>
-std::vector<LeastGap> deep_places(const Snapshot& snapshot, Search search, double depth,
-                                  OwnTurns own_turns = OwnTurns::left_out) {
+std::vector<LeastGap> deep_places(const Snapshot& snapshot, Search search, double depth, OwnTurns own_turns = OwnTurns::left_out,
+                                  double apart = 1.0) {
     detail::SurfacePairs<Search> surfaces(snapshot, std::move(search), own_turns);
     auto candidates = surfaces.candidates(0.0);
     candidates.resize(
@@ -268,9 +270,13 @@ std::vector<LeastGap> deep_places(const Snapshot& snapshot, Search search, doubl
     std::vector<LeastGap> kept;
     for (const LeastGap& place : places) {
         bool near = false;
+        const double on_node = 1e-6;
+        const bool within =
+            std::abs(place.t - std::round(place.t)) > on_node && std::abs(place.u - std::round(place.u)) > on_node;
+        const double bound = within ? apart : 1.0;
         for (auto other = kept.rbegin();
              !near && other != kept.rend() && other->fibre_i == place.fibre_i && other->fibre_j == place.fibre_j; ++other)
-            near = std::abs(other->t - place.t) < 1.0 && std::abs(other->u - place.u) < 1.0;
+            near = std::abs(other->t - place.t) < bound && std::abs(other->u - place.u) < bound;
         if (!near) kept.push_back(place);
     }
     std::sort(kept.begin(), kept.end(), deeper);

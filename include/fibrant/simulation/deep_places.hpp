@@ -42,8 +42,9 @@ struct DeepPlaces {
 /// Looks for places that are deeper than allowed by the true gap, whatever contact elements say. Beams whose particles lie on
 /// their centreline have no surface, and no such place.
 /// @param allowed  [length], >= 0
+/// @param apart    as of `observe::deep_places`
 template <beam::BeamElement B, class Contacts>
-DeepPlaces too_deep(const beam::Mesh<B>& mesh, Contacts& contacts, const Vector& state, double allowed) {
+DeepPlaces too_deep(const beam::Mesh<B>& mesh, Contacts& contacts, const Vector& state, double allowed, double apart = 1.0) {
     DeepPlaces deep;
     const observe::Snapshot shot = detail::curves_of(mesh, state);
     for (const observe::FibreSnapshot& fibre : shot.fibres)
@@ -51,7 +52,7 @@ DeepPlaces too_deep(const beam::Mesh<B>& mesh, Contacts& contacts, const Vector&
     const auto own = contacts.parameters().detection.self_contact ? observe::OwnTurns::counted : observe::OwnTurns::left_out;
     deep.least = observe::least_gap(shot, proximity::GridSearch{}, own, 0.0);
     if (!(deep.least.gap < -allowed)) return deep;
-    for (const observe::LeastGap& place : observe::deep_places(shot, proximity::GridSearch{}, allowed, own)) {
+    for (const observe::LeastGap& place : observe::deep_places(shot, proximity::GridSearch{}, allowed, own, apart)) {
         const auto abscissa = [&](Index fibre, double t) {
             return t * static_cast<double>(mesh.fibre(fibre).elements) /
                    static_cast<double>(shot.fibres[core::at(fibre)].position.size() - 1);

@@ -39,10 +39,11 @@ solver::AttemptReport solve_kept(const beam::Mesh<B>& mesh, Contacts& contacts, 
                                  double radius, core::StageClock& clock, const Solve& solve) {
     constexpr Index most_mends = 6;  // of an increment; one or two are what it takes, or it is too long
     constexpr double better = 0.9;   // of what was deepest: else mends come to nothing
+    constexpr double apart = 0.1;    // node intervals: what is symmetric stays so
     solver::AttemptReport attempt = solve();
     double last = std::numeric_limits<double>::infinity();
     for (Index mends = 0; attempt.converged && !std::isnan(allowed); ++mends) {
-        const DeepPlaces deep = clock.time(core::Part::search, [&] { return too_deep(mesh, contacts, trial, allowed); });
+        const DeepPlaces deep = clock.time(core::Part::search, [&] { return too_deep(mesh, contacts, trial, allowed, apart); });
         attempt.use.between = std::max(0.0, -deep.least.gap) / allowed;
         if (deep.places.empty()) break;
         if (mends >= most_mends || -deep.least.gap > better * last) {
