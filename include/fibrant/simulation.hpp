@@ -9,6 +9,8 @@
 #include <fibrant/simulation/deep_places.hpp>
 #include <fibrant/simulation/energy_account.hpp>
 #include <fibrant/simulation/increment_file.hpp>
+#include <fibrant/simulation/kept_depth.hpp>
+#include <fibrant/simulation/limits.hpp>
 #include <fibrant/simulation/loading.hpp>
 #include <fibrant/simulation/mean_motion.hpp>
 #include <fibrant/simulation/model.hpp>

@@ -8,6 +8,9 @@
 
 #include <near.hpp>
 
+#include <algorithm>
+#include <vector>
+
 using namespace fibrant;
 
 namespace deep_places_test {
@@ -66,6 +69,68 @@ TEST_CASE("a run that is audited ends once no two fibres are deeper in each othe
         CHECK(seen.audit.clean());
         CHECK(seen.report.increments.size() <= 15);  // it does not take a search
     }
+}
+
+// How deep each accepted increment is, and what it says of itself.
+struct Meter {
+    const simulation::Simulator<test::Smooth>* simulator;
+    std::vector<double> over{}, told{};
+    void reported(const simulation::IncrementReport& increment) {
+        const simulation::Audit audit = simulation::audit(*simulator);
+        over.push_back(std::max(0.0, -audit.least_gap.gap / audit.allowed)), told.push_back(increment.use.between);
+    }
+    double most() const { return *std::max_element(over.begin(), over.end()); }
+};
+
+TEST_CASE("every increment that is accepted is no deeper than stated beside contact points as well, and tells how deep it is") {
+    struct Coarse {
+        double approach, angle;
+    };
+    for (const Coarse& coarse : {Coarse{2.0, 0.5 * std::numbers::pi}, Coarse{2.0, 0.7}})
+        for (const bool each : {false, true}) {
+            const scene::Assembly scene = pressed(100.0, 0.3, 2, coarse.approach, coarse.angle);
+            simulation::ModelParameters<test::Smooth> parameters;
+            parameters.normal.regularisation_depth = parameters.contact.stiffness.allowed_penetration = allowed;
+            simulation::Simulator<test::Smooth> simulator(scene, parameters);
+            Meter meter{&simulator};
+            const simulation::Report report = simulator.run({.increments = 10, .every_increment = each}, meter);
+            CAPTURE(report.reason);
+            CHECK(report.converged);
+            CHECK(report.increments.size() <= 15);
+            CHECK(report.rejected_increments == 0);  // mended, not cut
+            if (!each) {
+                CHECK(meter.most() > 1.1);
+                CHECK(report.most_use.between == 0.0);  // not measured
+                continue;
+            }
+            CHECK(meter.most() <= 1.0);
+            CHECK(meter.told == meter.over);
+            CHECK(report.most_use.between == meter.most());
+            CHECK(report.use.between == meter.over.back());
+        }
+}
+
+TEST_CASE("what a contact was told that its points miss is forgotten once its fibres have parted") {
+    simulation::ModelParameters<test::Smooth> parameters;
+    parameters.normal.regularisation_depth = parameters.contact.stiffness.allowed_penetration = allowed;
+    simulation::Simulator<test::Smooth> simulator(pressed(100.0, 0.3, 2, 2.0), parameters);
+    simulation::Loading<test::Smooth> loading;
+    loading.stages.resize(2);
+    for (const bool back : {false, true})
+        loading.stages[back ? 1 : 0].increments = 5, loading.stages[back ? 1 : 0].ramps = {{"press", back ? -0.1 : 1.0}};
+    double missed = 0.0;
+    struct Unseen {
+        const simulation::Simulator<test::Smooth>* simulator;
+        double* most;
+        void reported(const simulation::IncrementReport&) {
+            for (const contact::Zone& zone : simulator->contacts().zones()) *most = std::max(*most, zone.unseen);
+        }
+    } unseen{&simulator, &missed};
+    const simulation::Report report = simulator.run(loading, unseen);
+    CAPTURE(report.reason);
+    REQUIRE(report.converged);
+    CHECK(missed > 0.0);
+    for (const contact::Zone& zone : simulator.contacts().zones()) CHECK(zone.unseen == 0.0);
 }
 
 TEST_CASE("what is clean is left as it is, and a stricter bound is kept by stiffer contact") {

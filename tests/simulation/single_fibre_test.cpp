@@ -7,7 +7,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 
 using namespace fibrant;
 
@@ -133,6 +135,42 @@ TEST_CASE("the work of the loads is the energy stored, within the order of the t
         CHECK(fine < 1e-3);
         CHECK(coarse / middle == test::near(4.0, 0.15));
         CHECK(middle / fine == test::near(4.0, 0.08));
+    }
+}
+
+TEST_CASE(
+    "a half ring that is opened stays in its plane and symmetric, however its directors stand, if its ends keep their shape") {
+    const double r = 0.05, ring = 20.0 * r, pi = std::numbers::pi;
+    for (const bool shape : {false, true}) {
+        scene::Assembly assembly;
+        scene::FibreSpecification half;
+        half.section = scene::circular(r), half.material = {1e4, 0.3}, half.elements = 20;
+        half.curve = [=](double t) { return Vec3(-ring * std::cos(pi * t), 0.0, -ring * std::sin(pi * t)); };
+        half.director = Vec3::UnitX() + 0.4 * Vec3::UnitY();  // oblique to the plane, by another angle than half a right one
+        assembly.add(half);
+        for (const double end : {0.0, 1.0}) {
+            const Vec3 apart((end - 0.5) * 0.5 * ring, 0.0, 0.0);
+            if (shape)
+                assembly.clamp_section({0, end}, apart);
+            else
+                assembly.clamp({0, end}, apart);
+        }
+        Simulator simulator(assembly, test::tight_parameters<Smooth>(r));
+        const simulation::Report report = simulator.run(Loading{.increments = 5});
+        CAPTURE(report.reason);
+        REQUIRE(report.converged);
+        double aside = 0.0, uneven = 0.0;
+        for (Index k = 0; k <= 2 * half.elements; ++k) {
+            const double t = static_cast<double>(k) / static_cast<double>(2 * half.elements);
+            const Vec3 one = simulator.value({0, t}), other = simulator.value({0, 1.0 - t});
+            aside = std::max(aside, std::abs(one.y()) / r);
+            uneven = std::max(uneven, Vec3(one.x() + other.x(), 0.0, one.z() - other.z()).norm() / r);
+        }
+        std::printf("half ring, %s: %.1e radii out of its plane, uneven by %.1e radii\n", shape ? "held in shape" : "clamped",
+                    aside, uneven);
+        if (shape) CHECK(aside < 1e-6);
+        if (shape) CHECK(uneven < 1e-6);
+        if (!shape) CHECK(aside > 1e-4);  // what a plain clamp does
     }
 }
 

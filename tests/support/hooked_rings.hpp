@@ -4,6 +4,8 @@
 
 #include <contact/contact_model.hpp>
 
+#include <fibrant/simulation/audit.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,6 +23,7 @@ struct Hooks {
     double radius = 0.05, ring_over_radius = 20.0;  // mm
     double lower_radius = 1.0;                      ///< of the second ring's fibre, over that of the first
     contact::Places places = contact::Places::as_needed;
+    bool every_increment = true;  ///< is held to the true gap
 };
 
 /// How a pair of hooks came out of its run.
@@ -32,6 +35,18 @@ struct Hooked {
     double closest = 0.0;    ///< least distance of the centrelines, by brute force [radius]
     double asymmetry = 0.0;  ///< of both halves of each, unless they are pulled at a slant [radius]
     double bend = 0.0;       ///< radius over the radius of curvature at the tip [1]
+    double deepest = 0.0;    ///< true depth of any accepted increment, over what is stated [1]
+};
+
+/// Measures the true gap after each increment.
+template <simulation::Model M>
+struct DepthMeter {
+    const simulation::Simulator<M>* simulator;
+    double deepest = 0.0;
+    void reported(const simulation::IncrementReport&) {
+        const simulation::Audit audit = simulation::audit(*simulator);
+        deepest = std::max(deepest, -audit.least_gap.gap / audit.allowed);
+    }
 };
 
 /// The first ring opens upwards and is pulled up; the second hangs in it and is pulled down. Their middles are free.
@@ -66,7 +81,9 @@ Hooked pull_hooks(const Hooks& hooks) {
     parameters.contact.places = hooks.places;
     simulation::Simulator<M> simulator(assembly, parameters);
     Hooked out;
-    out.report = simulator.run({.increments = hooks.increments});
+    DepthMeter<M> meter{&simulator};
+    out.report = simulator.run({.increments = hooks.increments, .every_increment = hooks.every_increment}, meter);
+    out.deepest = meter.deepest;
     const auto& mesh = simulator.mesh();
     const Vector& state = simulator.state();
     std::vector<Vec3> points[2];

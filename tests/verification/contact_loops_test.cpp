@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <cstdio>
+#include <string>
 
 using namespace fibrant;
 
@@ -24,6 +25,7 @@ void check_held(const Hooked& hooked, const char* name, Index given_up = 1, doub
     CHECK(hooked.report.rejected_increments <= given_up);  // with places that are renewed: from there they are followed
     CHECK(hooked.crossing > 0.75 * touching);              // still in each other, sections flattened
     CHECK(hooked.closest > 0.75 * touching);
+    CHECK(hooked.deepest <= 1.0);  // of any increment, by the true gap
 }
 
 TEST_CASE("hooks without friction hold and stay symmetric, and what pulls them does not depend on the increments") {
@@ -89,6 +91,22 @@ TEST_CASE("hooks at a slant that are pulled by most of their radius hold, whatev
     check_held(few, "far", 2), check_held(many, "far, twice as many", 2);
     CHECK(std::abs(many.force - few.force) < 0.01 * many.force);
     CHECK(many.asymmetry < 1e-6);
+}
+
+TEST_CASE("hooks that are drawn so tight that contact points miss how deep they are come no further than they may") {
+    // At the tips the radius of curvature comes down to the diameter.
+    for (const bool each : {false, true}) {
+        const Hooked hooked = test::pull_hooks<test::Rough>(
+            {.elements = 40, .increments = 20, .friction = 0.5, .pull = 1.0, .every_increment = each});
+        std::printf("tight: %td increments, deepest %.2f of what is stated; %s\n", core::count(hooked.report.increments),
+                    hooked.deepest, hooked.report.reason.c_str());
+        CAPTURE(hooked.report.reason);
+        if (!each) CHECK(hooked.deepest > 5.0);  // and was accepted
+        if (!each) continue;
+        CHECK(hooked.deepest <= 1.0);
+        CHECK(hooked.report.increments.size() > 15);
+        if (!hooked.report.converged) CHECK(hooked.report.reason.find("radii deep in each other at (") != std::string::npos);
+    }
 }
 
 TEST_CASE("hooks that are pulled at a slant hold where the valley between them turns, in few iterations") {

@@ -272,6 +272,7 @@ public:
             }
             zone.stiffness = adapted_stiffness(parameters_.stiffness, normal_, zone.stiffness, zone.reference, penetration,
                                                zone.penetration_factor);
+            if (zone.deepest == 0.0) zone.unseen = 0.0;
         }
         accepted_zones_ = zones_;
     }

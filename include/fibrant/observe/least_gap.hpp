@@ -162,8 +162,13 @@ public:
         const double widest =
             wide_[core::at(candidate.i)][core::at(candidate.p)] + wide_[core::at(candidate.j)][core::at(candidate.q)];
         if (distance - widest > most) return SurfaceGap{};
-        if (round_[core::at(candidate.i)] == 0 || round_[core::at(candidate.j)] == 0)
-            return PairedPieces(i, j, static_cast<double>(candidate.p), static_cast<double>(candidate.q)).closest(t, u);
+        const bool round = round_[core::at(candidate.i)] != 0 && round_[core::at(candidate.j)] != 0;
+        // Any one direction bounds the gap from below. This spares most pairs of fibres side by side the search.
+        if (!round && distance > 0.0) {
+            const Vec3 across = apart / distance;
+            if (-furthest_along(i, candidate.p, across) - furthest_along(j, candidate.q, -across) > most) return SurfaceGap{};
+        }
+        if (!round) return PairedPieces(i, j, static_cast<double>(candidate.p), static_cast<double>(candidate.q)).closest(t, u);
         const Vec3 direction = distance > 0.0 ? Vec3(apart / distance) : Vec3(Vec3::UnitZ());
         return SurfaceGap{distance - i.extent(t, direction) - j.extent(u, direction), t, u, direction};
     }
@@ -189,6 +194,14 @@ public:
     }
 
 private:
+    /// How far the surface of a node interval gets along a unit direction, at most: of a curve through three of its sections,
+    /// with four times what it may be beyond them [length].
+    static double furthest_along(const FibreSurface& surface, Index piece, const Vec3& direction) noexcept {
+        const auto at = [&](double t) { return surface.curve().position(t).dot(direction) + surface.extent(t, direction); };
+        const double t = static_cast<double>(piece), first = at(t), middle = at(t + 0.5), last = at(t + 1.0);
+        return std::max({first, middle, last}) + 0.5 * std::abs(first - 2.0 * middle + last);
+    }
+
     const Snapshot* snapshot_;
     Search search_;
     std::vector<proximity::Centreline> lines_;
@@ -208,8 +221,10 @@ private:
 /// Candidates whose lower bound exceeds the best gap so far are passed over. Never quadratic: the reach grows from zero until a
 /// pair is met.
 /// @param own_turns  counted: a fibre against itself, where two places of it beyond that arc are closer than those beside them
+/// @param furthest   gap beyond which pairs are not looked for, >= 0 [length]: where none is closer the answer may be infinite
 template <proximity::ProximitySearch Search>
-LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns = OwnTurns::left_out) {
+LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns = OwnTurns::left_out,
+                   double furthest = std::numeric_limits<double>::infinity()) {
     detail::SurfacePairs<Search> surfaces(snapshot, std::move(search), own_turns);
     LeastGap least;
     double best_reach = 0.0;
@@ -231,7 +246,7 @@ LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns =
                 if (found[k].gap < least.gap && surfaces.counts(candidates[start + k], found[k]))
                     least = surfaces.place(candidates[start + k], found[k]);
         }
-        if (reach > 2.0 * surfaces.extent()) break;  // a single fibre
+        if (reach > 2.0 * surfaces.extent() || reach >= furthest) break;  // a single fibre, or all that was asked for
     }
     return least;
 }
@@ -239,9 +254,11 @@ LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns =
 /// Every place where the surfaces of two fibres are deeper in each other than `depth`, the deepest first: of two of the same
 /// fibres that are less than a node interval apart on both, the deeper one.
 /// @param depth  >= 0 [length]
+/// @param apart  the same for places within their node intervals, which are deepest there by themselves: two of a state that is
+///               symmetric are mirrored, and equally deep, on either side of a node [node interval], in (0, 1]
 template <proximity::ProximitySearch Search>
-std::vector<LeastGap> deep_places(const Snapshot& snapshot, Search search, double depth,
-                                  OwnTurns own_turns = OwnTurns::left_out) {
+std::vector<LeastGap> deep_places(const Snapshot& snapshot, Search search, double depth, OwnTurns own_turns = OwnTurns::left_out,
+                                  double apart = 1.0) {
     detail::SurfacePairs<Search> surfaces(snapshot, std::move(search), own_turns);
     auto candidates = surfaces.candidates(0.0);
     candidates.resize(
@@ -266,9 +283,13 @@ std::vector<LeastGap> deep_places(const Snapshot& snapshot, Search search, doubl
     std::vector<LeastGap> kept;
     for (const LeastGap& place : places) {
         bool near = false;
+        const double on_node = 1e-6;
+        const bool within =
+            std::abs(place.t - std::round(place.t)) > on_node && std::abs(place.u - std::round(place.u)) > on_node;
+        const double bound = within ? apart : 1.0;
         for (auto other = kept.rbegin();
              !near && other != kept.rend() && other->fibre_i == place.fibre_i && other->fibre_j == place.fibre_j; ++other)
-            near = std::abs(other->t - place.t) < 1.0 && std::abs(other->u - place.u) < 1.0;
+            near = std::abs(other->t - place.t) < bound && std::abs(other->u - place.u) < bound;
         if (!near) kept.push_back(place);
     }
     std::sort(kept.begin(), kept.end(), deeper);

@@ -192,6 +192,25 @@ public:
         hold(condition);
     }
 
+    /// A clamp that holds the shape of the section at rest as well. `clamp` leaves the lengths of both directors free and the
+    /// angle between them not, so that what it lets a section do depends on how they stand in it: a plane ring whose directors
+    /// are oblique to its plane leaves it a little. This one does not. Sections of rigid shape are held as by `clamp`.
+    void clamp_section(Station at, const Vec3& displacement = Vec3::Zero(), const Vec3& rotation = Vec3::Zero(),
+                       const Vec3& pivot = Vec3::Zero(), const std::string& channel = "motion") {
+        Hold condition;
+        condition.at = at;
+        condition.channel = channel;
+        condition.pivot = pivot;
+        condition.rotation = by_amplitude(rotation);
+        condition.displacement = displacement;
+        hold(condition);
+        condition.displacement = Vec3::Zero(), condition.pivot = Vec3::Zero();
+        for (const NodeVector director : {NodeVector::director_1, NodeVector::director_2}) {
+            condition.vector = director;
+            hold(condition);
+        }
+    }
+
     /// Holds the rotation of a section about the fibre's own axis. Both off-axis components are held: one alone would let
     /// the torque enter through one director.
     void hold_axial_rotation(Station at) {

@@ -122,6 +122,9 @@ struct Loading {
         false;  ///< a run that has ended resumes before its end: what is asked of contacts needs an increment
     /// The last stage is held to `Stage::deepest`, where it names none to `stated_depth`, unless penalties stay what they are.
     bool audited = true;
+    /// Of a run that is audited, increments of stages that are not loose are held to `stated_depth` as well, by the true gap.
+    /// False: the end alone, and increments are as deep between contact points as these do not see.
+    bool every_increment = true;
     double deepest_over_radius = core::unset;  ///< of the thinnest fibre: in the place of both [1], > 0
     /// What the run is of, "name = value" line by line: kept in the file. A run does not resume from a file in which one of these
     /// names has another value.

@@ -4,7 +4,8 @@
 
 #include <fibrant/core/stage_clock.hpp>
 #include <fibrant/simulation/acceptance.hpp>
-#include <fibrant/simulation/deep_places.hpp>
+#include <fibrant/simulation/kept_depth.hpp>
+#include <fibrant/simulation/limits.hpp>
 #include <fibrant/simulation/run_file.hpp>
 #include <fibrant/simulation/scene_checks.hpp>
 #include <fibrant/simulation/section_laws.hpp>
@@ -129,14 +130,8 @@ private:
                 return false;
             }
             const double progress = laws_.again() ? position_.progress : position_.next(stage);
-            if constexpr (law::GapLimiting<typename M::Normal>) {
-                const double limit =
-                    position_.limits_gap(stage) ? *stage.gap_limit * position_.fraction : std::numeric_limits<double>::infinity();
-                contacts_.normal_law() = contacts_.normal_law().with_limit(limit);
-            }
             const double stride = position_.stride();
-            const double stated = parameters_.contact.stiffness.allowed_penetration;
-            contacts_.allow_penetration(stride * stage.allowed_penetration.value_or(stated));
+            set_limits(contacts_, stage, position_, parameters_.contact.stiffness.allowed_penetration);
             const std::vector<double> amplitudes = amplitudes_at(stage, progress, position_, channels_, amplitudes_),
                                       change = difference(amplitudes, amplitudes_);
             if (const std::string reason = turned_too_far(mesh_, equilibrium_, amplitudes_, amplitudes); !reason.empty()) {
@@ -161,17 +156,21 @@ private:
             // A limited gap moves fibres by about the limit: the search looks so far.
             const double shown = stage.forced_orders ? stride * stage.gap_limit.value_or(0.0) : 0.0;
             const double ahead = std::max(position_.displacement, shown);
-            solver::AttemptReport attempt = loops.solve(trial, state_, ahead, stage.forced_orders, position_.looseness(stage),
-                                                        stride * stage.largest_displacement);
+            const auto solve = [&] {
+                solver::AttemptReport solved = loops.solve(trial, state_, ahead, stage.forced_orders, position_.looseness(stage),
+                                                           stride * stage.largest_displacement);
+                if (solved.converged)
+                    solved.refuse(clock_.time(core::Part::search, [&] {
+                        return refusal(mesh_, beam_, passage_, contacts_, state_, trial, stage.forced_orders, touching);
+                    }));
+                return solved;
+            };
+            const double deepest = touching ? deepest_in_increment(loading, stage, position_, contacts_, radius_) : core::unset;
+            solver::AttemptReport attempt = solve_kept(mesh_, contacts_, trial, deepest, radius_, clock_, solve);
             increment.counts += attempt.counts;
             const Index most = std::max<Index>(1, attempt.counts.normal_passes) * iteration.newton_limit;
             effort = static_cast<double>(attempt.counts.newton) / static_cast<double>(most);
-            if (attempt.converged) {
-                attempt.refuse(clock_.time(core::Part::search, [&] {
-                    return refusal(mesh_, beam_, passage_, contacts_, state_, trial, stage.forced_orders, touching);
-                }));
-                if (attempt.converged) attempt.refuse(laws_.refusal(mesh_, beam_, trial));
-            }
+            if (attempt.converged) attempt.refuse(laws_.refusal(mesh_, beam_, trial));
             // What nothing foretells would be held back: the first tells.
             if (attempt.converged && stage.damping_carried && stage.damping > 0.0 && !rehearsed && !motion_.foretells(change)) {
                 motion_.learn(mesh_, state_, trial, change);

@@ -14,11 +14,16 @@ struct ToleranceUse {
     double travel = 0.0;       ///< displacement of the last contact pass, over contact_tolerance
     double penetration = 0.0;  ///< deepest contact over the penetration that is allowed to its pair of groups in the stage
 
-    double greatest() const noexcept { return std::max({residual, turn, travel, penetration}); }
+    /// Deepest place of two fibres by the true gap, between contact points as well, over what is allowed there; 0 where nothing
+    /// touches, and where it was not measured: in stages that are loose by their own word.
+    double between = 0.0;
+
+    double greatest() const noexcept { return std::max({residual, turn, travel, penetration, between}); }
     /// Keeps the greater of each.
     void add(const ToleranceUse& other) noexcept {
         residual = std::max(residual, other.residual), turn = std::max(turn, other.turn);
         travel = std::max(travel, other.travel), penetration = std::max(penetration, other.penetration);
+        between = std::max(between, other.between);
     }
 };
 
