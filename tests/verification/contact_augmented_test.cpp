@@ -19,8 +19,6 @@ const double r = 0.0201;
 
 struct Held : Smooth {
     using Normal = law::Augmented<law::RegularisedPenalty>;
-};
-struct HeldTool : Held {
     using Tools = contact::RigidTools;
 };
 
@@ -100,9 +98,9 @@ TEST_CASE("multipliers hold a fibre on a plate without a penetration") {
     assembly.add(plate);
     for (const double end : {0.0, 1.0}) assembly.hold_position({0, end});
     assembly.hold_axial_rotation({0, 0.0});
-    auto soft = parameters<HeldTool>(0.5, 1e-6 * r);
-    simulation::Simulator<HeldTool> simulator(assembly, soft);
-    const simulation::Report report = simulator.run(test::stage<HeldTool>({{"tools", 1.0}}, 2));
+    auto soft = parameters<Held>(0.5, 1e-6 * r);
+    simulation::Simulator<Held> simulator(assembly, soft);
+    const simulation::Report report = simulator.run(test::stage<Held>({{"tools", 1.0}}, 2));
     REQUIRE_MESSAGE(report.converged, report.reason);
     std::printf("plate: %.6f N, penetration %.1e r\n", simulator.contacts().tools().reaction(0).force.z(),
                 report.contact.greatest_penetration / r);

@@ -3,10 +3,9 @@
 // and sliding contact at the surface, for the forces at the two ends as they are measured.
 #include <contact/contact_model.hpp>
 #include <verification/capstan_reference.hpp>
+#include <verification/elements.hpp>
 
 #include <fibrant/beam/on_centreline.hpp>
-#include <fibrant/beam/rigid_section_rod.hpp>
-#include <fibrant/contact/contacts_with_tools.hpp>
 
 #include <doctest/doctest.h>
 
@@ -56,9 +55,7 @@ struct Drawn {
 
 using Tooled = test::RoughPressing;
 /// Sections do not give way, as those of the reference.
-struct RigidTooled : Tooled {
-    using Beam = beam::RigidSectionRod;
-};
+using RigidTooled = test::RoughRods;
 /// Friction without its lever.
 struct CentreTooled : Tooled {
     using Beam = beam::OnCentreline<beam::DirectorBeam<3>, beam::FrictionLever::dropped>;

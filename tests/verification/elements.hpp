@@ -2,7 +2,10 @@
 #pragma once
 /// @file Reference problems of one rod, run through the simulator with any beam element.
 
+#include <fibrant/beam/rigid_section_rod.hpp>
+#include <fibrant/contact/contacts_with_tools.hpp>
 #include <fibrant/law/frictionless.hpp>
+#include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/simulation/simulator.hpp>
@@ -23,6 +26,11 @@ struct PlainModel {
     using Normal = law::RegularisedPenalty;
     using Friction = law::Frictionless;
     using Solver = solver::SparseCholesky;
+};
+/// Rods of rigid sections among tools, with friction.
+struct RoughRods : PlainModel<beam::RigidSectionRod> {
+    using Friction = law::RegularisedCoulomb;
+    using Tools = contact::RigidTools;
 };
 
 template <simulation::Model M>

@@ -4,9 +4,6 @@
 #include <verification/capstan_scene.hpp>
 #include <verification/elements.hpp>
 
-#include <fibrant/beam/rigid_section_rod.hpp>
-#include <fibrant/contact/contacts_with_tools.hpp>
-#include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/solver/fibre_block_pcg.hpp>
 #include <fibrant/solver/two_level_pcg.hpp>
 
@@ -18,10 +15,7 @@ using namespace fibrant;
 
 namespace rod_test {
 
-struct Model : test::PlainModel<beam::RigidSectionRod> {
-    using Friction = law::RegularisedCoulomb;
-    using Tools = contact::RigidTools;
-};
+using Model = test::RoughRods;
 const double pi = std::numbers::pi;
 TEST_CASE("a cantilever of rods converges with the second order at any slenderness") {
     const struct {

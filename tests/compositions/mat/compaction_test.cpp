@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A small mat between plates: what both plates feel, where fibres are, and what became of the work.
-#include <fibrant/beam/director_beam.hpp>
+#include <compositions/bundle_model.hpp>
 #include <fibrant/compositions/mat/compaction.hpp>
-#include <fibrant/contact/contacts_with_tools.hpp>
-#include <fibrant/law/regularised_coulomb.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/float_block_cholesky.hpp>
 
 #include <near.hpp>
 
@@ -23,14 +18,7 @@ namespace compaction_test {
 
 namespace mat = compositions::mat;
 
-struct Mat {
-    using Beam = beam::DirectorBeam<>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::FloatBlockCholesky;
-    using Tools = contact::RigidTools;
-};
+using Mat = test::Bundle;
 
 TEST_CASE("a mat that is pressed carries more and more, feels both plates alike, and stays in its box") {
     mat::MatParameters parameters{.radius = 0.02,

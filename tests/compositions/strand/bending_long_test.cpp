@@ -15,7 +15,7 @@ namespace bending_long_test {
 
 namespace strand = compositions::strand;
 
-using Rough = test::RoughStrand;
+using Rough = test::Bundle;
 
 struct Bent {
     simulation::Report report;

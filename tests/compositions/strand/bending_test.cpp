@@ -14,7 +14,7 @@ namespace bending_test {
 
 namespace strand = compositions::strand;
 
-using Rough = test::RoughStrand;
+using Rough = test::Bundle;
 
 constexpr double r = 1.0, mu = 0.1, lay_angle_deg = 17.0;
 

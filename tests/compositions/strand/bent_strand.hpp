@@ -1,26 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Strands that are bent in tests: their model, and the work of their moments.
+/// @file Strands that are bent in tests: the work of their moments.
 
-#include <fibrant/beam/director_beam.hpp>
+#include <compositions/bundle_model.hpp>
 #include <fibrant/compositions/strand/bending.hpp>
-#include <fibrant/law/regularised_coulomb.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/float_block_cholesky.hpp>
 
 #include <vector>
 
 namespace fibrant::test {
-
-/// Friction, solved directly.
-struct RoughStrand {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::DoubleBlockCholesky;
-};
 
 /// What the moments after all increments have done, by the trapezium rule.
 inline double work_of(const std::vector<compositions::strand::BendingState>& states) {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Ropes that are drawn in tests: their model, and what they carry beside what their wires can.
+/// @file Ropes that are drawn in tests: what they carry beside what their wires can.
 
-#include <fibrant/beam/director_beam.hpp>
+#include <compositions/bundle_model.hpp>
 #include <fibrant/compositions/strand/rope.hpp>
-#include <fibrant/law/regularised_coulomb.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/float_block_cholesky.hpp>
 
 #include <doctest/doctest.h>
 
@@ -16,14 +12,6 @@
 namespace fibrant::test {
 
 namespace strand = compositions::strand;
-
-struct RopeModel {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::FloatBlockCholesky;
-};
 
 /// Three strands of 1 + 6 wires around a thin one.
 inline strand::RopeParameters three_strands(double wire_lay, double rope_lay, double length, Index elements) {
@@ -42,17 +30,17 @@ struct Drawn {
     double force = 0.0, torque = 0.0, bound_torque = 0.0, unbalance = 0.0;
 };
 inline Drawn draw(const strand::RopeParameters& rope, double mu) {
-    simulation::ModelParameters<RopeModel> model;
+    simulation::ModelParameters<Bundle> model;
     model.normal.regularisation_depth = 5e-4;
     model.friction = {.friction_coefficient = mu, .reversible_displacement = 0.02};
     model.contact.stiffness.allowed_penetration = 1e-3;
     model.iteration.newton_limit = 30;
     model.iteration.step_tolerance = model.iteration.residual_tolerance = 1e-5;
-    simulation::Simulator<RopeModel> simulator(strand::straight_rope(rope), model);
+    simulation::Simulator<Bundle> simulator(strand::straight_rope(rope), model);
     strand::StrandState state[2];
     simulation::Report report;
     for (int k = 0; k < 2; ++k) {
-        simulation::Loading<RopeModel> loading;
+        simulation::Loading<Bundle> loading;
         loading.stages.emplace_back();
         loading.stages.back().ramps = {{strand::stretch, 0.003 * (k + 1)}, {strand::twist, 0.0}};
         loading.stages.back().increments = k == 0 ? 2 : 1;
