@@ -110,6 +110,11 @@ inline constexpr double reach_used = 0.5;  ///< part of a search's reach after w
 inline constexpr Index settling = 3;       ///< iterations in which residuals may rise: the mixed form starts with large ones
 inline constexpr Index growing_mixed = 2,
                        growing_plain = 3;  ///< rises beyond the worst of those: fall back to the plain form, give up
+// Springs to where a step begins, on all places, once one was cut to less than `cut_hard` (Levenberg 1944, Marquardt 1963): what
+// hardly anything holds goes far, meets others, and would hold all else back. They are as stiff as the step was along itself, and
+// as many times stiffer as it was cut, at most `stiffest`; they grow while steps are cut, and go once they are not. By trial.
+inline constexpr double cut_hard = 0.25, stiffest = 100.0, harder = 4.0, softer = 0.25, as_none = 0.1;
+inline constexpr double nearly_strict = 10.0;  ///< over step_tolerance: such an answer is that of a step without springs [1]
 // Search along a step (regula falsi on the slope of the energy, kept away from its ends).
 inline constexpr int most_shortenings = 4;
 inline constexpr double least_shortening = 0.1, most_shortening = 0.8;
@@ -139,6 +144,7 @@ public:
         double eta = with::loosest_forcing, worst = 0.0;
         bool mixed = parameters_.mixed;
         Index growing = 0;
+        springs_ = 0.0, softest_ = std::numeric_limits<double>::infinity();
         const Forgotten learned{equilibrium.learned()};
         if constexpr (iterated) equilibrium.reset_stresses(state);
         report.residual = evaluate(state);
@@ -168,7 +174,8 @@ public:
                 state = before_ + step_;
                 report.residual = arrive(state, mixed);
             }
-            if (watched) scale *= shorten(scale * slope, state, report.residual, mixed);
+            const double held = springs_;
+            if (watched) scale *= search_along(scale * slope, state, report.residual, mixed);
             if (mixed && !iterated) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
             ++report.iterations, ++counts.newton, report.indefinite += shifted_ > 0 ? 1 : 0;
             report.step = equilibrium.greatest(step_);
@@ -184,7 +191,12 @@ public:
             eta = std::clamp(with::forcing_factor * ratio * ratio,
                              std::min(std::max(parameters_.linear_tolerance, enough), with::loosest_forcing),
                              with::loosest_forcing);
-            if (scale == 1.0 && report.step <= tolerance && report.residual.relative() <= residual_tolerance(tolerance)) {
+            // Of a step that was shortened the whole counts.
+            if (report.step <= scale * tolerance && report.residual.relative() <= residual_tolerance(tolerance)) {
+                if (held > 0.0 && tolerance <= with::nearly_strict * parameters_.step_tolerance * radius_) {
+                    springs_ = 0.0;
+                    continue;
+                }
                 report.status = NewtonStatus::converged;
                 return report;
             }
@@ -235,6 +247,21 @@ private:
         return evaluate(state);
     }
 
+    /// Shortens a step where it goes too far, and sets the springs of the next one by how much.
+    /// @param slope  of the energy along the step, at its start [force * length]
+    /// @returns the part of the step that is left
+    double search_along(double slope, Vector& state, assembly::ResidualFigures& figures, bool mixed) {
+        namespace with = newton_numbers;
+        const double square = equilibrium_->product(step_, step_), along = square > 0.0 ? -slope / square : 0.0;
+        softest_ = std::min(softest_, along);
+        const double part = shorten(slope, state, figures, mixed);
+        if (part < with::cut_hard)
+            springs_ = std::max(with::harder * springs_, std::min(1.0 / part - 1.0, with::stiffest) * along);
+        else if (part == 1.0)
+            springs_ = with::softer * springs_ > with::as_none * softest_ ? with::softer * springs_ : 0.0;
+        return part;
+    }
+
     /// Shortens a step beyond whose end the energy rises steeply: contacts that close or let go within it, one after the other,
     /// would send Newton's method to and fro for ever. With normals and bounds of friction that stand the energy is convex, and
     /// the place where it rises is found between. What contacts were beyond it goes into the next tangent.
@@ -266,7 +293,7 @@ private:
         Equilibrium& equilibrium = *equilibrium_;
         double tolerance = eta;
         for (int attempt = std::max(0, shifted_ - 1); attempt < most_shifts; ++attempt) {
-            const double shift = attempt > 1 ? std::ldexp(least_shift * stiffness_, 2 * (attempt - 2)) : 0.0;
+            const double shift = springs_ + (attempt > 1 ? std::ldexp(least_shift * stiffness_, 2 * (attempt - 2)) : 0.0);
             clock_->time(core::Part::assembly, [&] {
                 equilibrium.linearise(state, attempt > 0, shift);
                 if (contacts_->places().rehosted()) linear_->analyse(assembly::seen(equilibrium.system()));
@@ -344,6 +371,7 @@ private:
     static constexpr int most_shifts = 10;       // the last one is beyond the mean stiffness
     static constexpr double least_shift = 1e-4;  // over the mean stiffness; each one is four times the last
     int shifted_ = 0;                            // what the last tangent asked for: 0 nothing, 1 no compression, more a shift
+    double springs_ = 0.0, softest_ = 0.0;       // of the next step; that a step was along itself [force / length]
     double stiffness_ = 0.0;                     // mean, when a shift was last begun with
     Vector residual_, right_, product_, step_, prescribed_, before_;
 };
