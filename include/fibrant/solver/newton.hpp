@@ -24,10 +24,10 @@ struct IterationParameters {
     /// Slope of the energy at the end of a Newton step over that at its start, beyond which the step is cut [1], > 0. Once
     /// Newton's method has failed `most_astray` times at an increment it is `watched_overshoot` at most.
     double overshoot = std::numeric_limits<double>::infinity();
-    double largest_approach = 0.5;   ///< relative motion of a contact in one Newton step [mean radius of its two fibres], > 0
-    Index newton_limit = 15;         ///< iterations of one inner loop
-    Index normal_limit = 6;          ///< normal passes of one set of contact elements
-    Index contact_limit = 8;         ///< contact passes of an increment
+    double largest_approach = 0.5;  ///< relative motion of a contact in one Newton step [mean radius of its two fibres], > 0
+    Index newton_limit = 15;  ///< iterations of one inner loop, and as many again that springs hold (`newton_numbers::cut_hard`)
+    Index normal_limit = 6;   ///< normal passes of one set of contact elements
+    Index contact_limit = 8;  ///< contact passes of an increment
     Index multiplier_limit = 20;     ///< contact passes that change nothing but multipliers, where a law has them
     double margin = 0.2;             ///< least reach of the search beyond touching [radius], > 0
     double largest_margin = 2.0;     ///< greatest reach of the search beyond touching [radius]
@@ -143,12 +143,13 @@ public:
         namespace with = newton_numbers;
         double eta = with::loosest_forcing, worst = 0.0;
         bool mixed = parameters_.mixed;
-        Index growing = 0;
+        Index growing = 0, held_steps = 0;
         springs_ = 0.0, softest_ = std::numeric_limits<double>::infinity();
         const Forgotten learned{equilibrium.learned()};
         if constexpr (iterated) equilibrium.reset_stresses(state);
         report.residual = evaluate(state);
-        for (Index iteration = 0; iteration < parameters_.newton_limit; ++iteration) {
+        for (Index iteration = 0; iteration < parameters_.newton_limit + std::min(held_steps, parameters_.newton_limit);
+             ++iteration) {
             equilibrium.prescribed_step(state, prescribed_);
             if (!direction(state, eta, report.residual.scale, counts)) {
                 report.status = NewtonStatus::unsolvable;
@@ -175,6 +176,7 @@ public:
                 report.residual = arrive(state, mixed);
             }
             const double held = springs_;
+            held_steps += held > 0.0 ? 1 : 0;
             if (watched) scale *= search_along(scale * slope, state, report.residual, mixed);
             if (mixed && !iterated) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
             ++report.iterations, ++counts.newton, report.indefinite += shifted_ > 0 ? 1 : 0;
