@@ -176,6 +176,7 @@ TEST_CASE("what hardly anything holds and meets others on its way does not hold 
     Exact linear{&problem};
     solver::IterationParameters parameters;
     parameters.mixed = false, parameters.overshoot = 0.5, parameters.newton_limit = 2;
+    parameters.held_steps = true;
     core::StageClock clock;
     solver::Newton<WeaklyHeld, Untouched, Exact> newton(problem, contacts, linear, parameters, 1.0, clock);
     solver::IterationCounts counts;

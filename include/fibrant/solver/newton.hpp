@@ -25,9 +25,12 @@ struct IterationParameters {
     /// Newton's method has failed `most_astray` times at an increment it is `watched_overshoot` at most.
     double overshoot = std::numeric_limits<double>::infinity();
     double largest_approach = 0.5;  ///< relative motion of a contact in one Newton step [mean radius of its two fibres], > 0
-    Index newton_limit = 15;  ///< iterations of one inner loop, and as many again that springs hold (`newton_numbers::cut_hard`)
-    Index normal_limit = 6;   ///< normal passes of one set of contact elements
-    Index contact_limit = 8;  ///< contact passes of an increment
+    /// Steps that are watched and were cut hard are followed by steps with springs to their start (`newton_numbers::cut_hard`):
+    /// slack groups that meet others do not hold all else back. Paths differ: fibres that have to part hardly do so.
+    bool held_steps = false;
+    Index newton_limit = 15;         ///< iterations of one inner loop, and as many again that springs hold
+    Index normal_limit = 6;          ///< normal passes of one set of contact elements
+    Index contact_limit = 8;         ///< contact passes of an increment
     Index multiplier_limit = 20;     ///< contact passes that change nothing but multipliers, where a law has them
     double margin = 0.2;             ///< least reach of the search beyond touching [radius], > 0
     double largest_margin = 2.0;     ///< greatest reach of the search beyond touching [radius]
@@ -193,8 +196,9 @@ public:
             eta = std::clamp(with::forcing_factor * ratio * ratio,
                              std::min(std::max(parameters_.linear_tolerance, enough), with::loosest_forcing),
                              with::loosest_forcing);
-            // Of a step that was shortened the whole counts.
-            if (report.step <= scale * tolerance && report.residual.relative() <= residual_tolerance(tolerance)) {
+            // Of a step that was shortened the whole counts, where steps are held; else it is no end.
+            if (report.step <= scale * tolerance && (scale == 1.0 || parameters_.held_steps) &&
+                report.residual.relative() <= residual_tolerance(tolerance)) {
                 if (held > 0.0 && tolerance <= with::nearly_strict * parameters_.step_tolerance * radius_) {
                     springs_ = 0.0;
                     continue;
@@ -254,6 +258,7 @@ private:
     /// @returns the part of the step that is left
     double search_along(double slope, Vector& state, assembly::ResidualFigures& figures, bool mixed) {
         namespace with = newton_numbers;
+        if (!parameters_.held_steps) return shorten(slope, state, figures, mixed);
         const double square = equilibrium_->product(step_, step_), along = square > 0.0 ? -slope / square : 0.0;
         softest_ = std::min(softest_, along);
         const double part = shorten(slope, state, figures, mixed);
