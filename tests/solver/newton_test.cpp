@@ -140,11 +140,10 @@ TEST_CASE(
     const double step = x[0] - 4.0;
     CHECK(step < 0.0);
     CHECK(std::atan(x[0]) * step <= -0.5 * std::atan(4.0) * step);
-    // Of a step that was cut the whole counts: the first one would be good enough as it is left.
+    // Where any step is good enough, one that was cut is not the last.
     Vector far = Vec3(4.0, 0.0, 0.0), near = Vec3(0.1, 0.0, 0.0);
-    CHECK(std::abs(step) < 10.0);
-    CHECK(solved(far, 10.0, 50).iterations > 1);
-    CHECK(solved(near, 10.0, 50).iterations == 1);
+    CHECK(solved(far, 1e9, 50).iterations > 1);
+    CHECK(solved(near, 1e9, 50).iterations == 1);
 }
 
 /// Weak springs pull each component to 1, and each meets a wall of its own on the way, the nearest at 1e-4. The last one has no

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Twenty random scenes whose fibres are driven far at once: none passes through another one, by brute force.
+// Forty random scenes whose fibres are driven far at once: none passes through another one, by brute force.
 #include <stability/tangled_scenes.hpp>
 
 using namespace fibrant;
 
 namespace passage_random_test {
 
-TEST_CASE("twenty random scenes driven far in few increments: no accepted increment takes a fibre through another one") {
-    test::check_passages(1, 20);
+TEST_CASE("forty random scenes driven far in few increments: no accepted increment takes a fibre through another one") {
+    test::check_passages(1, 40);
 }
 
 // Two that touch along a line bend around each other until they cross: the line goes on beyond the stations that a crossing

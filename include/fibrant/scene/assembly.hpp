@@ -167,13 +167,7 @@ public:
     /// by amplitude * angle about `pivot`; with a displacement it moves.
     void clamp(Station at, const Vec3& displacement = Vec3::Zero(), const Vec3& rotation = Vec3::Zero(),
                const Vec3& pivot = Vec3::Zero(), const std::string& channel = "motion") {
-        Hold condition;
-        condition.at = at;
-        condition.channel = channel;
-        condition.pivot = pivot;
-        condition.rotation = by_amplitude(rotation);
-        condition.displacement = displacement;
-        hold(condition);
+        hold(turned_section(at, displacement, rotation, pivot, channel));
         hold_rotation(at, rotation, channel);
     }
 
@@ -197,14 +191,8 @@ public:
     /// are oblique to its plane leaves it a little. This one does not. Sections of rigid shape are held as by `clamp`.
     void clamp_section(Station at, const Vec3& displacement = Vec3::Zero(), const Vec3& rotation = Vec3::Zero(),
                        const Vec3& pivot = Vec3::Zero(), const std::string& channel = "motion") {
-        Hold condition;
-        condition.at = at;
-        condition.channel = channel;
-        condition.pivot = pivot;
-        condition.rotation = by_amplitude(rotation);
-        condition.displacement = displacement;
-        hold(condition);
-        condition.displacement = Vec3::Zero(), condition.pivot = Vec3::Zero();
+        hold(turned_section(at, displacement, rotation, pivot, channel));
+        Hold condition = turned_section(at, Vec3::Zero(), rotation, Vec3::Zero(), channel);
         for (const NodeVector director : {NodeVector::director_1, NodeVector::director_2}) {
             condition.vector = director;
             hold(condition);
@@ -406,6 +394,17 @@ private:
     static std::function<Mat3(double)> by_amplitude(const Vec3& rotation) {
         if (!(rotation.norm() > 0.0)) return {};
         return [rotation](double amplitude) { return core::turn_about(rotation.normalized(), amplitude * rotation.norm()); };
+    }
+    /// The position of a section that is moved and turned about a pivot.
+    static Hold turned_section(Station at, const Vec3& displacement, const Vec3& rotation, const Vec3& pivot,
+                               const std::string& channel) {
+        Hold condition;
+        condition.at = at;
+        condition.channel = channel;
+        condition.pivot = pivot;
+        condition.rotation = by_amplitude(rotation);
+        condition.displacement = displacement;
+        return condition;
     }
     void check(const Station& at) const {
         if (at.fibre < 0 || at.fibre >= core::count(fibres_))
