@@ -26,7 +26,8 @@ struct IterationParameters {
     double overshoot = std::numeric_limits<double>::infinity();
     double largest_approach = 0.5;  ///< relative motion of a contact in one Newton step [mean radius of its two fibres], > 0
     /// Steps that are watched and were cut hard are followed by steps with springs to their start (`newton_numbers::cut_hard`):
-    /// slack groups that meet others do not hold all else back. Paths differ: fibres that have to part hardly do so.
+    /// slack groups that meet others do not hold all else back. For a part of a run: `Stage::held_steps`. Paths differ: fibres
+    /// that have to part hardly do so.
     bool held_steps = false;
     Index newton_limit = 15;         ///< iterations of one inner loop, and as many again that springs hold
     Index normal_limit = 6;          ///< normal passes of one set of contact elements
@@ -43,8 +44,10 @@ struct IterationParameters {
     /// failed is tried again with steps that are watched.
     /// @param patience  factor on the limit of iterations
     /// @param astray    attempts at the increment in which it, or contact passes, did not settle
-    IterationParameters of_attempt(double patience, Index astray) const {
+    /// @param held      the stage's steps are held (`held_steps`)
+    IterationParameters of_attempt(double patience, Index astray, bool held = false) const {
         IterationParameters own = *this;
+        own.held_steps = held_steps || held;
         own.newton_limit = static_cast<Index>(patience * static_cast<double>(newton_limit));
         if (astray >= most_astray) own.overshoot = std::min(overshoot, watched_overshoot);
         return own;
