@@ -5,6 +5,7 @@
 #include <fibrant/assembly/equilibrium.hpp>
 #include <fibrant/assembly/system_view.hpp>
 #include <fibrant/core/stage_clock.hpp>
+#include <fibrant/solver/held_steps.hpp>
 #include <fibrant/solver/linear_solver.hpp>
 
 #include <algorithm>
@@ -25,9 +26,9 @@ struct IterationParameters {
     /// Newton's method has failed `most_astray` times at an increment it is `watched_overshoot` at most.
     double overshoot = std::numeric_limits<double>::infinity();
     double largest_approach = 0.5;  ///< relative motion of a contact in one Newton step [mean radius of its two fibres], > 0
-    /// Steps that are watched and were cut hard are followed by steps with springs to their start (`newton_numbers::cut_hard`):
-    /// slack groups that meet others do not hold all else back. For a part of a run: `Stage::held_steps`. Paths differ: fibres
-    /// that have to part hardly do so.
+    /// Steps that are watched and were cut hard are followed by steps in which springs hold the fibres for which they were cut
+    /// (`HeldSteps`): slack groups that meet others do not hold all else back. For a part of a run: `Stage::held_steps`. Paths
+    /// differ: fibres that have to part hardly do so.
     bool held_steps = false;
     Index newton_limit = 15;         ///< iterations of one inner loop, and as many again that springs hold
     Index normal_limit = 6;          ///< normal passes of one set of contact elements
@@ -115,11 +116,7 @@ inline constexpr int most_inversion_cuts = 6;
 inline constexpr double reach_used = 0.5;  ///< part of a search's reach after which it is repeated: both fibres may move
 inline constexpr Index settling = 3;       ///< iterations in which residuals may rise: the mixed form starts with large ones
 inline constexpr Index growing_mixed = 2,
-                       growing_plain = 3;  ///< rises beyond the worst of those: fall back to the plain form, give up
-// Springs to where a step begins, on all places, once one was cut to less than `cut_hard` (Levenberg 1944, Marquardt 1963): what
-// hardly anything holds goes far, meets others, and would hold all else back. They are as stiff as the step was along itself, and
-// as many times stiffer as it was cut, at most `stiffest`; they grow while steps are cut, and go once they are not. By trial.
-inline constexpr double cut_hard = 0.25, stiffest = 100.0, harder = 4.0, softer = 0.25, as_none = 0.1;
+                       growing_plain = 3;      ///< rises beyond the worst of those: fall back to the plain form, give up
 inline constexpr double nearly_strict = 10.0;  ///< over step_tolerance: such an answer is that of a step without springs [1]
 // Search along a step (regula falsi on the slope of the energy, kept away from its ends).
 inline constexpr int most_shortenings = 4;
@@ -150,7 +147,7 @@ public:
         double eta = with::loosest_forcing, worst = 0.0;
         bool mixed = parameters_.mixed;
         Index growing = 0, held_steps = 0;
-        springs_ = 0.0, softest_ = std::numeric_limits<double>::infinity();
+        held_.clear();
         const Forgotten learned{equilibrium.learned()};
         if constexpr (iterated) equilibrium.reset_stresses(state);
         report.residual = evaluate(state);
@@ -172,6 +169,7 @@ public:
             step_ *= scale;
             const assembly::ResidualFigures before = report.residual;
             before_ = state;
+            if (watched && parameters_.held_steps) held_.begin(equilibrium.system().layout(), residual_, step_);
             state += step_;
             report.residual = arrive(state, mixed);
             // Where a cell of a solid is turned inside out there are no forces.
@@ -181,8 +179,8 @@ public:
                 state = before_ + step_;
                 report.residual = arrive(state, mixed);
             }
-            const double held = springs_;
-            held_steps += held > 0.0 ? 1 : 0;
+            const bool held = held_.any();
+            held_steps += held ? 1 : 0;
             if (watched) scale *= search_along(scale * slope, state, report.residual, mixed);
             if (mixed && !iterated) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
             ++report.iterations, ++counts.newton, report.indefinite += shifted_ > 0 ? 1 : 0;
@@ -202,8 +200,8 @@ public:
             // Of a step that was shortened the whole counts, where steps are held; else it is no end.
             if (report.step <= scale * tolerance && (scale == 1.0 || parameters_.held_steps) &&
                 report.residual.relative() <= residual_tolerance(tolerance)) {
-                if (held > 0.0 && tolerance <= with::nearly_strict * parameters_.step_tolerance * radius_) {
-                    springs_ = 0.0;
+                if (held && tolerance <= with::nearly_strict * parameters_.step_tolerance * radius_) {
+                    held_.clear();
                     continue;
                 }
                 report.status = NewtonStatus::converged;
@@ -256,19 +254,14 @@ private:
         return evaluate(state);
     }
 
-    /// Shortens a step where it goes too far, and sets the springs of the next one by how much.
+    /// Shortens a step where it goes too far, and holds those for which it was cut hard in the next one.
     /// @param slope  of the energy along the step, at its start [force * length]
     /// @returns the part of the step that is left
     double search_along(double slope, Vector& state, assembly::ResidualFigures& figures, bool mixed) {
-        namespace with = newton_numbers;
         if (!parameters_.held_steps) return shorten(slope, state, figures, mixed);
-        const double square = equilibrium_->product(step_, step_), along = square > 0.0 ? -slope / square : 0.0;
-        softest_ = std::min(softest_, along);
+        held_.arrive(equilibrium_->system().layout(), residual_, step_);
         const double part = shorten(slope, state, figures, mixed);
-        if (part < with::cut_hard)
-            springs_ = std::max(with::harder * springs_, std::min(1.0 / part - 1.0, with::stiffest) * along);
-        else if (part == 1.0)
-            springs_ = with::softer * springs_ > with::as_none * softest_ ? with::softer * springs_ : 0.0;
+        held_.learn(part, parameters_.overshoot);
         return part;
     }
 
@@ -303,9 +296,9 @@ private:
         Equilibrium& equilibrium = *equilibrium_;
         double tolerance = eta;
         for (int attempt = std::max(0, shifted_ - 1); attempt < most_shifts; ++attempt) {
-            const double shift = springs_ + (attempt > 1 ? std::ldexp(least_shift * stiffness_, 2 * (attempt - 2)) : 0.0);
+            const double shift = attempt > 1 ? std::ldexp(least_shift * stiffness_, 2 * (attempt - 2)) : 0.0;
             clock_->time(core::Part::assembly, [&] {
-                equilibrium.linearise(state, attempt > 0, shift);
+                equilibrium.linearise(state, attempt > 0, shift, held_.springs());
                 if (contacts_->places().rehosted()) linear_->analyse(assembly::seen(equilibrium.system()));
                 right_ = -residual_;
                 equilibrium.add_learned(right_);
@@ -381,7 +374,7 @@ private:
     static constexpr int most_shifts = 10;       // the last one is beyond the mean stiffness
     static constexpr double least_shift = 1e-4;  // over the mean stiffness; each one is four times the last
     int shifted_ = 0;                            // what the last tangent asked for: 0 nothing, 1 no compression, more a shift
-    double springs_ = 0.0, softest_ = 0.0;       // of the next step; that a step was along itself [force / length]
+    HeldSteps held_;                             // of the next step
     double stiffness_ = 0.0;                     // mean, when a shift was last begun with
     Vector residual_, right_, product_, step_, prescribed_, before_;
 };
