@@ -41,6 +41,31 @@ public:
                contacts.elements()[core::at(k)].normal;
     }
 
+    /// To be called with contacts that balance, before their normals turn or their places move.
+    template <class Contacts>
+    void remember(const Contacts& contacts) {
+        remembered_.assign(contacts.responses().begin(), contacts.responses().end());
+    }
+    void forget() noexcept { remembered_.clear(); }
+    /// To be called once they have, with contacts that have been evaluated. Fibres that slid over each other are a little further
+    /// apart than before, and contacts that carried little are open: without them a tangent would let go what they hold. They are
+    /// taken to be as they were, for one step.
+    template <class Contacts>
+    void carry(const Contacts& contacts) {
+        const auto& now = contacts.responses();
+        if (remembered_.size() != now.size() || now.empty()) return forget();
+        learned_.assign(now.size(), {});
+        core::parallel_for(
+            core::count(now),
+            [&](Index k) {
+                Learned& one = learned_[core::at(k)];
+                one.end = remembered_[core::at(k)];
+                one.closes = one.end.slope < now[core::at(k)].slope;
+            },
+            core::light_items);
+        forget();
+    }
+
     /// To be called at the start of a step, with contacts that have been evaluated there.
     template <class Contacts>
     void begin_step(const Contacts& contacts) {
@@ -88,7 +113,8 @@ private:
         bool closes = false;
     };
     std::vector<Start> start_;
-    std::vector<Learned> learned_;  // empty where no step went too far
+    std::vector<Learned> learned_;             // empty where no step went too far
+    std::vector<ContactResponse> remembered_;  // of contacts that balanced
 };
 
 }  // namespace fibrant::contact

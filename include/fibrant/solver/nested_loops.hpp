@@ -250,7 +250,10 @@ private:
         double first = 0.0, change = std::numeric_limits<double>::infinity();
         Vector travel, last_travel;  // displacement of this pass and of the one before
         for (Index pass = 0; pass < parameters_.normal_limit; ++pass) {
-            if (pass > 0) {
+            if (pass == 0) {
+                equilibrium_->learned().forget();
+            } else {
+                equilibrium_->learned().remember(*contacts_);
                 const double turn = turn_ = clock_->time(core::Part::contact, [&] {
                     return equilibrium_->refresh(state, accepted, contacts_->refresh(state, accepted));
                 });

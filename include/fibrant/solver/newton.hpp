@@ -151,6 +151,7 @@ public:
         const Forgotten learned{equilibrium.learned()};
         if constexpr (iterated) equilibrium.reset_stresses(state);
         report.residual = evaluate(state);
+        equilibrium.learned().carry(*contacts_);
         for (Index iteration = 0; iteration < parameters_.newton_limit + std::min(held_steps, parameters_.newton_limit);
              ++iteration) {
             equilibrium.prescribed_step(state, prescribed_);
