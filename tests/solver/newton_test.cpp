@@ -146,46 +146,6 @@ TEST_CASE(
     CHECK(solved(near, 1e9, 50).iterations == 1);
 }
 
-/// Weak springs pull each component to 1, and each meets a wall of its own on the way, the nearest at 1e-4. The last one has no
-/// wall, and is pulled to 0.01 by a stiff spring.
-struct WeaklyHeld : Bounded {
-    static constexpr double weak = 1e-3, hard = 1.0, stiff = 10.0, there = 0.01;
-    static double wall(Index k, Index of) {
-        return std::pow(10.0, -4.0 * (1.0 - static_cast<double>(k) / static_cast<double>(of)));
-    }
-    void prescribed_step(const Vector& x, Vector& step) const { step = Vector::Zero(x.size()); }
-    void linearise(const Vector& x, bool, double shift) {
-        const Index last = x.size() - 1;
-        stiffness.resize(x.size());
-        for (Index k = 0; k < last; ++k) stiffness[k] = shift + weak + (x[k] > wall(k, last) ? hard : 0.0);
-        stiffness[last] = shift + stiff;
-    }
-    assembly::ResidualFigures residual(const Vector& x, Vector& r) const {
-        const Index last = x.size() - 1;
-        r.resize(x.size());
-        for (Index k = 0; k < last; ++k) r[k] = weak * (x[k] - 1.0) + hard * std::max(0.0, x[k] - wall(k, last));
-        r[last] = stiff * (x[last] - there);
-        return {r.norm(), 1.0, 0.0};
-    }
-};
-
-TEST_CASE("what hardly anything holds and meets others on its way does not hold back what is held") {
-    WeaklyHeld problem;
-    Untouched contacts;
-    Exact linear{&problem};
-    solver::IterationParameters parameters;
-    parameters.mixed = false, parameters.overshoot = 0.5, parameters.newton_limit = 2;
-    parameters.held_steps = true;
-    core::StageClock clock;
-    solver::Newton<WeaklyHeld, Untouched, Exact> newton(problem, contacts, linear, parameters, 1.0, clock);
-    solver::IterationCounts counts;
-    Vector x = Vector::Zero(301);
-    const Vector start = x;
-    newton.solve(x, 1e-4, start, std::numeric_limits<double>::infinity(), counts);
-    // The first step is cut to a four-hundredth of it. The springs after it are a hundredth of what holds the last component.
-    CHECK(x[300] == test::near(WeaklyHeld::there, 0.02));
-}
-
 /// Two wells: (x^2 - 1)^2 / 4 in each component, whose tangent is negative between them.
 struct Wells : Bounded {
     struct Mesh : Bounded::Mesh {
@@ -367,6 +327,38 @@ Index iterations(Index nodes) {
     }
     CHECK(problem.memory.empty());
     return report.iterations;
+}
+
+TEST_CASE("walls that drew back a little are met as they were, and those that are gone for good are left") {
+    constexpr Index nodes = 8;
+    constexpr double back = 1e-3;  // ten times as far as nodes were in their walls
+    const auto again = [&](bool remembers) {
+        Walls walls(nodes);
+        Pushed<true> problem(walls);
+        Exact linear{&problem};
+        solver::IterationParameters parameters;
+        parameters.mixed = false, parameters.overshoot = 0.5, parameters.residual_tolerance = 1e-10;
+        core::StageClock clock;
+        solver::Newton<Pushed<true>, Walls, Exact> newton(problem, walls, linear, parameters, 1e3, clock);
+        solver::IterationCounts counts;
+        Vector x = Vector::Zero(3 * nodes);
+        for (Index k = 0; k < nodes; ++k)
+            x[3 * k] = (Walls::push + Walls::wall * walls.place[core::at(k)]) / (Walls::spring + Walls::wall);
+        walls.evaluate(x);
+        if (remembers) problem.memory.remember(walls);
+        for (double& place : walls.place) place += back;
+        walls.place.front() = 2.0;  // beyond where the spring of its node ends
+        const solver::NewtonReport report = newton.solve(x, 1e-4, x, std::numeric_limits<double>::infinity(), counts);
+        REQUIRE(report.status == solver::NewtonStatus::converged);
+        CHECK(x[0] == test::near(Walls::push / Walls::spring, 1e-9));
+        for (Index k = 1; k < nodes; ++k)
+            CHECK(x[3 * k] ==
+                  test::near((Walls::push + Walls::wall * walls.place[core::at(k)]) / (Walls::spring + Walls::wall), 1e-9));
+        return report.iterations;
+    };
+    // Once all as it was, and once without the wall that is gone.
+    CHECK(again(true) <= 3);
+    CHECK(again(false) > 3);
 }
 
 TEST_CASE(

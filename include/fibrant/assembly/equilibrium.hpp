@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -260,8 +259,7 @@ public:
     /// Tangent of a state whose contacts have been evaluated.
     /// @param tension_only  leave compression out of the geometric stiffness: positive semidefinite
     /// @param shift         added on every vector, as a spring on positions [force / length]
-    /// @param held          the same on each chain alone, beside it; empty: none
-    void linearise(const Vector& state, bool tension_only, double shift, std::span<const double> held = {}) {
+    void linearise(const Vector& state, bool tension_only, double shift) {
         system_.place(state);
         [[maybe_unused]] double share = 1.0;
         if constexpr (moves) terms_.moving([&](const auto& term) { share = term.share(); });
@@ -283,7 +281,7 @@ public:
                 contacts_->section_stiffness_terms(f, state, [&](Index first, const auto& weights, const Mat3& stiffness) {
                     system_.add_rank_one(f, first, weights, stiffness);
                 });
-                if (const double springs = own ? spring(f, held.empty() ? shift : shift + held[core::at(f)]) : 0.0; springs > 0.0)
+                if (const double springs = own ? spring(f, shift) : 0.0; springs > 0.0)
                     scene::for_own_vectors(system_.layout(), f, [&](Index v, double length) {
                         system_.add_diagonal(v, springs * length * length * Mat3::Identity());
                     });

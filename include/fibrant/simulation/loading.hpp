@@ -90,7 +90,6 @@ struct Stage {
     /// What a failed attempt asked for, that all crossings are followed, holds up to the next increment without a cut, not to the
     /// end of the stage: of many fibres that are hardly held linear systems take several times as many iterations for it.
     bool follows_briefly = false;
-    bool held_steps = false;  ///< as `IterationParameters::held_steps`: where fibres have parted and some are slack
     std::optional<typename M::Normal> normal{};      ///< law from this stage on, for the model's
     std::optional<typename M::Friction> friction{};  ///< likewise
     /// Once the ramps are over: goes on, all else constant, until this is true. None: ends with the ramps.

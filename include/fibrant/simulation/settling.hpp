@@ -121,9 +121,6 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     // How deep contact points are says little where fibres bend sharply around each other: what ends is judged by the true gap,
     // at rest.
     stiffening.until = until_settled(motion, parted, share_at_rest);
-    // Slack groups that have not yet found a hold meet others early in each step of Newton's method; where tows have just parted
-    // they would have to move, and springs would hold them.
-    stiffening.held_steps = pull.drawn;
     stiffening.damping = 4.0 * taut, stiffening.damping_share = share_at_rest, stiffening.damping_waits = true;
     Stage<M> rest = stiffening;
     rest.name = "rest";

@@ -150,8 +150,7 @@ private:
             equilibrium_.begin(amplitudes, state_, position_.damping * stage.damping / stride + position_.calming.springs,
                                position_.held_by_fibre(loading.damping_of_fibres));
             if (stage.damping_carried) equilibrium_.carry(motion_.ahead(mesh_, state_, change));
-            const solver::IterationParameters iteration =
-                parameters_.iteration.of_attempt(stage.patience, astray, stage.held_steps);
+            const solver::IterationParameters iteration = parameters_.iteration.of_attempt(stage.patience, astray);
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
                 equilibrium_, contacts_, linear_, passage_, iteration, radius_, touching, clock_);
             // A limited gap moves fibres by about the limit: the search looks so far.

@@ -5,7 +5,6 @@
 #include <fibrant/assembly/equilibrium.hpp>
 #include <fibrant/assembly/system_view.hpp>
 #include <fibrant/core/stage_clock.hpp>
-#include <fibrant/solver/held_steps.hpp>
 #include <fibrant/solver/linear_solver.hpp>
 
 #include <algorithm>
@@ -25,12 +24,8 @@ struct IterationParameters {
     /// Slope of the energy at the end of a Newton step over that at its start, beyond which the step is cut [1], > 0. Once
     /// Newton's method has failed `most_astray` times at an increment it is `watched_overshoot` at most.
     double overshoot = std::numeric_limits<double>::infinity();
-    double largest_approach = 0.5;  ///< relative motion of a contact in one Newton step [mean radius of its two fibres], > 0
-    /// Steps that are watched and were cut hard are followed by steps in which springs hold the fibres for which they were cut
-    /// (`HeldSteps`): slack groups that meet others do not hold all else back. For a part of a run: `Stage::held_steps`. Paths
-    /// differ: fibres that have to part hardly do so.
-    bool held_steps = false;
-    Index newton_limit = 15;         ///< iterations of one inner loop, and as many again that springs hold
+    double largest_approach = 0.5;   ///< relative motion of a contact in one Newton step [mean radius of its two fibres], > 0
+    Index newton_limit = 15;         ///< iterations of one inner loop
     Index normal_limit = 6;          ///< normal passes of one set of contact elements
     Index contact_limit = 8;         ///< contact passes of an increment
     Index multiplier_limit = 20;     ///< contact passes that change nothing but multipliers, where a law has them
@@ -45,10 +40,8 @@ struct IterationParameters {
     /// failed is tried again with steps that are watched.
     /// @param patience  factor on the limit of iterations
     /// @param astray    attempts at the increment in which it, or contact passes, did not settle
-    /// @param held      the stage's steps are held (`held_steps`)
-    IterationParameters of_attempt(double patience, Index astray, bool held = false) const {
+    IterationParameters of_attempt(double patience, Index astray) const {
         IterationParameters own = *this;
-        own.held_steps = held_steps || held;
         own.newton_limit = static_cast<Index>(patience * static_cast<double>(newton_limit));
         if (astray >= most_astray) own.overshoot = std::min(overshoot, watched_overshoot);
         return own;
@@ -116,8 +109,7 @@ inline constexpr int most_inversion_cuts = 6;
 inline constexpr double reach_used = 0.5;  ///< part of a search's reach after which it is repeated: both fibres may move
 inline constexpr Index settling = 3;       ///< iterations in which residuals may rise: the mixed form starts with large ones
 inline constexpr Index growing_mixed = 2,
-                       growing_plain = 3;      ///< rises beyond the worst of those: fall back to the plain form, give up
-inline constexpr double nearly_strict = 10.0;  ///< over step_tolerance: such an answer is that of a step without springs [1]
+                       growing_plain = 3;  ///< rises beyond the worst of those: fall back to the plain form, give up
 // Search along a step (regula falsi on the slope of the energy, kept away from its ends).
 inline constexpr int most_shortenings = 4;
 inline constexpr double least_shortening = 0.1, most_shortening = 0.8;
@@ -146,14 +138,12 @@ public:
         namespace with = newton_numbers;
         double eta = with::loosest_forcing, worst = 0.0;
         bool mixed = parameters_.mixed;
-        Index growing = 0, held_steps = 0;
-        held_.clear();
+        Index growing = 0;
         const Forgotten learned{equilibrium.learned()};
         if constexpr (iterated) equilibrium.reset_stresses(state);
         report.residual = evaluate(state);
         equilibrium.learned().carry(*contacts_);
-        for (Index iteration = 0; iteration < parameters_.newton_limit + std::min(held_steps, parameters_.newton_limit);
-             ++iteration) {
+        for (Index iteration = 0; iteration < parameters_.newton_limit; ++iteration) {
             equilibrium.prescribed_step(state, prescribed_);
             if (!direction(state, eta, report.residual.scale, counts)) {
                 report.status = NewtonStatus::unsolvable;
@@ -170,7 +160,6 @@ public:
             step_ *= scale;
             const assembly::ResidualFigures before = report.residual;
             before_ = state;
-            if (watched && parameters_.held_steps) held_.begin(equilibrium.system().layout(), residual_, step_);
             state += step_;
             report.residual = arrive(state, mixed);
             // Where a cell of a solid is turned inside out there are no forces.
@@ -180,9 +169,7 @@ public:
                 state = before_ + step_;
                 report.residual = arrive(state, mixed);
             }
-            const bool held = held_.any();
-            held_steps += held ? 1 : 0;
-            if (watched) scale *= search_along(scale * slope, state, report.residual, mixed);
+            if (watched) scale *= shorten(scale * slope, state, report.residual, mixed);
             if (mixed && !iterated) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
             ++report.iterations, ++counts.newton, report.indefinite += shifted_ > 0 ? 1 : 0;
             report.step = equilibrium.greatest(step_);
@@ -198,13 +185,7 @@ public:
             eta = std::clamp(with::forcing_factor * ratio * ratio,
                              std::min(std::max(parameters_.linear_tolerance, enough), with::loosest_forcing),
                              with::loosest_forcing);
-            // Of a step that was shortened the whole counts, where steps are held; else it is no end.
-            if (report.step <= scale * tolerance && (scale == 1.0 || parameters_.held_steps) &&
-                report.residual.relative() <= residual_tolerance(tolerance)) {
-                if (held && tolerance <= with::nearly_strict * parameters_.step_tolerance * radius_) {
-                    held_.clear();
-                    continue;
-                }
+            if (scale == 1.0 && report.step <= tolerance && report.residual.relative() <= residual_tolerance(tolerance)) {
                 report.status = NewtonStatus::converged;
                 return report;
             }
@@ -255,17 +236,6 @@ private:
         return evaluate(state);
     }
 
-    /// Shortens a step where it goes too far, and holds those for which it was cut hard in the next one.
-    /// @param slope  of the energy along the step, at its start [force * length]
-    /// @returns the part of the step that is left
-    double search_along(double slope, Vector& state, assembly::ResidualFigures& figures, bool mixed) {
-        if (!parameters_.held_steps) return shorten(slope, state, figures, mixed);
-        held_.arrive(equilibrium_->system().layout(), residual_, step_);
-        const double part = shorten(slope, state, figures, mixed);
-        held_.learn(part, parameters_.overshoot);
-        return part;
-    }
-
     /// Shortens a step beyond whose end the energy rises steeply: contacts that close or let go within it, one after the other,
     /// would send Newton's method to and fro for ever. With normals and bounds of friction that stand the energy is convex, and
     /// the place where it rises is found between. What contacts were beyond it goes into the next tangent.
@@ -299,7 +269,7 @@ private:
         for (int attempt = std::max(0, shifted_ - 1); attempt < most_shifts; ++attempt) {
             const double shift = attempt > 1 ? std::ldexp(least_shift * stiffness_, 2 * (attempt - 2)) : 0.0;
             clock_->time(core::Part::assembly, [&] {
-                equilibrium.linearise(state, attempt > 0, shift, held_.springs());
+                equilibrium.linearise(state, attempt > 0, shift);
                 if (contacts_->places().rehosted()) linear_->analyse(assembly::seen(equilibrium.system()));
                 right_ = -residual_;
                 equilibrium.add_learned(right_);
@@ -375,7 +345,6 @@ private:
     static constexpr int most_shifts = 10;       // the last one is beyond the mean stiffness
     static constexpr double least_shift = 1e-4;  // over the mean stiffness; each one is four times the last
     int shifted_ = 0;                            // what the last tangent asked for: 0 nothing, 1 no compression, more a shift
-    HeldSteps held_;                             // of the next step
     double stiffness_ = 0.0;                     // mean, when a shift was last begun with
     Vector residual_, right_, product_, step_, prescribed_, before_;
 };
