@@ -4,6 +4,7 @@
 
 #include <fibrant/observe/contact_statistics.hpp>
 #include <fibrant/observe/csv_writer.hpp>
+#include <fibrant/observe/flat_gap.hpp>
 #include <fibrant/observe/json.hpp>
 #include <fibrant/observe/least_gap.hpp>
 #include <fibrant/observe/linking.hpp>

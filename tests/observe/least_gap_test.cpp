@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include <near.hpp>
+
 #include <array>
 #include <cmath>
 #include <limits>
@@ -210,6 +212,44 @@ TEST_CASE("the turns of one fibre are held against each other where that is aske
     CHECK(std::isinf(found({flat})));
     CHECK(std::abs(found({flat}, observe::OwnTurns::counted) - (2.0 * radius - 1.8)) < 2e-3);  // the bend in elements
     CHECK(std::isinf(found({straight(2.0, 1.0, Vec3::Zero(), heading(0), 40.0, 0.0)}, observe::OwnTurns::counted)));
+}
+
+TEST_CASE("of fibres side by side that are wound around each other what is deepest is found whatever is passed over") {
+    // Seven about one axis: bent towards each other, their sections strained by different parts.
+    const double length = 40.0, turned = 1.2, apart = 1.993;
+    std::mt19937 generator(11);
+    observe::Snapshot snapshot;
+    for (int k = 0; k < 7; ++k) {
+        const double out = k == 0 ? 0.0 : apart, at = pi / 3.0 * k;
+        const auto helix = [&](double s) {
+            const double angle = at + turned * s / length;
+            return Vec3(s, out * std::cos(angle), out * std::sin(angle));
+        };
+        observe::FibreSnapshot wound = fibre(1.0, 1.0, helix, 0.0, length, 10, 0.0);
+        for (std::size_t node = 0; node < wound.position.size(); ++node) {
+            wound.position[node] += 5e-4 * test::normal_vector(generator);
+            const double strain = 2e-3 * std::sin(0.3 * static_cast<double>(node) + k);
+            wound.director_1[node] *= 1.0 + strain, wound.director_2[node] *= 1.0 - strain;
+        }
+        snapshot.fibres.push_back(wound);
+    }
+    const observe::LeastGap deepest = observe::least_gap(snapshot, proximity::GridSearch{}, observe::OwnTurns::left_out, 0.0);
+    double pairs = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < 7; ++i)
+        for (std::size_t j = i + 1; j < 7; ++j) pairs = std::min(pairs, found({snapshot.fibres[i], snapshot.fibres[j]}));
+    CHECK(deepest.gap < -0.007);
+    CHECK(deepest.gap == pairs);
+    const auto places = observe::deep_places(snapshot, proximity::GridSearch{}, 0.007);
+    REQUIRE(!places.empty());
+    CHECK(places.front().gap == deepest.gap);
+    // Node intervals alone, each with each, and nothing passed over.
+    double sampled = std::numeric_limits<double>::infinity();
+    const observe::FibreSurface one(snapshot.fibres[core::at(deepest.fibre_i)]),
+        other(snapshot.fibres[core::at(deepest.fibre_j)]);
+    for (double t = 0.0; t < one.curve().end(); t += 1.0)
+        for (double u = std::max(0.0, t - 1.0); u < std::min(t + 2.0, other.curve().end()); u += 1.0)
+            sampled = std::min(sampled, observe::PairedPieces(one, other, t, u).closest(t + 0.5, u + 0.5).gap);
+    CHECK(deepest.gap == test::near(sampled, 1e-9));
 }
 
 TEST_CASE("every search finds the same gap, and neither order nor place of the fibres matters") {

@@ -24,6 +24,7 @@ struct Hooks {
     double lower_radius = 1.0;                      ///< of the second ring's fibre, over that of the first
     contact::Places places = contact::Places::as_needed;
     bool every_increment = true;  ///< is held to the true gap
+    bool free_stretch = false;    ///< of the sections that are held
 };
 
 /// How a pair of hooks came out of its run.
@@ -58,20 +59,21 @@ Hooked pull_hooks(const Hooks& hooks) {
     scene::FibreSpecification ring;
     ring.section = scene::circular(r), ring.material = {1e4, 0.3}, ring.elements = hooks.elements;
     ring.curve = [=](double t) { return Vec3(-R * std::cos(pi * t), 0.0, R - R * std::sin(pi * t)); };
-    // A clamp holds the angle of its directors and leaves their lengths: across the plane of a ring it holds both halves alike.
-    const bool alike = hooks.slant == 0.0;
-    if (alike) ring.director = Vec3::UnitY();
+    // A clamp that leaves stretches free holds the angle of its directors: across the plane of a ring it holds both halves alike.
+    if (hooks.free_stretch) ring.director = Vec3::UnitY();
     const Index upper = assembly.add(ring);
     const double r_2 = hooks.lower_radius * r;
     ring.section = scene::circular(r_2);
-    if (alike) ring.director = Vec3::UnitZ().cross(along);
     ring.curve = [=](double t) {
         return Vec3(R * std::cos(pi * t) * along + (r + r_2 - R + R * std::sin(pi * t)) * Vec3::UnitZ());
     };
+    if (hooks.free_stretch) ring.director = Vec3::UnitZ().cross(along);
     const Index lower = assembly.add(ring);
     for (const Index fibre : {upper, lower})
-        for (const scene::Station& end : {scene::first_end(fibre), scene::last_end(fibre)})
-            assembly.clamp(end, (fibre == upper ? 0.5 : -0.5) * R * Vec3(hooks.slant, 0.0, hooks.pull));
+        for (const scene::Station& end : {scene::first_end(fibre), scene::last_end(fibre)}) {
+            const Vec3 way = (fibre == upper ? 0.5 : -0.5) * R * Vec3(hooks.slant, 0.0, hooks.pull);
+            hooks.free_stretch ? assembly.clamp(end, way) : assembly.clamp_section(end, way);
+        }
     simulation::ModelParameters<M> parameters;
     const double thin = std::min(r, r_2);
     parameters.normal.regularisation_depth = 1e-3 * thin;
@@ -105,7 +107,7 @@ Hooked pull_hooks(const Hooks& hooks) {
             const Vec3 mirrored = b - 2.0 * b.dot(plane) * plane;  // through the plane across the ring's own
             const Vec3 turned(-b.x(), -b.y(), b.z());              // by half a turn about the pull
             const Vec3 other = hooks.angle_deg == 90.0 ? mirrored : turned;
-            if (alike) out.asymmetry = std::max(out.asymmetry, (a - other).norm() / r);
+            if (hooks.slant == 0.0) out.asymmetry = std::max(out.asymmetry, (a - other).norm() / r);
         }
     }
     out.force = (simulator.reaction(scene::first_end(upper)) + simulator.reaction(scene::last_end(upper))).z();

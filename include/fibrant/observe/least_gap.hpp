@@ -133,15 +133,13 @@ public:
             const auto &a = lines_[core::at(i)].points, &b = lines_[core::at(j)].points;
             const Vec3 u = a[core::at(p + 1)] - a[core::at(p)], v = b[core::at(q + 1)] - b[core::at(q)];
             const auto near = proximity::segment_distance(a[core::at(p)], u, b[core::at(q)], v);
-            found[core::at(n)] = {std::sqrt(near.squared) - inflation_[core::at(i)][core::at(p)] -
-                                      inflation_[core::at(j)][core::at(q)] - wide_[core::at(i)][core::at(p)] -
-                                      wide_[core::at(j)][core::at(q)],
-                                  static_cast<double>(p) + near.s,
-                                  static_cast<double>(q) + near.t,
-                                  i,
-                                  j,
-                                  p,
-                                  q};
+            double bound = std::sqrt(near.squared) - inflation_[core::at(i)][core::at(p)] - inflation_[core::at(j)][core::at(q)] -
+                           wide_[core::at(i)][core::at(p)] - wide_[core::at(j)][core::at(q)];
+            const double t = static_cast<double>(p) + near.s, s = static_cast<double>(q) + near.t;
+            const double beside = 0.75;  // square of the cosine: of what crosses the depth is not that of sections
+            if (bound < 0.0 && u.dot(v) * u.dot(v) > beside * u.squaredNorm() * v.squaredNorm())
+                bound = std::max(bound, least_along_centres(i, j, p, q, t, s));
+            found[core::at(n)] = {bound, t, s, i, j, p, q};
         });
         std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
             if (a.bound != b.bound) return a.bound < b.bound;
@@ -163,12 +161,11 @@ public:
             wide_[core::at(candidate.i)][core::at(candidate.p)] + wide_[core::at(candidate.j)][core::at(candidate.q)];
         if (distance - widest > most) return SurfaceGap{};
         const bool round = round_[core::at(candidate.i)] != 0 && round_[core::at(candidate.j)] != 0;
-        // Any one direction bounds the gap from below. This spares most pairs of fibres side by side the search.
-        if (!round && distance > 0.0) {
-            const Vec3 across = apart / distance;
-            if (-furthest_along(i, candidate.p, across) - furthest_along(j, candidate.q, -across) > most) return SurfaceGap{};
+        if (!round && least_along_centres(candidate.i, candidate.j, candidate.p, candidate.q, t, u) > most) return {};
+        if (!round) {
+            const PairedPieces pieces(i, j, static_cast<double>(candidate.p), static_cast<double>(candidate.q));
+            return pieces.closest(t, u, most);
         }
-        if (!round) return PairedPieces(i, j, static_cast<double>(candidate.p), static_cast<double>(candidate.q)).closest(t, u);
         const Vec3 direction = distance > 0.0 ? Vec3(apart / distance) : Vec3(Vec3::UnitZ());
         return SurfaceGap{distance - i.extent(t, direction) - j.extent(u, direction), t, u, direction};
     }
@@ -194,14 +191,16 @@ public:
     }
 
 private:
-    /// How far the surface of a node interval gets along a unit direction, at most: of a curve through three of its sections,
-    /// with four times what it may be beyond them [length].
-    static double furthest_along(const FibreSurface& surface, Index piece, const Vec3& direction) noexcept {
-        const auto at = [&](double t) { return surface.curve().position(t).dot(direction) + surface.extent(t, direction); };
-        const double t = static_cast<double>(piece), first = at(t), middle = at(t + 0.5), last = at(t + 1.0);
-        return std::max({first, middle, last}) + 0.5 * std::abs(first - 2.0 * middle + last);
+    /// Least gap of two node intervals along the line between two points of their curves: any one direction bounds the gap from
+    /// below. This spares most pairs of fibres side by side the search [length].
+    double least_along_centres(Index i, Index j, Index p, Index q, double t, double u) const noexcept {
+        const FibreSurface &one = surfaces_[core::at(i)], &other = surfaces_[core::at(j)];
+        const Vec3 apart = other.curve().position(u) - one.curve().position(t);
+        const double distance = apart.norm();
+        if (!(distance > 0.0)) return -std::numeric_limits<double>::infinity();
+        const Vec3 across = apart / distance;
+        return -one.furthest(core::at(p), across) - other.furthest(core::at(q), -across);
     }
-
     const Snapshot* snapshot_;
     Search search_;
     std::vector<proximity::Centreline> lines_;
@@ -240,7 +239,7 @@ LeastGap least_gap(const Snapshot& snapshot, Search search, OwnTurns own_turns =
             count = std::min(together, candidates.size() - start);
             together = std::min(most, 2 * together);
             core::parallel_for<core::Share::turns>(static_cast<Index>(count), [&](Index k) {
-                found[core::at(k)] = surfaces.measured(candidates[start + core::at(k)], least.gap);
+                found[core::at(k)] = surfaces.measured(candidates[start + core::at(k)], std::min(least.gap, furthest));
             });
             for (std::size_t k = 0; k < count; ++k)
                 if (found[k].gap < least.gap && surfaces.counts(candidates[start + k], found[k]))

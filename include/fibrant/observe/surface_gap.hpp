@@ -4,6 +4,7 @@
 
 #include <fibrant/core/small_matrix.hpp>
 #include <fibrant/core/symmetric_eigen.hpp>
+#include <fibrant/observe/flat_gap.hpp>
 #include <fibrant/observe/nodal_curve.hpp>
 #include <fibrant/observe/snapshot.hpp>
 
@@ -11,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <span>
 
 namespace fibrant::observe {
@@ -42,6 +42,25 @@ public:
         for (std::size_t node = piece - piece % 2, last = node + 2; node <= last; ++node)
             most = std::max(most, fibre_->section.greatest_extent(fibre_->director_1[node], fibre_->director_2[node]));
         return most;
+    }
+    /// How far the surface of a node interval gets along a unit direction, at most: of a curve through three of its sections,
+    /// with four times what it may be beyond them [length].
+    double furthest(std::size_t piece, const Vec3& direction) const noexcept {
+        std::array<double, 3> at{}, one{}, two{};  // nodes of its element, along the direction
+        const std::size_t node = piece - piece % 2;
+        for (std::size_t k = 0; k < 3; ++k) {
+            at[k] = fibre_->position[node + k].dot(direction);
+            one[k] = fibre_->section.semi_axis_1 * fibre_->director_1[node + k].dot(direction);
+            two[k] = fibre_->section.semi_axis_2 * fibre_->director_2[node + k].dot(direction);
+        }
+        const std::size_t from = piece % 2, other = 2 * (1 - from);  // nodes: the first of the interval, the one outside of it
+        const auto half_way = [&](const std::array<double, 3>& of) {
+            return 0.375 * of[2 - other] + 0.75 * of[1] - 0.125 * of[other];
+        };
+        const auto out = [](double x, double p, double q) { return x + std::sqrt(p * p + q * q); };
+        const double first = out(at[from], one[from], two[from]), last = out(at[from + 1], one[from + 1], two[from + 1]),
+                     middle = out(half_way(at), half_way(one), half_way(two));
+        return std::max({first, middle, last}) + 0.5 * std::abs(first - 2.0 * middle + last);
     }
     /// All sections are round, undeformed and across nothing but themselves.
     bool round() const noexcept {
@@ -84,16 +103,18 @@ public:
           sense_{i.curve().tangent(from_i + 0.5).dot(j.curve().tangent(from_j + 0.5)) < 0.0 ? -1.0 : 1.0} {}
 
     /// @param t, u  closest points of the two centrelines in the intervals
-    SurfaceGap closest(double t, double u) const {
+    /// @param most  gap beyond which it is not looked for [length]: one that is greater may be too great
+    SurfaceGap closest(double t, double u, double most = std::numeric_limits<double>::infinity()) const {
         SurfaceGap least;
         const Vec3 apart = between(t, u);
         const auto offer = [&](const SurfaceGap& found) {
             if (found.gap < least.gap) least = found;
         };
         SurfaceGap planes = closest_of_planes(t, u);
-        if (std::isfinite(planes.gap)) settle(planes), offer(planes);
+        const bool apart_too = most > 0.0;  // what is apart stays so
+        if (std::isfinite(planes.gap) && (apart_too || planes.gap < 0.0)) settle(planes), offer(planes);
         const bool at_end = i_.at_end(t) || j_.at_end(u);
-        if (at_end || !std::isfinite(planes.gap)) {
+        if (apart_too && (at_end || !std::isfinite(planes.gap))) {
             SurfaceGap centres{0.0, t, u, apart.norm() > 0.0 ? Vec3(apart.normalized()) : Vec3(Vec3::UnitZ())};
             if (settle(centres)) offer(centres);
         }
@@ -142,54 +163,12 @@ private:
     /// Greatest gap of two sections among the directions across m, looked for all round.
     SurfaceGap greatest_across(double t, double u, const Vec3& m) const {
         const Vec3 e = m.unitOrthogonal(), f = m.cross(e), d = between(t, u);
-        struct Flat {
-            core::Two p, q;
-        };
         const auto flat = [&](const FibreSurface& fibre, double s) {
             const Vec3 p = fibre.axis(0, s), q = fibre.axis(1, s);
-            return Flat{{p.dot(e), p.dot(f)}, {q.dot(e), q.dot(f)}};
+            return FlatSection{{p.dot(e), p.dot(f)}, {q.dot(e), q.dot(f)}};
         };
-        const std::array<Flat, 2> sections{flat(i_, t), flat(j_, u)};
-        const core::Two apart{d.dot(e), d.dot(f)};
-        const auto slope = [&](double angle, double& gap) {
-            const core::Two n{std::cos(angle), std::sin(angle)}, across{-n[1], n[0]};
-            gap = core::dot(apart, n);
-            double sum = core::dot(apart, across);
-            for (const Flat& s : sections) {
-                const double p = core::dot(s.p, n), q = core::dot(s.q, n), h = std::hypot(p, q);
-                gap -= h;
-                if (h > 0.0) sum -= (p * core::dot(s.p, across) + q * core::dot(s.q, across)) / h;
-            }
-            return sum;
-        };
-        // All round, and at the thinnest and widest directions: between two of these no peak is hidden.
-        constexpr int around = 24;
-        std::array<double, around + 8> angles{};
-        for (int k = 0; k < around; ++k) angles[core::at(k)] = 2.0 * std::numbers::pi * k / around;
-        for (std::size_t s = 0; s < 2; ++s) {
-            const core::Two &p = sections[s].p, &q = sections[s].q;
-            const double wide =
-                0.5 * std::atan2(2.0 * (p[0] * p[1] + q[0] * q[1]), p[0] * p[0] + q[0] * q[0] - p[1] * p[1] - q[1] * q[1]);
-            for (std::size_t k = 0; k < 4; ++k) {
-                const double angle = wide + 0.5 * std::numbers::pi * static_cast<double>(k);
-                angles[around + 4 * s + k] = angle - 2.0 * std::numbers::pi * std::floor(angle / (2.0 * std::numbers::pi));
-            }
-        }
-        std::sort(angles.begin(), angles.end());
-        double best = 0.0, most = -std::numeric_limits<double>::infinity();
-        for (std::size_t k = 0; k < angles.size(); ++k) {
-            double low = angles[k], high = k + 1 < angles.size() ? angles[k + 1] : angles[0] + 2.0 * std::numbers::pi, gap = 0.0;
-            if (!(slope(low, gap) >= 0.0)) continue;
-            if (gap > most) most = gap, best = low;
-            if (!(slope(high, gap) <= 0.0)) continue;
-            for (int halving = 0; halving < 50 && high - low > 1e-9; ++halving) {
-                const double middle = 0.5 * (low + high);
-                (slope(middle, gap) > 0.0 ? low : high) = middle;
-            }
-            slope(0.5 * (low + high), gap);
-            if (gap > most) most = gap, best = 0.5 * (low + high);
-        }
-        return {most, t, u, std::cos(best) * e + std::sin(best) * f};
+        const FlatGap found = greatest_gap({flat(i_, t), flat(j_, u)}, {d.dot(e), d.dot(f)});
+        return {found.gap, t, u, found.normal[0] * e + found.normal[1] * f};
     }
 
     /// Least of that over pairs of sections in planes across the mean tangent; infinite if no such pair is in both intervals.
