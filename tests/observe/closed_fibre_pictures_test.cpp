@@ -10,9 +10,6 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <string>
 
 using namespace fibrant;
@@ -67,31 +64,6 @@ TEST_CASE("a closed fibre has no cut faces in a view") {
         open += occurrences(svg_view(ring(0.1, false), {.elevation = elevation}), "class=\"f");
     }
     CHECK(open > 0);  // from some sides it hides them itself
-}
-
-TEST_CASE("a view goes round between nodes: a ring of eight chords is drawn as a ring") {
-    Snapshot coarse = ring(0.0);
-    FibreSnapshot& fibre = coarse.fibres.front();
-    const FibreSnapshot fine = fibre;
-    for (int node = 0; node <= 8; ++node) {
-        const auto from = static_cast<std::size_t>(6 * node), to = static_cast<std::size_t>(node);
-        fibre.position[to] = fine.position[from], fibre.director_1[to] = fine.director_1[from];
-    }
-    fibre.position.resize(9), fibre.director_1.resize(9), fibre.director_2.resize(9);
-    const std::string picture = svg_view(coarse, {.azimuth = -90.0, .elevation = 90.0});
-    // 1200 pixels for a diameter of 2.2 and two margins of 48: a chord is 38 pixels inside at its middle.
-    const double radius = (1200.0 - 96.0) / 2.2;
-    double least = 1e9, greatest = 0.0;
-    std::size_t lines = 0;
-    for (std::size_t at = picture.find("class=\"b"); at != std::string::npos; at = picture.find("class=\"b", at + 1), ++lines) {
-        double x[4];
-        REQUIRE(std::sscanf(picture.c_str() + picture.find(" d=\"M", at), " d=\"M%lf %lfL%lf %lf", x, x + 1, x + 2, x + 3) == 4);
-        const double distance = std::hypot(0.5 * (x[0] + x[2]) - 600.0, 0.5 * (x[1] + x[3]) - 600.0);
-        least = std::min(least, distance), greatest = std::max(greatest, distance);
-    }
-    REQUIRE(lines > 30);
-    CHECK(least > radius - 6.0);
-    CHECK(greatest < radius + 6.0);
 }
 
 TEST_CASE("a slice of a closed fibre is the same wherever its first node lies") {

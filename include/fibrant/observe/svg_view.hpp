@@ -14,7 +14,6 @@
 #include <numbers>
 #include <numeric>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace fibrant::observe {
@@ -153,30 +152,17 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
         if (nodes < 2) continue;
         double length = 0.0;
         for (std::size_t node = 1; node < nodes; ++node) length += (fibre.position[node] - fibre.position[node - 1]).norm();
-        const double step = std::max(fibre.section.radius(), total / static_cast<double>(parameters.pieces));
+        const double step = std::max(1.5 * fibre.section.radius(), total / static_cast<double>(parameters.pieces));
         const auto count = std::max<Index>(1, static_cast<Index>(std::ceil(length / step)));
-        const auto station = [&](Index piece) {
+        const auto at = [&](Index piece, const std::vector<Vec3>& values) -> Vec3 {
             const double t = static_cast<double>(piece) / static_cast<double>(count) * static_cast<double>(nodes - 1);
             const std::size_t first = std::min(static_cast<std::size_t>(t), nodes - 2);
-            return std::pair{first, t - static_cast<double>(first)};
-        };
-        const auto at = [&](Index piece, const std::vector<Vec3>& values) -> Vec3 {
-            const auto [first, share] = station(piece);
+            const double share = t - static_cast<double>(first);
             return (1.0 - share) * values[first] + share * values[first + 1];
-        };
-        // Chords of nodes would show corners: a curve through them.
-        const auto place = [&](Index piece) -> Vec3 {
-            const auto [k, t] = station(piece);
-            const std::vector<Vec3>& x = fibre.position;
-            const Vec3 chord = x[k + 1] - x[k];
-            const Vec3 before = k > 0 ? Vec3(x[k] - x[k - 1]) : fibre.closed ? Vec3(x[0] - x[nodes - 2]) : chord;
-            const Vec3 after = k + 2 < nodes ? Vec3(x[k + 2] - x[k + 1]) : fibre.closed ? Vec3(x[1] - x[0]) : chord;
-            const Vec3 leaving = 0.5 * (before + chord), arriving = 0.5 * (chord + after);
-            return x[k] + t * (t * (3.0 - 2.0 * t) * chord + (1.0 - t) * ((1.0 - t) * leaving - t * arriving));
         };
         const std::size_t first_piece = pieces.size();
         for (Index piece = 0; piece < count; ++piece) {
-            const Vec3 a = place(piece), b = place(piece + 1), chord = b - a;
+            const Vec3 a = at(piece, fibre.position), b = at(piece + 1, fibre.position), chord = b - a;
             const Vec3 tangent = chord.norm() > 0.0 ? Vec3(chord.normalized()) : eye;
             // Half the width of the silhouette: extent of the section across the line of sight.
             Vec3 across = tangent.cross(eye);
@@ -198,7 +184,7 @@ inline std::string svg_view(const Snapshot& snapshot, const ViewParameters& para
             const detail::ViewPiece after = fibre.closed && joint == count
                                                 ? pieces[first_piece]
                                                 : pieces[std::min(first_piece + core::at(joint), last_piece)];
-            const Vec3 centre = place(joint);
+            const Vec3 centre = at(joint, fibre.position);
             const Vec3 axis_1 = fibre.section.semi_axis_1 * at(joint, fibre.director_1);
             const Vec3 axis_2 = fibre.section.semi_axis_2 * at(joint, fibre.director_2);
             const Vec3 outwards = joint == 0 ? Vec3(-after.tangent) : before.tangent;
