@@ -143,7 +143,10 @@ inline void read_height(SceneReader& file, const std::string& section, double& h
                           "in each other; of yarns of several fibres at least " +
                           several + ". Left out: " + several + ", and of single fibres " + fibrant::core::text(single) + more;
     file.read(section, "height_over_radius", given, example::above(0.0, 10.0), "1", sentence.c_str());
-    height = std::isnan(given) ? (yarn.fibres > 1 ? cloth::apart_height : single) : given;
+    if (!std::isnan(given))
+        height = given;
+    else if (yarn.fibres == 1)
+        height = single;
 }
 
 inline void read_overhang(SceneReader& file, const std::string& section, double& overhang) {

@@ -3,6 +3,7 @@
 #include "../../refusal.hpp"
 #include <near.hpp>
 
+#include <fibrant/compositions/textile/braids.hpp>
 #include <fibrant/compositions/textile/imported.hpp>
 #include <fibrant/compositions/textile/knits.hpp>
 #include <fibrant/compositions/textile/plies.hpp>
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -187,6 +189,69 @@ TEST_CASE("yarns of a tricot lie level where they cross, so that fibres of other
         CHECK(touching(knit, fibres == 2 ? 0.3 : fibres == 4 ? 0.1 : 0.0) == 0);
         CHECK(detail::fibres_cross_rightly(knit));
     }
+}
+
+FlatBraid flat(Index yarns, double room, const YarnType& type) {
+    const double half_width = room * static_cast<double>(yarns) * half_room(type);
+    return {.yarns = yarns, .half_width = half_width, .period = 10.0 * half_width, .periods = 0.5, .type = type};
+}
+/// @param spacing  of neighbours of one direction over the breadth of a yarn
+TubularBraid tube(Index carriers, double degrees, double spacing, const YarnType& type) {
+    const double n = static_cast<double>(carriers), angle = degrees * std::numbers::pi / 180.0,
+                 radius = spacing * 2.0 * half_room(type) * n / (2.0 * std::numbers::pi * std::cos(angle));
+    return {.carriers = carriers,
+            .radius = radius,
+            .pitch = 2.0 * std::numbers::pi * radius / std::tan(angle),
+            .turns = 2.0 / n,
+            .type = type};
+}
+
+TEST_CASE("fibres of a braid start less than a radius in those of other yarns: close ones lie level and as high as they need") {
+    for (const Index fibres : {2, 3, 4, 5, 7, 12}) {
+        CAPTURE(fibres);
+        const YarnType type = yarn(fibres);
+        for (const Index yarns : {3, 4, 5, 16})
+            for (const double room : {1.01, 1.3}) {
+                CAPTURE(yarns);
+                CAPTURE(room);
+                const Textile braid = flat_braid(flat(yarns, room, type));
+                CHECK(detail::deepest_start(braid) <= 1.0);
+                CHECK(detail::fibres_cross_rightly(braid));
+            }
+        for (const Index carriers : {4, 16})
+            for (const double degrees : {45.0, 64.0}) {
+                CAPTURE(carriers);
+                CAPTURE(degrees);
+                const Textile braid = tubular_braid(tube(carriers, degrees, 2.5, type));
+                CHECK(detail::deepest_start(braid) <= 1.0);
+                CHECK(detail::fibres_cross_rightly(braid));
+            }
+    }
+}
+
+TEST_CASE("a braid of several fibres too narrow for them to start beside each other is refused by a radius that would do") {
+    TubularBraid braid = tube(4, 30.0, 1.8, yarn(4));
+    const std::string message = refusal([&] { tubular_braid(braid); });
+    REQUIRE(message.find("YarnType.radius = 0.025, but it must be <= ") == 0);
+    CHECK(message.find("for the 4 fibres of a yarn to start beside those of others") != std::string::npos);
+    braid.type.radius = std::stod(message.substr(message.find("<= ") + 3));
+    CHECK(braid.type.radius > 0.02);
+    CHECK(refusal([&] { tubular_braid(braid); }).empty());
+}
+
+TEST_CASE("a height of a braid that is given is kept, and single fibres are drawn as they were") {
+    YarnType type = yarn(3);
+    FlatBraid braid = flat(4, 1.3, type);
+    braid.height_over_radius = 1.05;
+    const auto highest = [](const Textile& textile) {
+        double most = 0.0;
+        for (const Path& path : textile.paths)
+            for (int k = 0; k <= 2000; ++k) most = std::max(most, path.curve(k / 2000.0).z());
+        return most;
+    };
+    CHECK(highest(flat_braid(braid)) == test::near(1.05 * half_thickness(type), 1e-3));
+    braid.type = yarn(1), braid.height_over_radius = core::unset;
+    CHECK(highest(flat_braid(braid)) == test::near(1.05 * 0.05, 1e-3));
 }
 
 /// Two parallel curves of a file.

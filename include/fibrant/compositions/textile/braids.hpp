@@ -3,6 +3,7 @@
 /// @file Flat and tubular braids.
 
 #include <fibrant/compositions/textile/interlaced.hpp>
+#include <fibrant/compositions/textile/yarn_fibres.hpp>
 
 #include <algorithm>
 #include <array>
@@ -22,10 +23,13 @@ struct FlatBraid {
     /// Of ends along the braid, beyond the outermost crossings [length]; 0: a yarn's way from crossing to crossing and two
     /// diameters, so that no crossing slides off when the braid is pulled tight.
     double overhang = 0.0;
-    bool periodic = false;             ///< goes on at both ends; whole periods
-    YarnType type{};                   ///< of all yarns
-    double height_over_radius = 1.05;  ///< of a yarn at a crossing out of the middle plane [1], > 0; of several fibres >= 1.05
+    bool periodic = false;  ///< goes on at both ends; whole periods
+    YarnType type{};        ///< of all yarns
+    /// Of a yarn at a crossing out of the middle plane [1], > 0; of several fibres >= 1.05; unset: 1.05, and of several fibres
+    /// that would start more than a radius in those of other yarns as much more, up to 1.65, as they need.
+    double height_over_radius = core::unset;
 
+    double height() const noexcept { return std::isnan(height_over_radius) ? apart_height : height_over_radius; }
     void validate() const {
         core::require_at_least("FlatBraid.yarns", yarns, 3);
         core::require_positive("FlatBraid.half_width", half_width);
@@ -36,8 +40,8 @@ struct FlatBraid {
         if (periodic) require_whole("FlatBraid.periods, of a braid that goes on", periods);
         if (over != 1 && over != 2) core::refuse("FlatBraid.over", std::to_string(over), "1 or 2");
         type.validate();
-        core::require_positive("FlatBraid.height_over_radius", height_over_radius);
-        require_height("FlatBraid.height_over_radius", height_over_radius, type);
+        core::require_positive("FlatBraid.height_over_radius", height());
+        require_height("FlatBraid.height_over_radius", height(), type);
         const double least = static_cast<double>(yarns) * half_room(type);
         core::require(half_width >= least, "FlatBraid.half_width", half_width,
                       ">= " + core::text(least) + ", that of the yarns side by side");
@@ -104,7 +108,8 @@ struct BraidLength {
 }  // namespace detail
 
 namespace detail {
-inline Textile drawn(const FlatBraid& braid) {
+/// @param level  yarns of several fibres lie level beside their crossings
+inline Textile drawn(const FlatBraid& braid, bool level) {
     Textile textile;
     textile.name = "flat braid";
     textile.apart_by.fill({"FlatBraid.half_width", braid.half_width});
@@ -134,23 +139,95 @@ inline Textile drawn(const FlatBraid& braid) {
             const bool right_above = (column / braid.over) % 2 == 0;
             return one_above((crossing.along_first.x() > 0.0) == right_above);
         },
-        braid.height_over_radius * half_thickness(braid.type));
+        braid.height() * half_thickness(braid.type), level);
     along.grip(textile);
     return textile;
+}
+}  // namespace detail
+
+namespace detail {
+/// How a braid is drawn, of a piece that is like all others.
+struct BraidStart {
+    double height = apart_height;                            ///< over half the thickness of a yarn [1]
+    bool level = false;                                      ///< yarns lie level beside their crossings
+    double depth = std::numeric_limits<double>::infinity();  ///< as of deepest_start(); infinity: it cannot be drawn
+};
+
+/// How deep fibres of different yarns may start in each other [radii of a fibre]: as long as it is less than a radius they part
+/// to the sides that they are drawn on.
+inline constexpr double deepest_of_braids = 1.0;
+
+/// The height that is given, where fibres of different yarns do not start too deep in each other. Else level, and at the lowest
+/// height at which they start beside each other, or that where they start least deep in each other. Not all braids are drawn so:
+/// yarns are longer then, and slack, and take more increments to settle.
+/// @param sample  a piece of a braid
+/// @param draw    draws it, level or not
+template <class Braid>
+BraidStart start_of(Braid sample, Textile (*draw)(const Braid&, bool)) {
+    constexpr double beside = 0.01, step = 0.15, highest = 1.66;  // radii of a fibre; half thicknesses
+    const bool given = !std::isnan(sample.height_over_radius);
+    const double lowest = sample.height();
+    BraidStart best{lowest};
+    const auto better = [&](double height, bool level) {
+        sample.height_over_radius = height;
+        const Textile textile = draw(sample, level);
+        for (Index p = 0; p < core::count(textile.paths); ++p)
+            require_bends(textile.paths[core::at(p)], textile.type_of(p),
+                          scene::length_of(textile.paths[core::at(p)].curve, 128));
+        const double depth = deepest_start(textile);
+        if (depth < best.depth - beside) best = {height, level, depth};
+    };
+    try {
+        better(lowest, false);
+        if (best.depth <= deepest_of_braids) return best;
+        for (double height = lowest; best.depth > beside && (height == lowest || (!given && height < highest)); height += step)
+            better(height, true);
+    } catch (const std::invalid_argument&) {  // cannot be drawn that high; the whole says why
+    }
+    return best;
+}
+
+/// A braid of several fibres, as high as its fibres need.
+/// @param given   of which `lay` makes the textile
+/// @param sample  a piece of it
+/// @throws std::invalid_argument by YarnType.radius, with one that does, where fibres start more than a radius in each other
+template <class Braid>
+Textile braid_apart(Braid given, Braid sample, Textile (*draw)(const Braid&, bool), Textile (*lay)(const Braid&, bool)) {
+    if (given.type.fibres == 1) return lay(given, false);
+    sample.periodic = false, sample.overhang = 0.0;
+    const BraidStart start = start_of(sample, draw);
+    given.height_over_radius = start.height;
+    Textile textile = lay(given, start.level);
+    if (start.depth <= deepest_of_braids) return textile;
+    const double radius = given.type.radius;
+    const double thinner = nearest_that_holds(radius, 0.02 * radius, radius, [&](double r) {
+        sample.type.radius = r;
+        return start_of(sample, draw).depth <= deepest_of_braids;
+    });
+    core::refuse("YarnType.radius", core::text(radius),
+                 (std::isnan(thinner) ? std::string("less") : "<= " + core::text(thinner)) + " for the " +
+                     std::to_string(given.type.fibres) + " fibres of a yarn to start beside those of others");
 }
 }  // namespace detail
 
 /// Yarn k lies at x = A tri(y / P + k / N): meetings are at x_m = A (2 m / N - 1), m from 1 to N - 1, in a quincunx. The yarn
 /// that goes to the right is above where the whole part of m over `over` is even, so that each yarn alternates, across its turns
 /// as well. N (N - 1) crossings a period. Ends lie along the braid, side by side where yarns are half way between crossings.
-inline Textile flat_braid(const FlatBraid& braid) {
-    // Across neighbours of one direction, 4 A / N over the length of a slope of 4 A / P, is a diameter; tips are as wide as
-    // yarns.
-    const double a = braid.half_width, n = static_cast<double>(braid.yarns), w = half_room(braid.type), k = 2.0 * a / (n * w);
-    const double beside = k > 1.0 ? 4.0 * a / std::sqrt(k * k - 1.0) : 0.0, tips = std::sqrt(10.0 * a * n * w / 0.95);
-    return laid(braid, &FlatBraid::period, "FlatBraid.period", std::max(beside, tips),
-                {{"half_width", a}, {"overhang", braid.overhang}}, braid.type,
-                [](const FlatBraid& one) { return detail::drawn(one); });
+inline Textile flat_braid(const FlatBraid& given) {
+    given.validate();
+    FlatBraid sample = given;
+    sample.periods = std::min(given.periods, 1.0);
+    return detail::braid_apart(
+        given, sample, &detail::drawn, +[](const FlatBraid& braid, bool level) {
+            // Across neighbours of one direction, 4 A / N over the length of a slope of 4 A / P, is a diameter; tips are as wide
+            // as yarns.
+            const double a = braid.half_width, n = static_cast<double>(braid.yarns), w = half_room(braid.type),
+                         k = 2.0 * a / (n * w);
+            const double beside = k > 1.0 ? 4.0 * a / std::sqrt(k * k - 1.0) : 0.0, tips = std::sqrt(10.0 * a * n * w / 0.95);
+            return laid(braid, &FlatBraid::period, "FlatBraid.period", std::max(beside, tips),
+                        {{"half_width", a}, {"overhang", braid.overhang}}, braid.type,
+                        [=](const FlatBraid& one) { return detail::drawn(one, level); });
+        });
 }
 
 /// A tubular braid: as many carriers one way round as the other, and straight axial yarns if wanted.
@@ -164,9 +241,10 @@ struct TubularBraid {
     double overhang = 0.0;        ///< of ends along the tube, beyond the turns [length]; 0: as of FlatBraid
     bool periodic = false;        ///< goes on at both ends; whole turns
     YarnType type{};              ///< of all yarns
-    double height_over_radius =
-        1.05;  ///< of a yarn at a crossing out of the middle of the tube [1], > 0; of several fibres >= 1.05
+    /// Of a yarn at a crossing out of the middle of the tube [1], > 0; of several fibres >= 1.05; unset: as of FlatBraid.
+    double height_over_radius = core::unset;
 
+    double height() const noexcept { return std::isnan(height_over_radius) ? apart_height : height_over_radius; }
     void validate() const {
         core::require_at_least("TubularBraid.carriers", carriers, 2);
         core::require_positive("TubularBraid.radius", radius);
@@ -180,8 +258,8 @@ struct TubularBraid {
             core::refuse("TubularBraid.over", std::to_string(over), "a divisor of the carriers, " + std::to_string(carriers));
         if (axials && over != 1) core::refuse("TubularBraid.over", std::to_string(over), "1 with axial yarns");
         type.validate();
-        core::require_positive("TubularBraid.height_over_radius", height_over_radius);
-        require_height("TubularBraid.height_over_radius", height_over_radius, type);
+        core::require_positive("TubularBraid.height_over_radius", height());
+        require_height("TubularBraid.height_over_radius", height(), type);
         const double least = static_cast<double>(carriers) * half_room(type) / std::numbers::pi;
         core::require(radius > least, "TubularBraid.radius", radius,
                       "> " + core::text(least) + ", that of the carriers side by side around the tube");
@@ -195,7 +273,8 @@ struct TubularBraid {
 };
 
 namespace detail {
-inline Textile drawn(const TubularBraid& braid) {
+/// @param level  as of a flat braid
+inline Textile drawn(const TubularBraid& braid, bool level) {
     Textile textile;
     textile.name = "tubular braid";
     textile.apart_by.fill({"TubularBraid.radius", braid.radius});
@@ -239,7 +318,7 @@ inline Textile drawn(const TubularBraid& braid) {
             const double high = braid.axials && rest == 1 ? 2.0 : 1.0;
             return rest < braid.over ? std::array{high, -high} : std::array{-high, high};
         },
-        braid.height_over_radius* half_thickness(braid.type));
+        braid.height() * half_thickness(braid.type), level);
     along.grip(textile);
     return textile;
 }
@@ -248,13 +327,19 @@ inline Textile drawn(const TubularBraid& braid) {
 /// With f = 2 pi z / H carriers lie at angles f + 2 pi i / n and -f + 2 pi j / n. They meet where n f = pi (j' - i), j' = j + n
 /// m, at the angle pi (i + j') / n, and there the first is outside where (i + j') mod 2 p < p, in a p x p braid. 2 n^2 crossings
 /// a turn. An axial yarn stands at the angles pi (2 k + 1) / n, between the two that meet there.
-inline Textile tubular_braid(const TubularBraid& braid) {
-    // The spacing of carriers of one way is a diameter.
-    const double round = 2.0 * std::numbers::pi * braid.radius,
-                 k = round / (2.0 * half_room(braid.type) * static_cast<double>(braid.carriers));
-    return laid(braid, &TubularBraid::pitch, "TubularBraid.pitch", k > 1.0 ? round / std::sqrt(k * k - 1.0) : 0.0,
-                {{"radius", braid.radius}, {"overhang", braid.overhang}}, braid.type,
-                [](const TubularBraid& one) { return detail::drawn(one); });
+inline Textile tubular_braid(const TubularBraid& given) {
+    given.validate();
+    TubularBraid sample = given;
+    sample.turns = std::min(given.turns, 2.0 * static_cast<double>(given.over) / static_cast<double>(given.carriers));
+    return detail::braid_apart(
+        given, sample, &detail::drawn, +[](const TubularBraid& braid, bool level) {
+            // The spacing of carriers of one way is a diameter.
+            const double round = 2.0 * std::numbers::pi * braid.radius,
+                         k = round / (2.0 * half_room(braid.type) * static_cast<double>(braid.carriers));
+            return laid(braid, &TubularBraid::pitch, "TubularBraid.pitch", k > 1.0 ? round / std::sqrt(k * k - 1.0) : 0.0,
+                        {{"radius", braid.radius}, {"overhang", braid.overhang}}, braid.type,
+                        [=](const TubularBraid& one) { return detail::drawn(one, level); });
+        });
 }
 
 }  // namespace fibrant::compositions::textile

@@ -37,7 +37,11 @@ namespace detail {
 /// Heights over a parameter, joined by arcs of the third degree that are level where they meet.
 class HeightLine {
 public:
-    HeightLine(std::vector<std::pair<double, double>> knots, bool repeating) : repeating_{repeating} {
+    /// @param per_root  shortest way from one height to another over the root of their difference [1 / length^(1/2)], >= 0: what
+    ///                  is left of the way between two knots is level, beside both; infinity: nothing is
+    HeightLine(std::vector<std::pair<double, double>> knots, bool repeating,
+               double per_root = std::numeric_limits<double>::infinity())
+        : repeating_{repeating} {
         std::sort(knots.begin(), knots.end());
         // Crossings of three at one point, however many a path has: of the path, and of the mean distance between crossings.
         constexpr double one_point = 1e-4, of_distance = 0.05;
@@ -54,6 +58,7 @@ public:
             knots_.insert(knots_.begin(), {last.first - 1.0, last.second});
             knots_.emplace_back(first.first + 1.0, first.second);
         }
+        level(per_root);
     }
     double operator()(double t) const {
         if (knots_.empty()) return 0.0;
@@ -68,13 +73,28 @@ public:
     }
 
 private:
+    void level(double per_root) {
+        constexpr double most = 0.4;  // of the way, on either side
+        std::vector<std::pair<double, double>> knots;
+        for (std::size_t k = 0; k < knots_.size(); ++k) {
+            knots.push_back(knots_[k]);
+            if (k + 1 == knots_.size() || knots_[k].second == knots_[k + 1].second) continue;
+            const auto [a, low] = knots_[k];
+            const auto [b, high] = knots_[k + 1];
+            const double part = std::min(most * (b - a), 0.5 * (b - a - per_root * std::sqrt(std::abs(high - low))));
+            if (part > 0.0) knots.emplace_back(a + part, low), knots.emplace_back(b - part, high);
+        }
+        knots_ = std::move(knots);
+    }
     std::vector<std::pair<double, double>> knots_;
     bool repeating_;
 };
 
 /// A path with its heights out of the surface.
-inline scene::Curve raised(scene::Curve plan, std::vector<std::pair<double, double>> knots, bool repeating, const View& view) {
-    const auto heights = std::make_shared<const HeightLine>(std::move(knots), repeating);
+/// @param per_root  as of HeightLine
+inline scene::Curve raised(scene::Curve plan, std::vector<std::pair<double, double>> knots, bool repeating, const View& view,
+                           double per_root = std::numeric_limits<double>::infinity()) {
+    const auto heights = std::make_shared<const HeightLine>(std::move(knots), repeating, per_root);
     const Vec3 axis = view.axis.normalized();
     return [plan = std::move(plan), heights, view, axis](double t) -> Vec3 {
         const Vec3 place = plan(t);
@@ -98,9 +118,11 @@ using Heights = std::vector<std::pair<double, double>>;  ///< parameter of a pat
 
 /// Gives the paths of a textile, all in one surface as yet, their heights at crossings.
 /// @param elsewhere  of each path: heights that it has farther than `clear` [length] from its crossings; or none
+/// @param level      yarns of several fibres lie level beside their crossings, as far as they may bend: what crosses is as broad
+///                   as it is thick
 /// @returns the crossings of the rule
 inline std::vector<Crossing> raise(Textile& textile, const HeightRule& rule, double height,
-                                   const std::vector<Heights>& elsewhere = {}, double clear = 0.0) {
+                                   const std::vector<Heights>& elsewhere = {}, double clear = 0.0, bool level = false) {
     const std::vector<Line> lines = lines_of(textile);
     const Plan plan(lines, textile.view);
     std::vector<Heights> knots(textile.paths.size());
@@ -133,7 +155,20 @@ inline std::vector<Crossing> raise(Textile& textile, const HeightRule& rule, dou
                 if (std::all_of(at.begin(), at.end(), [&](const auto& knot) { return std::abs(knot.first - more.first) > far; }))
                     knots[p].push_back(more);
         }
-        path.curve = raised(path.curve, std::move(knots[p]), path.kind != PathKind::open, textile.view);
+        const YarnType& type = textile.type_of(static_cast<Index>(p));
+        const bool repeating = path.kind != PathKind::open;
+        const scene::Curve plan_curve = path.curve;
+        path.curve = raised(plan_curve, knots[p], repeating, textile.view);
+        if (!level || type.fibres == 1) continue;
+        // A step of the third degree bends by six heights over its length squared, and the plan bends as well.
+        const double length = lines[p].arc.back(), shortest = std::sqrt(6.0 * least_bend(type)) / length;
+        for (const double longer : {1.05, 1.2, 1.4, 1.7}) {
+            Path other = path;
+            other.curve = raised(plan_curve, knots[p], repeating, textile.view, longer * shortest);
+            if (tightest_bend(other, type, length).first < least_bend(type)) continue;
+            path = std::move(other);
+            break;
+        }
     }
     return asked;
 }
@@ -142,10 +177,11 @@ inline std::vector<Crossing> raise(Textile& textile, const HeightRule& rule, dou
 /// Gives the paths of a textile, all in one surface as yet, their heights at crossings, and finds the crossings.
 /// @param rule    of who is above
 /// @param height  unit of its heights [length], > 0
+/// @param level   yarns of several fibres lie level beside their crossings
 /// @throws std::invalid_argument where the crossings of the raised paths are not those of the rule
-inline void interlace(Textile& textile, const HeightRule& rule, double height) {
+inline void interlace(Textile& textile, const HeightRule& rule, double height, bool level = false) {
     core::require_positive("interlace.height", height);
-    const std::vector<Crossing> asked = detail::raise(textile, rule, height);
+    const std::vector<Crossing> asked = detail::raise(textile, rule, height, {}, 0.0, level);
     textile.crossings = crossings_of(textile);
     const CrossingAudit audit = audit_crossings(asked, textile.crossings);
     if (!audit.clean())

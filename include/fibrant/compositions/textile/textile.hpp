@@ -166,15 +166,23 @@ inline std::pair<double, double> tightest(const scene::Curve& curve, Index sampl
     return least;
 }
 
-/// Refuses a path that bends more sharply than its yarn is thick: the outermost fibre of a bend is as thick as it is; a twentieth
-/// is left for what bends further while it settles.
+/// Least radius of curvature that a yarn may have [length]: the outermost fibre of a bend is as thick as it is; a twentieth is
+/// left for what bends further while it settles.
+inline double least_bend(const YarnType& type) { return half_width(type) / 0.95; }
+/// That of a path, and the parameter where it is.
+/// @param length  of the path
+inline std::pair<double, double> tightest_bend(const Path& path, const YarnType& type, double length) {
+    constexpr double per_radius = 4.0;  // points: what steps over a bend has not seen it
+    const Index samples = std::clamp<Index>(static_cast<Index>(per_radius * length / type.radius), 64, 400000);
+    return tightest(path.curve, samples, path.kind == PathKind::closed);
+}
+
+/// Refuses a path that bends more sharply than its yarn is thick.
 /// @param length  of the path
 /// @param field   that messages begin with
 inline void require_bends(const Path& path, const YarnType& type, double length, const std::string& field = "Path.curve: ") {
-    constexpr double per_radius = 4.0;  // points: what steps over a bend has not seen it
-    const Index samples = std::clamp<Index>(static_cast<Index>(per_radius * length / type.radius), 64, 400000);
-    const double least = half_width(type) / 0.95;
-    const auto [tight, at] = tightest(path.curve, samples, path.kind == PathKind::closed);
+    const double least = least_bend(type);
+    const auto [tight, at] = tightest_bend(path, type, length);
     core::require(tight >= least, field + "radius of curvature at parameter " + core::text(at), tight,
                   ">= " + core::text(least) + ", the half width of the yarn over 0.95");
 }
