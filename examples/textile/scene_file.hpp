@@ -183,7 +183,8 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.read("flat_braid", "periods", braid.periods, example::above(0.0, 1e4), "1", "number of periods");
         file.read("flat_braid", "over", braid.over, example::between(1, 2), "how many yarns in turn a yarn passes above");
         read_overhang(file, "flat_braid", braid.overhang);
-        read_height(file, "flat_braid", braid.height_over_radius, yarn, 0.3);
+        read_height(file, "flat_braid", braid.height_over_radius, yarn, 0.3,
+                    "; of braids of several fibres up to 1.65, as they need");
         if (!all) file.complete(), made = cloth::flat_braid(braid);
     }
     if (wanted("tubular_braid")) {
@@ -200,7 +201,7 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
                   "add straight yarns along the axis, one for each yarn of one way, where over is 1");
         read_overhang(file, "tubular_braid", braid.overhang);
         read_height(file, "tubular_braid", braid.height_over_radius, yarn, braid.axials ? cloth::apart_height : 0.05,
-                    ", 1.05 with axial yarns");
+                    ", 1.05 with axial yarns; of braids of several fibres up to 1.65, as they need");
         if (!all) file.complete(), made = cloth::tubular_braid(braid);
     }
     if (wanted("levels")) {

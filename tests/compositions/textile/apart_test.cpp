@@ -229,16 +229,6 @@ TEST_CASE("fibres of a braid start less than a radius in those of other yarns: c
     }
 }
 
-TEST_CASE("a braid of several fibres too narrow for them to start beside each other is refused by a radius that would do") {
-    TubularBraid braid = tube(4, 30.0, 1.8, yarn(4));
-    const std::string message = refusal([&] { tubular_braid(braid); });
-    REQUIRE(message.find("YarnType.radius = 0.025, but it must be <= ") == 0);
-    CHECK(message.find("for the 4 fibres of a yarn to start beside those of others") != std::string::npos);
-    braid.type.radius = std::stod(message.substr(message.find("<= ") + 3));
-    CHECK(braid.type.radius > 0.02);
-    CHECK(refusal([&] { tubular_braid(braid); }).empty());
-}
-
 TEST_CASE("a height of a braid that is given is kept, and single fibres are drawn as they were") {
     YarnType type = yarn(3);
     FlatBraid braid = flat(4, 1.3, type);

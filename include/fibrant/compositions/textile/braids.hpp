@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -190,23 +191,13 @@ BraidStart start_of(Braid sample, Textile (*draw)(const Braid&, bool)) {
 /// A braid of several fibres, as high as its fibres need.
 /// @param given   of which `lay` makes the textile
 /// @param sample  a piece of it
-/// @throws std::invalid_argument by YarnType.radius, with one that does, where fibres start more than a radius in each other
 template <class Braid>
 Textile braid_apart(Braid given, Braid sample, Textile (*draw)(const Braid&, bool), Textile (*lay)(const Braid&, bool)) {
     if (given.type.fibres == 1) return lay(given, false);
     sample.periodic = false, sample.overhang = 0.0;
     const BraidStart start = start_of(sample, draw);
     given.height_over_radius = start.height;
-    Textile textile = lay(given, start.level);
-    if (start.depth <= deepest_of_braids) return textile;
-    const double radius = given.type.radius;
-    const double thinner = nearest_that_holds(radius, 0.02 * radius, radius, [&](double r) {
-        sample.type.radius = r;
-        return start_of(sample, draw).depth <= deepest_of_braids;
-    });
-    core::refuse("YarnType.radius", core::text(radius),
-                 (std::isnan(thinner) ? std::string("less") : "<= " + core::text(thinner)) + " for the " +
-                     std::to_string(given.type.fibres) + " fibres of a yarn to start beside those of others");
+    return lay(given, start.level);
 }
 }  // namespace detail
 
