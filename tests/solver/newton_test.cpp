@@ -331,7 +331,7 @@ Index iterations(Index nodes) {
 
 TEST_CASE("walls that drew back a little are met as they were, and one that is gone for good is left") {
     constexpr Index nodes = 8;
-    constexpr double back = 1e-3;  // ten times as far as nodes were in their walls
+    constexpr double back = 2e-5;  // more than half of the nodes were in their walls, and less than the deepest
     struct End {
         double furthest_off = 0.0;  // of nodes from where they balance with walls that drew back
         double at_none = 0.0;       // of the node whose wall is gone
@@ -362,7 +362,7 @@ TEST_CASE("walls that drew back a little are met as they were, and one that is g
         return end;
     };
     CHECK(after(1, true).furthest_off < 1e-9 * back);
-    CHECK(after(1, false).furthest_off > back);
+    CHECK(after(1, false).furthest_off > 0.9 * back);  // the step is cut
     CHECK(after(15, true).furthest_off < 1e-9 * back);
     CHECK(after(15, true).at_none == test::near(Walls::push / Walls::spring, 1e-9));
 }

@@ -49,18 +49,19 @@ public:
     void forget() noexcept { remembered_.clear(); }
     /// To be called once they have, with contacts that have been evaluated. Fibres that slid over each other are a little further
     /// apart than before, and contacts that carried little are open: without them a tangent would let go what they hold. They are
-    /// taken to be as they were, for one step.
+    /// taken to be as they were, for one step; but not those that are further open than the deepest one was deep.
     template <class Contacts>
     void carry(const Contacts& contacts) {
         const auto& now = contacts.responses();
         if (remembered_.size() != now.size() || now.empty()) return forget();
+        const double deepest = core::largest(core::count(now), 0.0, [&](Index k) { return -remembered_[core::at(k)].gap; });
         learned_.assign(now.size(), {});
         core::parallel_for(
             core::count(now),
             [&](Index k) {
                 Learned& one = learned_[core::at(k)];
                 one.end = remembered_[core::at(k)];
-                one.closes = one.end.slope < now[core::at(k)].slope;
+                one.closes = one.end.slope < now[core::at(k)].slope && now[core::at(k)].gap <= deepest;
             },
             core::light_items);
         forget();
