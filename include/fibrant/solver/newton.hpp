@@ -152,7 +152,10 @@ public:
             // A prescribed motion has a residual that is not that of one energy.
             const bool watched = std::isfinite(parameters_.overshoot) && equilibrium.product(prescribed_, prescribed_) <=
                                                                              with::undriven * equilibrium.product(step_, step_);
-            if (watched) equilibrium.learned().begin_step(*contacts_);
+            if (watched)
+                equilibrium.learned().begin_step(*contacts_);
+            else if (iteration == 0)
+                equilibrium.learned().clear();  // what was carried is for one step
             const double slope = watched ? residual_.dot(step_) : 0.0;
             step_ += prescribed_;
             equilibrium.close_chains(step_, state);
