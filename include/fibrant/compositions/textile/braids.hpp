@@ -30,7 +30,7 @@ struct FlatBraid {
     /// that would start more than a radius in those of other yarns as much more, up to 1.65, as they need.
     double height_over_radius = core::unset;
 
-    double height() const noexcept { return std::isnan(height_over_radius) ? apart_height : height_over_radius; }
+    double height() const noexcept { return height_or_apart(height_over_radius); }
     void validate() const {
         core::require_at_least("FlatBraid.yarns", yarns, 3);
         core::require_positive("FlatBraid.half_width", half_width);
@@ -144,9 +144,7 @@ inline Textile drawn(const FlatBraid& braid, bool level) {
     along.grip(textile);
     return textile;
 }
-}  // namespace detail
 
-namespace detail {
 /// How a braid is drawn, of a piece that is like all others.
 struct BraidStart {
     double height = apart_height;                            ///< over half the thickness of a yarn [1]
@@ -172,9 +170,7 @@ BraidStart start_of(Braid sample, Textile (*draw)(const Braid&, bool)) {
     const auto better = [&](double height, bool level) {
         sample.height_over_radius = height;
         const Textile textile = draw(sample, level);
-        for (Index p = 0; p < core::count(textile.paths); ++p)
-            require_bends(textile.paths[core::at(p)], textile.type_of(p),
-                          scene::length_of(textile.paths[core::at(p)].curve, 128));
+        require_bends(textile);
         const double depth = deepest_start(textile);
         if (depth < best.depth - beside) best = {height, level, depth};
     };
@@ -235,7 +231,7 @@ struct TubularBraid {
     /// Of a yarn at a crossing out of the middle of the tube [1], > 0; of several fibres >= 1.05; unset: as of FlatBraid.
     double height_over_radius = core::unset;
 
-    double height() const noexcept { return std::isnan(height_over_radius) ? apart_height : height_over_radius; }
+    double height() const noexcept { return height_or_apart(height_over_radius); }
     void validate() const {
         core::require_at_least("TubularBraid.carriers", carriers, 2);
         core::require_positive("TubularBraid.radius", radius);

@@ -199,6 +199,16 @@ struct DrawnLength {
 };
 
 namespace detail {
+/// Refuses, by its yarn, a path that bends more sharply than that is thick.
+inline void require_bends(const Textile& textile) {
+    for (Index p = 0; p < core::count(textile.paths); ++p)
+        core::with_place([&] { return textile.label(p); },
+                         [&] {
+                             const Path& path = textile.paths[core::at(p)];
+                             require_bends(path, textile.type_of(p), scene::length_of(path.curve, 128), "");
+                         });
+}
+
 /// As laid() below, of a length and what draws with it.
 inline Textile laid(double value, const std::string& field, double low, std::vector<DrawnLength> others, const YarnType& type,
                     const std::function<Textile(double)>& draw, double high) {
@@ -207,18 +217,10 @@ inline Textile laid(double value, const std::string& field, double low, std::vec
     const auto own = [&](const std::invalid_argument& error) {  // names a field of the generator
         return std::string_view(error.what()).substr(0, owner.size()) == owner;
     };
-    const auto bends = [](const Textile& textile) {
-        for (Index p = 0; p < core::count(textile.paths); ++p)
-            core::with_place([&] { return textile.label(p); },
-                             [&] {
-                                 const Path& path = textile.paths[core::at(p)];
-                                 require_bends(path, textile.type_of(p), scene::length_of(path.curve, 128), "");
-                             });
-    };
     bool longer = false;
     const auto holds = [&](double x) {
         try {
-            bends(draw(x));
+            require_bends(draw(x));
             return true;
         } catch (const TooLong& error) {
             longer = true, why = error.what();
@@ -234,7 +236,7 @@ inline Textile laid(double value, const std::string& field, double low, std::vec
     try {
         if (value >= low) {
             Textile textile = draw(value);
-            bends(textile);
+            require_bends(textile);
             return textile;
         }
     } catch (const TooLong& error) {

@@ -61,6 +61,8 @@ inline double half_thickness(const YarnType& type) { return half_extent(type, 1)
 
 /// Height over half a yarn's thickness at which yarns that cross do not touch: what is drawn where nothing else is said [1].
 inline constexpr double apart_height = 1.05;
+/// That which is given, or it where none is.
+inline double height_or_apart(double given) noexcept { return std::isnan(given) ? apart_height : given; }
 
 /// Refuses a height of yarns at crossings that would not keep their sides: a single fibre does however low it is drawn; fibres of
 /// yarns that start in each other lie between each other, some on the wrong side.
