@@ -6,6 +6,7 @@
 #include <fibrant/core/parallel.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace fibrant::contact {
@@ -18,27 +19,24 @@ public:
     /// Part of secants that is left for the step after the next: without any, every other step goes too far again.
     static constexpr double kept = 0.25;
 
-    bool empty() const noexcept { return learned_.empty(); }
-    void clear() noexcept { learned_.clear(); }
+    bool empty() const noexcept { return ends_.empty() && secants_.empty(); }
+    void clear() noexcept { ends_.clear(), secants_.clear(); }
 
     /// What comes to the tangent of element k, symmetric and positive semidefinite [force / length].
     template <class Contacts>
     Mat3 stiffness(const Contacts& contacts, Index k) const noexcept {
-        const Learned& one = learned_[core::at(k)];
-        Mat3 sum = one.friction;
+        Mat3 sum = secants_.empty() ? Mat3::Zero() : secants_[core::at(k)].friction;
+        if (!closes(k)) return sum;
         const Vec3& normal = contacts.elements()[core::at(k)].normal;
-        if (one.closes)
-            sum += std::max(0.0, contacts.responses()[core::at(k)].slope - one.end.slope) * normal * normal.transpose();
-        return sum;
+        return sum +
+               std::max(0.0, contacts.responses()[core::at(k)].slope - ends_[core::at(k)].slope) * normal * normal.transpose();
     }
     /// What comes to the force of element k [force].
     template <class Contacts>
     Vec3 force(const Contacts& contacts, Index k) const noexcept {
-        const Learned& one = learned_[core::at(k)];
-        if (!one.closes) return Vec3::Zero();
-        const ContactResponse& now = contacts.responses()[core::at(k)];
-        return (now.reaction - one.end.reaction - one.end.slope * (now.gap - one.end.gap)) *
-               contacts.elements()[core::at(k)].normal;
+        if (!closes(k)) return Vec3::Zero();
+        const ContactResponse &now = contacts.responses()[core::at(k)], &end = ends_[core::at(k)];
+        return (now.reaction - end.reaction - end.slope * (now.gap - end.gap)) * contacts.elements()[core::at(k)].normal;
     }
 
     /// To be called with contacts that balance, before their normals turn or their places move.
@@ -55,13 +53,12 @@ public:
         const auto& now = contacts.responses();
         if (remembered_.size() != now.size() || now.empty()) return forget();
         const double deepest = core::largest(core::count(now), 0.0, [&](Index k) { return -remembered_[core::at(k)].gap; });
-        learned_.assign(now.size(), {});
+        ends_.swap(remembered_);
         core::parallel_for(
             core::count(now),
             [&](Index k) {
-                Learned& one = learned_[core::at(k)];
-                one.end = remembered_[core::at(k)];
-                one.closes = one.end.slope < now[core::at(k)].slope && now[core::at(k)].gap <= deepest;
+                ContactResponse& end = ends_[core::at(k)];
+                if (!(end.slope < now[core::at(k)].slope && now[core::at(k)].gap <= deepest)) end.slope = none;
             },
             core::light_items);
         forget();
@@ -70,7 +67,8 @@ public:
     /// To be called at the start of a step, with contacts that have been evaluated there.
     template <class Contacts>
     void begin_step(const Contacts& contacts) {
-        for (Learned& one : learned_) one.friction = one.before = kept * one.friction, one.closes = false;
+        ends_.clear();
+        for (Secant& one : secants_) one.friction = one.before = kept * one.friction;
         start_.resize(contacts.elements().size());
         core::parallel_for(
             core::count(start_),
@@ -85,7 +83,7 @@ public:
     /// @param step  of all unknowns
     template <class Contacts>
     void learn(const Contacts& contacts, const Vector& step) {
-        learned_.resize(start_.size());
+        ends_.resize(start_.size()), secants_.resize(start_.size());
         core::parallel_for(
             core::count(start_),
             [&](Index k) {
@@ -93,9 +91,10 @@ public:
                 const Start& start = start_[core::at(k)];
                 const Vec3 motion = element.motion(step), change = contacts.force(k) - start.force;
                 const Vec3 along = motion.dot(element.normal) * element.normal, slip = motion - along;
-                Learned& one = learned_[core::at(k)];
-                one.closes = change.dot(along) > along.dot(start.tangent * along);
-                if (one.closes) one.end = contacts.responses()[core::at(k)];
+                Secant& one = secants_[core::at(k)];
+                ContactResponse& end = ends_[core::at(k)];
+                end = contacts.responses()[core::at(k)];
+                if (!(change.dot(along) > along.dot(start.tangent * along))) end.slope = none;
                 const double square = slip.squaredNorm(), excess = change.dot(slip) - slip.dot(start.tangent * slip);
                 one.friction = one.before;
                 if (square > 0.0 && excess > 0.0) one.friction += (excess / (square * square)) * slip * slip.transpose();
@@ -108,13 +107,16 @@ private:
         Vec3 force;
         Mat3 tangent;
     };
-    struct Learned {
-        Mat3 friction = Mat3::Zero(), before = Mat3::Zero();  // secants, and what was left of them when the step began
-        ContactResponse end;
-        bool closes = false;
+    struct Secant {  // of friction, and what was left of it when the step began
+        Mat3 friction = Mat3::Zero(), before = Mat3::Zero();
     };
+    static constexpr double none = std::numeric_limits<double>::infinity();  // slope of what is not taken as closed
+
+    bool closes(Index k) const noexcept { return !ends_.empty() && ends_[core::at(k)].slope < none; }
+
     std::vector<Start> start_;
-    std::vector<Learned> learned_;             // empty where no step went too far
+    std::vector<ContactResponse> ends_;        // that contacts are taken as closed about; empty where there are none
+    std::vector<Secant> secants_;              // empty where no step went too far
     std::vector<ContactResponse> remembered_;  // of contacts that balanced
 };
 
