@@ -275,6 +275,7 @@ struct Walls {
     double depth(Index k) const { return state[3 * k] - place[core::at(k)]; }
     const std::vector<Element>& elements() const { return all; }
     bool forced(const Element&) const { return false; }
+    double stiffness(const Element&) const { return wall; }
     std::vector<contact::ContactResponse> states;
     const std::vector<contact::ContactResponse>& responses() const { return states; }
     void evaluate(const Vector& x) {
@@ -299,7 +300,8 @@ struct Pushed : Bounded {
     void linearise(const Vector&, bool, double) {
         stiffness = Vector::Constant(walls->state.size(), Walls::spring);
         for (Index k = 0; k < core::count(walls->place); ++k)
-            stiffness[3 * k] += walls->tangent(k)(0, 0) + (memory.empty() || !learns ? 0.0 : memory.stiffness(*walls, k)(0, 0));
+            stiffness.segment<3>(3 * k) +=
+                (walls->tangent(k) + (memory.empty() || !learns ? Mat3(Mat3::Zero()) : memory.stiffness(*walls, k))).diagonal();
     }
     void add_learned(Vector& right) const {
         if (learns && !memory.empty())
@@ -395,6 +397,7 @@ TEST_CASE(
         std::vector<Mat3> tangents;
         std::vector<contact::ContactResponse> states;
         const std::vector<Element>& elements() const { return all; }
+        static double stiffness(const Element&) { return 0.0; }
         const std::vector<contact::ContactResponse>& responses() const { return states; }
         Vec3 force(Index k) const { return forces[core::at(k)]; }
         Mat3 tangent(Index k) const { return tangents[core::at(k)]; }
@@ -427,6 +430,51 @@ TEST_CASE(
     learned.begin_step(start);
     CHECK((learned.stiffness(start, 1) - contact::LearnedContacts::kept * 2.0 * bound / slip * along).norm() < 1e-12);
     CHECK(learned.stiffness(start, 0).norm() == 0.0);
+}
+
+TEST_CASE("after a step that is cut to a small part, slack fibres are held to those beside them, in tangents alone") {
+    struct Beside {
+        struct Element {
+            Vec3 normal = Vec3::UnitZ();
+        };
+        std::vector<Element> all{{}, {}, {}};
+        std::vector<contact::ContactResponse> states;
+        const std::vector<Element>& elements() const { return all; }
+        const std::vector<contact::ContactResponse>& responses() const { return states; }
+        double stiffness(const Element&) const { return 50.0; }
+    };
+    const double radius = 2.0, near = contact::LearnedContacts::near * radius;
+    Beside pairs;  // open and near, open and further, closed
+    pairs.states = {{0.5 * near, 0.0, 0.0}, {2.0 * near, 0.0, 0.0}, {-0.1, 5.0, -50.0}};
+    contact::LearnedContacts learned;
+    CHECK(learned.empty());
+    learned.hold_near(radius);
+    CHECK_FALSE(learned.empty());
+    CHECK((learned.stiffness(pairs, 0) - contact::LearnedContacts::held * 50.0 * Mat3::Identity()).norm() < 1e-12);
+    CHECK(learned.stiffness(pairs, 1).norm() + learned.stiffness(pairs, 2).norm() == 0.0);
+    for (const Index k : {0, 1, 2}) CHECK(learned.force(pairs, k).norm() == 0.0);
+    learned.clear();
+    CHECK(learned.empty());
+
+    // Three slack nodes that a push sends a thousand times as far as their walls are: the next tangent holds them along the
+    // walls.
+    const auto steps = [](double overshoot) {
+        Walls walls(4);
+        Pushed<true> problem(walls);
+        Exact linear{&problem};
+        solver::IterationParameters parameters;
+        parameters.mixed = false, parameters.overshoot = overshoot, parameters.newton_limit = 2;
+        core::StageClock clock;
+        solver::Newton<Pushed<true>, Walls, Exact> newton(problem, walls, linear, parameters, 1e3, clock);
+        solver::IterationCounts counts;
+        Vector x = Vector::Zero(12);
+        for (const Index k : {0, 1, 2}) walls.place[core::at(k)] *= 1e-3;
+        walls.place[3] = 50.0;
+        newton.solve(x, 1e-4, x, std::numeric_limits<double>::infinity(), counts);
+        return problem.stiffness[9];  // towards the wall that no step met
+    };
+    CHECK(steps(0.5) == test::near(Walls::spring + contact::LearnedContacts::held * Walls::wall));
+    CHECK(steps(std::numeric_limits<double>::infinity()) == Walls::spring);
 }
 
 struct Touched : Untouched {

@@ -113,6 +113,7 @@ inline constexpr Index growing_mixed = 2,
 // Search along a step (regula falsi on the slope of the energy, kept away from its ends).
 inline constexpr int most_shortenings = 4;
 inline constexpr double least_shortening = 0.1, most_shortening = 0.8;
+inline constexpr double hard_cut = 0.3;  ///< part of a step, below which slack fibres are held to their neighbours
 }  // namespace newton_numbers
 
 /// Newton's method on an equilibrium whose contact elements and normals stand.
@@ -173,6 +174,7 @@ public:
                 report.residual = arrive(state, mixed);
             }
             if (watched) scale *= shorten(scale * slope, state, report.residual, mixed);
+            if (watched && scale < with::hard_cut) equilibrium.learned().hold_near(radius_);
             if (mixed && !iterated) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
             ++report.iterations, ++counts.newton, report.indefinite += shifted_ > 0 ? 1 : 0;
             report.step = equilibrium.greatest(step_);
