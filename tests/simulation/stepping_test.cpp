@@ -163,6 +163,28 @@ TEST_CASE("damping is not lowered while fibres still move far, and where they co
     CHECK(short_report.increments.size() == 1);
 }
 
+TEST_CASE("what has moved far is solved as loosely as a path is until it is at rest, and what a stage ends with never is") {
+    Stage<Smooth> rest{.damping_calm = 0.1, .looseness = 5.0, .looseness_on_the_way = 100.0, .exact_end = true};
+    simulation::Position position;
+    simulation::IncrementReport far, near;
+    far.displacement = 0.2, near.displacement = 0.05, far.use.residual = near.use.residual = 20.0;
+    CHECK_FALSE(position.ends(rest, false, near));
+    CHECK(position.looseness(rest) == 5.0);
+    CHECK_FALSE(position.ends(rest, false, far));  // it leaps
+    CHECK(position.looseness(rest) == 100.0);
+    CHECK_FALSE(position.ends(rest, false, near));  // and goes on to where it leaps to
+    CHECK(position.looseness(rest) == 100.0);
+    CHECK_FALSE(position.ends(rest, true, near));  // there, be its forces small: asked for again, exactly
+    CHECK(position.looseness(rest) == 1.0);
+    CHECK(position.ends(rest, true, near));
+    // What never comes to rest is not followed loosely for ever.
+    position = {.in_stage = rest.most_increments / 2};
+    CHECK_FALSE(position.ends(rest, false, far));
+    CHECK(position.looseness(rest) == 5.0);
+    rest.looseness = 1000.0, position.on_its_way = true;
+    CHECK(position.looseness(rest) == 1000.0);
+}
+
 TEST_CASE(
     "damping that is carried along does not hold back what is driven steadily, to or fro, and what is not driven it holds") {
     const Rod rod;
@@ -644,6 +666,8 @@ TEST_CASE("a loading that cannot be walked is refused before any work") {
     CHECK(refused(loading) == "Ramp.to = nan, but it must be finite");
     loading.stages = {{.looseness = 0.5}};
     CHECK(refused(loading).starts_with("Stage.looseness = 0.5,"));
+    loading.stages = {{.looseness_on_the_way = 2000.0}};
+    CHECK(refused(loading).starts_with("Stage.looseness_on_the_way = 2000,"));
     loading.stages = {{.allowed_penetration = 0.0}};
     CHECK(refused(loading) == "Stage.allowed_penetration = 0, but it must be finite and > 0");
     loading.stages = {{.damping_calm = 0.0}};

@@ -84,6 +84,10 @@ struct Stage {
     std::optional<double> deepest{};
     double patience = 1.0;  ///< on the limit of Newton's iterations: what hardly resists bending converges slowly [1], in [1, 10]
     double looseness = 1.0;  ///< on the tolerances of contact and normal passes, >= 1
+    /// The same, where it is more, from an increment that moved further than `damping_calm` until `until` holds, but not in the
+    /// second half of `most_increments`: what leaps to another equilibrium in a stage that is to end at rest is on its way again,
+    /// and takes many increments that nobody asks for, >= 1.
+    double looseness_on_the_way = 1.0;
     /// Where `until` is true of a loose increment, the stage goes on at looseness 1, and ends once it is true of such a one: what
     /// it ends with is an answer, within the tolerances that are stated.
     bool exact_end = false;
@@ -165,8 +169,8 @@ struct Loading {
             core::require(stage.damping_calm > 0.0, "Stage.damping_calm", stage.damping_calm, "> 0");
             core::require_not_negative("Stage.damping_share", stage.damping_share);
             core::require(stage.largest_displacement > 0.0, "Stage.largest_displacement", stage.largest_displacement, "> 0");
-            core::require(stage.looseness >= 1.0 && stage.looseness <= 1000.0, "Stage.looseness", stage.looseness,
-                          "in [1, 1000]");
+            core::require_between("Stage.looseness", stage.looseness, 1.0, 1000.0);
+            core::require_between("Stage.looseness_on_the_way", stage.looseness_on_the_way, 1.0, 1000.0);
             core::require_between("Stage.patience", stage.patience, 1.0, 10.0);
             if (stage.allowed_penetration) core::require_positive("Stage.allowed_penetration", *stage.allowed_penetration);
             if (stage.deepest) core::require_positive("Stage.deepest", *stage.deepest);

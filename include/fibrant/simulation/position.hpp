@@ -28,6 +28,7 @@ struct Position {
     double mended = std::numeric_limits<double>::infinity();  ///< how deep they are then [length]
     bool following = false;                                   ///< places of crossings are followed
     bool exact = false;                                       ///< the next increment is solved to what is stated
+    bool on_its_way = false;                                  ///< has moved far in the stage, and not been at rest since
     std::pair<Index, double> tried{-1, 0.0};  ///< accepted increments and fraction at which another following was tried last
     std::vector<double> from;                 ///< amplitudes at the start of the stage
     std::vector<double> holding;              ///< damping of each fibre over that of all, >= 1
@@ -81,7 +82,7 @@ struct Position {
             const Stage<M>& next = stages[core::at(stage)];
             if (next.damping_goes_on && next.damping > 0.0) damping = std::min(left / next.damping, 1.0);
         }
-        stage_over = exact = false;
+        stage_over = exact = on_its_way = false;
         // What an attempt that failed asked for is asked for again where it is needed: systems with all crossings followed take
         // several times as many iterations where fibres are hardly held.
         following = false, tried = {-1, 0.0};
@@ -94,10 +95,11 @@ struct Position {
     }
 
     /// What was mended without success is solved to what is stated: a state that only nearly balances does not show what a mend
-    /// does.
+    /// does. What is on its way is solved as loosely as a path is.
     template <Model M>
     double looseness(const Stage<M>& present) const noexcept {
-        return mends > 1 || exact ? 1.0 : present.looseness;
+        if (mends > 1 || exact) return 1.0;
+        return on_its_way ? std::max(present.looseness, present.looseness_on_the_way) : present.looseness;
     }
 
     /// Whether a stage ends with an increment of which its `until` holds: one that is asked for an exact end with one that is
@@ -107,6 +109,8 @@ struct Position {
     bool ends(const Stage<M>& present, bool settled, const IncrementReport& increment) noexcept {
         const bool stated = !present.exact_end || looseness(present) <= 1.0 || increment.use.greatest() <= 1.0;
         exact = present.exact_end && ((settled && !stated) || (exact && increment.cuts == 0));
+        const bool far = increment.displacement > present.damping_calm;
+        on_its_way = 2 * in_stage < present.most_increments && (far || (on_its_way && !settled));
         if (present.follows_briefly && increment.cuts == 0) following = false;
         return settled && stated;
     }
@@ -181,7 +185,7 @@ private:
         body(self.progress), body(self.fraction), body(self.displacement), body(self.mends), body(self.mended);
         Calming::each_of(self.calming, body);
         body(self.damping), body(self.damping_floor), body(self.stage_over), body(self.following), body(self.exact),
-            body(self.tried.first), body(self.tried.second);
+            body(self.on_its_way), body(self.tried.first), body(self.tried.second);
         for (auto& amplitude : self.from) body(amplitude);
         for (auto& factor : self.holding) body(factor);
     }

@@ -127,6 +127,9 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     rest.until = until_settled(settle.rest_motion_over_radius * r, parted, share_at_rest);
     rest.enough_increments = std::numeric_limits<Index>::max();
     rest.deepest = allowed, rest.looseness = 5.0, rest.exact_end = true, rest.damping_goes_on = true;
+    // With hardly any damping left an equilibrium may turn out to be unstable: a tube of crossing helices necks, and goes radii
+    // to the next one.
+    rest.looseness_on_the_way = settle.looseness;
     // Fibres that nothing holds, at rest as they begin, push on each other less and less while they part: no force is left that
     // damping could be small against, and rest is that they move no more.
     if (!scales.driven)
