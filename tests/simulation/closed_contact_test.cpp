@@ -2,9 +2,7 @@
 // Closed fibres in contact: with each other, and with themselves.
 #include "simulation/closed_rings.hpp"
 
-#include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/simulation/refined_state.hpp>
-#include <fibrant/solver/two_level_pcg.hpp>
 
 #include <doctest/doctest.h>
 
@@ -18,16 +16,11 @@ namespace closed_contact_test {
 
 using test::pi;
 
-struct Rubbing {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::TwoLevelPcg;
-};
+using Rubbing = test::EveryDirector;
 
 simulation::ModelParameters<Rubbing> parameters(double radius, double friction) {
     simulation::ModelParameters<Rubbing> p;
+    p.solver.strategy = "two_level_pcg";
     p.normal.regularisation_depth = 1e-3 * radius;
     p.contact.stiffness.allowed_penetration = 1e-2 * radius;
     p.friction = {.friction_coefficient = friction, .reversible_displacement = 1e-2 * radius};

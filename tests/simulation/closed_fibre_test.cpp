@@ -3,9 +3,6 @@
 #include "refusal.hpp"
 #include "simulation/closed_rings.hpp"
 
-#include <fibrant/beam/rigid_section_rod.hpp>
-#include <fibrant/solver/any_solver.hpp>
-
 #include <doctest/doctest.h>
 
 #include <cstdio>
@@ -17,18 +14,9 @@ namespace closed_fibre_test {
 using test::pi;
 using test::Ring;
 
-template <beam::BeamElement BeamElement>
-struct AnyModel {
-    using Beam = BeamElement;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::Frictionless;
-    using Solver = solver::AnySolver;
-};
-
 template <beam::BeamElement B>
-simulation::ModelParameters<AnyModel<B>> parameters(const Ring& ring, const std::string& strategy) {
-    simulation::ModelParameters<AnyModel<B>> p = test::ring_parameters<AnyModel<B>>(ring);
+simulation::ModelParameters<test::Every<B>> parameters(const Ring& ring, const std::string& strategy) {
+    simulation::ModelParameters<test::Every<B>> p = test::ring_parameters<test::Every<B>>(ring);
     p.solver.strategy = strategy;
     return p;
 }
@@ -40,7 +28,7 @@ struct Diameters {
 /// Change of the diameters of a ring under two forces F R^2 / EI = `load` apart along y, over F R^3 / EI.
 template <beam::BeamElement B>
 Diameters pulled(const Ring& ring, double load, const std::string& strategy) {
-    using M = AnyModel<B>;
+    using M = test::Every<B>;
     scene::Assembly assembly;
     assembly.add(ring.specification<B>());
     assembly.hold_position(ring.at<B>(0.75));
@@ -116,7 +104,7 @@ TEST_CASE("all strategies give the same ring") {
 
 TEST_CASE("Love's ring: under line pressure an ellipse grows as 1 / (1 - p / p_c), p_c = 3 EI / R^3") {
     using B = beam::DirectorBeam<3>;
-    using M = AnyModel<B>;
+    using M = test::Every<B>;
     Ring ring{.elements = 40, .radius = 0.01, .ellipse = 1e-4};
     for (const double load : {1.5, 2.4}) {
         scene::Assembly assembly;
@@ -146,7 +134,7 @@ TEST_CASE("Love's ring: under line pressure an ellipse grows as 1 / (1 - p / p_c
 
 TEST_CASE("Michell's ring: a straight rod that is closed with a twist leaves its plane beyond sqrt(3) EI / GJ turns") {
     using B = beam::DirectorBeam<3>;
-    using M = AnyModel<B>;
+    using M = test::Every<B>;
     // Forces f cos 2 theta across the plane move it by f / (A - B twist^2): two twists tell where that has no bound.
     const auto compliance = [](double turns) {
         Ring ring{.elements = 40, .radius = 0.005, .straight = true, .twist = 2.0 * pi * turns};

@@ -2,11 +2,7 @@
 #pragma once
 /// @file Closed rings for tests, of unit radius and bending stiffness.
 
-#include <fibrant/beam/director_beam.hpp>
-#include <fibrant/law/frictionless.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/simulation/simulator.hpp>
+#include <support/models.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -50,6 +46,8 @@ simulation::ModelParameters<M> ring_parameters(const Ring& ring) {
     simulation::ModelParameters<M> parameters;
     parameters.normal.regularisation_depth = 1e-3 * ring.radius;
     parameters.contact.stiffness.allowed_penetration = 1e-2 * ring.radius;
+    if constexpr (core::Active<typename M::Friction>)
+        parameters.friction = {.friction_coefficient = 0.0, .reversible_displacement = 1e-2 * ring.radius};
     parameters.iteration.step_tolerance = 1e-9;
     parameters.iteration.residual_tolerance = 1e-7;
     parameters.iteration.linear_tolerance = 1e-10;

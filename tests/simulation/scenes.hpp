@@ -85,7 +85,7 @@ struct Crossing {
 /// Parameters that the models above need; lengths in multiples of `radius`.
 template <simulation::Model M>
 simulation::ModelParameters<M> model_parameters(double radius) {
-    simulation::ModelParameters<M> parameters;
+    simulation::ModelParameters<M> parameters = direct_parameters<M>();
     parameters.normal.regularisation_depth = 1e-3 * radius;
     parameters.contact.stiffness.allowed_penetration = 1e-2 * radius;
     if constexpr (core::Active<typename M::Friction>)

@@ -2,12 +2,7 @@
 // The same scenes over thirty decades of length and of modulus, by each solver: no number of the program is one of millimetres.
 #include "simulation/scenes.hpp"
 
-#include <fibrant/beam/kirchhoff_cable.hpp>
-#include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/compositions/strand/strand.hpp>
-#include <fibrant/connection/rigid_bodies.hpp>
-#include <fibrant/contact/contacts_with_tools.hpp>
-#include <fibrant/solver/any_solver.hpp>
 
 #include <doctest/doctest.h>
 
@@ -20,17 +15,6 @@ using namespace fibrant;
 namespace units_test {
 
 using simulation::Ramp;
-
-template <class B, class Linear>
-struct Model {
-    using Beam = B;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = Linear;
-    using Tools = contact::RigidTools;
-    using Connections = connection::RigidBodies;
-};
 
 /// A scene whose lengths are given in `length`, and whose moduli in `modulus`.
 struct Scene {
@@ -98,9 +82,9 @@ struct Outcome {
 };
 
 template <simulation::Model M>
-Outcome run(const Scene& scene, double length, double modulus, const typename M::Solver::Parameters& solver) {
+Outcome run(const Scene& scene, double length, double modulus, const char* strategy) {
     auto parameters = test::tight_parameters<M>(r * length);
-    parameters.solver = solver;
+    parameters.solver.strategy = strategy;
     parameters.iteration.newton_limit = 40;
     // Passes that end a pass earlier or later by rounding must not differ by more than is asked of digits.
     parameters.iteration.normal_step_tolerance = 1e-8, parameters.iteration.contact_tolerance = 1e-7;
@@ -134,12 +118,10 @@ struct Units {
 /// What is left is the rounding of the scene's numbers, and what iterations make of it; of powers of two there is next to none.
 /// @param tolerance  of places; forces and energies of contact are those of a penetration of 1e-2 r, in which places are a
 /// hundredth as exact
-template <class B, class Linear>
-void check_any_units(const char* name, Scene (*build)(double, double), const typename Linear::Parameters& solver = {},
-                     double tolerance = 1e-9) {
-    using M = Model<B, Linear>;
+template <class M>
+void check_any_units(const char* name, Scene (*build)(double, double), const char* strategy, double tolerance = 1e-9) {
     const auto of = [&](const Units& units) {
-        return run<M>(build(units.length, units.modulus), units.length, units.modulus, solver);
+        return run<M>(build(units.length, units.modulus), units.length, units.modulus, strategy);
     };
     const Outcome one = of({1.0, 1.0});
     CAPTURE(name);
@@ -170,25 +152,23 @@ void check_any_units(const char* name, Scene (*build)(double, double), const typ
 }
 
 TEST_CASE("scenes of director beams are the same in any units, by each solver") {
-    using Beam = beam::DirectorBeam<3>;
     for (const char* strategy : solver::AnySolver::strategies) {
-        const solver::AnySolver::Parameters parameters{.strategy = strategy};
         CAPTURE(strategy);
         std::printf("%s\n", strategy);
-        check_any_units<Beam, solver::AnySolver>("  cantilever", cantilever, parameters);
-        check_any_units<Beam, solver::AnySolver>("  crossing", crossing, parameters);
-        check_any_units<Beam, solver::AnySolver>("  strand", strand, parameters);
-        check_any_units<Beam, solver::AnySolver>("  tied", tied, parameters);
-        check_any_units<Beam, solver::AnySolver>("  pushed", pushed, parameters);
+        check_any_units<test::EveryDirector>("  cantilever", cantilever, strategy);
+        check_any_units<test::EveryDirector>("  crossing", crossing, strategy);
+        check_any_units<test::EveryDirector>("  strand", strand, strategy);
+        check_any_units<test::EveryDirector>("  tied", tied, strategy);
+        check_any_units<test::EveryDirector>("  pushed", pushed, strategy);
     }
 }
 
 TEST_CASE("so are those of rods of rigid sections and of cables") {
-    check_any_units<beam::RigidSectionRod, solver::FibreBlockPcg>("cantilever, rod", cantilever);
-    check_any_units<beam::RigidSectionRod, solver::FibreBlockPcg>("crossing, rod", crossing);
-    check_any_units<beam::RigidSectionRod, solver::FibreBlockPcg>("pushed, rod", pushed);
-    check_any_units<beam::KirchhoffCable, solver::FibreBlockPcg>("cantilever, cable", cantilever);
-    check_any_units<beam::KirchhoffCable, solver::FibreBlockPcg>("crossing, cable", crossing);
+    check_any_units<test::EveryRod>("cantilever, rod", cantilever, "fibre_block_pcg");
+    check_any_units<test::EveryRod>("crossing, rod", crossing, "fibre_block_pcg");
+    check_any_units<test::EveryRod>("pushed, rod", pushed, "fibre_block_pcg");
+    check_any_units<test::EveryCable>("cantilever, cable", cantilever, "fibre_block_pcg");
+    check_any_units<test::EveryCable>("crossing, cable", crossing, "fibre_block_pcg");
 }
 
 }  // namespace units_test

@@ -5,8 +5,6 @@
 
 #include <support/models.hpp>
 
-#include <fibrant/law/augmented.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,11 +15,6 @@
 namespace fibrant::test {
 
 using StableModel = Rough;
-
-/// Multipliers that complete the penalty.
-struct MultipliedModel : StableModel {
-    using Normal = law::Augmented<law::RegularisedPenalty>;
-};
 
 /// How an end is held.
 enum class Held { free, pinned, clamped };

@@ -101,7 +101,7 @@ TEST_CASE("a penalty of any stiffness over six decades is a spring in a row with
     for (const double penalty : penalties) {
         CAPTURE(penalty);
         const SmallScene scene = held_at(penalty);
-        const SmallResult alone = run(scene), multiplied = run<MultipliedModel>(scene);
+        const SmallResult alone = run(scene), multiplied = run<Multiplied>(scene);
         CAPTURE(alone.report.reason);
         CAPTURE(multiplied.report.reason);
         CHECK(alone.report.converged);

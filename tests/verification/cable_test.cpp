@@ -3,8 +3,6 @@
 // two of the references: inextensible, and extensible and shearable; they are (r/L)^2 apart in bending.
 #include <verification/elements.hpp>
 
-#include <fibrant/beam/kirchhoff_cable.hpp>
-
 #include <near.hpp>
 
 #include <doctest/doctest.h>
@@ -13,7 +11,7 @@ using namespace fibrant;
 
 namespace cable_test {
 
-using Model = test::PlainModel<beam::KirchhoffCable>;
+using Model = test::EveryCable;
 
 /// What shear, which the cable leaves out, takes off the force on the middle of a clamped fibre at most: 24 (1 + nu) (r/L)^2 of
 /// bending, and N / (G A) of the tension along the four bending layers of the length r / (2 strain^(1/2)).

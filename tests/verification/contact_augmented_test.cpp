@@ -13,14 +13,10 @@ using namespace fibrant;
 
 namespace contact_augmented_test {
 
+using Held = test::Multiplied;
 using test::Smooth;
 
 const double r = 0.0201;
-
-struct Held : Smooth {
-    using Normal = law::Augmented<law::RegularisedPenalty>;
-    using Tools = contact::RigidTools;
-};
 
 template <simulation::Model M>
 simulation::ModelParameters<M> parameters(double fraction, double largest) {
@@ -28,6 +24,8 @@ simulation::ModelParameters<M> parameters(double fraction, double largest) {
     simulation::ModelParameters<M> own;
     own.contact = all.contact, own.iteration = all.iteration;
     own.iteration.multiplier_limit = 40;
+    if constexpr (core::Active<typename M::Friction>)
+        own.friction = {.friction_coefficient = 0.0, .reversible_displacement = 0.02 * r};
     if constexpr (law::Augmenting<typename M::Normal>) {
         own.normal = {.law = {.regularisation_depth = 1e-3 * r}, .largest_penetration = largest};
     } else {

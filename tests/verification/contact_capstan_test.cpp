@@ -55,7 +55,7 @@ struct Drawn {
 
 using Tooled = test::RoughPressing;
 /// Sections do not give way, as those of the reference.
-using RigidTooled = test::RoughRods;
+using RigidTooled = test::EveryRod;
 /// Friction without its lever.
 struct CentreTooled : Tooled {
     using Beam = beam::OnCentreline<beam::DirectorBeam<3>, beam::FrictionLever::dropped>;
@@ -112,7 +112,7 @@ std::vector<Drawn> draw(double mu, double travel, double tension, double spacing
         assembly.hold_position({fibre, static_cast<double>(k) / static_cast<double>(intervals * elements)}, across);
     assembly.hold_axial_rotation(scene::first_end(fibre));
 
-    simulation::ModelParameters<M> parameters;
+    simulation::ModelParameters<M> parameters = test::direct_parameters<M>();
     parameters.normal.regularisation_depth = 0.1 * allowed;
     parameters.contact.stiffness.allowed_penetration = allowed;
     const double range = 0.02 * r;

@@ -2,14 +2,7 @@
 #pragma once
 /// @file Reference problems of one rod, run through the simulator with any beam element.
 
-#include <fibrant/beam/rigid_section_rod.hpp>
-#include <fibrant/contact/contacts_with_tools.hpp>
-#include <fibrant/law/frictionless.hpp>
-#include <fibrant/law/regularised_coulomb.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/simulation/simulator.hpp>
-#include <fibrant/solver/sparse_cholesky.hpp>
+#include <support/models.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -18,24 +11,9 @@
 
 namespace fibrant::test {
 
-/// A frictionless model of a beam.
-template <beam::BeamElement B>
-struct PlainModel {
-    using Beam = B;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::Frictionless;
-    using Solver = solver::SparseCholesky;
-};
-/// Rods of rigid sections among tools, with friction.
-struct RoughRods : PlainModel<beam::RigidSectionRod> {
-    using Friction = law::RegularisedCoulomb;
-    using Tools = contact::RigidTools;
-};
-
 template <simulation::Model M>
 simulation::ModelParameters<M> exact_parameters() {
-    simulation::ModelParameters<M> parameters;
+    simulation::ModelParameters<M> parameters = direct_parameters<M>();
     parameters.normal.regularisation_depth = 1e-5;
     parameters.contact.stiffness.allowed_penetration = 1e-4;
     parameters.iteration.step_tolerance = 1e-9;

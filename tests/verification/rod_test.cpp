@@ -15,7 +15,7 @@ using namespace fibrant;
 
 namespace rod_test {
 
-using Model = test::RoughRods;
+using Model = test::EveryRod;
 const double pi = std::numbers::pi;
 TEST_CASE("a cantilever of rods converges with the second order at any slenderness") {
     const struct {

@@ -95,11 +95,22 @@ Matrix whole_slide(const Slide& slide) {
     const Index rows = slide.rows.rows(), columns = slide.rows.cols();
     Matrix half = Matrix::Zero(columns, rows), whole = Matrix::Zero(columns, columns);
     for (Index c = 0; c < rows; ++c)
-        for (Index r = 0; r < columns; ++r)
-            for (Index k = 0; k < rows; ++k) half(r, c) += slide.rows(k, r) * slide.stiffness(k, c);
+        for (Index k = 0; k < rows; ++k) {
+            const double factor = slide.stiffness(k, c);
+            if (factor == 0.0) continue;
+            for (Index r = 0; r < columns; ++r) half(r, c) += slide.rows(k, r) * factor;
+        }
     for (Index c = 0; c < columns; ++c)
-        for (Index k = 0; k < rows; ++k)
-            for (Index r = 0; r < columns; ++r) whole(r, c) += half(r, k) * slide.rows(k, c);
+        for (Index k = 0; k < rows; ++k) {
+            const double factor = slide.rows(k, c);
+            if (factor == 0.0) continue;  // most rows know one of the two fibres alone
+            double* const to = whole.data() + c * columns;
+            const double* const from = half.data() + k * columns;
+#ifdef _OPENMP
+#pragma omp simd
+#endif
+            for (Index r = 0; r < columns; ++r) to[r] += from[r] * factor;
+        }
     return whole;
 }
 

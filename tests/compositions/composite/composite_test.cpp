@@ -8,14 +8,13 @@
 #include <fibrant/beam/director_beam.hpp>
 #include <fibrant/connection/bonded_solid.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>
-#include <fibrant/law/frictionless.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
 #include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/float_block_cholesky.hpp>
 #include <fibrant/solver/solid_pcg.hpp>
 
 #include <near.hpp>
+#include <support/models.hpp>
 
 #include <doctest/doctest.h>
 
@@ -350,15 +349,8 @@ TEST_CASE(
     CHECK(test::refusal([&] { Simulator(wrong, parameters(1e6)); }).starts_with("connection"));
 }
 
-/// Fibres alone, with the edges of a composite.
-struct Dry {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::Frictionless;
-    using Connections = connection::RigidBodies;
-    using Solver = solver::FloatBlockCholesky;
-};
+/// Fibres alone, with the edges of a composite, without friction.
+using Dry = test::EveryDirector;
 
 TEST_CASE(
     "edges that turn take along every fibre end, or the mean of each tow's: then its ends keep their places beside each other") {
@@ -385,6 +377,8 @@ TEST_CASE(
         scene.length = fabric.fibre_length(compositions::weave::Family::warp);
         composite::tie_edges(scene, fabric, {}, load);
         simulation::ModelParameters<Dry> dry;
+        dry.solver.strategy = "float_block_cholesky";
+        dry.friction = {.friction_coefficient = 0.0, .reversible_displacement = 1e-3 * radius};
         dry.normal = parameters(1.0).normal, dry.contact = parameters(1.0).contact, dry.iteration = parameters(1.0).iteration;
         simulation::Loading<Dry> loading;
         loading.stages.resize(1);

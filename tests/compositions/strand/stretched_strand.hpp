@@ -2,13 +2,9 @@
 #pragma once
 /// @file Strands of a core and six wires, and the reference of them that tests compare with.
 
-#include <fibrant/beam/director_beam.hpp>
+#include <support/models.hpp>
+
 #include <fibrant/compositions/strand/strand.hpp>
-#include <fibrant/law/augmented.hpp>
-#include <fibrant/law/frictionless.hpp>
-#include <fibrant/law/regularised_penalty.hpp>
-#include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/sparse_cholesky.hpp>
 
 namespace strand_test {
 
@@ -16,13 +12,7 @@ using namespace fibrant;
 
 namespace strand = compositions::strand;
 
-struct Frictionless {
-    using Beam = beam::DirectorBeam<3>;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::Augmented<law::RegularisedPenalty>;
-    using Friction = law::Frictionless;
-    using Solver = solver::SparseCholesky;
-};
+using Frictionless = test::Multiplied;
 
 /// strand_1_6.json, results.director.
 struct Case {
@@ -46,6 +36,7 @@ inline strand::StrandParameters strand_of(const Case& c) {
 
 inline simulation::ModelParameters<Frictionless> model(double r) {
     simulation::ModelParameters<Frictionless> parameters;
+    parameters.friction = {.friction_coefficient = 0.0, .reversible_displacement = 0.02 * r};
     parameters.normal = {.law = {.regularisation_depth = 1e-4 * r}, .largest_penetration = 1e-6 * r};
     parameters.contact.stiffness.allowed_penetration = 1e-3 * r;
     parameters.contact.stiffness.initial_fraction = 0.2;
