@@ -19,7 +19,7 @@ public:
     /// Part of secants that is left for the step after the next: without any, every other step goes too far again.
     static constexpr double kept = 0.25;
     /// Part of its stiffness by which a contact that is open, but near, holds a fibre to its neighbour, and how near that is. By
-    /// trial on weaves of 608 fibres: a tenth of the stiffness hides what is out of balance, a thousandth does as well.
+    /// trial on 608 fibres at rest: a tenth of the stiffness hides what is out of balance, a thousandth does as well.
     static constexpr double held = 1e-2, near = 0.1;  // [1], [radius]
 
     bool empty() const noexcept { return ends_.empty() && secants_.empty() && !(within_ > 0.0); }
