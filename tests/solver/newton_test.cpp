@@ -453,6 +453,12 @@ TEST_CASE("after a step that is cut to a small part, slack fibres are held to th
     CHECK((learned.stiffness(pairs, 0) - contact::LearnedContacts::held * 50.0 * Mat3::Identity()).norm() < 1e-12);
     CHECK(learned.stiffness(pairs, 1).norm() + learned.stiffness(pairs, 2).norm() == 0.0);
     for (const Index k : {0, 1, 2}) CHECK(learned.force(pairs, k).norm() == 0.0);
+    learned.let_go();  // after a step that was not: pairs that are to slide past each other are not held for ever
+    const double left = contact::LearnedContacts::held * contact::LearnedContacts::kept;
+    CHECK((learned.stiffness(pairs, 0) - left * 50.0 * Mat3::Identity()).norm() < 1e-12);
+    for (int k = 0; k < 5; ++k) learned.let_go();
+    CHECK(learned.empty());
+    learned.hold_near(radius);
     learned.clear();
     CHECK(learned.empty());
 

@@ -20,14 +20,16 @@ public:
     static constexpr double kept = 0.25;
     /// Part of its stiffness by which a contact that is open, but near, holds a fibre to its neighbour, and how near that is. By
     /// trial on 608 fibres at rest: a tenth of the stiffness hides what is out of balance, a thousandth does as well.
-    static constexpr double held = 1e-2, near = 0.1;  // [1], [radius]
+    static constexpr double held = 1e-2, near = 0.1, least_held = 1e-2;  // [1], [radius], over the first [1]
 
-    bool empty() const noexcept { return ends_.empty() && secants_.empty() && !(within_ > 0.0); }
-    void clear() noexcept { ends_.clear(), secants_.clear(), within_ = 0.0; }
+    bool empty() const noexcept { return ends_.empty() && secants_.empty() && holding_ == 0.0; }
+    void clear() noexcept { ends_.clear(), secants_.clear(), holding_ = 0.0; }
     /// From the next step on, to be called after a step that had to be cut to a small part. Slack fibres, which hardly anything
     /// touches, send each step far away and are cut for all. In tangents alone they are held to those beside them: they go where
     /// these go, which springs to places would hinder.
-    void hold_near(double radius) noexcept { within_ = near * radius; }
+    void hold_near(double radius) noexcept { holding_ = held, within_ = near * radius; }
+    /// After any other step. As of secants, a part is left for the next one.
+    void let_go() noexcept { holding_ = holding_ > least_held * held ? kept * holding_ : 0.0; }
 
     /// What comes to the tangent of element k, symmetric and positive semidefinite [force / length].
     template <class Contacts>
@@ -37,8 +39,8 @@ public:
         Mat3 sum = secants_.empty() ? Mat3::Zero() : secants_[core::at(k)].friction;
         if (closes(k))
             sum += std::max(0.0, now.slope - ends_[core::at(k)].slope) * element.normal * element.normal.transpose();
-        else if (now.slope == 0.0 && now.gap < within_)
-            sum += held * contacts.stiffness(element) * Mat3::Identity();
+        else if (now.slope == 0.0 && holding_ > 0.0 && now.gap < within_)
+            sum += holding_ * contacts.stiffness(element) * Mat3::Identity();
         return sum;
     }
     /// What comes to the force of element k [force].
@@ -128,7 +130,7 @@ private:
     std::vector<ContactResponse> ends_;        // that contacts are taken as closed about; empty where there are none
     std::vector<Secant> secants_;              // empty where no step went too far
     std::vector<ContactResponse> remembered_;  // of contacts that balanced
-    double within_ = 0.0;                      // gap of contacts that hold fibres to their neighbours; 0: none do [length]
+    double holding_ = 0.0, within_ = 0.0;      // part of its stiffness by which a contact that is so near holds; gap [length]
 };
 
 }  // namespace fibrant::contact

@@ -123,7 +123,7 @@ private:
         bool rehearsed = false;
         Index astray = 0;  // attempts that have not settled
         const std::string present = "stage " + stage.name + ", increment " + std::to_string(position_.accepted + 1) + ": ";
-        const bool touching = mesh_.line_count() > 1 || parameters_.contact.detection.self_contact || HasTools<M>;
+        const bool touching = mesh_.line_count() > 1 || parameters_.contact.detection.self_contact || !tool_channels_.empty();
         while (true) {
             if (position_.gives_up(stage, report)) {
                 report.reason = position_.not_ended(stage, report) + (deep_.empty() ? deepest_unparted(stage, *this) : deep_);
