@@ -3,7 +3,6 @@
 // followed; and what the report says where a stage asks for less.
 #include "simulation/scenes.hpp"
 
-#include <fibrant/beam/rigid_section_rod.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
 
 #include <near.hpp>
@@ -24,10 +23,6 @@ using test::Smooth;
 
 const double r = 0.02, pi = std::numbers::pi, young = 7300.0, poisson = 0.3;
 
-struct Rigid : Smooth {
-    using Beam = beam::RigidSectionRod;
-};
-
 struct Failures {
     std::vector<simulation::FailedAttempt> attempts{};
     void gave_up(const simulation::FailedAttempt& attempt) { attempts.push_back(attempt); }
@@ -38,7 +33,7 @@ scene::FibreSpecification fibre(const Vec3& from, const Vec3& to, Index elements
 }
 
 TEST_CASE_TEMPLATE("a straight rod whose end is turned by any number of turns in one increment has the torque of all of them", M,
-                   Smooth, Rigid) {
+                   Smooth, test::EveryRod) {
     const double length = 400.0 * r, stiffness = young / (2.0 * (1.0 + poisson)) * 0.5 * pi * std::pow(r, 4);
     for (const double turns : {0.1, 0.25, 0.45, 0.55, 1.0, 1.5, -1.25}) {
         CAPTURE(turns);  // fewer than 1.86, where it buckles (Greenhill)
