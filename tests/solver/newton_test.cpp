@@ -462,8 +462,8 @@ TEST_CASE("after a step that is cut to a small part, slack fibres are held to th
     learned.clear();
     CHECK(learned.empty());
 
-    // Three slack nodes that a push sends a thousand times as far as their walls are: the next tangent holds them along the
-    // walls.
+    // Three nodes that a push sends a thousand times as far as their walls are: the next tangent holds the fourth to its wall,
+    // which no step met.
     const auto steps = [](double overshoot) {
         Walls walls(4);
         Pushed<true> problem(walls);
