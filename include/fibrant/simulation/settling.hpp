@@ -115,7 +115,7 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     Stage<M> relaxation = handover;
     relaxation.name = "relaxation";
     // What is released moves on all the same: how far it crept before tells little of where it comes to rest. By trial on
-    // 152 and 608 fibres: crimp within a hundredth, half the increments.
+    // 608 fibres: the same crimp before rest, a fourth of the increments less.
     if (pull.drawn && released) {
         handover.damping_share *= 4.0, handover.damping_calm *= 1.7;
         handover.until = until_settled(motion, parted, handover.damping_share);
