@@ -117,7 +117,8 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     // What is released moves on all the same: how far it crept before tells little of where it comes to rest. By trial on
     // 608 fibres: the same crimp before rest, a fourth of the increments less.
     if (pull.drawn && released) {
-        handover.damping_share *= 4.0, handover.damping_calm *= 1.7;
+        const double sooner = 4.0, further = 1.7;  // over relaxation's
+        handover.damping_share *= sooner, handover.damping_calm *= further;
         handover.until = until_settled(motion, parted, handover.damping_share);
     }
     relaxation.friction.reset();

@@ -173,8 +173,10 @@ public:
                 state = before_ + step_;
                 report.residual = arrive(state, mixed);
             }
-            if (watched) scale *= shorten(scale * slope, state, report.residual, mixed);
-            if (watched) scale < with::hard_cut ? equilibrium.learned().hold_near(radius_) : equilibrium.learned().let_go();
+            if (watched) {
+                scale *= shorten(scale * slope, state, report.residual, mixed);
+                scale < with::hard_cut ? equilibrium.learned().hold_near(radius_) : equilibrium.learned().let_go();
+            }
             if (mixed && !iterated) clock_->time(core::Part::assembly, [&] { equilibrium.predict_stresses(before_, step_); });
             ++report.iterations, ++counts.newton, report.indefinite += shifted_ > 0 ? 1 : 0;
             report.step = equilibrium.greatest(step_);

@@ -12,7 +12,7 @@ using namespace fibrant;
 
 namespace strand = compositions::strand;
 
-using Frictionless = test::Multiplied;
+using Frictionless = test::Multiplied;  // with a coefficient of 0
 
 /// strand_1_6.json, results.director.
 struct Case {
