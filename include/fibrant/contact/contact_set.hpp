@@ -15,6 +15,7 @@
 #include <fibrant/contact/side_index.hpp>
 #include <fibrant/contact/station_pairs.hpp>
 #include <fibrant/contact/watched_places.hpp>
+#include <fibrant/core/blocks.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +49,7 @@ public:
     const Normal& normal_law() const noexcept { return normal_; }
     Friction& friction_law() noexcept { return friction_; }
     ContactParameters& parameters() noexcept { return parameters_; }
-    const std::vector<Element>& elements() const noexcept { return elements_; }
+    const core::Blocks<Element>& elements() const noexcept { return elements_; }
     const std::vector<ContactResponse>& responses() const noexcept { return responses_; }
     const std::vector<law::FrictionAnswer<Friction>>& frictions() const noexcept { return frictions_; }
     const std::vector<Zone>& zones() const noexcept { return zones_; }
@@ -146,6 +147,7 @@ public:
     /// Fibres along each other as they stood in another state; `turn_forth` takes back what it returns.
     auto turn_back(const Vector& start) {
         std::vector<std::pair<Vec3, MeetingPoint<B>>> present;
+        present.reserve(elements_.size());
         for (const Element& element : elements_) present.emplace_back(element.normal, element.meeting);
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
@@ -310,14 +312,15 @@ private:
 
     void generate(const Vector& end, const Vector& accepted, const Memory& memory, const Vector& state) {
         elements_.clear();
-        // Some zones at a time, enough for many threads: what they make is not twice in memory.
-        const Index some = std::max<Index>(4096, core::count(zones_) / 32);
+        // Some zones at a time: what they make is not twice in memory.
+        const Index some = std::max<Index>(1024, core::count(zones_) / 32);
         for (Index first = 0; first < core::count(zones_); first += some)
             generate(first, std::min(core::count(zones_), first + some), end, accepted, memory, state);
+        elements_.trim();
     }
-    /// Of zones [from, to), behind those that there are.
+    /// Of zones [from, to).
     void generate(Index from, Index to, const Vector& end, const Vector& accepted, const Memory& memory, const Vector& state) {
-        constexpr Index block = 64;  // zones
+        constexpr Index block = 16;  // zones
         const Index blocks = (to - from + block - 1) / block;
         std::vector<std::vector<Element>> made(core::at(blocks));
         const double forced_keep = 0.5;  // radii of clearance beyond which a forced pair needs no element
@@ -361,7 +364,7 @@ private:
             for (Index z = from + b * block; z < std::min(to, from + (b + 1) * block); ++z)
                 zones_[core::at(z)].first += offset, zones_[core::at(z)].last += offset;
         }
-        core::join(made, elements_, elements_.size());
+        elements_.append(made);
     }
 
     /// The closest patches, and what stands until normals are renewed: where friction acts, so that it has a potential. @returns
@@ -432,7 +435,7 @@ private:
     Normal normal_;
     [[no_unique_address]] Friction friction_;
     std::vector<Zone> zones_, accepted_zones_;
-    std::vector<Element> elements_;
+    core::Blocks<Element> elements_;
     std::vector<ContactResponse> responses_;
     std::vector<law::FrictionAnswer<Friction>> frictions_;
     SideIndex sides_;
