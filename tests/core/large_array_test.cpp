@@ -32,6 +32,23 @@ TEST_CASE("a large array is aligned for vectors, in large pages from 4 MiB on, a
     CHECK(none.size() == 0);
 }
 
+TEST_CASE("a vector that is made larger a little at a time has room for an eighth more, not for as many again") {
+    std::vector<Index> written, added;
+    for (std::size_t size = 1000; size < 100'000; size += size / 20) {
+        core::resize_anew(written, size);
+        CHECK(written.size() == size);
+        CHECK(written.capacity() <= size + size / 8);
+        for (auto k = static_cast<Index>(added.size()); k < static_cast<Index>(size); ++k) {
+            core::reserve_for(added, added.size() + 1);
+            added.push_back(k);
+        }
+        CHECK(added.capacity() <= size + size / 8);
+    }
+    for (std::size_t k = 0; k < added.size(); ++k) REQUIRE(added[k] == static_cast<Index>(k));
+    core::release(added);
+    CHECK(added.capacity() == 0);
+}
+
 TEST_CASE("blocks hold what is put behind, stay where they are as they grow, and give back what is far beyond their size") {
     using Blocks = core::Blocks<Index>;
     Blocks all;

@@ -391,6 +391,7 @@ private:
                 tangent += learned;
             }
             const auto& element = elements[core::at(k)];
+            core::reserve_for(points, points.size() + 1);
             points.push_back({element.first_i, element.first_j, element.fibre_i, element.fibre_j, element.weights_i,
                               element.weights_j, tangent});
             if (!contacts_->follows()) continue;

@@ -115,8 +115,8 @@ public:
     /// @param start  the last accepted one: nothing has slipped, however pairs have turned; twice as deep as its zone was, none
     /// touched, unless contact acts within an increment: what it gives then counts from there
     void evaluate(const Vector& state, bool start = false) {
-        responses_.resize(elements_.size());
-        if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
+        core::resize_anew(responses_, elements_.size());
+        if constexpr (core::Active<Friction>) core::resize_anew(frictions_, elements_.size());
         const Vector& acting = acting_.of(normal_, state);
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];

@@ -81,7 +81,7 @@ public:
     void begin_step(const Contacts& contacts) {
         ends_.clear();
         for (Secant& one : secants_) one.friction = one.before = kept * one.friction;
-        start_.resize(contacts.elements().size());
+        core::resize_anew(start_, contacts.elements().size());
         core::parallel_for(
             core::count(start_),
             [&](Index k) {
@@ -95,7 +95,7 @@ public:
     /// @param step  of all unknowns
     template <class Contacts>
     void learn(const Contacts& contacts, const Vector& step) {
-        ends_.resize(start_.size()), secants_.resize(start_.size());
+        core::resize_anew(ends_, start_.size()), secants_.resize(start_.size());
         core::parallel_for(
             core::count(start_),
             [&](Index k) {
