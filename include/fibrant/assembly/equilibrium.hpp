@@ -285,6 +285,7 @@ public:
                     scene::for_own_vectors(system_.layout(), f, [&](Index v, double length) {
                         system_.add_diagonal(v, springs * length * length * Mat3::Identity());
                     });
+                system_.close(f);
             },
             mesh_->grain());
         StiffnessSink<System, B, moves> sink{system_, *mesh_, state};
