@@ -80,18 +80,18 @@ public:
     /// y += F S x, S the part that is not symmetric, for an x that lies within the free directions.
     void apply_skews(const Vector& free, Vector& y) const {
         const Vector& x = with_images(free);
-        free_.setZero(x.size());
+        Vector forces = Vector::Zero(x.size());
         for (const Skew& skew : skews_) {
             const Point& point = points_[core::at(skew.point)];
             const Vec3 apart = beam::Mesh<B>::motion(x, point.first_j, point.weights_j) -
                                beam::Mesh<B>::motion(x, point.first_i, point.weights_i);
             const Vec3 force = skew.row.dot(apart) * skew.column;
-            beam::spread(point.weights_j, force, point.first_j, free_);
-            beam::spread(point.weights_i, Vec3(-force), point.first_i, free_);
+            beam::spread(point.weights_j, force, point.first_j, forces);
+            beam::spread(point.weights_i, Vec3(-force), point.first_i, forces);
         }
-        scene::fold_images(layout_, free_);
-        scene::project_free(layout_, free_);
-        y += free_;
+        scene::fold_images(layout_, forces);
+        scene::project_free(layout_, forces);
+        y += forces;
     }
 
     /// Number of terms that couple what no band does: points, slides, and the last nodes of a closed one with its first.
@@ -155,10 +155,10 @@ public:
             std::all_of(layout_.held.begin(), layout_.held.end(), is_free)) {  // as directions of a solver are
             apply_unheld(x, y);
         } else {
-            free_ = x;
-            scene::project_free(layout_, free_);
-            apply_unheld(free_, y);
-            scene::add_motion_stiffness(layout_, free_, y);
+            Vector free = x;
+            scene::project_free(layout_, free);
+            apply_unheld(free, y);
+            scene::add_motion_stiffness(layout_, free, y);
             scene::complete_ties(layout_, x, y);
         }
         for (const scene::HeldVector& held : layout_.held) {
@@ -432,7 +432,7 @@ private:
     SlidesOfChains<contact::SlidingStiffness> slides_of_;
     std::vector<std::pair<Index, double>> supports_;  // of tied vectors, sorted
     PointProduct<vectors, beam::Particle<B>> pairs_;
-    mutable Vector free_, whole_;  // scratch of a product: one system serves one thread at a time
+    mutable Vector whole_;  // scratch of a product: one system serves one thread at a time
 };
 
 }  // namespace fibrant::assembly

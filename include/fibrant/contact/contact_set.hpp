@@ -16,6 +16,7 @@
 #include <fibrant/contact/station_pairs.hpp>
 #include <fibrant/contact/watched_places.hpp>
 #include <fibrant/core/blocks.hpp>
+#include <fibrant/core/few_of.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +52,7 @@ public:
     ContactParameters& parameters() noexcept { return parameters_; }
     const core::Blocks<Element>& elements() const noexcept { return elements_; }
     const std::vector<ContactResponse>& responses() const noexcept { return responses_; }
-    const std::vector<law::FrictionAnswer<Friction>>& frictions() const noexcept { return frictions_; }
+    const core::FewOf<law::FrictionAnswer<Friction>>& frictions() const noexcept { return frictions_; }
     const std::vector<Zone>& zones() const noexcept { return zones_; }
     std::vector<Zone>& zones() noexcept { return zones_; }
     const Memory& accepted_memory() const noexcept { return accepted_; }
@@ -116,9 +117,8 @@ public:
     /// touched, unless contact acts within an increment: what it gives then counts from there
     void evaluate(const Vector& state, bool start = false) {
         core::resize_anew(responses_, elements_.size());
-        if constexpr (core::Active<Friction>) core::resize_anew(frictions_, elements_.size());
         const Vector& acting = acting_.of(normal_, state);
-        for_elements([&](Index k) {
+        frictions_.fill(elements_.size(), [&](Index k, [[maybe_unused]] auto& friction) {
             Element& element = elements_[core::at(k)];
             if (slides(k) && !start) places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
             if (slides(k))
@@ -133,14 +133,14 @@ public:
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             act_within(*mesh_, normal_, state, acting, element);
             if constexpr (core::Active<Friction>) {
-                frictions_[core::at(k)] = {};
-                if (!carries(k)) return;
+                if (!carries(k)) return false;
                 Vec3 slip = Vec3::Zero();
                 if (!start) slip = element.friction_offset(state) - element.friction.accepted_offset;
                 slip -= slip.dot(plane(k)) * plane(k);
                 const double bound = none ? 0.0 : standing_bound(normal_, *mesh_, element, responses_[core::at(k)]);
-                frictions_[core::at(k)] = friction_answer(friction_, *mesh_, element, slip, zone.friction_factor, bound);
+                friction = friction_answer(friction_, *mesh_, element, slip, zone.friction_factor, bound);
             }
+            return core::Active<Friction>;
         });
     }
 
@@ -313,14 +313,14 @@ private:
     void generate(const Vector& end, const Vector& accepted, const Memory& memory, const Vector& state) {
         elements_.clear();
         // Some zones at a time: what they make is not twice in memory.
-        const Index some = std::max<Index>(1024, core::count(zones_) / 32);
+        const Index some = std::max<Index>(512, core::count(zones_) / 64);
         for (Index first = 0; first < core::count(zones_); first += some)
             generate(first, std::min(core::count(zones_), first + some), end, accepted, memory, state);
         elements_.trim();
     }
     /// Of zones [from, to).
     void generate(Index from, Index to, const Vector& end, const Vector& accepted, const Memory& memory, const Vector& state) {
-        constexpr Index block = 16;  // zones
+        constexpr Index block = 8;  // zones
         const Index blocks = (to - from + block - 1) / block;
         std::vector<std::vector<Element>> made(core::at(blocks));
         const double forced_keep = 0.5;  // radii of clearance beyond which a forced pair needs no element
@@ -437,7 +437,7 @@ private:
     std::vector<Zone> zones_, accepted_zones_;
     core::Blocks<Element> elements_;
     std::vector<ContactResponse> responses_;
-    std::vector<law::FrictionAnswer<Friction>> frictions_;
+    core::FewOf<law::FrictionAnswer<Friction>> frictions_;
     SideIndex sides_;
     Memory accepted_;
     FollowedPlaces<B> places_;
