@@ -33,8 +33,7 @@ scene::DofLayout chains() {
 void add(Rows& rows, Index chain, Index element, const Element& stiffness) {
     for (Index a = 0; a < 3; ++a)
         for (Index b = 0; b <= a; ++b)
-            rows.add(chain, 2 * element + a, 0, (reach - (a - b)) * block,
-                     stiffness.block<block, block>(a * block, b * block));
+            rows.add(chain, 2 * element + a, 0, (reach - (a - b)) * block, stiffness.block<block, block>(a * block, b * block));
 }
 
 TEST_CASE("a chain's band has the same bits whether it was open for all that was added, for a part of it, or not at all") {

@@ -69,6 +69,8 @@ TEST_CASE("blocks hold what is put behind, stay where they are as they grow, and
     CHECK(k == sum);
     k = 0;
     for (const Index& value : std::as_const(all)) REQUIRE(value == k++);
+    CHECK(all.front() == 0);
+    CHECK(all.back() == sum - 1);
     const auto part = std::as_const(all).part(1000, 3000);
     CHECK(*part.begin() == 1000);
     CHECK(std::distance(part.begin(), part.end()) == 2000);

@@ -55,8 +55,7 @@ public:
     /// Adds the band of a chain that is closed, block (a, d) being A(a, a - d).
     void add_to(Index chain, Matrix& blocks) const {
         for (Index a = 0; a < band_.nodes(chain); ++a)
-            band_.each(chain, a,
-                       [&](Index i, Index j, Index d, double value) { blocks(a * Block + i, d * Block + j) += value; });
+            band_.each(chain, a, [&](Index i, Index j, Index d, double value) { blocks(a * Block + i, d * Block + j) += value; });
     }
 
 private:

@@ -24,8 +24,8 @@ namespace fibrant::assembly {
 
 /// Symmetric tangent of fibres whose elements are B, coupled by point terms between two elements.
 ///
-/// Memory: the lower half of the blocks within elements, and some 600 bytes a contact that carries force. Every sum has a fixed order, so the
-/// bits of a product do not depend on the number of threads.
+/// Memory: the lower half of the blocks within elements, and some 600 bytes a contact that carries force. Every sum has a fixed
+/// order, so the bits of a product do not depend on the number of threads.
 template <beam::BeamElement B>
 class ChainSystem {
 public:

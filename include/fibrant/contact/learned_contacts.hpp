@@ -111,8 +111,7 @@ public:
         core::FewOf<Secant> secants;
         secants.fill(start_.size(), [&](Index k, Secant& one) {
             const auto [along, slip, change] = way(k);
-            const double square = slip.squaredNorm(),
-                         excess = change.dot(slip) - slip.dot(start_[core::at(k)].tangent * slip);
+            const double square = slip.squaredNorm(), excess = change.dot(slip) - slip.dot(start_[core::at(k)].tangent * slip);
             if (!secants_.empty()) one.friction = one.before = secants_[core::at(k)].before;
             if (square > 0.0 && excess > 0.0) one.friction += (excess / (square * square)) * slip * slip.transpose();
             return !one.friction.isZero(0.0);

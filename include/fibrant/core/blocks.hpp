@@ -39,6 +39,8 @@ public:
     std::size_t room() const noexcept { return blocks_.size() * block; }
     T& operator[](std::size_t k) noexcept { return blocks_[k / block][k % block]; }
     const T& operator[](std::size_t k) const noexcept { return blocks_[k / block][k % block]; }
+    const T& front() const noexcept { return (*this)[0]; }
+    const T& back() const noexcept { return (*this)[size_ - 1]; }
     auto begin() noexcept { return Iterator<Blocks, T>{this, 0}; }
     auto end() noexcept { return Iterator<Blocks, T>{this, size_}; }
     auto begin() const noexcept { return Iterator<const Blocks, const T>{this, 0}; }

@@ -38,6 +38,7 @@ public:
     template <assembly::LinearSystem System>
     void find(const System& system) {
         const scene::DofLayout& layout = system.layout();
+        core::release(sides_), core::release(motion_), core::release(weights_);  // before there are others
         collect(system);
         sort_by_chain(core::count(layout.chains));
         colour();

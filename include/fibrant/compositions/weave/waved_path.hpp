@@ -82,7 +82,8 @@ public:
         double a = (arc < 0.0 ? before_ : behind_)[k / kept];
         for (std::size_t step = k / kept * kept; step < k; ++step) a = next(a, sign);
         // Cubic by both slopes (Hermite).
-        const double u = at - static_cast<double>(k), b = next(a, sign), da = sign * step_ * along(a), db = sign * step_ * along(b);
+        const double u = at - static_cast<double>(k), b = next(a, sign), da = sign * step_ * along(a),
+                     db = sign * step_ * along(b);
         const double x = a + u * (da + u * (3.0 * (b - a) - 2.0 * da - db + u * (2.0 * (a - b) + da + db)));
         const TowWave::Place place = wave_.at(x, offset_);
         return {x, place.across, place.height};
