@@ -5,6 +5,7 @@
 #include <fibrant/simulation/model.hpp>
 #include <fibrant/simulation/report.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -107,6 +108,18 @@ struct Stage {
     Index stalled_increments = std::numeric_limits<Index>::max() / 2;
     double goes_on_below = 0.0;  ///< what follows parts in another way what is less deep [length], >= 0
     bool if_needed = false;      ///< left out where its `until` is true of the increment before it
+
+    /// Forces of an increment balance by far worse than damping holds, and not as well as is stated: what it holds says little of
+    /// how far the balance is. Such an increment, where damping waits, neither lowers it nor ends the stage.
+    bool rough(const IncrementReport& increment) const noexcept {
+        const double far = 10.0;  // by trial on 608 fibres
+        return damping_waits && increment.use.residual > 1.0 &&
+               increment.residual > far * std::max(increment.damping, damping_share);
+    }
+    /// Damping still holds too much after an increment, for a stage that ends by its `until`.
+    bool held(const IncrementReport& increment) const noexcept {
+        return until && damping_decay < 1.0 && (increment.damping > damping_share || rough(increment));
+    }
 };
 
 /// What a simulator runs. With no stages, one that takes all channels to 1 in `increments`.
