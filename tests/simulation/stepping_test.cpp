@@ -183,6 +183,50 @@ TEST_CASE("what has moved far is solved as loosely as a path is until it is at r
     CHECK(position.looseness(rest) == 5.0);
     rest.looseness = 1000.0, position.on_its_way = true;
     CHECK(position.looseness(rest) == 1000.0);
+    // What is solved exactly and turns out not to be at rest goes on loosely, if it still moves.
+    rest.looseness = 5.0, rest.damping_still = 0.02;
+    position = {.exact = true};
+    CHECK_FALSE(position.ends(rest, false, near));
+    CHECK(position.looseness(rest) == 100.0);
+    near.displacement = 0.01;
+    position = {.exact = true};
+    CHECK_FALSE(position.ends(rest, false, near));
+    CHECK(position.looseness(rest) == 1.0);
+}
+
+TEST_CASE("damping that waits neither falls nor ends a stage after an increment whose forces balance far worse than it holds") {
+    Stage<Smooth> stage{.damping = 1.0,
+                        .damping_decay = 0.5,
+                        .damping_share = 1e-4,
+                        .damping_waits = true,
+                        .damping_still = 0.02,
+                        .until = [](const simulation::IncrementReport&) { return true; }};
+    const simulation::HalvedSteps steps;
+    simulation::IncrementReport increment;
+    increment.displacement = 0.1, increment.damping = 5e-4;
+    const auto next = [&](double residual) {  // of a tolerance of 1e-4
+        increment.residual = residual, increment.use.residual = residual / 1e-4;
+        simulation::Position position;
+        position.progress = 1.0;
+        steps.adapt_damping(position, stage, increment, 0.2);
+        return position.damping;
+    };
+    CHECK(next(4.9e-3) == 0.5);
+    CHECK(next(5.1e-3) == 1.0);
+    stage.damping_waits = false;
+    CHECK(next(5.1e-3) == 0.5);
+    stage.damping_waits = true;
+    increment.displacement = 0.01;  // hardly any
+    CHECK(next(5.1e-3) == 0.5);
+    increment.displacement = 0.1, increment.damping = 0.9e-4;
+    next(0.9e-3);
+    CHECK_FALSE(stage.held(increment));
+    next(1.1e-3);  // against what may be held at the end
+    CHECK(stage.held(increment));
+    // What balances as well as is stated does, however little damping holds.
+    stage.damping_share = increment.damping = 1e-7;
+    next(0.9e-4);
+    CHECK_FALSE(stage.held(increment));
 }
 
 TEST_CASE(

@@ -5,6 +5,7 @@
 #include <fibrant/simulation/model.hpp>
 #include <fibrant/simulation/report.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -74,6 +75,9 @@ struct Stage {
     /// what moves is slack, and the less it is held the further it leaps into others, so that contacts never come to the
     /// penetration that is allowed.
     bool damping_waits = false;
+    /// Displacement up to which an increment is good enough for damping to fall where it waits, and for the stage to end, be its
+    /// forces balanced badly: see `rough` [length], >= 0.
+    double damping_still = 0.0;
     /// Greatest displacement of an increment after which damping is lowered [length], > 0.
     double damping_calm = std::numeric_limits<double>::infinity();
     /// Displacement beyond which an attempt at an increment is given up and cut [length], > 0.
@@ -107,6 +111,19 @@ struct Stage {
     Index stalled_increments = std::numeric_limits<Index>::max() / 2;
     double goes_on_below = 0.0;  ///< what follows parts in another way what is less deep [length], >= 0
     bool if_needed = false;      ///< left out where its `until` is true of the increment before it
+
+    /// Forces of an increment balance by far worse than damping holds, and not as well as is stated: what it holds says little of
+    /// how far the balance is. Such an increment, where damping waits, neither lowers it nor ends the stage, unless hardly
+    /// anything moves: a few slack fibres that dangle balance badly for ever.
+    bool rough(const IncrementReport& increment) const noexcept {
+        const double far = 10.0;  // by trial on 608 fibres
+        return damping_waits && increment.displacement > damping_still && increment.use.residual > 1.0 &&
+               increment.residual > far * std::max(increment.damping, damping_share);
+    }
+    /// Damping still holds too much after an increment, for a stage that ends by its `until`.
+    bool held(const IncrementReport& increment) const noexcept {
+        return until && damping_decay < 1.0 && (increment.damping > damping_share || rough(increment));
+    }
 };
 
 /// What a simulator runs. With no stages, one that takes all channels to 1 in `increments`.
@@ -168,6 +185,7 @@ struct Loading {
                           "in (0, 1]");
             core::require(stage.damping_calm > 0.0, "Stage.damping_calm", stage.damping_calm, "> 0");
             core::require_not_negative("Stage.damping_share", stage.damping_share);
+            core::require_not_negative("Stage.damping_still", stage.damping_still);
             core::require(stage.largest_displacement > 0.0, "Stage.largest_displacement", stage.largest_displacement, "> 0");
             core::require_between("Stage.looseness", stage.looseness, 1.0, 1000.0);
             core::require_between("Stage.looseness_on_the_way", stage.looseness_on_the_way, 1.0, 1000.0);

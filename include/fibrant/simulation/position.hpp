@@ -108,8 +108,8 @@ struct Position {
     template <Model M>
     bool ends(const Stage<M>& present, bool settled, const IncrementReport& increment) noexcept {
         const bool stated = !present.exact_end || looseness(present) <= 1.0 || increment.use.greatest() <= 1.0;
-        exact = present.exact_end && ((settled && !stated) || (exact && increment.cuts == 0));
-        const bool far = increment.displacement > present.damping_calm;
+        const bool far = increment.displacement > (present.damping_still > 0.0 ? present.damping_still : present.damping_calm);
+        exact = present.exact_end && ((settled && !stated) || (exact && increment.cuts == 0 && !far));
         on_its_way = 2 * in_stage < present.most_increments && (far || (on_its_way && !settled));
         if (present.follows_briefly && increment.cuts == 0) following = false;
         return settled && stated;

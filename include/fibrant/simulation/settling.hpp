@@ -129,6 +129,7 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     // at rest.
     stiffening.until = until_settled(motion, parted, share_at_rest);
     stiffening.damping = 4.0 * taut, stiffening.damping_share = share_at_rest, stiffening.damping_waits = true;
+    stiffening.damping_still = motion;
     Stage<M> rest = stiffening;
     rest.name = "rest";
     rest.until = until_settled(settle.rest_motion_over_radius * r, parted, share_at_rest);

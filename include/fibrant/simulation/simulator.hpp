@@ -229,7 +229,7 @@ private:
         increment.progress = part_done(stages, position_.stage, position_.progress);
         // At rest: what holds takes no more force than the balance may miss anyway.
         const bool reached = position_.progress >= 1.0 && !position_.calming.resting && (!stage.until || stage.until(increment));
-        const bool held = stage.until && stage.damping_decay < 1.0 && increment.damping > stage.damping_share;
+        const bool held = stage.held(increment);
         deep_ = touching && reached && !held && !laws_.again()
                     ? mend_deep_places(loading, stages, *this, contacts_, radius_, position_)
                     : std::string();

@@ -90,7 +90,8 @@ struct HalvedSteps {
                    enough = waits && damping > 0.0 && increment.damping <= stage.damping_share;
         if (waits && !position.stage_over && increment.damping < half * stage.damping_share)
             damping = std::clamp(firmer * damping, least_damping, 1.0 / least_damping);
-        else if (!enough && increment.cuts == 0 && increment.displacement <= stage.damping_calm && effort <= with_ease)
+        else if (!enough && !(waits && stage.rough(increment)) && increment.cuts == 0 &&
+                 increment.displacement <= stage.damping_calm && effort <= with_ease)
             damping = std::max(damping * (damping > 1.0 ? half : std::pow(stage.damping_decay, position.fraction)),
                                std::min(damping, position.damping_floor));
         else if (stage.damping_decay < 1.0 && effort > with_effort)
