@@ -113,12 +113,15 @@ struct Stage {
     bool if_needed = false;      ///< left out where its `until` is true of the increment before it
 
     /// Forces of an increment balance by far worse than damping holds, and not as well as is stated: what it holds says little of
-    /// how far the balance is. Such an increment, where damping waits, neither lowers it nor ends the stage, unless hardly
-    /// anything moves: a few slack fibres that dangle balance badly for ever.
-    bool rough(const IncrementReport& increment) const noexcept {
+    /// how far the balance is.
+    bool unbalanced(const IncrementReport& increment) const noexcept {
         const double far = 10.0;  // by trial on 608 fibres
-        return damping_waits && increment.displacement > damping_still && increment.use.residual > 1.0 &&
-               increment.residual > far * std::max(increment.damping, damping_share);
+        return increment.use.residual > 1.0 && increment.residual > far * std::max(increment.damping, damping_share);
+    }
+    /// Such an increment, where damping waits, neither lowers it nor ends the stage, unless hardly anything moves: a few slack
+    /// fibres that dangle balance badly for ever.
+    bool rough(const IncrementReport& increment) const noexcept {
+        return damping_waits && increment.displacement > damping_still && unbalanced(increment);
     }
     /// Damping still holds too much after an increment, for a stage that ends by its `until`.
     bool held(const IncrementReport& increment) const noexcept {

@@ -88,7 +88,7 @@ struct HalvedSteps {
         // takes what it takes.
         const bool waits = stage.damping_waits && position.progress >= 1.0,
                    enough = waits && damping > 0.0 && increment.damping <= stage.damping_share;
-        if (waits && !position.stage_over && increment.damping < half * stage.damping_share)
+        if (waits && !position.stage_over && !stage.unbalanced(increment) && increment.damping < half * stage.damping_share)
             damping = std::clamp(firmer * damping, least_damping, 1.0 / least_damping);
         else if (!enough && !(waits && stage.rough(increment)) && increment.cuts == 0 &&
                  increment.displacement <= stage.damping_calm && effort <= with_ease)
