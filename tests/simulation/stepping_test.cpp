@@ -176,6 +176,12 @@ TEST_CASE("what has moved far is solved as loosely as a path is until it is at r
     CHECK(position.looseness(rest) == 100.0);
     CHECK_FALSE(position.ends(rest, true, near));  // there, be its forces small: asked for again, exactly
     CHECK(position.looseness(rest) == 1.0);
+    CHECK_FALSE(position.ends(rest, false, near));  // it moves on all the same, by little: as exactly
+    CHECK(position.looseness(rest) == 1.0);
+    CHECK_FALSE(position.ends(rest, false, far));  // and leaps again
+    CHECK(position.looseness(rest) == 100.0);
+    CHECK_FALSE(position.ends(rest, true, near));
+    CHECK(position.looseness(rest) == 1.0);
     CHECK(position.ends(rest, true, near));
     // What never comes to rest is not followed loosely for ever.
     position = {.in_stage = rest.most_increments / 2};

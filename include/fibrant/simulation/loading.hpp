@@ -76,7 +76,7 @@ struct Stage {
     /// penetration that is allowed.
     bool damping_waits = false;
     /// Displacement up to which an increment is good enough for damping to fall where it waits, and for the stage to end, be its
-    /// forces balanced badly: see `rough` [length], >= 0.
+    /// forces balanced badly [length], >= 0. See `rough`.
     double damping_still = 0.0;
     /// Greatest displacement of an increment after which damping is lowered [length], > 0.
     double damping_calm = std::numeric_limits<double>::infinity();
@@ -88,9 +88,9 @@ struct Stage {
     std::optional<double> deepest{};
     double patience = 1.0;  ///< on the limit of Newton's iterations: what hardly resists bending converges slowly [1], in [1, 10]
     double looseness = 1.0;  ///< on the tolerances of contact and normal passes, >= 1
-    /// The same, where it is more, from an increment that moved further than `damping_calm` until `until` holds, but not in the
-    /// second half of `most_increments`: what leaps to another equilibrium in a stage that is to end at rest is on its way again,
-    /// and takes many increments that nobody asks for, >= 1.
+    /// The same, where it is more, from an increment that moved further than `damping_still`, or `damping_calm` where that is 0,
+    /// until `until` holds, but not in the second half of `most_increments`: what goes on to another equilibrium in a stage that
+    /// is to end at rest is on its way again, and takes many increments that nobody asks for, >= 1.
     double looseness_on_the_way = 1.0;
     /// Where `until` is true of a loose increment, the stage goes on at looseness 1, and ends once it is true of such a one: what
     /// it ends with is an answer, within the tolerances that are stated.

@@ -103,14 +103,16 @@ struct Position {
     }
 
     /// Whether a stage ends with an increment of which its `until` holds: one that is asked for an exact end with one that is
-    /// within what is stated. Till then it goes on at looseness 1, but after an increment that had to be cut. To be asked once an
-    /// increment.
+    /// within what is stated. Till then it goes on at looseness 1, but after an increment that had to be cut, or that moved so
+    /// far that it is on its way again. To be asked once an increment.
     template <Model M>
     bool ends(const Stage<M>& present, bool settled, const IncrementReport& increment) noexcept {
         const bool stated = !present.exact_end || looseness(present) <= 1.0 || increment.use.greatest() <= 1.0;
-        const bool far = increment.displacement > (present.damping_still > 0.0 ? present.damping_still : present.damping_calm);
-        exact = present.exact_end && ((settled && !stated) || (exact && increment.cuts == 0 && !far));
-        on_its_way = 2 * in_stage < present.most_increments && (far || (on_its_way && !settled));
+        const double near = present.damping_still > 0.0 ? present.damping_still : present.damping_calm;
+        const bool early = 2 * in_stage < present.most_increments, far = early && increment.displacement > near;
+        const bool loosely = far && present.looseness_on_the_way > 1.0;
+        exact = present.exact_end && ((settled && !stated) || (exact && increment.cuts == 0 && !loosely));
+        on_its_way = far || (early && on_its_way && !settled);
         if (present.follows_briefly && increment.cuts == 0) following = false;
         return settled && stated;
     }
