@@ -101,7 +101,7 @@ private:
         return x + side * step_ * along(half);
     }
     /// To either side, and of how many the end of one is kept: a scene has a path for each of its fibres.
-    static constexpr std::size_t steps = 1024, kept = 16;
+    static constexpr std::size_t steps = 1024, kept = 4;
     TowWave wave_;
     Eigen::Vector2d offset_;
     double length_, step_ = 0.0;
