@@ -2,7 +2,6 @@
 #pragma once
 /// @file Loops over independent items, and sums whose bits do not depend on the number of threads.
 
-#include <fibrant/core/large_array.hpp>
 #include <fibrant/core/types.hpp>
 
 #include <algorithm>
@@ -95,12 +94,17 @@ private:
     int before_ = Eigen::nbThreads();
 };
 
-/// whole = all parts, one behind the other.
+/// whole = all parts, one behind the other. @param behind  so many values that stay
 template <class Value>
-void join(const std::vector<std::vector<Value>>& parts, std::vector<Value>& whole) {
-    std::vector<std::size_t> first{0};
+void join(const std::vector<std::vector<Value>>& parts, std::vector<Value>& whole, std::size_t behind = 0) {
+    std::vector<std::size_t> first{behind};
     for (const auto& part : parts) first.push_back(first.back() + part.size());
-    resize_anew(whole, first.back());
+    const std::size_t size = first.back();
+    if (size > whole.capacity()) {  // a vector that grows by itself has room for twice as many
+        if (behind == 0) whole = {};
+        whole.reserve(size + size / 8);
+    }
+    whole.resize(size);
     parallel_for(
         count(parts),
         [&](Index p) {
