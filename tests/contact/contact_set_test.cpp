@@ -704,6 +704,52 @@ TEST_CASE("accepting a state brings the stiffness of its zones to the target of 
     CHECK(contacts.zones()[0].stiffness == test::near(3.0 * before, 1e-12));
 }
 
+TEST_CASE("fibres bent around each other that do not move do not slip, nor when both turn, where sections are strained") {
+    // Where a place stands beside the closest one, the way between centres is not across both fibres, and particles of sections
+    // that are pressed together are apart: told along two normals, what is between them would be a slip.
+    for (const double flatness : {1.0, 0.8}) {
+        CAPTURE(flatness);
+        const double R = 3.0 * r, half = 0.4 * std::numbers::pi;
+        auto below = test::curved_fibre(
+            [=](double t) {
+                const double a = half * (2.0 * t - 1.0);
+                return Vec3(R * std::sin(a), 0.0, R - R * std::cos(a));
+            },
+            r, 7);
+        auto above = test::curved_fibre(
+            [=](double t) {
+                const double a = half * (2.0 * t - 1.0);
+                return Vec3(0.1 * R * std::sin(a), R * std::sin(a), 1.9 * r - R + R * std::cos(a));
+            },
+            r, 7);
+        if (flatness < 1.0) below.section = above.section = scene::elliptical(r, flatness * r);
+        const Scene scene({below, above});
+        const Mesh& mesh = scene.mesh;
+        const double pressed = 0.9;
+        Vector state = mesh.rest_state();
+        for (Index fibre = 0; fibre < 2; ++fibre)
+            for (Index node = 0; node < mesh.node_count(fibre); ++node)
+                for (const Index g : {1, 2}) state.segment<3>(3 * (mesh.node_vector(fibre, node) + g)) *= pressed;
+        Vector turned = state;
+        const Mat3 turn = core::rotation(Vec3(0.3, -0.5, 0.4));
+        for (Index k = 0; k < turned.size(); k += 3) turned.segment<3>(k) = turn * state.segment<3>(k);
+        for (const Vector& now : {state, turned}) {
+            auto contacts = contacts_of(scene.assembly, mesh, coulomb);
+            contacts.detect(now, state, 0.5 * r, false);
+            contacts.evaluate(now);
+            Index beside = 0;
+            for (Index k = 0; k < core::count(contacts.elements()); ++k) {
+                const auto& element = contacts.elements()[core::at(k)];
+                REQUIRE(contacts.slides(k));
+                beside += element.slide != 0;
+                const Vec3 slip = element.friction_offset(now) - element.friction.accepted_offset;
+                CHECK((slip - slip.dot(element.normal) * element.normal).norm() < 1e-12 * R);
+            }
+            if (flatness == 1.0) CHECK(beside >= 2);  // wide faces have none
+        }
+    }
+}
+
 using Centred = beam::OnCentreline<Beam>;
 using Sliding = beam::OnCentreline<Beam, beam::FrictionLever::dropped>;
 static_assert(beam::BeamElement<Centred> && beam::BeamElement<Sliding>);

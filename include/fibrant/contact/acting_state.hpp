@@ -78,10 +78,14 @@ void act_within([[maybe_unused]] const beam::Mesh<B>& mesh, [[maybe_unused]] con
 /// @param state     of the end
 /// @param tangents  of the element there
 /// @param unseen    depth that its zone takes off gaps [length]
+/// @param followed  normal in the accepted state of a crossing that is followed, or null: by the rule
 template <beam::BeamElement B, law::NormalLaw Normal, law::FrictionLaw Friction>
 void count_from(const beam::Mesh<B>& mesh, const NormalRule& rule, const Normal& law,
                 ContactElement<B, Normal, Friction>& element, const Vector& state, const PairTangents& tangents,
-                const Vector& accepted, double unseen) {
+                const Vector& accepted, double unseen, const Vec3* followed) {
+    [[maybe_unused]] const auto earlier = [&](const PairTangents& then, const Vec3& present) {
+        return followed ? *followed : element_normal(mesh, accepted, element, then, rule, present);
+    };
     const bool within = ActingState<Normal>::within(law) && element.place < 0;
     if constexpr (law::SteppedNormal<Normal>) {
         if (within) {
@@ -89,12 +93,16 @@ void count_from(const beam::Mesh<B>& mesh, const NormalRule& rule, const Normal&
             follow_particles(mesh, accepted, then);
             element.shift.before = element.normal.dot(then.offset(accepted)) - unseen;
         } else {
-            element.shift.before = apart_in(mesh, rule, element, accepted) - unseen;
+            const Vec3 before = earlier(pair_tangents(mesh, accepted, element), element.normal);
+            element.shift.before = element.offset(accepted).dot(before) - unseen;  // along the normal of then
         }
     }
     if constexpr (core::Active<Friction>) {
         element.friction.weights_i = element.weights_i, element.friction.weights_j = element.weights_j;
-        const auto offset = [&](const auto& seen) { return accepted_offset(mesh, rule, seen, tangents, accepted); };
+        const auto offset = [&](const auto& seen) {
+            const PairTangents then = pair_tangents(mesh, accepted, seen);
+            return accepted_offset(seen, tangents, accepted, then, earlier(then, seen.normal));
+        };
         if (!within) {
             element.friction.accepted_offset = offset(element);
             return;

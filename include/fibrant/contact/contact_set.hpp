@@ -25,7 +25,7 @@
 
 namespace fibrant::contact {
 
-/// The contacts of a mesh. Fibres and abscissae fix orders: threads change no bit.
+/// The contacts of a mesh. Orders are by fibres and abscissae: threads change no bit.
 template <beam::BeamElement B, proximity::ProximitySearch Search, law::NormalLaw Normal, law::FrictionLaw Friction>
 class ContactSet {
 public:
@@ -72,7 +72,7 @@ public:
         regenerate(state, accepted);
     }
 
-    /// Contact elements anew in the zones that stand.
+    /// Contact elements anew in zones that stand.
     void regenerate(const Vector& state, const Vector& accepted) {
         const Memory last(accepted_.periods(), records(state));
         const Memory& memory = last.records().empty() ? accepted_ : last;
@@ -177,7 +177,7 @@ public:
         return friction_tangent(k) - responses_[core::at(k)].slope * normal * normal.transpose();
     }
 
-    /// Crossings whose places and normals are those of the moment.
+    /// Crossings with places and normals of the moment.
     FollowedPlaces<B>& places() noexcept { return places_; }
     const FollowedPlaces<B>& places() const noexcept { return places_; }
     /// Element k is one: its normal force acts on patches, and has a stiffness of its own.
@@ -242,7 +242,6 @@ public:
 
     const Vector& acting(const auto&... states) { return acting_.of(normal_, states...); }
 
-    /// Of elements, in order.
     std::span<const std::int32_t> sides(Index fibre) const noexcept { return sides_.of(fibre); }
 
     /// Greatest gap or depth of what carries force [length].
@@ -255,12 +254,12 @@ public:
 
     ContactFigures figures(const Vector& state) const { return contact::figures(*this, *mesh_, state); }
 
-    /// Penetration that zones are adapted to from now on [length], > 0.
+    /// Penetration that zones adapt to from now on [length], > 0.
     void allow_penetration(double length) {
         parameters_.stiffness.allowed_penetration = length;
         parameters_.stiffness.validate();
     }
-    /// Keeps normals, friction and zones of an accepted state, and adapts stiffness.
+    /// Keeps what there is in an accepted state, and adapts stiffness.
     void accept(const Vector& state) {
         accepted_.assign(records(state));
         for (Zone& zone : zones_) {
@@ -277,7 +276,7 @@ public:
         accepted_zones_ = zones_;
     }
 
-    /// Back to what was accepted.
+    /// To what was accepted.
     void restore() {
         zones_ = accepted_zones_;
         elements_.clear(), responses_.clear(), frictions_.clear();
@@ -285,7 +284,7 @@ public:
     }
 
     const std::vector<Zone>& accepted_zones() const noexcept { return accepted_zones_; }
-    /// Sets what was accepted last, from a checkpoint.
+    /// From a checkpoint: what was accepted last.
     void resume(std::vector<typename Memory::Record> records, std::vector<Zone> zones) {
         accepted_.assign(std::move(records));
         accepted_zones_ = std::move(zones);
@@ -364,14 +363,17 @@ private:
         core::join(made, elements_, elements_.size());
     }
 
-    /// The closest patches, and what stands until normals are renewed: where friction acts, so that it has a potential. @returns
-    /// its turn [radian]
+    /// The closest patches, and where friction acts until normals are renewed. @returns its turn [radian]
     double follow(Index k, const Vector& state) {
         Element& element = elements_[core::at(k)];
-        places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
+        const Zone& zone = zones_[core::at(element.zone)];
+        places_.follow(*mesh_, state, zone, element);
         places_.host(*mesh_, element);
         const PairTangents tangents = pair_tangents(*mesh_, state, element);
-        placing().meet(element, zones_[core::at(element.zone)], state, tangents, state, places_.accepted());
+        Vec3 before;
+        if constexpr (core::Active<Friction> || law::SteppedNormal<Normal>)
+            before = places_.normal_in(*mesh_, places_.accepted(), zone, element);
+        placing().meet(element, zone, state, tangents, state, places_.accepted(), &before);
         if constexpr (core::Active<Friction>) recall_friction(element, tangents);
         return places_.renew(*mesh_, state, element, core::Active<Friction>);
     }

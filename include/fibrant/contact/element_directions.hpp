@@ -22,22 +22,16 @@ inline double sign_of_j(const PairTangents& tangents) noexcept { return tangents
 /// Offset of the friction's particles in the last accepted state, turned as the normal and the tangent have
 /// since: else a rigid rotation of a pair would slide it by the gap times the angle.
 /// @param tangents  of the present
-template <class B, class Element>
-Vec3 accepted_offset(const beam::Mesh<B>& mesh, const NormalRule& rule, const Element& element, const PairTangents& tangents,
-                     const Vector& accepted) {
+/// @param earlier   of the accepted state
+/// @param before    the normal there, by the rule of the present one: what the two rules differ by would be a slip
+template <class Element>
+Vec3 accepted_offset(const Element& element, const PairTangents& tangents, const Vector& accepted, const PairTangents& earlier,
+                     const Vec3& before) {
     const Vec3 offset = element.friction_offset(accepted);
-    const PairTangents earlier = pair_tangents(mesh, accepted, element);
-    const Vec3 before = element_normal(mesh, accepted, element, earlier, rule, element.normal);
     if (element.end_i || element.end_j) return turned(offset, before, element.normal);
     const double sign = sign_of_j(tangents);
     const TangentPlane then(heading(earlier, before, sign), before), now(heading(tangents, element.normal, sign), element.normal);
     return offset.dot(then.along) * now.along + offset.dot(then.across) * now.across + offset.dot(before) * element.normal;
-}
-
-/// How far the particles of an element were apart in another state along the normal of then, without its cap [length].
-template <beam::BeamElement B, class Element>
-double apart_in(const beam::Mesh<B>& mesh, const NormalRule& rule, const Element& element, const Vector& other) {
-    return element.offset(other).dot(element_normal(mesh, other, element, rule, element.normal));
 }
 
 /// A history of friction by components between the tangents of its element, and back.

@@ -41,11 +41,12 @@ struct ElementPlacing {
         return tangents;
     }
     /// Where both forces of an element act, and from where its slip counts.
+    /// @param followed  normal in the accepted state of a crossing that is followed, or null: by the rule
     void meet(Element& element, const Zone& zone, const Vector& state, const PairTangents& tangents, const Vector& end,
-              const Vector& accepted) const {
+              const Vector& accepted, const Vec3* followed = nullptr) const {
         find_meeting_point(mesh, state, tangents, element), see_directions(tangents, element);
         count_from(mesh, rule, law, element, end, &end == &state ? tangents : pair_tangents(mesh, end, element), accepted,
-                   zone.unseen);
+                   zone.unseen, followed);
     }
     /// An element as it stood in another state.
     void place_back(Element& element, const Vector& state) const {

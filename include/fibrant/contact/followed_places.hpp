@@ -64,7 +64,6 @@ public:
     /// The closest patches of a state, and the normal from the one to the other.
     template <class Element>
     void follow(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, Element& element) {
-        const Vec3 before = element.normal;
         if constexpr (beam::OvalSections<B>) {
             if (oval_pair(mesh, element.fibre_i, element.fibre_j)) {
                 Held& one = held_[core::at(element.place)];
@@ -78,9 +77,21 @@ public:
         if (slide.kind == Slide::freely) follow_closest(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
         if (slide.kind == Slide::along)
             follow_along(mesh, state, element.fibre_i, element.fibre_j, slide, element.u_i, element.u_j);
-        const PairGeometry pair = pair_geometry(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
-        element.normal = unit_or(slide.kind == Slide::freely ? Vec3(pair.t_i.cross(pair.t_j)) : pair.centres, before);
-        if (element.normal.dot(before) < 0.0) element.normal = -element.normal;
+        element.normal = normal_of(mesh, state, slide, element);
+    }
+    /// Normal between the same places of an element in another state. @param zone  of the element
+    template <class Element>
+    Vec3 normal_in(const beam::Mesh<B>& mesh, const Vector& other, const Zone& zone, const Element& element) const {
+        if constexpr (beam::OvalSections<B>) {
+            if (oval_pair(mesh, element.fibre_i, element.fibre_j)) {
+                const Held& one = held_[core::at(element.place)];
+                double u_i = element.u_i, u_j = element.u_j;
+                Vec3 normal = element.normal;
+                follow_oval(mesh, other, element.fibre_i, element.fibre_j, one.i, one.j, {Slide::nowhere, {}}, u_i, u_j, normal);
+                return normal;
+            }
+        }
+        return normal_of(mesh, other, ValleyStations<B>::slide_of(mesh, zone, element.slide), element);
     }
     /// What an element pushes with; its cap becomes one that makes its gap that of its patches.
     template <class Element>
@@ -163,6 +174,13 @@ public:
     }
 
 private:
+    /// To the side on which the element's own normal is.
+    template <class Element>
+    static Vec3 normal_of(const beam::Mesh<B>& mesh, const Vector& state, const Slide& slide, const Element& element) {
+        const PairGeometry pair = pair_geometry(mesh, state, element.fibre_i, element.fibre_j, element.u_i, element.u_j);
+        const Vec3 normal = unit_or(slide.kind == Slide::freely ? Vec3(pair.t_i.cross(pair.t_j)) : pair.centres, element.normal);
+        return normal.dot(element.normal) < 0.0 ? Vec3(-normal) : normal;
+    }
     /// @param all  every crossing is
     bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before, bool all) const {
         if (!beam::DeformableSections<B> && oval_pair(mesh, zone.span.fibre_i, zone.span.fibre_j))
