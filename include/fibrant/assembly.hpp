@@ -3,6 +3,7 @@
 /// @file Equilibrium and its linear system.
 
 #include <fibrant/assembly/band_product.hpp>
+#include <fibrant/assembly/chain_rows.hpp>
 #include <fibrant/assembly/chain_system.hpp>
 #include <fibrant/assembly/equilibrium.hpp>
 #include <fibrant/assembly/linear_system.hpp>
