@@ -4,6 +4,9 @@
 #include <doctest/doctest.h>
 
 #include <random>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 using namespace fibrant;
@@ -82,6 +85,24 @@ TEST_CASE("a chain that is opened again begins at zero, and others keep what the
     rows.open(4);
     rows.close(4);
     for (Index c = 0; c < 10; ++c) CHECK(rows.row(c, 1)(0, reach * block) == (c == 4 ? 0.0 : static_cast<double>(c + 1)));
+}
+
+TEST_CASE("what was added to an open chain is not read by halves, and rows are copies that nothing is written to") {
+    static_assert(!std::is_assignable_v<decltype(std::declval<Rows&>().row(0, 0)), Rows::Row>);
+    Rows rows(chains());
+    rows.open(5);
+    add(rows, 5, 0, Element::Identity());
+    Matrix band = Matrix::Zero(7 * block, (reach + 1) * block);
+    CHECK_THROWS_WITH_AS(rows.row(5, 0), doctest::Contains("chain 5 is read, but a chain must be closed first"),
+                         std::logic_error);
+    CHECK_THROWS_AS(rows.add_to(5, band), std::logic_error);
+    CHECK_THROWS_AS(rows.require_closed(), std::logic_error);
+    rows.add_to(4, band);
+    CHECK(band.norm() == 0.0);
+    rows.close(5);
+    rows.require_closed();
+    rows.add_to(5, band);
+    CHECK(band.sum() == 3.0 * block);
 }
 
 }  // namespace chain_rows_test

@@ -5,6 +5,7 @@
 
 #include <fibrant/assembly/chain_rows.hpp>
 #include <fibrant/assembly/linear_system.hpp>
+#include <fibrant/assembly/particle_blocks.hpp>
 #include <fibrant/assembly/point_product.hpp>
 #include <fibrant/assembly/slide_products.hpp>
 #include <fibrant/beam/mesh.hpp>
@@ -102,10 +103,18 @@ public:
         for (Index v = 0; v < layout_.vectors(); ++v) layout_.value[core::at(v)] = state.segment<3>(3 * v);
     }
 
+    // Bands: cleared, added to from several threads for different fibres, and then closed. A band that has been closed can be
+    // added to as well, which is slower; one that has not is refused where it is read.
+
     /// Sets a fibre's band to zero.
     void clear(Index fibre) { rows_.open(fibre); }
     /// What has been added to a fibre since is as products read it, and in less memory; more may come.
     void close(Index fibre) { rows_.close(fibre); }
+    /// Adds values to a node's row, from its entry (i, column) on, as ChainRows does. @tparam Values  a matrix of fixed size
+    template <class Values>
+    void add_to_row(Index fibre, Index node, Index i, Index column, const Values& values) {
+        rows_.add(fibre, node, i, column, values);
+    }
     /// Adds an element's stiffness.
     void add(Index fibre, Index element, const beam::ElementMatrix<B>& stiffness) {
         for (Index a = 0; a < B::nodes; ++a)
@@ -119,7 +128,7 @@ public:
     template <class Weights>
     void add_rank_one(Index fibre, Index first_unknown, const Weights& weights, const Mat3& stiffness) {
         const Index node = first_unknown / block - first_node_[core::at(fibre)];
-        each_pair(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
+        each_pair<B>(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
             rows_.add(fibre, node + a, 3 * v, (reach - (a - b)) * block + 3 * w, product);
         });
     }
@@ -129,10 +138,11 @@ public:
         const Index fibre = fibre_of_[core::at(node)];
         rows_.add(fibre, node - first_node_[core::at(fibre)], 3 * v, reach * block + 3 * v, stiffness);
     }
-    /// Of a fibre that is closed.
-    Row row(Index fibre, Index node) const { return rows_.row(fibre, node); }
+    /// A copy, of a fibre that is closed.
+    const Row row(Index fibre, Index node) const { return rows_.row(fibre, node); }
 
-    /// To be called once bands and points are complete: arranges them for products.
+    /// To be called once bands and points are complete: closes all fibres, and arranges points for products. Again where points
+    /// have changed since.
     void index_points() {
         for (Index f = 0; f < fibres(); ++f) close(f);
         pairs_.pack(points_, first_node_.back(),
@@ -170,6 +180,7 @@ public:
 
     /// y = K x, as if nothing were held; images count as their sources.
     void apply_unheld(const Vector& free, Vector& y) const {
+        rows_.require_closed();
         const Vector& x = with_images(free);
         const Index grain = scene::grain(layout_, bands().packs());
         core::parallel_for(
@@ -292,7 +303,7 @@ private:
         pairs_.add_own(pairs_.sides(first_node_[core::at(fibre)], first_node_[core::at(fibre + 1)]),
                        [&](std::int32_t first, const beam::Particle<B>& weights, const Mat3& stiffness) {
                            const Index node = (first - first_unknown(fibre)) / block;
-                           each_pair(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
+                           each_pair<B>(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
                                blocks.block<3, 3>((node + a) * block + 3 * v, (a - b) * block + 3 * w) += product;
                            });
                        });
@@ -347,37 +358,6 @@ private:
                 if (c < size - block) dense(c, size - block + r) = value;
             }
         return core::at(size / 3);
-    }
-    /// see(node, vector, node, vector, block) of (w w^T) (x) stiffness, in the lower half.
-    template <class See>
-    static void each_pair(const beam::ElementWeights<B>& weights, const Mat3& stiffness, const See& see) {
-        for (Index a = 0; a < B::nodes; ++a)
-            for (Index v = 0; v < B::vectors_per_node; ++v) {
-                const double left = weights[core::at(a * B::vectors_per_node + v)];
-                if (left == 0.0) continue;
-                for (Index b = 0; b <= a; ++b)
-                    for (Index w = 0; w < B::vectors_per_node; ++w)
-                        see(a, v, b, w, Mat3(left * weights[core::at(b * B::vectors_per_node + w)] * stiffness));
-            }
-    }
-    /// The same of a particle of the centreline.
-    template <class See>
-    static void each_pair(const beam::CentreWeights<B::nodes, B::vectors_per_node>& centre, const Mat3& stiffness,
-                          const See& see) {
-        for (Index a = 0; a < B::nodes; ++a)
-            for (Index b = 0; b <= a; ++b) see(a, 0, b, 0, Mat3(centre[core::at(a)] * centre[core::at(b)] * stiffness));
-    }
-    /// The same of J^T stiffness J.
-    template <class See>
-    static void each_pair(const beam::Particle<B>& particle, const Mat3& stiffness,
-                          const See& see) requires beam::TurningSections<B> {
-        for (Index a = 0; a < B::nodes; ++a)
-            for (Index v = 0; v < B::vectors_per_node; ++v) {
-                const Mat3 left = particle.slope(a * B::vectors_per_node + v).transpose() * stiffness;
-                for (Index b = 0; b <= a; ++b)
-                    for (Index w = 0; w < B::vectors_per_node; ++w)
-                        see(a, v, b, w, Mat3(left * particle.slope(b * B::vectors_per_node + w)));
-            }
     }
     /// Particles that turn have no scalar weights: the whole matrix of the point.
     template <class Terms>

@@ -62,7 +62,7 @@ public:
         fibres_.add_rank_one(fibre, first_unknown, weights, stiffness);
     }
     void add_diagonal(Index vector, const Mat3& stiffness) { fibres_.add_diagonal(vector, stiffness); }
-    Row row(Index fibre, Index node) const { return fibres_.row(fibre, node); }
+    const Row row(Index fibre, Index node) const { return fibres_.row(fibre, node); }
     void index_points() { fibres_.index_points(); }
 
     /// y = A x
