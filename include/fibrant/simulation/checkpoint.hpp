@@ -4,7 +4,6 @@
 
 #include <fibrant/core/types.hpp>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
