@@ -19,6 +19,7 @@
 #include <fibrant/solver/float_block_cholesky.hpp>
 
 #include <cmath>
+#include <filesystem>
 
 using namespace fibrant;
 namespace mat = compositions::mat;

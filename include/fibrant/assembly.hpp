@@ -3,9 +3,11 @@
 /// @file Equilibrium and its linear system.
 
 #include <fibrant/assembly/band_product.hpp>
+#include <fibrant/assembly/chain_rows.hpp>
 #include <fibrant/assembly/chain_system.hpp>
 #include <fibrant/assembly/equilibrium.hpp>
 #include <fibrant/assembly/linear_system.hpp>
+#include <fibrant/assembly/particle_blocks.hpp>
 #include <fibrant/assembly/point_product.hpp>
 #include <fibrant/assembly/residual_figures.hpp>
 #include <fibrant/assembly/slide_products.hpp>

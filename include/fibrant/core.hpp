@@ -2,7 +2,9 @@
 #pragma once
 /// @file What everything stands on: types, parameters, parallel loops.
 
+#include <fibrant/core/blocks.hpp>
 #include <fibrant/core/config.hpp>
+#include <fibrant/core/few_of.hpp>
 #include <fibrant/core/large_array.hpp>
 #include <fibrant/core/ordering.hpp>
 #include <fibrant/core/parallel.hpp>

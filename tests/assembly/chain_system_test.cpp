@@ -7,7 +7,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <stdexcept>
+#include <vector>
 
 using namespace fibrant;
 
@@ -67,6 +70,41 @@ TEST_CASE_TEMPLATE("and of every crossing whose place slides: else what couples 
     system.slides_in_bands_beyond = 0;
     system.index_points();
     check_bands(system);
+}
+
+TEST_CASE("stiffness that is added to a complete system acts at once; a fibre that is set to zero acts once all is indexed") {
+    const Smooth fibres(false);
+    assembly::ChainSystem<Smooth::Beam> system(fibres.mesh);
+    Vector x = fibres.random_step(1), y(x.size());
+    system.index_points();
+    system.apply(x, y);
+    CHECK(y.norm() == 0.0);
+    const Mat3 spring = Vec3(3.0, 2.0, 1.0).asDiagonal();
+    std::vector<Index> sprung;
+    for (Index f = 0; f < 3; ++f) {
+        const Index first = system.layout().chains[core::at(f)].first_vector;
+        sprung.push_back(first + 5), sprung.push_back(first + 2 * 3 + 1);
+        system.add_diagonal(first + 5, spring);
+        system.add_to_row(f, 2, 3, 2 * 9 + 3, spring);  // of the second vector of a node with itself
+    }
+    const auto check = [&] {
+        system.apply(x, y);
+        for (Index v = 0; v < x.size() / 3; ++v) {
+            Vec3 expected = Vec3::Zero();
+            if (std::ranges::find(sprung, v) != sprung.end()) expected = spring * x.segment<3>(3 * v);
+            CHECK(Vec3(y.segment<3>(3 * v)) == expected);
+        }
+        check_bands(system);
+    };
+    check();
+    system.clear(2);
+    Matrix band;
+    CHECK_THROWS_AS(system.apply(x, y), std::logic_error);
+    CHECK_THROWS_AS(system.chain_band(2, band), std::logic_error);
+    system.index_points();
+    system.add_diagonal(sprung[4], spring);
+    system.add_to_row(2, 2, 3, 2 * 9 + 3, spring);
+    check();
 }
 
 TEST_CASE("held components answer with a stiffness of the scene, and take nothing from the rest") {

@@ -73,7 +73,11 @@ TEST_CASE("friction that follows the reaction: the part that is not symmetric co
         symmetric = std::max(symmetric, (product - slope).norm() / slope.norm());
         system.apply_skews(x, product);
         worst = std::max(worst, (product - slope).norm() / slope.norm());
-        for (const auto& friction : fibres.contacts.frictions()) sliding += friction.sliding ? 1.0 : 0.0;
+        const auto& frictions = fibres.contacts.frictions();
+        std::size_t carrying = 0;
+        for (std::size_t k = 0; k < frictions.size(); ++k)
+            sliding += frictions[k].sliding ? 1.0 : 0.0, carrying += fibres.contacts.carries(static_cast<Index>(k)) ? 1 : 0;
+        CHECK(frictions.values() == carrying);  // what carries nothing takes no memory
     }
     std::printf("following friction: %.1e, without its skew part %.1e\n", worst, symmetric);
     CHECK(sliding > 8.0);  // on both branches of the law

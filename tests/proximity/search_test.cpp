@@ -183,6 +183,18 @@ TEST_CASE("neither a stray fibre nor long straight ones cost the precision and t
     CHECK(search.bytes() < 2000 * 400);  // eight pieces a segment at most
 }
 
+TEST_CASE_TEMPLATE("a search that gives its memory back has as little as a new one, and finds the same again", Search, BvhSearch,
+                   GridSearch, AutomaticSearch) {
+    const FibreSet set = test::random_fibres(18, 100, 10, 0.2, 0.2, 1.0);
+    const std::vector<Centreline> lines = set.centrelines();
+    Search search;
+    const auto found = search.pairs(lines, set.reach);
+    CHECK(search.bytes() > 1000);
+    search.release();
+    CHECK(search.bytes() == Search().bytes());
+    CHECK(search.pairs(lines, set.reach) == found);
+}
+
 TEST_CASE_TEMPLATE("fibres that only just touch are found however far away another one is", Search, BvhSearch, GridSearch,
                    AutomaticSearch) {
     FibreSet set{.name = "pairs and a stray fibre", .reach = 0.1};

@@ -315,8 +315,8 @@ assembly::ChainSystem<FabricSystem::Beam> chain_system(const System& other) {
                 for (std::size_t j = 0; j < term.vectors.size(); ++j) {
                     const Index k = places.number(term.vectors[i]), l = places.number(term.vectors[j]), apart = k / 3 - l / 3;
                     if (apart < 0) continue;
-                    system.row(fibre, k / 3).block<3, 3>(3 * (k % 3), (2 - apart) * 9 + 3 * (l % 3)) +=
-                        term.stiffness.block<3, 3>(3 * static_cast<Index>(i), 3 * static_cast<Index>(j));
+                    system.add_to_row(fibre, k / 3, 3 * (k % 3), (2 - apart) * 9 + 3 * (l % 3),
+                                      term.stiffness.block<3, 3>(3 * static_cast<Index>(i), 3 * static_cast<Index>(j)));
                 }
         }
         void point(const assembly::PointTerm& term) {

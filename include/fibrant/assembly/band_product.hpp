@@ -23,22 +23,65 @@ class BandProduct {
 public:
     static constexpr int lanes = 8;
 
-    /// Copies the bands; @param row row(chain, node) gives the blocks A(a, a - Reach) ... A(a, a) side by side
-    template <class RowOf>
-    void pack(const scene::DofLayout& layout, const RowOf& row) {
-        if (!fits(layout)) arrange(layout);
-        core::parallel_for(
-            packs(),
-            [&](Index p) {
-                Pack& pack = packs_[core::at(p)];
-                if (pack.wide) {
-                    copy<lanes>(pack, row);
-                } else {
-                    copy<1>(pack, row);
-                }
-            },
-            scene::grain(layout, packs()));
+    using Row = Eigen::Matrix<double, Block, (Reach + 1) * Block>;  ///< blocks A(a, a - Reach) ... A(a, a)
+
+    /// All zero.
+    void arrange(const scene::DofLayout& layout) {
+        packs_.clear(), place_.clear();
+        for (Index c = 0; c < core::count(layout.chains);) {
+            const Index nodes = layout.chains[core::at(c)].nodes;
+            Index same = 1;
+            while (same < lanes && c + same < core::count(layout.chains) && layout.chains[core::at(c + same)].nodes == nodes)
+                ++same;
+            const bool wide = same > 2;  // fewer leave most lanes idle
+            Pack pack{c, wide ? same : 1, nodes, {}, wide, {}};
+            for (Index k = 0; k < lanes; ++k)
+                pack.first[core::at(k)] = 3 * layout.chains[core::at(k < pack.chains ? c + k : c)].first_vector;
+            const Index entries = start(nodes);
+            pack.values.assign(core::at(wide ? entries : (entries + lanes - 1) / lanes), Wide<lanes>::Zero());
+            for (Index k = 0; k < pack.chains; ++k) place_.emplace_back(core::count(packs_), k);
+            packs_.push_back(std::move(pack));
+            c += packs_.back().chains;
+        }
     }
+
+    // Of different chains from several threads at once:
+
+    /// Takes over a chain's band. @param rows  of its nodes
+    void set(Index chain, const std::vector<Row>& rows) {
+        const auto [pack, lane] = place_[core::at(chain)];
+        if (packs_[core::at(pack)].wide) {
+            copy<lanes>(packs_[core::at(pack)], lane, rows);
+        } else {
+            copy<1>(packs_[core::at(pack)], lane, rows);
+        }
+    }
+    /// Adds to an entry of a node's row; above the diagonal, or to the left of its element, nothing.
+    void add(Index chain, Index a, Index i, Index column, double value) {
+        const Index d = Reach - column / Block, j = column % Block;
+        if (d > before(a) || (d == 0 && j > i)) return;
+        const auto [pack, lane] = place_[core::at(chain)];
+        Pack& of = packs_[core::at(pack)];
+        const Index entry = start(a) + (d == 0 ? i * (i + 1) / 2 + j : triangle + ((d - 1) * Block + j) * Block + i);
+        of.values.front().data()[lane + of.stride() * entry] += value;
+    }
+    /// Calls see(i, j, d, value) with the entries (i, j) of A(a, a - d), in an order for blocks of columns; of d = 0 both halves.
+    template <class See>
+    void each(Index chain, Index a, const See& see) const {
+        const auto [pack, lane] = place_[core::at(chain)];
+        const Pack& of = packs_[core::at(pack)];
+        const Index stride = of.stride();
+        const double* from = of.values.front().data() + lane + stride * start(a);
+        for (Index i = 0; i < Block; ++i)
+            for (Index j = 0; j <= i; ++j, from += stride) {
+                see(i, j, Index{0}, *from);
+                if (j < i) see(j, i, Index{0}, *from);
+            }
+        for (Index d = 1; d <= before(a); ++d)
+            for (Index j = 0; j < Block; ++j)
+                for (Index i = 0; i < Block; ++i, from += stride) see(i, j, d, *from);
+    }
+    Index nodes(Index chain) const noexcept { return packs_[core::at(place_[core::at(chain)].first)].nodes; }
 
     Index packs() const noexcept { return core::count(packs_); }
     /// Chains of a pack: [first, last).
@@ -64,53 +107,27 @@ private:
         std::array<Index, core::at(lanes)> first;  // unknown of each chain; those that are not there repeat the first
         bool wide;
         std::vector<Wide<lanes>> values;  // node by node; a pack that is not wide keeps plain numbers in them
+        Index stride() const noexcept { return wide ? lanes : 1; }
     };
 
     static constexpr Index before(Index a) noexcept { return a == 0 ? 0 : (a - 1) % Reach + 1; }
     static constexpr Index triangle = Block * (Block + 1) / 2;
 
-    bool fits(const scene::DofLayout& layout) const {
-        Index chains = 0;
-        for (const Pack& pack : packs_) {
-            for (Index k = 0; k < pack.chains; ++k, ++chains) {
-                if (chains >= core::count(layout.chains) || layout.chains[core::at(chains)].nodes != pack.nodes ||
-                    3 * layout.chains[core::at(chains)].first_vector != pack.first[core::at(k)])
-                    return false;
-            }
-        }
-        return chains == core::count(layout.chains);
+    /// Entries of all nodes before node a.
+    static constexpr Index start(Index a) noexcept {
+        const Index elements = a < 1 ? 0 : (a - 1) / Reach, rest = a < 1 ? 0 : (a - 1) % Reach;
+        return triangle * a + Block * Block * (elements * (Reach * (Reach + 1) / 2) + rest * (rest + 1) / 2);
     }
-    void arrange(const scene::DofLayout& layout) {
-        packs_.clear();
-        for (Index c = 0; c < core::count(layout.chains);) {
-            const Index nodes = layout.chains[core::at(c)].nodes;
-            Index same = 1;
-            while (same < lanes && c + same < core::count(layout.chains) && layout.chains[core::at(c + same)].nodes == nodes)
-                ++same;
-            const bool wide = same > 2;  // fewer leave most lanes idle
-            Pack pack{c, wide ? same : 1, nodes, {}, wide, {}};
-            for (Index k = 0; k < lanes; ++k)
-                pack.first[core::at(k)] = 3 * layout.chains[core::at(k < pack.chains ? c + k : c)].first_vector;
-            Index entries = 0;
-            for (Index a = 0; a < nodes; ++a) entries += triangle + before(a) * Block * Block;
-            pack.values.assign(core::at(wide ? entries : (entries + lanes - 1) / lanes), Wide<lanes>::Zero());
-            packs_.push_back(std::move(pack));
-            c += packs_.back().chains;
-        }
-    }
-
-    template <int Lanes, class RowOf>
-    static void copy(Pack& pack, const RowOf& row) {
-        for (Index lane = 0; lane < pack.chains; ++lane) {
-            double* to = pack.values.front().data() + lane;
-            for (Index a = 0; a < pack.nodes; ++a) {
-                const auto& r = row(pack.first_chain + lane, a);
-                for (Index i = 0; i < Block; ++i)
-                    for (Index j = 0; j <= i; ++j, to += Lanes) *to = r(i, Reach * Block + j);
-                for (Index d = 1; d <= before(a); ++d)
-                    for (Index j = 0; j < Block; ++j)
-                        for (Index i = 0; i < Block; ++i, to += Lanes) *to = r(i, (Reach - d) * Block + j);
-            }
+    template <int Lanes>
+    static void copy(Pack& pack, Index lane, const std::vector<Row>& rows) {
+        double* to = pack.values.front().data() + lane;
+        for (Index a = 0; a < pack.nodes; ++a) {
+            const Row& r = rows[core::at(a)];
+            for (Index i = 0; i < Block; ++i)
+                for (Index j = 0; j <= i; ++j, to += Lanes) *to = r(i, Reach * Block + j);
+            for (Index d = 1; d <= before(a); ++d)
+                for (Index j = 0; j < Block; ++j)
+                    for (Index i = 0; i < Block; ++i, to += Lanes) *to = r(i, (Reach - d) * Block + j);
         }
     }
 
@@ -158,6 +175,7 @@ private:
     }
 
     std::vector<Pack> packs_;
+    std::vector<std::pair<Index, Index>> place_;  // of each chain: pack and lane
 };
 
 }  // namespace fibrant::assembly

@@ -3,8 +3,9 @@
 /// @file The tangent of one iteration, never formed as one matrix: a block band for every fibre, and a point term for every
 /// contact element.
 
-#include <fibrant/assembly/band_product.hpp>
+#include <fibrant/assembly/chain_rows.hpp>
 #include <fibrant/assembly/linear_system.hpp>
+#include <fibrant/assembly/particle_blocks.hpp>
 #include <fibrant/assembly/point_product.hpp>
 #include <fibrant/assembly/slide_products.hpp>
 #include <fibrant/beam/mesh.hpp>
@@ -24,8 +25,8 @@ namespace fibrant::assembly {
 
 /// Symmetric tangent of fibres whose elements are B, coupled by point terms between two elements.
 ///
-/// Memory: (reach + 1) blocks a node, and about 250 bytes a contact that carries force. Every sum has a fixed order, so the
-/// bits of a product do not depend on the number of threads.
+/// Memory: the lower half of the blocks within elements, and some 600 bytes a contact that carries force. Every sum has a fixed
+/// order, so the bits of a product do not depend on the number of threads.
 template <beam::BeamElement B>
 class ChainSystem {
 public:
@@ -33,7 +34,7 @@ public:
     static constexpr int reach = B::reach;
     static constexpr int vectors = B::nodes * B::vectors_per_node;  ///< of an element
     static_assert(reach == B::nodes - 1, "nodes couple within elements");
-    using Row = Eigen::Matrix<double, block, (reach + 1) * block>;  ///< blocks A(a, a - reach) ... A(a, a)
+    using Row = typename ChainRows<block, reach>::Row;  ///< blocks A(a, a - reach) ... A(a, a)
     /// Stiffness between two particles of two elements.
     struct Point {
         std::int32_t first_i, first_j;  ///< first unknown of either element
@@ -44,16 +45,16 @@ public:
 
     explicit ChainSystem(const beam::Mesh<B>& mesh) : ChainSystem(mesh.layout()) {}
     /// @param layout  chains of B's nodes
-    explicit ChainSystem(scene::DofLayout layout) : layout_{std::move(layout)} {
+    explicit ChainSystem(scene::DofLayout layout) : layout_{std::move(layout)}, rows_{layout_} {
         Index nodes = 0;
         for (const scene::Chain& chain : layout_.chains) {
             if (chain.closed) closed_.push_back(core::count(first_node_));
             images_of_.emplace_back();
             first_node_.push_back(nodes);
+            fibre_of_.insert(fibre_of_.end(), core::at(chain.nodes), static_cast<std::int32_t>(core::count(first_node_) - 1));
             nodes += chain.nodes;
         }
         first_node_.push_back(nodes);
-        rows_.resize(core::at(nodes), Row::Zero());
         find_sources();
     }
 
@@ -80,18 +81,18 @@ public:
     /// y += F S x, S the part that is not symmetric, for an x that lies within the free directions.
     void apply_skews(const Vector& free, Vector& y) const {
         const Vector& x = with_images(free);
-        free_.setZero(x.size());
+        Vector forces = Vector::Zero(x.size());
         for (const Skew& skew : skews_) {
             const Point& point = points_[core::at(skew.point)];
             const Vec3 apart = beam::Mesh<B>::motion(x, point.first_j, point.weights_j) -
                                beam::Mesh<B>::motion(x, point.first_i, point.weights_i);
             const Vec3 force = skew.row.dot(apart) * skew.column;
-            beam::spread(point.weights_j, force, point.first_j, free_);
-            beam::spread(point.weights_i, Vec3(-force), point.first_i, free_);
+            beam::spread(point.weights_j, force, point.first_j, forces);
+            beam::spread(point.weights_i, Vec3(-force), point.first_i, forces);
         }
-        scene::fold_images(layout_, free_);
-        scene::project_free(layout_, free_);
-        y += free_;
+        scene::fold_images(layout_, forces);
+        scene::project_free(layout_, forces);
+        y += forces;
     }
 
     /// Number of terms that couple what no band does: points, slides, and the last nodes of a closed one with its first.
@@ -102,16 +103,24 @@ public:
         for (Index v = 0; v < layout_.vectors(); ++v) layout_.value[core::at(v)] = state.segment<3>(3 * v);
     }
 
+    // Bands: cleared, added to from several threads for different fibres, and then closed. A band that has been closed can be
+    // added to as well, which is slower; one that has not is refused where it is read.
+
     /// Sets a fibre's band to zero.
-    void clear(Index fibre) {
-        for (Index a = 0; a < nodes(fibre); ++a) row(fibre, a).setZero();
+    void clear(Index fibre) { rows_.open(fibre); }
+    /// What has been added to a fibre since is as products read it, and in less memory; more may come.
+    void close(Index fibre) { rows_.close(fibre); }
+    /// Adds values to a node's row, from its entry (i, column) on, as ChainRows does. @tparam Values  a matrix of fixed size
+    template <class Values>
+    void add_to_row(Index fibre, Index node, Index i, Index column, const Values& values) {
+        rows_.add(fibre, node, i, column, values);
     }
     /// Adds an element's stiffness.
     void add(Index fibre, Index element, const beam::ElementMatrix<B>& stiffness) {
         for (Index a = 0; a < B::nodes; ++a)
             for (Index b = 0; b <= a; ++b)
-                row(fibre, element * (B::nodes - 1) + a).template block<block, block>(0, (reach - (a - b)) * block) +=
-                    stiffness.template block<block, block>(a * block, b * block);
+                rows_.add(fibre, element * (B::nodes - 1) + a, 0, (reach - (a - b)) * block,
+                          stiffness.template block<block, block>(a * block, b * block));
     }
     /// Adds (w w^T) (x) stiffness on the vectors of one element; of a particle whose section turns J^T stiffness J with the
     /// derivatives J of its place.
@@ -119,22 +128,24 @@ public:
     template <class Weights>
     void add_rank_one(Index fibre, Index first_unknown, const Weights& weights, const Mat3& stiffness) {
         const Index node = first_unknown / block - first_node_[core::at(fibre)];
-        each_pair(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
-            row(fibre, node + a).template block<3, 3>(3 * v, (reach - (a - b)) * block + 3 * w) += product;
+        each_pair<B>(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
+            rows_.add(fibre, node + a, 3 * v, (reach - (a - b)) * block + 3 * w, product);
         });
     }
     /// Adds a stiffness of one nodal vector with itself.
     void add_diagonal(Index vector, const Mat3& stiffness) {
         const Index node = vector / B::vectors_per_node, v = vector % B::vectors_per_node;
-        rows_[core::at(node)].template block<3, 3>(3 * v, reach * block + 3 * v) += stiffness;
+        const Index fibre = fibre_of_[core::at(node)];
+        rows_.add(fibre, node - first_node_[core::at(fibre)], 3 * v, reach * block + 3 * v, stiffness);
     }
-    Row& row(Index fibre, Index node) noexcept { return rows_[core::at(first_node_[core::at(fibre)] + node)]; }
-    const Row& row(Index fibre, Index node) const noexcept { return rows_[core::at(first_node_[core::at(fibre)] + node)]; }
+    /// A copy, of a fibre that is closed.
+    const Row row(Index fibre, Index node) const { return rows_.row(fibre, node); }
 
-    /// To be called once bands and points are complete: arranges them for products.
+    /// To be called once bands and points are complete: closes all fibres, and arranges points for products. Again where points
+    /// have changed since.
     void index_points() {
-        band_.pack(layout_, [this](Index fibre, Index node) -> const Row& { return row(fibre, node); });
-        pairs_.pack(points_, core::count(rows_),
+        for (Index f = 0; f < fibres(); ++f) close(f);
+        pairs_.pack(points_, first_node_.back(),
                     [](const Point& point, int side) { return (side == 0 ? point.first_i : point.first_j) / block; });
         if (banded_slides()) slides_of_.index(slides_, layout_, [this](Index v) { return source(v); });
         supports_.clear();
@@ -154,10 +165,10 @@ public:
             std::all_of(layout_.held.begin(), layout_.held.end(), is_free)) {  // as directions of a solver are
             apply_unheld(x, y);
         } else {
-            free_ = x;
-            scene::project_free(layout_, free_);
-            apply_unheld(free_, y);
-            scene::add_motion_stiffness(layout_, free_, y);
+            Vector free = x;
+            scene::project_free(layout_, free);
+            apply_unheld(free, y);
+            scene::add_motion_stiffness(layout_, free, y);
             scene::complete_ties(layout_, x, y);
         }
         for (const scene::HeldVector& held : layout_.held) {
@@ -169,17 +180,18 @@ public:
 
     /// y = K x, as if nothing were held; images count as their sources.
     void apply_unheld(const Vector& free, Vector& y) const {
+        rows_.require_closed();
         const Vector& x = with_images(free);
-        const Index grain = scene::grain(layout_, band_.packs());
+        const Index grain = scene::grain(layout_, bands().packs());
         core::parallel_for(
-            band_.packs(),
+            bands().packs(),
             [&](Index p) {
-                band_.apply(p, x, y);
+                bands().apply(p, x, y);
                 pairs_.find_motions(sides(p), x);
             },
             grain);
         core::parallel_for(
-            band_.packs(), [&](Index p) { pairs_.add_forces(sides(p), y); }, grain);
+            bands().packs(), [&](Index p) { pairs_.add_forces(sides(p), y); }, grain);
         for (const contact::SlidingStiffness& slide : slides_) add_slide(slide, x, y);
         scene::fold_images(layout_, y);
     }
@@ -287,14 +299,11 @@ private:
                 slides_, layout_, fibre, [this](Index v) { return source(v); }, blocks);
     }
     void add_band(Index fibre, Matrix& blocks) const {
-        for (Index a = 0; a < nodes(fibre); ++a)
-            for (Index d = 0; d <= std::min<Index>(a, reach); ++d)
-                blocks.block<block, block>(a * block, d * block) +=
-                    row(fibre, a).template block<block, block>(0, (reach - d) * block);
+        rows_.add_to(fibre, blocks);
         pairs_.add_own(pairs_.sides(first_node_[core::at(fibre)], first_node_[core::at(fibre + 1)]),
                        [&](std::int32_t first, const beam::Particle<B>& weights, const Mat3& stiffness) {
                            const Index node = (first - first_unknown(fibre)) / block;
-                           each_pair(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
+                           each_pair<B>(weights, stiffness, [&](Index a, Index v, Index b, Index w, const Mat3& product) {
                                blocks.block<3, 3>((node + a) * block + 3 * v, (a - b) * block + 3 * w) += product;
                            });
                        });
@@ -341,7 +350,7 @@ private:
         for (Index k = 0; k < size / 3; ++k) numbers[core::at(k)] = first + k;
         replace_images(std::span(numbers).first(core::at(size / 3)));
         dense.setZero(size, size);
-        const Row& own = row(f, a);
+        const Row own = row(f, a);
         for (Index c = 0; c < size; ++c)
             for (Index r = 0; r < block; ++r) {
                 const double value = own(r, (reach + 1) * block - size + c);
@@ -349,37 +358,6 @@ private:
                 if (c < size - block) dense(c, size - block + r) = value;
             }
         return core::at(size / 3);
-    }
-    /// see(node, vector, node, vector, block) of (w w^T) (x) stiffness, in the lower half.
-    template <class See>
-    static void each_pair(const beam::ElementWeights<B>& weights, const Mat3& stiffness, const See& see) {
-        for (Index a = 0; a < B::nodes; ++a)
-            for (Index v = 0; v < B::vectors_per_node; ++v) {
-                const double left = weights[core::at(a * B::vectors_per_node + v)];
-                if (left == 0.0) continue;
-                for (Index b = 0; b <= a; ++b)
-                    for (Index w = 0; w < B::vectors_per_node; ++w)
-                        see(a, v, b, w, Mat3(left * weights[core::at(b * B::vectors_per_node + w)] * stiffness));
-            }
-    }
-    /// The same of a particle of the centreline.
-    template <class See>
-    static void each_pair(const beam::CentreWeights<B::nodes, B::vectors_per_node>& centre, const Mat3& stiffness,
-                          const See& see) {
-        for (Index a = 0; a < B::nodes; ++a)
-            for (Index b = 0; b <= a; ++b) see(a, 0, b, 0, Mat3(centre[core::at(a)] * centre[core::at(b)] * stiffness));
-    }
-    /// The same of J^T stiffness J.
-    template <class See>
-    static void each_pair(const beam::Particle<B>& particle, const Mat3& stiffness,
-                          const See& see) requires beam::TurningSections<B> {
-        for (Index a = 0; a < B::nodes; ++a)
-            for (Index v = 0; v < B::vectors_per_node; ++v) {
-                const Mat3 left = particle.slope(a * B::vectors_per_node + v).transpose() * stiffness;
-                for (Index b = 0; b <= a; ++b)
-                    for (Index w = 0; w < B::vectors_per_node; ++w)
-                        see(a, v, b, w, Mat3(left * particle.slope(b * B::vectors_per_node + w)));
-            }
     }
     /// Particles that turn have no scalar weights: the whole matrix of the point.
     template <class Terms>
@@ -393,7 +371,7 @@ private:
     }
     /// Sides of points on the fibres of a pack, and on one fibre.
     std::pair<Index, Index> sides(Index pack) const noexcept {
-        const auto [first, last] = band_.chains(pack);
+        const auto [first, last] = bands().chains(pack);
         return pairs_.sides(first_node_[core::at(first)], first_node_[core::at(last)]);
     }
 
@@ -416,24 +394,25 @@ private:
         }
     }
 
+    const BandProduct<block, reach>& bands() const noexcept { return rows_.product(); }
     Index fibres() const noexcept { return core::count(layout_.chains); }
     Index nodes(Index fibre) const noexcept { return layout_.chains[core::at(fibre)].nodes; }
     Index first_unknown(Index fibre) const noexcept { return 3 * layout_.chains[core::at(fibre)].first_vector; }
 
     scene::DofLayout layout_;
     std::vector<Index> first_node_;
+    std::vector<std::int32_t> fibre_of_;         // of each node
     std::vector<Index> closed_;                  // fibres
     std::vector<std::vector<Index>> images_of_;  // of each chain: chains that are images of it
     std::vector<Index> source_;                  // of each vector; empty: none is an image
-    std::vector<Row> rows_;
+    ChainRows<block, reach> rows_;
     std::vector<Point> points_;
     std::vector<Skew> skews_;
     std::vector<contact::SlidingStiffness> slides_;
     SlidesOfChains<contact::SlidingStiffness> slides_of_;
     std::vector<std::pair<Index, double>> supports_;  // of tied vectors, sorted
-    BandProduct<block, reach> band_;
     PointProduct<vectors, beam::Particle<B>> pairs_;
-    mutable Vector free_, whole_;  // scratch of a product: one system serves one thread at a time
+    mutable Vector whole_;  // scratch of a product: one system serves one thread at a time
 };
 
 }  // namespace fibrant::assembly

@@ -285,6 +285,7 @@ public:
                     scene::for_own_vectors(system_.layout(), f, [&](Index v, double length) {
                         system_.add_diagonal(v, springs * length * length * Mat3::Identity());
                     });
+                system_.close(f);
             },
             mesh_->grain());
         StiffnessSink<System, B, moves> sink{system_, *mesh_, state};
@@ -391,6 +392,7 @@ private:
                 tangent += learned;
             }
             const auto& element = elements[core::at(k)];
+            core::reserve_for(points, points.size() + 1);
             points.push_back({element.first_i, element.first_j, element.fibre_i, element.fibre_j, element.weights_i,
                               element.weights_j, tangent});
             if (!contacts_->follows()) continue;

@@ -33,10 +33,10 @@ public:
         std::vector<std::int32_t> next(core::at(elements) + 1, 0);
         for (const Point& point : points) ++next[core::at(place(point, 0)) + 1], ++next[core::at(place(point, 1)) + 1];
         for (std::size_t k = 1; k < next.size(); ++k) next[k] += next[k - 1];
-        slot_.resize(core::at(2 * n));
-        sides_.resize(core::at(2 * n));
-        weights_.resize(core::at(2 * n));
-        motion_.resize(core::at(2 * n));
+        core::resize_anew(slot_, core::at(2 * n));
+        core::resize_anew(sides_, core::at(2 * n));
+        core::resize_anew(weights_, core::at(2 * n));
+        core::resize_anew(motion_, core::at(2 * n));
         for (Index k = 0; k < n; ++k)
             for (int side = 0; side < 2; ++side)
                 slot_[core::at(2 * k + side)] = next[core::at(place(points[core::at(k)], side))]++;

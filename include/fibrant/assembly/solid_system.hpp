@@ -55,13 +55,14 @@ public:
     auto& skews() noexcept { return fibres_.skews(); }
     bool unsymmetric() const noexcept { return fibres_.unsymmetric(); }
     void clear(Index fibre) { fibres_.clear(fibre); }
+    void close(Index fibre) { fibres_.close(fibre); }
     void add(Index fibre, Index element, const beam::ElementMatrix<B>& stiffness) { fibres_.add(fibre, element, stiffness); }
     template <class Weights>
     void add_rank_one(Index fibre, Index first_unknown, const Weights& weights, const Mat3& stiffness) {
         fibres_.add_rank_one(fibre, first_unknown, weights, stiffness);
     }
     void add_diagonal(Index vector, const Mat3& stiffness) { fibres_.add_diagonal(vector, stiffness); }
-    const Row& row(Index fibre, Index node) const noexcept { return fibres_.row(fibre, node); }
+    const Row row(Index fibre, Index node) const { return fibres_.row(fibre, node); }
     void index_points() { fibres_.index_points(); }
 
     /// y = A x

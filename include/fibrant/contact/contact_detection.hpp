@@ -286,6 +286,7 @@ std::vector<Zone> find_zones(const beam::Mesh<B>& mesh, const Vector& state, Sea
             return a.span.fibre_i != b.span.fibre_i ? a.span.fibre_i < b.span.fibre_i : a.span.fibre_j < b.span.fibre_j;
         });
     }
+    if constexpr (requires { search.release(); }) search.release();  // contact elements take more, and want it now
     for (Zone& zone : zones) {
         const beam::MeshFibre &i = mesh.fibre(zone.span.fibre_i), &j = mesh.fibre(zone.span.fibre_j);
         zone.reference =

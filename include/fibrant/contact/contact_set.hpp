@@ -15,6 +15,8 @@
 #include <fibrant/contact/side_index.hpp>
 #include <fibrant/contact/station_pairs.hpp>
 #include <fibrant/contact/watched_places.hpp>
+#include <fibrant/core/blocks.hpp>
+#include <fibrant/core/few_of.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -48,9 +50,9 @@ public:
     const Normal& normal_law() const noexcept { return normal_; }
     Friction& friction_law() noexcept { return friction_; }
     ContactParameters& parameters() noexcept { return parameters_; }
-    const std::vector<Element>& elements() const noexcept { return elements_; }
+    const core::Blocks<Element>& elements() const noexcept { return elements_; }
     const std::vector<ContactResponse>& responses() const noexcept { return responses_; }
-    const std::vector<law::FrictionAnswer<Friction>>& frictions() const noexcept { return frictions_; }
+    const core::FewOf<law::FrictionAnswer<Friction>>& frictions() const noexcept { return frictions_; }
     const std::vector<Zone>& zones() const noexcept { return zones_; }
     std::vector<Zone>& zones() noexcept { return zones_; }
     const Memory& accepted_memory() const noexcept { return accepted_; }
@@ -114,10 +116,9 @@ public:
     /// @param start  the last accepted one: nothing has slipped, however pairs have turned; twice as deep as its zone was, none
     /// touched, unless contact acts within an increment: what it gives then counts from there
     void evaluate(const Vector& state, bool start = false) {
-        responses_.resize(elements_.size());
-        if constexpr (core::Active<Friction>) frictions_.resize(elements_.size());
+        core::resize_anew(responses_, elements_.size());
         const Vector& acting = acting_.of(normal_, state);
-        for_elements([&](Index k) {
+        frictions_.fill(elements_.size(), [&](Index k, [[maybe_unused]] auto& friction) {
             Element& element = elements_[core::at(k)];
             if (slides(k) && !start) places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
             if (slides(k))
@@ -132,20 +133,21 @@ public:
             responses_[core::at(k)] = {gap, response.reaction, response.slope};
             act_within(*mesh_, normal_, state, acting, element);
             if constexpr (core::Active<Friction>) {
-                frictions_[core::at(k)] = {};
-                if (!carries(k)) return;
+                if (!carries(k)) return false;
                 Vec3 slip = Vec3::Zero();
                 if (!start) slip = element.friction_offset(state) - element.friction.accepted_offset;
                 slip -= slip.dot(plane(k)) * plane(k);
                 const double bound = none ? 0.0 : standing_bound(normal_, *mesh_, element, responses_[core::at(k)]);
-                frictions_[core::at(k)] = friction_answer(friction_, *mesh_, element, slip, zone.friction_factor, bound);
+                friction = friction_answer(friction_, *mesh_, element, slip, zone.friction_factor, bound);
             }
+            return core::Active<Friction>;
         });
     }
 
     /// Fibres along each other as they stood in another state; `turn_forth` takes back what it returns.
     auto turn_back(const Vector& start) {
         std::vector<std::pair<Vec3, MeetingPoint<B>>> present;
+        present.reserve(elements_.size());
         for (const Element& element : elements_) present.emplace_back(element.normal, element.meeting);
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
@@ -186,13 +188,13 @@ public:
         const ContactResponse& response = responses_[core::at(k)];
         return places_.stiffness(elements_[core::at(k)], response.reaction, response.slope, positive);
     }
-    /// Of `force` and of `tangent`, what acts on the particles.
+    /// Of `force` and `tangent`, what acts on particles.
     Vec3 point_force(Index k) const noexcept {
         return slides(k) ? Vec3(force(k) + responses_[core::at(k)].reaction * elements_[core::at(k)].normal) : force(k);
     }
     Mat3 point_tangent(Index k) const noexcept { return slides(k) ? friction_tangent(k) : tangent(k); }
 
-    /// Friction is bounded by the reactions of the moment.
+    /// Present reactions bound friction.
     bool follows() const noexcept { return core::Active<Friction> && parameters_.friction_bound == FrictionBound::following; }
     /// What `tangent` leaves out if the bound follows: slope of element k's friction force by its gap [force / length].
     Vec3 friction_by_gap(Index k) const noexcept {
@@ -244,7 +246,7 @@ public:
 
     std::span<const std::int32_t> sides(Index fibre) const noexcept { return sides_.of(fibre); }
 
-    /// Greatest gap or depth of what carries force [length].
+    /// Greatest gap or depth of what carries [length].
     double misfit() const {
         double most = 0.0;
         for (std::size_t k = 0; k < elements_.size(); ++k)
@@ -309,14 +311,15 @@ private:
 
     void generate(const Vector& end, const Vector& accepted, const Memory& memory, const Vector& state) {
         elements_.clear();
-        // Some zones at a time, enough for many threads: what they make is not twice in memory.
-        const Index some = std::max<Index>(4096, core::count(zones_) / 32);
+        // Some zones at a time: what they make is not twice in memory.
+        const Index some = std::max<Index>(512, core::count(zones_) / 64);
         for (Index first = 0; first < core::count(zones_); first += some)
             generate(first, std::min(core::count(zones_), first + some), end, accepted, memory, state);
+        elements_.trim();
     }
-    /// Of zones [from, to), behind those that there are.
+    /// Of zones [from, to).
     void generate(Index from, Index to, const Vector& end, const Vector& accepted, const Memory& memory, const Vector& state) {
-        constexpr Index block = 64;  // zones
+        constexpr Index block = 8;  // zones
         const Index blocks = (to - from + block - 1) / block;
         std::vector<std::vector<Element>> made(core::at(blocks));
         const double forced_keep = 0.5;  // radii of clearance beyond which a forced pair needs no element
@@ -360,7 +363,7 @@ private:
             for (Index z = from + b * block; z < std::min(to, from + (b + 1) * block); ++z)
                 zones_[core::at(z)].first += offset, zones_[core::at(z)].last += offset;
         }
-        core::join(made, elements_, elements_.size());
+        elements_.append(made);
     }
 
     /// The closest patches, and where friction acts until normals are renewed. @returns its turn [radian]
@@ -434,9 +437,9 @@ private:
     Normal normal_;
     [[no_unique_address]] Friction friction_;
     std::vector<Zone> zones_, accepted_zones_;
-    std::vector<Element> elements_;
+    core::Blocks<Element> elements_;
     std::vector<ContactResponse> responses_;
-    std::vector<law::FrictionAnswer<Friction>> frictions_;
+    core::FewOf<law::FrictionAnswer<Friction>> frictions_;
     SideIndex sides_;
     Memory accepted_;
     FollowedPlaces<B> places_;

@@ -3,11 +3,12 @@
 /// @file What contacts turned out to be over a step of Newton's method that went too far, for the step after.
 
 #include <fibrant/contact/contact_element.hpp>
+#include <fibrant/core/few_of.hpp>
 #include <fibrant/core/parallel.hpp>
 
 #include <algorithm>
 #include <limits>
-#include <vector>
+#include <utility>
 
 namespace fibrant::contact {
 
@@ -47,14 +48,18 @@ public:
     template <class Contacts>
     Vec3 force(const Contacts& contacts, Index k) const noexcept {
         if (!closes(k)) return Vec3::Zero();
-        const ContactResponse &now = contacts.responses()[core::at(k)], &end = ends_[core::at(k)];
+        const ContactResponse& now = contacts.responses()[core::at(k)];
+        const End& end = ends_[core::at(k)];
         return (now.reaction - end.reaction - end.slope * (now.gap - end.gap)) * contacts.elements()[core::at(k)].normal;
     }
 
     /// To be called with contacts that balance, before their normals turn or their places move.
     template <class Contacts>
     void remember(const Contacts& contacts) {
-        remembered_.assign(contacts.responses().begin(), contacts.responses().end());
+        remembered_.fill(contacts.responses().size(), [&](Index k, ContactResponse& now) {
+            now = contacts.responses()[core::at(k)];
+            return now.slope != 0.0 || now.reaction != 0.0 || now.gap < 0.0;
+        });
     }
     void forget() noexcept { remembered_.clear(); }
     /// To be called once they have, with contacts that have been evaluated. Fibres that slid over each other are a little further
@@ -65,14 +70,11 @@ public:
         const auto& now = contacts.responses();
         if (remembered_.size() != now.size() || now.empty()) return forget();
         const double deepest = core::largest(core::count(now), 0.0, [&](Index k) { return -remembered_[core::at(k)].gap; });
-        ends_.swap(remembered_);
-        core::parallel_for(
-            core::count(now),
-            [&](Index k) {
-                ContactResponse& end = ends_[core::at(k)];
-                if (!(end.slope < now[core::at(k)].slope && now[core::at(k)].gap <= deepest)) end.slope = none;
-            },
-            core::light_items);
+        ends_.fill(now.size(), [&](Index k, End& end) {
+            const ContactResponse& before = remembered_[core::at(k)];
+            end = {before.gap, before.reaction, before.slope};
+            return before.slope < now[core::at(k)].slope && now[core::at(k)].gap <= deepest;
+        });
         forget();
     }
 
@@ -80,14 +82,11 @@ public:
     template <class Contacts>
     void begin_step(const Contacts& contacts) {
         ends_.clear();
-        for (Secant& one : secants_) one.friction = one.before = kept * one.friction;
-        start_.resize(contacts.elements().size());
-        core::parallel_for(
-            core::count(start_),
-            [&](Index k) {
-                start_[core::at(k)] = {contacts.force(k), contacts.tangent(k)};
-            },
-            core::light_items);
+        secants_.change([](Secant& one) { one.friction = one.before = kept * one.friction; });
+        start_.fill(contacts.elements().size(), [&](Index k, Start& start) {
+            start = {contacts.force(k), contacts.tangent(k)};
+            return !start.force.isZero(0.0) || !start.tangent.isZero(0.0);
+        });
     }
 
     /// To be called where that step, or a part of it, goes too far, with contacts that have been evaluated at its end: the
@@ -95,41 +94,50 @@ public:
     /// @param step  of all unknowns
     template <class Contacts>
     void learn(const Contacts& contacts, const Vector& step) {
-        ends_.resize(start_.size()), secants_.resize(start_.size());
-        core::parallel_for(
-            core::count(start_),
-            [&](Index k) {
-                const auto& element = contacts.elements()[core::at(k)];
-                const Start& start = start_[core::at(k)];
-                const Vec3 motion = element.motion(step), change = contacts.force(k) - start.force;
-                const Vec3 along = motion.dot(element.normal) * element.normal, slip = motion - along;
-                Secant& one = secants_[core::at(k)];
-                ContactResponse& end = ends_[core::at(k)];
-                end = contacts.responses()[core::at(k)];
-                if (!(change.dot(along) > along.dot(start.tangent * along))) end.slope = none;
-                const double square = slip.squaredNorm(), excess = change.dot(slip) - slip.dot(start.tangent * slip);
-                one.friction = one.before;
-                if (square > 0.0 && excess > 0.0) one.friction += (excess / (square * square)) * slip * slip.transpose();
-            },
-            core::light_items);
+        struct Way {
+            Vec3 along, slip, change;  // of the particles, and of the force
+        };
+        const auto way = [&](Index k) {
+            const auto& element = contacts.elements()[core::at(k)];
+            const Vec3 motion = element.motion(step), along = motion.dot(element.normal) * element.normal;
+            return Way{along, motion - along, contacts.force(k) - start_[core::at(k)].force};
+        };
+        ends_.fill(start_.size(), [&](Index k, End& end) {
+            const auto [along, slip, change] = way(k);
+            const ContactResponse& now = contacts.responses()[core::at(k)];
+            end = {now.gap, now.reaction, now.slope};
+            return change.dot(along) > along.dot(start_[core::at(k)].tangent * along);
+        });
+        core::FewOf<Secant> secants;
+        secants.fill(start_.size(), [&](Index k, Secant& one) {
+            const auto [along, slip, change] = way(k);
+            const double square = slip.squaredNorm(), excess = change.dot(slip) - slip.dot(start_[core::at(k)].tangent * slip);
+            if (!secants_.empty()) one.friction = one.before = secants_[core::at(k)].before;
+            if (square > 0.0 && excess > 0.0) one.friction += (excess / (square * square)) * slip * slip.transpose();
+            return !one.friction.isZero(0.0);
+        });
+        secants_ = std::move(secants);
     }
 
 private:
     struct Start {
-        Vec3 force;
-        Mat3 tangent;
+        Vec3 force = Vec3::Zero();
+        Mat3 tangent = Mat3::Zero();
     };
     struct Secant {  // of friction, and what was left of it when the step began
         Mat3 friction = Mat3::Zero(), before = Mat3::Zero();
     };
     static constexpr double none = std::numeric_limits<double>::infinity();  // slope of what is not taken as closed
+    struct End {  // that a contact is taken as closed about: as ContactResponse
+        double gap = 0.0, reaction = 0.0, slope = none;
+    };
 
     bool closes(Index k) const noexcept { return !ends_.empty() && ends_[core::at(k)].slope < none; }
 
-    std::vector<Start> start_;
-    std::vector<ContactResponse> ends_;        // that contacts are taken as closed about; empty where there are none
-    std::vector<Secant> secants_;              // empty where no step went too far
-    std::vector<ContactResponse> remembered_;  // of contacts that balanced
+    core::FewOf<Start> start_;                 // of those that carried
+    core::FewOf<End> ends_;                    // empty where there are none
+    core::FewOf<Secant> secants_;              // empty where no step went too far
+    core::FewOf<ContactResponse> remembered_;  // of contacts that balanced
     double holding_ = 0.0, within_ = 0.0;      // part of its stiffness by which a contact that is so near holds; gap [length]
 };
 

@@ -88,7 +88,7 @@ void mend(const Mesh& mesh, Contacts& contacts, std::span<const DeepPlace> place
         }
         if (!found) continue;  // the next search finds one
         Zone& zone = *found;
-        const auto elements = std::span(contacts.elements()).subspan(core::at(zone.first), core::at(zone.last - zone.first));
+        const auto elements = contacts.elements().part(core::at(zone.first), core::at(zone.last));
         const bool open = !mesh.fibre(zone.span.fibre_i).closed && !mesh.fibre(zone.span.fibre_j).closed;
         const double seen = detail::depth_of(contacts, zone),
                      least = std::max(seen, adaptation.allowed_penetration * zone.penetration_factor);

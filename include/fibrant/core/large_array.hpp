@@ -8,11 +8,32 @@
 #include <memory>
 #include <new>
 #include <type_traits>
+#include <vector>
 #if defined(__linux__)
 #include <sys/mman.h>
 #endif
 
 namespace fibrant::core {
+
+/// Gives a vector's memory back, which `values = {}` does not.
+template <class T>
+void release(std::vector<T>& values) noexcept {
+    std::vector<T>().swap(values);
+}
+
+/// Makes room for so many values, and an eighth more: a vector that grows by itself has room for twice as many.
+template <class T>
+void reserve_for(std::vector<T>& values, std::size_t size) {
+    if (size > values.capacity()) values.reserve(size + size / 8);
+}
+
+/// A vector of so many values, all to be written before they are read: what was there may be lost.
+template <class T>
+void resize_anew(std::vector<T>& values, std::size_t size) {
+    if (size > values.capacity()) release(values);  // before there is more
+    reserve_for(values, size);
+    values.resize(size);
+}
 
 /// An array that is not set to anything. From a few MiB on it asks the system for large pages: a dense product that goes across
 /// the columns of a tall matrix meets another page in each of them, and pages are cleared one by one when they are first written.

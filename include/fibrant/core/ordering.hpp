@@ -2,6 +2,7 @@
 #pragma once
 /// @file Sorting that is compiled once for all types: for what is sorted now and then, and not in an inner loop.
 
+#include <fibrant/core/large_array.hpp>
 #include <fibrant/core/types.hpp>
 
 #include <algorithm>
@@ -49,6 +50,7 @@ void stable_sort(std::vector<Value>& values, const Before& before) {
 /// Puts values behind others.
 template <class Value>
 void append(std::vector<Value>& values, const std::vector<Value>& more) {
+    reserve_for(values, values.size() + more.size());
     for (const Value& value : more) values.push_back(value);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 /// @file Loops over independent items, and sums whose bits do not depend on the number of threads.
 
+#include <fibrant/core/large_array.hpp>
 #include <fibrant/core/types.hpp>
 
 #include <algorithm>
@@ -94,17 +95,12 @@ private:
     int before_ = Eigen::nbThreads();
 };
 
-/// whole = all parts, one behind the other. @param behind  so many values that stay
+/// whole = all parts, one behind the other.
 template <class Value>
-void join(const std::vector<std::vector<Value>>& parts, std::vector<Value>& whole, std::size_t behind = 0) {
-    std::vector<std::size_t> first{behind};
+void join(const std::vector<std::vector<Value>>& parts, std::vector<Value>& whole) {
+    std::vector<std::size_t> first{0};
     for (const auto& part : parts) first.push_back(first.back() + part.size());
-    const std::size_t size = first.back();
-    if (size > whole.capacity()) {  // a vector that grows by itself has room for twice as many
-        if (behind == 0) whole = {};
-        whole.reserve(size + size / 8);
-    }
-    whole.resize(size);
+    resize_anew(whole, first.back());
     parallel_for(
         count(parts),
         [&](Index p) {

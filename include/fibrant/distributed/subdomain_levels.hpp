@@ -14,7 +14,6 @@
 #include <fibrant/solver/rigid_coarse_space.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -156,7 +155,7 @@ public:
         if (status() == solver::SolveStatus::not_finite || !b.allFinite()) return {};
         const double norm = solver::scaled_norm(layout, b);
         if (norm == 0.0) return {solver::SolveStatus::converged, 0, 0.0, core::unset};
-        const auto begun = std::chrono::steady_clock::now();
+        const auto begun = core::wall_seconds();
         Work& work = *work_;
         work.free = b;
         project(layout, work.free);
@@ -200,7 +199,7 @@ private:
 
     template <class Body>
     static void timed(double& seconds, const Body& body) {
-        const auto start = std::chrono::steady_clock::now();
+        const auto start = core::wall_seconds();
         body();
         seconds += core::seconds_since(start);
     }

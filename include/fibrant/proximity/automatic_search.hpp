@@ -28,6 +28,8 @@ public:
     /// @}
 
     bool takes_tree() const noexcept { return tree_taken_; }  ///< at the last call
+    /// Gives its memory back, which the next call takes anew.
+    void release() { tree_.release(), grid_.release(); }
     /// Memory that is kept, without the pairs [byte].
     std::size_t bytes() const noexcept { return tree_.bytes() + grid_.bytes(); }
 

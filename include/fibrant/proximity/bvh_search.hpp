@@ -68,6 +68,8 @@ public:
     }
     /// @}
 
+    /// Gives its memory back, which the next call takes anew.
+    void release() { *this = BvhSearch(); }
     /// Memory that is kept, without the pairs [byte].
     std::size_t bytes() const noexcept {
         return tree_.bytes() + segments_.bytes() + records_.capacity() * sizeof(detail::SegmentRecord) +

@@ -36,6 +36,8 @@ public:
     }
     /// @}
 
+    /// Gives its memory back, which the next call takes anew.
+    void release() { *this = GridSearch(); }
     /// Memory that is kept, without the pairs [byte].
     std::size_t bytes() const noexcept {
         std::size_t sum = (first_.capacity() + owner_.capacity()) * sizeof(std::int32_t) +

@@ -4,13 +4,11 @@
 
 #include <fibrant/core/types.hpp>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -23,15 +21,31 @@
 
 namespace fibrant::simulation {
 
+namespace detail {
+// Of C, since what C++ has for files takes a compiler's memory in every program that runs a simulation.
+struct CloseFile {
+    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
+};
+using ReadFile = std::unique_ptr<std::FILE, CloseFile>;
+/// Null where there is none.
+inline ReadFile open_to_read(const std::string& path) noexcept { return ReadFile(std::fopen(path.c_str(), "rb")); }
+/// To a name under which there may be another file, which then is gone. @returns whether it could be done, else errno says why
+inline bool rename_file(const std::string& from, const std::string& to) noexcept {
+#if !__has_include(<unistd.h>)
+    std::remove(to.c_str());  // systems other than those of POSIX rename to no name that is taken
+#endif
+    return std::rename(from.c_str(), to.c_str()) == 0;
+}
+}  // namespace detail
+
 /// Writes plain values to a file as they come: a part of it until the file is complete, so that the old one stays until then.
 /// Without a path it keeps nothing but their sum.
 class CheckpointWriter {
 public:
     CheckpointWriter() = default;
     /// What cannot be written is told by `finish`.
-    explicit CheckpointWriter(std::filesystem::path path) : path_{std::move(path)}, part_{path_} {
-        part_ += ".part";
-        file_ = std::fopen(part_.string().c_str(), "wb");
+    explicit CheckpointWriter(std::string path) : path_{std::move(path)}, part_{path_ + ".part"} {
+        file_ = std::fopen(part_.c_str(), "wb");
         note(file_ != nullptr);
         pending_.reserve(most_pending);
     }
@@ -62,20 +76,21 @@ public:
     }
     /// Puts all that another writer put into a file, before this one puts anything.
     /// @throws std::runtime_error if it cannot be read or is damaged
-    void put_file(const std::filesystem::path& path) {
-        std::ifstream file(path, std::ios::binary | std::ios::ate);
-        const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
+    void put_file(const std::string& path) {
+        const detail::ReadFile file = detail::open_to_read(path);
         std::uint64_t sum = 0;
-        std::vector<char> piece(most_pending);
-        file.seekg(0);
-        for (std::streamoff left = size - static_cast<std::streamoff>(sizeof sum); left > 0 && file;) {
-            const std::streamoff some = std::min(left, static_cast<std::streamoff>(piece.size()));
-            file.read(piece.data(), some);
-            put_bytes(piece.data(), static_cast<std::size_t>(some));
-            left -= some;
+        std::vector<char> piece(most_pending + sizeof sum);
+        std::size_t kept = 0;  // bytes that may be the sum, which comes last
+        for (std::size_t read = 1; file && read > 0;) {
+            read = std::fread(piece.data() + kept, 1, most_pending, file.get());
+            const std::size_t all = kept + read, some = all > sizeof sum ? all - sizeof sum : 0;
+            put_bytes(piece.data(), some);
+            kept = all - some;
+            std::memmove(piece.data(), piece.data() + some, kept);
         }
-        file.read(reinterpret_cast<char*>(&sum), sizeof sum);
-        if (!file || sum != sum_) throw std::runtime_error("checkpoint " + path.string() + " is damaged");
+        std::memcpy(&sum, piece.data(), sizeof sum);
+        if (!file || std::ferror(file.get()) != 0 || kept < sizeof sum || sum != sum_)
+            throw std::runtime_error("checkpoint " + path + " is damaged");
     }
     /// The file is complete, and takes the place of the one before.
     /// @throws std::runtime_error if it cannot be written
@@ -85,14 +100,11 @@ public:
         flush();
         if (file_ != nullptr && reason_ == 0) note(std::fflush(file_) == 0 && on_the_disk(file_));
         if (file_ != nullptr) note(std::fclose(file_) == 0);
-        std::error_code error;
-        if (reason_ == 0) std::filesystem::rename(part_, path_, error);
-        if (error) reason_ = error.value();
-        if (file_ != nullptr && reason_ != 0) std::filesystem::remove(part_, error);
+        if (file_ != nullptr && reason_ == 0) note(detail::rename_file(part_, path_));
+        if (file_ != nullptr && reason_ != 0) std::remove(part_.c_str());
         file_ = nullptr;
         if (reason_ != 0)
-            throw std::runtime_error("cannot write checkpoint " + path_.string() + ": " +
-                                     std::generic_category().message(reason_));
+            throw std::runtime_error("cannot write checkpoint " + path_ + ": " + std::generic_category().message(reason_));
     }
     /// Of what was put: two scenes with the same identity are taken for the same.
     std::uint64_t identity() const noexcept { return sum_; }
@@ -115,8 +127,7 @@ private:
     void discard() noexcept {
         if (file_ == nullptr) return;
         std::fclose(file_);
-        std::error_code error;
-        std::filesystem::remove(part_, error);
+        std::remove(part_.c_str());
     }
     /// The name is given to a file only once its bytes are on the disk: where power fails in between, the old one is still there.
     static bool on_the_disk([[maybe_unused]] std::FILE* file) noexcept {
@@ -126,7 +137,7 @@ private:
         return true;
 #endif
     }
-    std::filesystem::path path_, part_;
+    std::string path_, part_;
     std::FILE* file_ = nullptr;
     std::vector<char> pending_;
     std::uint64_t sum_ = hash(nullptr, 0);
@@ -137,19 +148,19 @@ private:
 class CheckpointReader {
 public:
     /// @throws std::runtime_error if the file cannot be read or is damaged
-    explicit CheckpointReader(const std::filesystem::path& path) : name_{path.string()} {
-        std::ifstream file(path, std::ios::binary | std::ios::ate);
-        std::error_code error;
-        if (!file) throw std::runtime_error("cannot read checkpoint " + name_ + ": " + std::generic_category().message(errno));
-        if (std::filesystem::is_directory(path, error))
-            throw std::runtime_error("cannot read checkpoint " + name_ + ": it is a folder");
-        const std::streamoff size = file.tellg();
-        if (size < 0) fail();
-        data_.resize(static_cast<std::size_t>(size));
-        file.seekg(0);
-        file.read(data_.data(), static_cast<std::streamsize>(data_.size()));
+    explicit CheckpointReader(std::string path) : name_{std::move(path)} {
+        const detail::ReadFile file = detail::open_to_read(name_);
+        if (!file) refuse(errno);
+        constexpr std::size_t piece = std::size_t{1} << 20;
+        std::size_t size = 0;
+        for (std::size_t read = piece; read == piece; size += read) {
+            data_.resize(size + piece);
+            read = std::fread(data_.data() + size, 1, piece, file.get());
+        }
+        if (std::ferror(file.get()) != 0) refuse(errno);
+        data_.resize(size);
         std::uint64_t sum = 0;
-        if (!file || data_.size() < sizeof sum) fail();
+        if (data_.size() < sizeof sum) fail();
         std::memcpy(&sum, data_.data() + data_.size() - sizeof sum, sizeof sum);
         data_.resize(data_.size() - sizeof sum);
         if (sum != CheckpointWriter::hash(data_.data(), data_.size())) fail();
@@ -198,6 +209,10 @@ public:
 
 private:
     std::size_t left() const noexcept { return data_.size() - position_; }
+    [[noreturn]] void refuse(int reason) const {
+        throw std::runtime_error("cannot read checkpoint " + name_ + ": " +
+                                 (reason == EISDIR ? "it is a folder" : std::generic_category().message(reason)));
+    }
     [[noreturn]] void fail() const { throw std::runtime_error("checkpoint " + name_ + " is damaged"); }
     std::string name_;
     std::vector<char> data_;

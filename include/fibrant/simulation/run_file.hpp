@@ -10,9 +10,10 @@
 #include <fibrant/simulation/state_file.hpp>
 
 #include <array>
-#include <filesystem>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
 #include <string>
-#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -120,12 +121,10 @@ public:
     /// @param path        of the checkpoint; empty: none
     /// @param before_end  keep what a run needs that is resumed at its end
     ResumedFile(const std::string& path, bool resume, bool before_end) : path_{path}, before_end_{before_end} {
-        std::error_code none;
-        if (!resume || path.empty() || !std::filesystem::exists(path)) return;
-        const auto size = std::filesystem::file_size(before(), none);
-        if (!before_end || none)
+        if (!resume || path.empty() || !exists(path)) return;
+        if (!before_end || !exists(before()))
             from_ = path;
-        else if (size > sizeof(std::uint64_t))  // there is more than the sum
+        else if (has_more(before(), sizeof(std::uint64_t)))  // than the sum
             from_ = before();
     }
     /// File to begin from; empty: at the start.
@@ -144,12 +143,23 @@ public:
         file.finish();
         if (ends) return;
         from_ = path_;
-        std::error_code none;
-        if (before_end_) std::filesystem::remove(before(), none);  // last: without it a run that had ended resumes at its end
+        if (before_end_) std::remove(before().c_str());  // last: without it a run that had ended resumes at its end
     }
 
 private:
     std::string before() const { return path_ + ".before"; }
+    /// A file that is there but may not be read is one: whoever reads it says so.
+    static bool exists(const std::string& path) {
+        errno = 0;
+        return detail::open_to_read(path) || errno == EACCES;
+    }
+    /// A file has so many bytes, and one more.
+    static bool has_more(const std::string& path, std::size_t bytes) {
+        const detail::ReadFile file = detail::open_to_read(path);
+        for (std::size_t k = 0; file && k <= bytes; ++k)
+            if (std::fgetc(file.get()) == EOF) return false;
+        return file != nullptr;
+    }
     std::string path_, from_;
     bool before_end_;
 };

@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -117,7 +116,7 @@ private:
     template <class GaveUp>
     bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report,
                  const GaveUp& gave_up) {
-        const auto start = std::chrono::steady_clock::now();
+        const auto start = core::wall_seconds();
         IncrementReport increment;
         double effort = 0.0;  // iterations a normal pass of it, over how many it may take
         bool rehearsed = false;
@@ -254,7 +253,7 @@ private:
         watcher.accepted(watcher.observer, shot);
     }
 
-    void finish(Report& report, std::chrono::steady_clock::time_point start) {
+    void finish(Report& report, double start) {
         report.sum_up();
         report.energy = energy_.balance();
         if constexpr (requires {
@@ -347,7 +346,7 @@ Simulator<M>::~Simulator() = default;
 template <Model M>
 Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watcher> watchers) {
     loading.validate();
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = core::wall_seconds();
     const std::vector<Stage<M>> stages = stages_of(loading, channels_);
     check_ramps(stages, channels_, amplitudes_);
     if (const Index given = core::count(loading.damping_of_fibres); given > 0 && given != mesh_.fibre_count())
@@ -392,11 +391,9 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
             // Observers first: what a checkpoint holds has been shown, and what is shown twice is told by number.
             clock_.time(core::Part::output, [&] {
                 for (const Watcher& watcher : watchers) show(watcher, report.increments.back());
-                const auto now = std::chrono::steady_clock::now();
+                const auto now = core::wall_seconds();
                 unsaved = !loading.checkpoint.empty();
-                if (!unsaved ||
-                    (!position_.stage_over && std::chrono::duration<double>(now - saved).count() < loading.checkpoint_seconds))
-                    return;
+                if (!unsaved || (!position_.stage_over && now - saved < loading.checkpoint_seconds)) return;
                 const bool end = position_.stage_over && position_.stage + 1 == core::count(stages);
                 kept.write(checkpoint(loading, stages, report), end);
                 saved = now, unsaved = false;

@@ -38,14 +38,16 @@ public:
     template <assembly::LinearSystem System>
     void find(const System& system) {
         const scene::DofLayout& layout = system.layout();
+        core::release(sides_), core::release(motion_), core::release(weights_);  // before there are others
         collect(system);
         sort_by_chain(core::count(layout.chains));
         colour();
         arrange();
+        core::release(pairs_), core::release(pair_weights_), core::release(order_);  // sweeps have what they read in their order
         find_held(layout);
     }
 
-    bool empty() const noexcept { return pairs_.empty(); }
+    bool empty() const noexcept { return sides_.empty(); }
     /// Classes, numbered in the order of a sweep.
     int classes() const noexcept { return classes_; }
     /// Class of each chain.
@@ -144,6 +146,7 @@ private:
             pairs[0] = std::move(all.pairs), weights[0] = std::move(all.weights);
             core::parallel_for(core::count(pairs) - 1, [&](Index b) {
                 Part part;
+                part.pairs.reserve(block), part.weights.reserve(2 * weights_each_ * block);
                 take(seen + block * b, std::min(terms, seen + block * (b + 1)), part);
                 pairs[core::at(b + 1)] = std::move(part.pairs), weights[core::at(b + 1)] = std::move(part.weights);
             });
@@ -161,7 +164,7 @@ private:
         for (const Pair& pair : pairs_)
             for (const std::int32_t chain : pair.chain) ++first_[core::at(chain) + 1];
         std::partial_sum(first_.begin(), first_.end(), first_.begin());
-        order_.resize(2 * pairs_.size());
+        core::resize_anew(order_, 2 * pairs_.size());
         std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);
         for (std::int32_t k = 0; k < static_cast<std::int32_t>(pairs_.size()); ++k)
             for (std::int32_t side = 0; side < 2; ++side)
@@ -211,9 +214,9 @@ private:
                     slot[core::at(*side)] = static_cast<std::int32_t>(side - order_.begin());
             },
             core::light_items / 8);
-        sides_.resize(order_.size());
-        motion_.resize(order_.size());
-        weights_.resize(pair_weights_.size());
+        core::resize_anew(sides_, order_.size());
+        core::resize_anew(motion_, order_.size());
+        core::resize_anew(weights_, pair_weights_.size());
         core::parallel_for(
             core::count(order_),
             [&](Index s) {

@@ -84,9 +84,7 @@ public:
         AttemptReport report;
         Newton<Equilibrium, Contacts, Linear> newton(*equilibrium_, *contacts_, *linear_, parameters_, radius_, *clock_);
         // What is driven goes on as it did: a search that reaches just so far would have to be repeated every other time.
-        Vector driven;
-        equilibrium_->prescribed_step(state, driven);
-        if (const double least = equilibrium_->greatest(driven); least > 0.0) expected = with::ahead * std::max(expected, least);
+        if (const double least = driven(state); least > 0.0) expected = with::ahead * std::max(expected, least);
         const double reach =
             std::clamp(with::both * expected, parameters_.margin * radius_, parameters_.largest_margin * radius_);
         contacts_->parameters().detection.wanted = with::both * expected;
@@ -205,6 +203,12 @@ private:
     /// Of zones, within an increment: each a factor StiffnessAdaptation.largest_change, so that ten are five decades by default.
     static constexpr Index most_stiffenings = 10;
 
+    /// Greatest displacement of what is driven [length].
+    double driven(const Vector& state) const {
+        Vector step;
+        equilibrium_->prescribed_step(state, step);
+        return equilibrium_->greatest(step);
+    }
     /// What is driven moves by more than a search reaches where nothing is in its way. What it passed through on the way from the
     /// last search is met where they touch, and the next search sees it.
     void step_back(Vector& state, const Vector& searched, bool forced) {

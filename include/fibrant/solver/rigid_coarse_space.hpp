@@ -126,6 +126,7 @@ public:
             [[maybe_unused]] const bool complete = sum(system);
             assert(complete);
         }
+        for (Chain& chain : chains_) core::release(chain.blocks);
         const auto pivots = matrix_.factor();
         if (!pivots.finite) return SolveStatus::not_finite;
         return pivots.negative > 0 ? SolveStatus::indefinite : SolveStatus::converged;

@@ -61,15 +61,13 @@ public:
     /// @param length  of the fibre [length], > 0
     WavedPath(TowWave wave, const Eigen::Vector2d& offset, double length)
         : wave_{std::move(wave)}, offset_{offset}, length_{length} {
-        // The way that an arc takes is summed by the rule of the middle: errors fall with the square of the step.
-        constexpr Index steps = 1024;
         step_ = 0.5 * length / static_cast<double>(steps);
         for (const double side : {-1.0, 1.0}) {
-            std::vector<double>& way = side < 0.0 ? before_ : behind_;
-            way.push_back(0.0);
-            for (Index k = 0; k < steps; ++k) {
-                const double half = way.back() + 0.5 * side * step_ * along(way.back());
-                way.push_back(way.back() + side * step_ * along(half));
+            std::array<double, steps / kept + 1>& way = side < 0.0 ? before_ : behind_;
+            double here = way[0] = 0.0;
+            for (std::size_t k = 1; k <= steps; ++k) {
+                here = next(here, side);
+                if (k % kept == 0) way[k / kept] = here;
             }
         }
     }
@@ -79,12 +77,13 @@ public:
     /// @returns the way along the tow, across it and upwards [length]
     Vec3 at(double part) const {
         const double arc = (part - 0.5) * length_;
-        const std::vector<double>& way = arc < 0.0 ? before_ : behind_;
-        const double at = std::abs(arc) / step_;
-        const auto k = std::min(static_cast<std::size_t>(at), way.size() - 2);
-        const double u = at - static_cast<double>(k), sign = arc < 0.0 ? -1.0 : 1.0;
+        const double at = std::abs(arc) / step_, sign = arc < 0.0 ? -1.0 : 1.0;
+        const auto k = std::min(static_cast<std::size_t>(at), steps - 1);
+        double a = (arc < 0.0 ? before_ : behind_)[k / kept];
+        for (std::size_t step = k / kept * kept; step < k; ++step) a = next(a, sign);
         // Cubic by both slopes (Hermite).
-        const double a = way[k], b = way[k + 1], da = sign * step_ * along(a), db = sign * step_ * along(b);
+        const double u = at - static_cast<double>(k), b = next(a, sign), da = sign * step_ * along(a),
+                     db = sign * step_ * along(b);
         const double x = a + u * (da + u * (3.0 * (b - a) - 2.0 * da - db + u * (2.0 * (a - b) + da + db)));
         const TowWave::Place place = wave_.at(x, offset_);
         return {x, place.across, place.height};
@@ -95,10 +94,18 @@ private:
         const TowWave::Place place = wave_.at(x, offset_);
         return 1.0 / std::sqrt(1.0 + place.across_slope * place.across_slope + place.height_slope * place.height_slope);
     }
+    /// Where the next step of an arc ends along the tow, summed by the rule of the middle: errors fall with the square of the
+    /// step.
+    double next(double x, double side) const {
+        const double half = x + 0.5 * side * step_ * along(x);
+        return x + side * step_ * along(half);
+    }
+    /// To either side, and of how many the end of one is kept: a scene has a path for each of its fibres.
+    static constexpr std::size_t steps = 1024, kept = 4;
     TowWave wave_;
     Eigen::Vector2d offset_;
     double length_, step_ = 0.0;
-    std::vector<double> before_, behind_;
+    std::array<double, steps / kept + 1> before_, behind_;
 };
 
 /// Distance of the middles of two tows where they cross: their mean thickness [length].
