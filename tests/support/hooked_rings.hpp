@@ -25,6 +25,7 @@ struct Hooks {
     contact::Places places = contact::Places::as_needed;
     bool every_increment = true;  ///< is held to the true gap
     bool free_stretch = false;    ///< of the sections that are held
+    double tolerance = 1.0;       ///< of all loops, over the default [1]
 };
 
 /// How a pair of hooks came out of its run.
@@ -81,6 +82,11 @@ Hooked pull_hooks(const Hooks& hooks) {
         parameters.friction = {.friction_coefficient = hooks.friction, .reversible_displacement = 0.02 * thin};
     parameters.contact.stiffness.allowed_penetration = 1e-2 * thin;
     parameters.contact.places = hooks.places;
+    for (double* tolerance :
+         {&parameters.iteration.step_tolerance, &parameters.iteration.residual_tolerance, &parameters.iteration.normal_tolerance,
+          &parameters.iteration.normal_step_tolerance, &parameters.iteration.contact_tolerance})
+        *tolerance *= hooks.tolerance;
+    if (hooks.tolerance < 1.0) parameters.iteration.normal_limit *= 3, parameters.iteration.contact_limit *= 3;
     simulation::Simulator<M> simulator(assembly, parameters);
     Hooked out;
     DepthMeter<M> meter{&simulator};

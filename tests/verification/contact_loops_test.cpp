@@ -54,8 +54,8 @@ TEST_CASE("hooks at a slant touch along a valley, and hold as well") {
         const Hooked rough =
             test::pull_hooks<test::Rough>({.elements = 20, .increments = 10, .friction = 0.1, .angle_deg = angle});
         CAPTURE(angle);
-        check_held(smooth, "slant", 5),
-            check_held(rough, "slant, friction 0.1");  // without friction they swing out of their symmetric state
+        // They swing out of their symmetric state.
+        check_held(smooth, "slant", 5), check_held(rough, "slant, friction 0.1", angle > 45.0 ? 1 : 5);
         // Half a turn about the pull brings each ring onto itself. The nearer to each other their planes are, the less holds them
         // from swinging aside, and what the tolerances leave is seen.
         if (angle > 45.0) CHECK(rough.asymmetry < 1e-6);
@@ -85,14 +85,17 @@ TEST_CASE("hooks of unequal fibres hold and stay symmetric, and what pulls them 
 }
 
 TEST_CASE("hooks at a slant that are pulled by most of their radius hold, whatever the increments") {
-    const auto pulled = [](Index increments) {
+    const auto pulled = [](Index increments, double tolerance) {
         return test::pull_hooks<test::Rough>(
-            {.elements = 20, .increments = increments, .friction = 0.1, .pull = 0.8, .angle_deg = 60.0});
+            {.elements = 20, .increments = increments, .friction = 0.1, .pull = 0.8, .angle_deg = 60.0, .tolerance = tolerance});
     };
-    const Hooked few = pulled(10), many = pulled(20);
-    check_held(few, "far", 2), check_held(many, "far, twice as many", 2);
-    CHECK(std::abs(many.force - few.force) < 0.01 * many.force);
-    CHECK(many.asymmetry < 1e-6);
+    const Hooked few = pulled(10, 1.0), many = pulled(20, 1.0), closer = pulled(20, 0.01);
+    check_held(few, "far", 2), check_held(many, "far, twice as many", 2), check_held(closer, "far, tolerances / 100", 2);
+    CHECK(std::abs(many.force - few.force) < 1e-3 * many.force);
+    CHECK(std::abs(many.force - closer.force) < 1e-3 * many.force);
+    // Little holds them from swinging aside: of the tolerances so much is left.
+    CHECK(many.asymmetry < 1e-3);
+    CHECK(closer.asymmetry < 1e-5);
 }
 
 TEST_CASE("hooks that are drawn until their radius of curvature is the diameter hold, whatever the increments") {
@@ -106,24 +109,24 @@ TEST_CASE("hooks that are drawn until their radius of curvature is the diameter 
         check_held(smooth, "diameter, no friction", 2);
     for (const Hooked* hooked : {&few, &many, &smooth}) {
         CHECK(hooked->bend > 0.5);
-        CHECK(hooked->asymmetry < 1e-6);
+        CHECK(hooked->asymmetry < (hooked == &few ? 1e-4 : 1e-6));  // what is left of the tolerances in steps so long
     }
     CHECK(std::abs(many.force - few.force) < 0.01 * many.force);
 }
 
-TEST_CASE("hooks that are drawn so tight that contact points miss how deep they are come no further than they may") {
-    // At the tips the radius of curvature comes down to the diameter.
-    for (const bool each : {false, true}) {
+TEST_CASE("hooks that are drawn by nearly all of their radius hold, or stop with a reason, and are no deeper than they may") {
+    // At the tips the radius of curvature comes down to the diameter. Friction that pushed where nothing slid had them 0.15 radii
+    // deep in each other between contact points at a pull of 1, and stopped them at 0.9.
+    for (const double pull : {0.9, 1.0}) {
         const Hooked hooked = test::pull_hooks<test::Rough>(
-            {.elements = 40, .increments = 20, .friction = 0.5, .pull = 1.0, .every_increment = each, .free_stretch = true});
-        std::printf("tight: %td increments, deepest %.2f of what is stated; %s\n", core::count(hooked.report.increments),
-                    hooked.deepest, hooked.report.reason.c_str());
+            {.elements = 40, .increments = 20, .friction = 0.5, .pull = pull, .free_stretch = true});
+        std::printf("tight, %.1f: %td increments, deepest %.2f of what is stated; %s\n", pull,
+                    core::count(hooked.report.increments), hooked.deepest, hooked.report.reason.c_str());
         CAPTURE(hooked.report.reason);
-        if (!each) CHECK(hooked.deepest > 5.0);  // and was accepted
-        if (!each) continue;
         CHECK(hooked.deepest <= 1.0);
         CHECK(hooked.report.increments.size() > 15);
-        if (!hooked.report.converged) CHECK(hooked.report.reason.find("radii deep in each other at (") != std::string::npos);
+        CHECK(hooked.report.converged == hooked.report.reason.empty());
+        if (pull == 0.9) CHECK(hooked.report.converged);
     }
 }
 

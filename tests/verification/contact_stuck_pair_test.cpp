@@ -68,8 +68,9 @@ Carried carried(const simulation::Simulator<Rough>& simulator) {
     return sum;
 }
 
-void check_turning_pair(double angle_deg, Index increments) {
+void check_turning_pair(double angle_deg, Index increments, contact::Places places = contact::Places::as_needed) {
     CAPTURE(angle_deg);
+    CAPTURE(static_cast<int>(places));
     CAPTURE(increments);
     const double angle = angle_deg * std::numbers::pi / 180.0;
     const Vec3 along(std::cos(angle), std::sin(angle), 0.0);
@@ -83,6 +84,7 @@ void check_turning_pair(double angle_deg, Index increments) {
     for (const double end : {0.0, 1.0}) still.clamp(assembly, {lower, end}), moving.clamp(assembly, {upper, end});
 
     simulation::ModelParameters<Rough> parameters = test::pressed_parameters<Rough>(1e-2 * r);
+    parameters.contact.places = places;
     parameters.friction = {.friction_coefficient = 0.3, .reversible_displacement = range};
     // As it is given, or the penetration would creep while the pair turns.
     parameters.contact.stiffness.initial_fraction = parameters.contact.stiffness.floor_fraction =
@@ -113,14 +115,18 @@ void check_turning_pair(double angle_deg, Index increments) {
     CHECK(after.active == before.active);
     CHECK(std::abs(after.normal / before.normal - 1.0) < 1e-6);
     CHECK((after.reaction - turn * before.reaction).norm() < 1e-6 * before.normal);
-    // Places slide by contact_tolerance, 1e-6 r, which is 5e-5 of what friction gives way by.
-    CHECK(std::abs(after.size / before.size - 1.0) < 2e-6);
-    CHECK((after.friction - turn * before.friction).norm() < 2e-6 * before.size);
+    // Places slide by contact_tolerance, 1e-6 r, which is 5e-5 of what friction gives way by: as needed, attempts that are made
+    // again go from places that are renewed to those that are followed and back, a little aside.
+    const double aside = places == contact::Places::as_needed && angle_deg > 30.0 ? 5e-5 : 2e-6;
+    CHECK(std::abs(after.size / before.size - 1.0) < aside);
+    CHECK((after.friction - turn * before.friction).norm() < aside * before.size);
     CHECK(turned.energy.dissipated == dissipated);
 }
 
 TEST_CASE("a stuck crossing keeps its friction when it is turned as a whole") {
-    for (const Index increments : {1, 6}) check_turning_pair(70.0, increments);
+    for (const Index increments : {1, 6})
+        for (const auto places : {contact::Places::renewed, contact::Places::followed, contact::Places::as_needed})
+            check_turning_pair(70.0, increments, places);
 }
 
 TEST_CASE("a stuck line of contact keeps its friction when it is turned as a whole") {
