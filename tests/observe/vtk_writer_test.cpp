@@ -90,6 +90,8 @@ TEST_CASE("a resumed series keeps earlier increments and drops those that are re
     VtkWriter first(folder / "deep" / "run");
     for (const Index increment : {1, 2, 3}) first.accepted(crossing_pair(increment));
     const auto run = folder / "deep" / "run";
+    CHECK(read_file(run / "fibres_0002.vtp") == fibre_data(crossing_pair(2)).text());
+    CHECK(read_file(run / "contacts_0002.vtp") == contact_data(crossing_pair(2)).text());
     CHECK(entries(run / "fibres.pvd") == std::vector<std::string>{"fibres_0001.vtp", "fibres_0002.vtp", "fibres_0003.vtp"});
 
     VtkWriter resumed(run, Start::resumed);

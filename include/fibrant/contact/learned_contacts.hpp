@@ -24,7 +24,7 @@ public:
     static constexpr double held = 1e-2, near = 0.1, least_held = 1e-2;  // [1], [radius], over the first [1]
 
     bool empty() const noexcept { return ends_.empty() && secants_.empty() && holding_ == 0.0; }
-    void clear() noexcept { ends_.clear(), secants_.clear(), holding_ = 0.0; }
+    void clear() noexcept { start_.clear(), ends_.clear(), secants_.clear(), holding_ = 0.0; }
     /// From the next step on, to be called after a step that had to be cut to a small part. Slack fibres, which hardly anything
     /// touches, send each step far away and are cut for all. In tangents alone they are held to those beside them: they go where
     /// these go, which springs to places would hinder.

@@ -9,10 +9,10 @@
 
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fibrant::observe {
@@ -42,8 +42,13 @@ public:
     void point_vectors(std::string name, std::span<const Vec3> values) { add(point_data_, std::move(name), values); }
     void cell_scalars(std::string name, std::span<const double> values) { add(cell_data_, std::move(name), values); }
 
-    /// The file's content. Throws std::invalid_argument if an array's length is not that of the points or cells.
-    std::string text() const {
+    /// Makes room for so many points and vertices: lists that grow by themselves take up to twice as much.
+    void reserve(std::size_t points, std::size_t vertices) { points_.reserve(points), vertex_points_.reserve(vertices); }
+
+    /// The file's content in pieces, so that it is in memory but once: put(std::string_view) is called with each in its turn.
+    /// Throws std::invalid_argument, before that, if an array's length is not that of the points or cells.
+    template <class Put>
+    void write(const Put& put) const {
         static_assert(std::endian::native == std::endian::little, "the header states little endian");
         const std::size_t cells = vertex_points_.size() + line_ends_.size() + triangle_points_.size() / 3;
         std::string head =
@@ -52,27 +57,35 @@ public:
             std::to_string(points_.size()) + "\" NumberOfVerts=\"" + std::to_string(vertex_points_.size()) +
             "\" NumberOfLines=\"" + std::to_string(line_ends_.size()) + "\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
             std::to_string(triangle_points_.size() / 3) + "\">\n";
-        std::string data;
-        data.reserve(bytes() + 8192);  // and the header
-        write_arrays(head, data, "PointData", point_data_, points_.size());
-        write_arrays(head, data, "CellData", cell_data_, cells);
+        std::vector<std::string_view> data;
+        list_arrays(head, data, "PointData", point_data_, points_.size());
+        list_arrays(head, data, "CellData", cell_data_, cells);
         head += "<Points>\n";
         static_assert(sizeof(Vec3) == 3 * sizeof(double));
-        write_array<double>(head, data, "Points", "Float64", 3,
-                            {reinterpret_cast<const double*>(points_.data()), 3 * points_.size()});
+        list_array<double>(head, data, "Points", "Float64", 3,
+                           {reinterpret_cast<const double*>(points_.data()), 3 * points_.size()});
         head += "</Points>\n";
-        std::vector<std::int64_t> ends;
-        for (std::size_t k = 0; k < vertex_points_.size(); ++k) ends.push_back(static_cast<std::int64_t>(k + 1));
-        write_cells(head, data, "Verts", vertex_points_, ends);
-        write_cells(head, data, "Lines", line_points_, line_ends_);
+        std::vector<std::int64_t> vertex_ends, triangle_ends;
+        for (std::size_t k = 0; k < vertex_points_.size(); ++k) vertex_ends.push_back(static_cast<std::int64_t>(k + 1));
+        list_cells(head, data, "Verts", vertex_points_, vertex_ends);
+        list_cells(head, data, "Lines", line_points_, line_ends_);
         if (!triangle_points_.empty()) {
-            ends.clear();
-            for (std::size_t k = 3; k <= triangle_points_.size(); k += 3) ends.push_back(static_cast<std::int64_t>(k));
-            write_cells(head, data, "Polys", triangle_points_, ends);
+            for (std::size_t k = 3; k <= triangle_points_.size(); k += 3) triangle_ends.push_back(static_cast<std::int64_t>(k));
+            list_cells(head, data, "Polys", triangle_points_, triangle_ends);
         }
-        head += "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
-        data.insert(0, head);
-        return data += "\n</AppendedData>\n</VTKFile>\n";
+        put(std::string_view(head += "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_"));
+        for (const std::string_view array : data) {
+            const std::uint64_t bytes = array.size();
+            put(std::string_view(reinterpret_cast<const char*>(&bytes), sizeof bytes));
+            put(array);
+        }
+        put(std::string_view("\n</AppendedData>\n</VTKFile>\n"));
+    }
+    /// All of it; throws as `write`.
+    std::string text() const {
+        std::string text;
+        write([&](std::string_view piece) { text += piece; });
+        return text;
     }
 
 private:
@@ -81,16 +94,6 @@ private:
         std::size_t components;
         std::vector<float> values;
     };
-
-    /// Of all arrays.
-    std::size_t bytes() const noexcept {
-        std::size_t sum =
-            24 * points_.size() +
-            8 * (2 * vertex_points_.size() + line_points_.size() + line_ends_.size() + triangle_points_.size() * 4 / 3) + 64;
-        for (const auto* arrays : {&point_data_, &cell_data_})
-            for (const Array& array : *arrays) sum += 4 * array.values.size() + 8;
-        return sum;
-    }
 
     static void add(std::vector<Array>& arrays, std::string&& name, std::span<const double> values) {
         Array array{std::move(name), 1, {}};
@@ -106,35 +109,34 @@ private:
         arrays.push_back(std::move(array));
     }
 
+    /// Tells of an array in the head, and adds its bytes to the data, whose place is that behind all before them and their sizes.
     template <class Number>
-    static void write_array(std::string& head, std::string& data, const std::string& name, const char* type,
-                            std::size_t components, std::span<const Number> values) {
+    static void list_array(std::string& head, std::vector<std::string_view>& data, const std::string& name, const char* type,
+                           std::size_t components, std::span<const Number> values) {
+        std::size_t offset = 0;
+        for (const std::string_view before : data) offset += sizeof(std::uint64_t) + before.size();
         head += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) + "\" NumberOfComponents=\"" +
-                std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(data.size()) + "\"/>\n";
-        const std::uint64_t bytes = values.size() * sizeof(Number);
-        const std::size_t start = data.size();
-        data.resize(start + sizeof bytes + bytes);
-        std::memcpy(data.data() + start, &bytes, sizeof bytes);
-        if (bytes > 0) std::memcpy(data.data() + start + sizeof bytes, values.data(), bytes);
+                std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+        data.emplace_back(reinterpret_cast<const char*>(values.data()), values.size_bytes());
     }
 
-    static void write_arrays(std::string& head, std::string& data, const std::string& kind, const std::vector<Array>& arrays,
-                             std::size_t count) {
+    static void list_arrays(std::string& head, std::vector<std::string_view>& data, const std::string& kind,
+                            const std::vector<Array>& arrays, std::size_t count) {
         head += "<" + kind + ">\n";
         for (const Array& array : arrays) {
             if (array.values.size() != count * array.components)
                 core::refuse("PolyData." + array.name, std::to_string(array.values.size() / array.components),
                              "one value for each of " + std::to_string(count));
-            write_array<float>(head, data, array.name, "Float32", array.components, array.values);
+            list_array<float>(head, data, array.name, "Float32", array.components, array.values);
         }
         head += "</" + kind + ">\n";
     }
 
-    static void write_cells(std::string& head, std::string& data, const std::string& kind,
-                            const std::vector<std::int64_t>& points, const std::vector<std::int64_t>& ends) {
+    static void list_cells(std::string& head, std::vector<std::string_view>& data, const std::string& kind,
+                           const std::vector<std::int64_t>& points, const std::vector<std::int64_t>& ends) {
         head += "<" + kind + ">\n";
-        write_array<std::int64_t>(head, data, "connectivity", "Int64", 1, points);
-        write_array<std::int64_t>(head, data, "offsets", "Int64", 1, ends);
+        list_array<std::int64_t>(head, data, "connectivity", "Int64", 1, points);
+        list_array<std::int64_t>(head, data, "offsets", "Int64", 1, ends);
         head += "</" + kind + ">\n";
     }
 
@@ -161,10 +163,14 @@ public:
 
     /// Writes <stem of the collection>_<increment, four digits>.EXTENSION beside the collection, and adds it.
     void write(Index increment, const std::string& extension, const std::string& text) {
-        std::string number = std::to_string(increment);
-        if (number.size() < 4) number.insert(0, 4 - number.size(), '0');
-        const std::string file = path_.stem().string() + "_" + number + "." + extension;
+        const std::string file = name(increment, extension);
         write_file(path_.parent_path() / file, text);
+        add(static_cast<double>(increment), file);
+    }
+    /// The same of a file .vtp, which is in memory but once.
+    void write(Index increment, const PolyData& data) {
+        const std::string file = name(increment, "vtp");
+        write_pieces(path_.parent_path() / file, [&](const auto& put) { data.write(put); });
         add(static_cast<double>(increment), file);
     }
 
@@ -186,6 +192,11 @@ private:
         double time;
         std::string file;  ///< escaped
     };
+    std::string name(Index increment, const std::string& extension) const {
+        std::string number = std::to_string(increment);
+        if (number.size() < 4) number.insert(0, 4 - number.size(), '0');
+        return path_.stem().string() + "_" + number + "." + extension;
+    }
     static std::string attribute(const std::string& text, std::size_t from, const std::string& name) {
         const std::size_t end = text.find('>', from), at = text.find(" " + name + "=\"", from);
         if (end == std::string::npos || at == std::string::npos || at > end) return {};

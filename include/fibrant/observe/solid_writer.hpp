@@ -97,7 +97,7 @@ public:
     void accepted(const Snapshot& snapshot) {
         if (snapshot.solid.cells.empty()) return;
         solid_.write(snapshot.increment, "vtu", solid_data(snapshot.solid));
-        bonds_.write(snapshot.increment, "vtp", bond_data(snapshot.solid).text());
+        bonds_.write(snapshot.increment, bond_data(snapshot.solid));
     }
 
 private:

@@ -67,17 +67,24 @@ inline std::string xml_escaped(std::string_view text) {
 
 /// Writes a whole file beside its place, then renames it: a reader or an interruption sees the old file or the new one.
 /// Throws std::runtime_error if that fails.
-inline void write_file(const std::filesystem::path& path, std::string_view content) {
+/// @param pieces  pieces(put) calls put(std::string_view) with each piece of the content in its turn
+template <class Pieces>
+void write_pieces(const std::filesystem::path& path, const Pieces& pieces) {
     std::filesystem::path partial = path;
     partial += ".partial";
     errno = 0;
     std::ofstream file(partial, std::ios::binary | std::ios::trunc);
-    file.write(content.data(), static_cast<std::streamsize>(content.size()));
+    pieces([&](std::string_view piece) { file.write(piece.data(), static_cast<std::streamsize>(piece.size())); });
     file.close();
     std::error_code error(file ? 0 : errno, std::generic_category());
     if (file) std::filesystem::rename(partial, path, error);
     if (!file || error)
         throw std::runtime_error("cannot write the file " + path.string() + (error ? ": " + error.message() : std::string()));
+}
+
+/// The same of a content that is in memory as a whole.
+inline void write_file(const std::filesystem::path& path, std::string_view content) {
+    write_pieces(path, [&](const auto& put) { put(content); });
 }
 
 /// Whole content of a file; empty if there is none.

@@ -49,33 +49,51 @@ inline PolyData fibre_data(const Snapshot& snapshot) {
 /// t.
 inline PolyData contact_data(const Snapshot& snapshot) {
     PolyData data;
-    std::vector<double> reaction, penetration, gap, stiffness, crossing, fibre_i, fibre_j;
-    std::vector<Vec3> normal, normal_force, friction;
-    const auto add = [&](const auto& contact, bool crosses, Index i, Index j) {
-        data.add_vertex(data.add_point(contact.position));
-        reaction.push_back(contact.reaction);
-        penetration.push_back(contact.gap < 0.0 ? -contact.gap : 0.0);
-        gap.push_back(contact.gap);
-        stiffness.push_back(contact.stiffness);
-        crossing.push_back(crosses ? 1.0 : 0.0);
-        fibre_i.push_back(static_cast<double>(i));
-        fibre_j.push_back(static_cast<double>(j));
-        normal.push_back(contact.normal);
-        normal_force.push_back(contact.reaction * contact.normal);
-        friction.push_back(contact.friction);
+    const std::size_t count = snapshot.contacts.size() + snapshot.tool_contacts.size();
+    data.reserve(count, count);
+    const auto each = [&](const auto& see) {
+        for (const ContactSnapshot& contact : snapshot.contacts) see(contact);
+        for (const ToolContactSnapshot& contact : snapshot.tool_contacts) see(contact);
     };
-    for (const ContactSnapshot& contact : snapshot.contacts) add(contact, contact.crossing, contact.fibre_i, contact.fibre_j);
-    for (const ToolContactSnapshot& contact : snapshot.tool_contacts) add(contact, false, -1 - contact.tool, contact.fibre);
-    data.point_scalars("reaction", reaction);
-    data.point_scalars("penetration", penetration);
-    data.point_scalars("gap", gap);
-    data.point_vectors("normal", normal);
-    data.point_vectors("normal_force", normal_force);
-    data.point_vectors("friction", friction);
-    data.point_scalars("stiffness", stiffness);
-    data.point_scalars("crossing", crossing);
-    data.point_scalars("fibre_i", fibre_i);
-    data.point_scalars("fibre_j", fibre_j);
+    each([&](const auto& contact) { data.add_vertex(data.add_point(contact.position)); });
+    // One array at a time: there are many contacts, and all that is known of them is in the snapshot as well.
+    const auto scalars = [&](const char* name, const auto& value) {
+        std::vector<double> values;
+        values.reserve(count);
+        each([&](const auto& contact) { values.push_back(value(contact)); });
+        data.point_scalars(name, values);
+    };
+    const auto vectors = [&](const char* name, const auto& value) {
+        std::vector<Vec3> values;
+        values.reserve(count);
+        each([&](const auto& contact) { values.push_back(value(contact)); });
+        data.point_vectors(name, values);
+    };
+    scalars("reaction", [](const auto& contact) { return contact.reaction; });
+    scalars("penetration", [](const auto& contact) { return contact.gap < 0.0 ? -contact.gap : 0.0; });
+    scalars("gap", [](const auto& contact) { return contact.gap; });
+    vectors("normal", [](const auto& contact) { return contact.normal; });
+    vectors("normal_force", [](const auto& contact) { return Vec3(contact.reaction * contact.normal); });
+    vectors("friction", [](const auto& contact) { return contact.friction; });
+    scalars("stiffness", [](const auto& contact) { return contact.stiffness; });
+    scalars("crossing", [](const auto& contact) {
+        if constexpr (requires { contact.crossing; })
+            return contact.crossing ? 1.0 : 0.0;
+        else
+            return 0.0;
+    });
+    scalars("fibre_i", [](const auto& contact) {
+        if constexpr (requires { contact.tool; })
+            return static_cast<double>(-1 - contact.tool);
+        else
+            return static_cast<double>(contact.fibre_i);
+    });
+    scalars("fibre_j", [](const auto& contact) {
+        if constexpr (requires { contact.tool; })
+            return static_cast<double>(contact.fibre);
+        else
+            return static_cast<double>(contact.fibre_j);
+    });
     return data;
 }
 
@@ -92,9 +110,9 @@ public:
     void accepted(const Snapshot& snapshot) {
         core::parallel_for(2, [&](Index k) {
             if (k == 0) {
-                fibres_.write(snapshot.increment, "vtp", fibre_data(snapshot).text());
+                fibres_.write(snapshot.increment, fibre_data(snapshot));
             } else {
-                contacts_.write(snapshot.increment, "vtp", contact_data(snapshot).text());
+                contacts_.write(snapshot.increment, contact_data(snapshot));
             }
         });
     }
