@@ -236,6 +236,56 @@ TEST_CASE("the audit of crossings sees two fibres that changed places, one that 
     CHECK_FALSE(audit.clean());
 }
 
+TEST_CASE("wefts of a column that no warp passes between may roll beside each other, and are wrong once the lower one lies above") {
+    const double radius = 0.05;
+    const Textile weave = woven({.levels = levels_of({"02", "20", "02"}),
+                                 .layers = 2,
+                                 .column_spacing = 0.6,
+                                 .warp_spacing = 0.3,
+                                 .warp = yarn(1, radius),
+                                 .weft = yarn(1, radius)});
+    const Assembled assembled = assemble(weave, {});
+    const std::vector<Line> drawn = drawn_lines(assembled);
+    CHECK(detail::lies_along(weave, 4, 3) == 1);
+    CHECK(detail::lies_along(weave, 3, 4) == -1);
+    CHECK(detail::lies_along(weave, 3, 5) == 0);  // of another column
+    CHECK(detail::lies_along(weave, 0, 2) == 0);
+    CHECK(detail::lies_along(weave, 0, 3) == 0);
+    // From above it the upper one goes to one side, at 45 degrees, and back.
+    const auto rolled = [&](Index weft, double aside, double rise) {
+        std::vector<Line> moved = drawn;
+        std::vector<Vec3>& points = moved[static_cast<std::size_t>(weft)].points;
+        const double y0 = points.front().y(), y1 = points.back().y();
+        for (Vec3& point : points) {
+            const double way = std::min(point.y() - y0, y1 - point.y()) - 2.0 * radius;
+            point.x() += std::clamp(way, -0.5 * aside, aside), point.z() += rise;
+        }
+        return audit_topology(weave, assembled, drawn, moved).crossings;
+    };
+    CHECK(rolled(4, 1.5 * radius, 0.0).clean());
+    const CrossingAudit below = rolled(4, 1.5 * radius, -4.5 * radius);
+    CHECK(below.extra == 2);
+    // One that lies beside it, in another column, may not come to lie above it.
+    CHECK(rolled(6, 0.0, 0.0).clean());
+    std::vector<Line> moved = drawn;
+    for (Vec3& point : moved[6].points) point.x() -= 2.0 * 0.6 * std::min(1.0, 4.0 * std::abs(point.y() - 0.3));
+    CHECK(audit_topology(weave, assembled, drawn, moved).crossings.extra > 0);
+}
+
+TEST_CASE("ends of a net are pulled along it and keep their distances, so that those of neighbours never cross") {
+    Textile meshes = net({.yarns = 4, .spacing = 0.8, .period = 3.0, .periods = 2.0, .type = yarn(1)});
+    for (Path& path : meshes.paths) path.ends = Ends::pulled, path.tension_strain = 1e-3;
+    const Assembled assembled = assemble(meshes, {});
+    REQUIRE(core::count(assembled.assembly.forces()) == 4);
+    const std::vector<Line> drawn = drawn_lines(assembled);
+    for (const scene::DeadForce& pull : assembled.assembly.forces()) {
+        CHECK(pull.force.normalized().dot(Vec3::UnitY()) == doctest::Approx(1.0).epsilon(1e-12));
+        // Its own slant is another one.
+        const std::vector<Vec3>& points = drawn[static_cast<std::size_t>(pull.at.fibre)].points;
+        CHECK((points.back() - points[points.size() - 2]).normalized().y() < 0.95);
+    }
+}
+
 TEST_CASE("the audit of links sees rings that came apart, though nothing touches") {
     const Textile mail = chain_mail({.rows = 2, .columns = 2, .ring_radius = 1.0, .type = yarn(1)});
     const Assembled assembled = assemble(mail, {});

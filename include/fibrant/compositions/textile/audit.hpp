@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,6 +47,36 @@ inline Vec3 direction_at(const Line& line, double arc) {
     const auto after = std::upper_bound(line.arc.begin() + 1, line.arc.end() - 1, arc);
     const auto k = static_cast<std::size_t>(after - line.arc.begin());
     return (line.points[k] - line.points[k - 1]).normalized();
+}
+/// 1 where a path lies above another one all along, as seen, no further beside it than both are broad, as wefts of one column do;
+/// -1 where it lies below it so, else 0.
+inline int lies_along(const Textile& textile, Index path, Index other) {
+    constexpr Index chords = 64;
+    std::vector<Line> lines;
+    for (const Index p : {path, other}) {
+        std::vector<Vec3> points;
+        for (Index k = 0; k <= chords; ++k)
+            points.push_back(textile.paths[core::at(p)].curve(static_cast<double>(k) / static_cast<double>(chords)));
+        lines.push_back(line_of(std::move(points)));
+    }
+    const Plan plan(lines, textile.view);
+    const double broad = half_width(textile.type_of(path)) + half_width(textile.type_of(other));
+    int side = 0;
+    for (const PlanPoint& at : plan.lines[0]) {
+        double nearest = std::numeric_limits<double>::infinity(), height = 0.0;
+        for (std::size_t k = 1; k < plan.lines[1].size(); ++k) {
+            const PlanPoint &a = plan.lines[1][k - 1], &b = plan.lines[1][k];
+            const double around = plan.period > 0.0 ? plan.period * std::round((at.u - a.u) / plan.period) : 0.0;
+            const double u = b.u - a.u, v = b.v - a.v, du = at.u - around - a.u, dv = at.v - a.v, squared = u * u + v * v,
+                         part = squared > 0.0 ? std::clamp((du * u + dv * v) / squared, 0.0, 1.0) : 0.0,
+                         distance = std::hypot(du - part * u, dv - part * v);
+            if (distance < nearest) nearest = distance, height = at.height - a.height - part * (b.height - a.height);
+        }
+        const int here = nearest >= broad || height == 0.0 ? 0 : height > 0.0 ? 1 : -1;
+        if (here == 0 || here == -side) return 0;
+        side = here;
+    }
+    return side;
 }
 /// Pairs of lines whose boxes meet, in order: sorted along x and swept.
 inline std::vector<std::pair<Index, Index>> near_pairs(std::span<const Line> lines, double reach) {
@@ -94,14 +125,18 @@ inline TopologyAudit audit_topology(const Textile& textile, const Assembled& ass
         for (const Crossing& crossing : asked)
             pairs.emplace_back(std::min(crossing.above, crossing.below), std::max(crossing.above, crossing.below));
         std::sort(pairs.begin(), pairs.end());
-        // Yarns that lie on each other, as those of a column of wefts, cross as seen from above wherever they like.
+        // Yarns that lie on each other, as those of a column of wefts, cross as seen from above wherever they like: where nothing
+        // passes between them they roll beside each other, and where they lean by more the upper one still is above.
         constexpr double along_each_other = 0.5;  // sine of 30 degrees
         for (const Crossing& crossing : crossings_of(settled, textile.view)) {
             if (own(crossing.above, crossing.below)) continue;
             const Vec3 one = detail::direction_at(settled[core::at(crossing.above)], crossing.at_above),
                        two = detail::direction_at(settled[core::at(crossing.below)], crossing.at_below);
             const std::pair pair{std::min(crossing.above, crossing.below), std::max(crossing.above, crossing.below)};
-            if (one.cross(two).norm() >= along_each_other || std::binary_search(pairs.begin(), pairs.end(), pair))
+            const bool asked_for = std::binary_search(pairs.begin(), pairs.end(), pair);
+            if (asked_for || (one.cross(two).norm() >= along_each_other &&
+                              detail::lies_along(textile, assembled.path_of[core::at(crossing.above)],
+                                                 assembled.path_of[core::at(crossing.below)]) != 1))
                 found.push_back(crossing);
         }
         std::erase_if(asked, [&](const Crossing& crossing) { return own(crossing.above, crossing.below); });

@@ -5,10 +5,12 @@
 #include <fibrant/compositions/textile/interlaced.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,6 +62,86 @@ struct StitchedPlies {
 namespace detail {
 /// As `stitched` says.
 inline Textile drawn(const StitchedPlies& plies);
+
+/// A place where a thread goes through a ply nearer to a yarn than both are thick.
+struct Pierced {
+    Index row = 0, ply = -1;  ///< of the thread, from the middle one; of the ply, -1: there is none
+    double at = 0.0;          ///< along x [length]
+    double off = 0.0;         ///< from the middle of the yarn [length]
+};
+/// Numbers of rows and of stitches on either side of the middle.
+inline std::array<Index, 2> half_counts(const StitchedPlies& plies) {
+    return {static_cast<Index>(std::floor(0.5 * plies.width / plies.row_spacing - 1e-9)),
+            static_cast<Index>(std::floor(0.5 * plies.length / plies.stitch_length - 1e-9))};
+}
+/// How far a thread goes through beside its row [length].
+inline double off_row(const StitchedPlies& plies, Index stitch) { return (stitch % 2 == 0 ? 0.5 : -0.5) * plies.sideways; }
+
+inline Pierced first_pierced(const StitchedPlies& plies) {
+    const double s = plies.yarn_spacing, reach = half_room(plies.yarn) + half_room(plies.thread);
+    const std::array<Index, 2> half = half_counts(plies);
+    for (Index row = -half[0]; row <= half[0]; ++row)
+        for (Index m = -half[1]; m <= half[1]; ++m)
+            for (std::size_t k = 0; k < plies.angles_deg.size(); ++k) {
+                const double angle = plies.angles_deg[k] * std::numbers::pi / 180.0,
+                             x = plies.stitch_length * static_cast<double>(m),
+                             y = plies.row_spacing * static_cast<double>(row) + off_row(plies, m),
+                             d = -std::sin(angle) * x + std::cos(angle) * y,
+                             off = std::abs(d / s - std::floor(d / s) - 0.5) * s;
+                if (off < reach * (1.0 - 1e-9)) return {row, static_cast<Index>(k), x, off};
+            }
+    return {};
+}
+
+/// A number of three digits, which messages can say and users can write.
+inline double three_digits(double value) {
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
+    return std::round(value / unit) * unit;
+}
+
+/// Refuses threads that would go through yarns, with a stitch, a distance of rows and a way aside near to those given that would
+/// do, if there are any from half of them to twice as much.
+inline void require_gaps(const StitchedPlies& given) {
+    const Pierced pierced = first_pierced(given);
+    if (pierced.ply < 0) return;
+    constexpr Index steps = 100;             // each way, of each length
+    constexpr std::size_t most_drawn = 100;  // that are looked at closely
+    constexpr double most_places = 1e4;      // of threads: more would take too long
+    std::vector<std::pair<Index, StitchedPlies>> fitting;
+    if (4.0 * given.length / given.stitch_length * given.width / given.row_spacing <= most_places)
+        for (Index a = -steps; a <= steps; ++a)
+            for (Index b = -steps; b <= steps; ++b)
+                for (const double aside : {given.sideways / given.row_spacing, 0.0, 0.5, 1.0}) {
+                    const auto changed = [](double length, Index step) {
+                        return three_digits(length * std::exp2(static_cast<double>(step) / static_cast<double>(steps)));
+                    };
+                    StitchedPlies other = given;
+                    other.stitch_length = changed(given.stitch_length, a), other.row_spacing = changed(given.row_spacing, b);
+                    other.sideways = aside > 0.0 ? three_digits(aside * other.row_spacing) : 0.0;
+                    if (other.length >= 2.0 * other.stitch_length && other.width >= other.row_spacing &&
+                        other.sideways <= other.row_spacing && first_pierced(other).ply < 0)
+                        fitting.emplace_back(std::abs(a) + std::abs(b), other);
+                }
+    std::stable_sort(fitting.begin(), fitting.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::string others = "others";
+    for (std::size_t k = 0; k < std::min(fitting.size(), most_drawn); ++k) {
+        const StitchedPlies& other = fitting[k].second;
+        try {
+            require_holding(drawn(other));
+        } catch (const std::invalid_argument&) {  // too bent, or it comes apart
+            continue;
+        }
+        others += ", as " + core::text(other.stitch_length) + ", " + core::text(other.row_spacing) + ", " +
+                  core::text(other.sideways);
+        break;
+    }
+    core::refuse("StitchedPlies.stitch_length, row_spacing, sideways",
+                 core::text(given.stitch_length) + ", " + core::text(given.row_spacing) + ", " + core::text(given.sideways),
+                 others + ": distance of thread " + std::to_string(pierced.row + half_counts(given)[0]) + " from a yarn of ply " +
+                     std::to_string(pierced.ply) + " where it goes through, at x = " + core::text(pierced.at) + ", is " +
+                     core::text(pierced.off) + ", where " + core::text(half_room(given.yarn) + half_room(given.thread)) +
+                     " is needed, the half thicknesses of both");
+}
 }  // namespace detail
 
 /// Nothing overlaps. Each ply lies above those below it, and a thread above all plies or below all of them; neighbouring threads
@@ -77,7 +159,7 @@ inline Textile detail::drawn(const StitchedPlies& plies) {
     textile.name = "stitched plies";
     textile.apart_by.fill({"StitchedPlies.yarn_spacing", plies.yarn_spacing});
     textile.types = {plies.yarn, plies.thread};
-    const double s = plies.yarn_spacing, overhang = 0.75 * s, reach = half_room(plies.yarn) + half_room(plies.thread);
+    const double s = plies.yarn_spacing, overhang = 0.75 * s;
     const auto half_extent = [&](int axis) { return 0.5 * (axis == 0 ? plies.length : plies.width); };
     const double middle = 0.5 * static_cast<double>(plies.angles_deg.size() - 1);
     double steepest = 0.0;  // sine of the angle of yarns to the threads
@@ -119,27 +201,18 @@ inline Textile detail::drawn(const StitchedPlies& plies) {
     const double turn = steepest > 0.0 ? (0.5 * s - beside) / steepest : 2.0 * high;
     core::require(plies.stitch_length >= 2.0 * turn * (1.0 - 1e-9), "StitchedPlies.stitch_length", plies.stitch_length,
                   ">= " + core::text(2.0 * turn) + ", for threads to come up again");
-    const auto rows = static_cast<Index>(std::floor(0.5 * plies.width / plies.row_spacing - 1e-9)),
-               stitches = static_cast<Index>(std::floor(0.5 * plies.length / plies.stitch_length - 1e-9));
+    require_gaps(plies);
+    const Index rows = half_counts(plies)[0], stitches = half_counts(plies)[1];
     for (Index row = -rows; row <= rows; ++row) {
         const double y = plies.row_spacing * static_cast<double>(row);
         const std::string name = "thread " + std::to_string(row + rows);
         std::vector<std::pair<double, double>> knots, aside;
         double side = (row % 2 == 0) == (stitches % 2 == 0) ? 1.0 : -1.0;
         for (Index m = -stitches; m <= stitches; ++m, side = -side) {
-            const double x = plies.stitch_length * static_cast<double>(m), off_row = (m % 2 == 0 ? 0.5 : -0.5) * plies.sideways;
-            for (std::size_t k = 0; k < plies.angles_deg.size(); ++k) {
-                const double angle = plies.angles_deg[k] * std::numbers::pi / 180.0,
-                             d = -std::sin(angle) * x + std::cos(angle) * (y + off_row);
-                const double off = std::abs(d / s - std::floor(d / s) - 0.5) * s;
-                core::require(off >= reach * (1.0 - 1e-9),
-                              "StitchedPlies.stitch_length, row_spacing: distance of " + name + " from a yarn of ply " +
-                                  std::to_string(k) + " where it goes through, at x = " + core::text(x),
-                              off, ">= " + core::text(reach) + ": the half thicknesses of both");
-            }
+            const double x = plies.stitch_length * static_cast<double>(m);
             for (const double sense : {-1.0, 1.0}) {
                 knots.emplace_back((x + sense * turn + 0.5 * size) / size, -sense * side * high);
-                aside.emplace_back(knots.back().first, off_row);
+                aside.emplace_back(knots.back().first, off_row(plies, m));
             }
         }
         Path path;

@@ -228,6 +228,7 @@ inline Textile drawn(const Net& given) {
     for (Index k = 0; k < given.yarns; ++k) {
         Path path;
         path.name = "yarn " + std::to_string(k), path.family = k % 2;
+        path.pull = Vec3::UnitY();  // along their own slants ends of neighbours would go across each other
         const double x0 = given.spacing * static_cast<double>(k), a = 0.5 * (given.spacing + overlap);
         // Half a period beside a turn: no end stands on a crossing.
         path.curve = [=, period = given.period, phase = std::numbers::pi * static_cast<double>(k)](double t) {
