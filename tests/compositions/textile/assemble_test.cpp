@@ -236,7 +236,8 @@ TEST_CASE("the audit of crossings sees two fibres that changed places, one that 
     CHECK_FALSE(audit.clean());
 }
 
-TEST_CASE("wefts of a column that no warp passes between may roll beside each other, and are wrong once the lower one lies above") {
+TEST_CASE(
+    "wefts of a column that no warp passes between may roll beside each other, and are wrong once the lower one lies above") {
     const double radius = 0.05;
     const Textile weave = woven({.levels = levels_of({"02", "20", "02"}),
                                  .layers = 2,

@@ -640,18 +640,18 @@ TEST_CASE("stitched plies lie on each other, and threads are over all of them fo
         StitchedPlies other = two;
         other.angles_deg = angles;
         const std::string message = refusal([&] { stitched(other); }),
-                          field = "StitchedPlies.stitch_length, row_spacing, sideways = 0.9, 0.6, 0.6, but it must be others, "
-                                  "as ";
+                          field =
+                              "StitchedPlies.stitch_length, row_spacing, sideways = 0.9, 0.6, 0.6, but it must be others, "
+                              "as ";
         CAPTURE(message);
         REQUIRE(message.find(field) == 0);
         REQUIRE(std::sscanf(message.c_str() + field.size(), "%lf, %lf, %lf:", &other.stitch_length, &other.row_spacing,
                             &other.sideways) == 3);
         CHECK(refusal([&] { require_holding(stitched(other)); }).empty());
     }
-    StitchedPlies none = two;  // in which 60 degrees would hold
+    StitchedPlies none = two;  // near which nothing holds at 60 degrees
     none.angles_deg = {0.0, 60.0};
-    CHECK(refusal([&] { stitched(none); }).find("0.9, 0.6, 0.6, but it must be others: distance of thread") !=
-          std::string::npos);
+    CHECK(refusal([&] { stitched(none); }).find("0.9, 0.6, 0.6, but it must be others: distance of thread") != std::string::npos);
     slanted.yarn_spacing = 0.1;
     CHECK(refusal([&] { stitched(slanted); }).find("StitchedPlies.yarn_spacing = 0.1, but it must be >= 0.16") == 0);
 }

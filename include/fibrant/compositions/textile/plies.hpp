@@ -86,8 +86,7 @@ inline Pierced first_pierced(const StitchedPlies& plies) {
                 const double angle = plies.angles_deg[k] * std::numbers::pi / 180.0,
                              x = plies.stitch_length * static_cast<double>(m),
                              y = plies.row_spacing * static_cast<double>(row) + off_row(plies, m),
-                             d = -std::sin(angle) * x + std::cos(angle) * y,
-                             off = std::abs(d / s - std::floor(d / s) - 0.5) * s;
+                             d = -std::sin(angle) * x + std::cos(angle) * y, off = std::abs(d / s - std::floor(d / s) - 0.5) * s;
                 if (off < reach * (1.0 - 1e-9)) return {row, static_cast<Index>(k), x, off};
             }
     return {};
@@ -131,8 +130,8 @@ inline void require_gaps(const StitchedPlies& given) {
         } catch (const std::invalid_argument&) {  // too bent, or it comes apart
             continue;
         }
-        others += ", as " + core::text(other.stitch_length) + ", " + core::text(other.row_spacing) + ", " +
-                  core::text(other.sideways);
+        others +=
+            ", as " + core::text(other.stitch_length) + ", " + core::text(other.row_spacing) + ", " + core::text(other.sideways);
         break;
     }
     core::refuse("StitchedPlies.stitch_length, row_spacing, sideways",
