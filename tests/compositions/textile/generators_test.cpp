@@ -649,7 +649,7 @@ TEST_CASE("stitched plies lie on each other, and threads are over all of them fo
                             &other.sideways) == 3);
         CHECK(refusal([&] { require_holding(stitched(other)); }).empty());
     }
-    StitchedPlies none = two;  // in which 60 degrees would hold
+    StitchedPlies none = two;  // near which nothing holds at 60 degrees
     none.angles_deg = {0.0, 60.0};
     CHECK(refusal([&] { stitched(none); }).find("0.9, 0.6, 0.6, but it must be others: distance of thread") != std::string::npos);
     slanted.yarn_spacing = 0.1;
