@@ -23,9 +23,8 @@ struct Hooks {
     double radius = 0.05, ring_over_radius = 20.0;  // mm
     double lower_radius = 1.0;                      ///< of the second ring's fibre, over that of the first
     contact::Places places = contact::Places::as_needed;
-    bool every_increment = true;  ///< is held to the true gap
-    bool free_stretch = false;    ///< of the sections that are held
-    double tolerance = 1.0;       ///< of all loops, over the default [1]
+    bool free_stretch = false;  ///< of the sections that are held
+    double tolerance = 1.0;     ///< of all loops, over the default [1]
 };
 
 /// How a pair of hooks came out of its run.
@@ -90,7 +89,7 @@ Hooked pull_hooks(const Hooks& hooks) {
     simulation::Simulator<M> simulator(assembly, parameters);
     Hooked out;
     DepthMeter<M> meter{&simulator};
-    out.report = simulator.run({.increments = hooks.increments, .every_increment = hooks.every_increment}, meter);
+    out.report = simulator.run({.increments = hooks.increments}, meter);
     out.deepest = meter.deepest;
     const auto& mesh = simulator.mesh();
     const Vector& state = simulator.state();
