@@ -120,12 +120,12 @@ public:
         const Vector& acting = acting_.of(normal_, state);
         frictions_.fill(elements_.size(), [&](Index k, [[maybe_unused]] auto& friction) {
             Element& element = elements_[core::at(k)];
-            if (slides(k) && !start) places_.follow(*mesh_, state, zones_[core::at(element.zone)], element);
+            const Zone& zone = zones_[core::at(element.zone)];
+            if (slides(k) && !start) places_.follow(*mesh_, state, zone, element);
             if (slides(k))
-                places_.take(*mesh_, state, zones_[core::at(element.zone)], element);
+                places_.take(*mesh_, state, zone, element);
             else
                 follow_particles(*mesh_, state, element);
-            const Zone& zone = zones_[core::at(element.zone)];
             const double apart = element.gap(state) - zone.unseen;
             const bool none = start && apart < -2.0 * zone.deepest && !acting_.within(normal_);
             const double gap = (none ? 0.0 : apart) + element.shift.value();
@@ -244,9 +244,10 @@ public:
 
     const Vector& acting(const auto&... states) { return acting_.of(normal_, states...); }
 
+    /// Of elements, in order.
     std::span<const std::int32_t> sides(Index fibre) const noexcept { return sides_.of(fibre); }
 
-    /// Greatest gap or depth of what carries [length].
+    /// Greatest gap or depth of what carries force [length].
     double misfit() const {
         double most = 0.0;
         for (std::size_t k = 0; k < elements_.size(); ++k)
