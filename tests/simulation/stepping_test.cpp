@@ -183,6 +183,21 @@ TEST_CASE("what has moved far is solved as loosely as a path is until it is at r
     CHECK_FALSE(position.ends(rest, true, near));
     CHECK(position.looseness(rest) == 1.0);
     CHECK(position.ends(rest, true, near));
+    // Where damping waits, three loose increments in a row settle, whatever moves in one of them, and an exact one does.
+    rest.damping_waits = true, rest.damping_share = 1e-4;
+    position = {};
+    near.damping = 0.9e-4;
+    for (const Index row : {1, 2, 3}) {
+        CHECK_FALSE(position.ends(rest, true, near));
+        CHECK(position.exact == (row == 3));
+    }
+    CHECK(position.ends(rest, true, near));
+    near.damping = 1.1e-4;
+    position = {.within = 2};
+    CHECK_FALSE(position.ends(rest, true, near));
+    CHECK(position.within == 0);
+    CHECK_FALSE(position.exact);
+    rest.damping_waits = false;
     // What never comes to rest is not followed loosely for ever.
     position = {.in_stage = rest.most_increments / 2};
     CHECK_FALSE(position.ends(rest, false, far));
@@ -229,6 +244,15 @@ TEST_CASE("damping that waits neither falls nor ends a stage after an increment 
     CHECK_FALSE(stage.held(increment));
     next(1.1e-3);  // against what may be held at the end
     CHECK(stage.held(increment));
+    // What is nearly little enough stays: the next increments bring it below.
+    increment.damping = 1.4e-4;
+    CHECK(next(1e-4) == 1.0);
+    increment.damping = 1.6e-4;
+    CHECK(next(1e-4) == 0.5);
+    // Less than half of it lets damping rise, unless forces balance badly.
+    increment.damping = 0.4e-4;
+    CHECK(next(0.9e-3) == 2.0);
+    CHECK(next(1.1e-3) == 1.0);
     // What balances as well as is stated does, however little damping holds.
     stage.damping_share = increment.damping = 1e-7;
     next(0.9e-4);
@@ -419,7 +443,7 @@ TEST_CASE(
     Index rises = 0;
     for (std::size_t k = 1; k < waiting.increments.size(); ++k) {
         const simulation::IncrementReport &before = waiting.increments[k - 1], &now = waiting.increments[k];
-        CHECK(now.springs == (before.damping < 0.5 * share ? 2.0 : 0.5) * before.springs);
+        CHECK(now.springs == (before.damping < 0.5 * share ? 2.0 : before.damping <= 1.5 * share ? 1.0 : 0.5) * before.springs);
         rises += before.damping < 0.5 * share ? 1 : 0;
     }
     CHECK(rises > 0);

@@ -31,6 +31,7 @@ struct HalvedSteps {
     static constexpr double least_damping = 1e-3;   ///< over that of the stage: below, none; its inverse is the most
     static constexpr double vanishing = 1e-6;       ///< the same where damping waits: it ends by its share, and by halves
     static constexpr double few = 0.1;              ///< of the fibres, which alone are held harder
+    static constexpr double nearly = 1.5;           ///< of what damping may hold, by which it does not fall any more
     static constexpr double far = 0.25;             ///< of the greatest motion: what counts as restless
     static constexpr double most_holding = 4096.0;  ///< of a fibre over that of all: six times `harder`
     static constexpr Index patience = 5;  ///< failed attempts of which the last makes the increment smaller, whoever was restless
@@ -87,7 +88,7 @@ struct HalvedSteps {
         // What holds little enough falls no further: without any, a slack fibre is sought all over the place, and the last stage
         // takes what it takes.
         const bool waits = stage.damping_waits && position.progress >= 1.0,
-                   enough = waits && damping > 0.0 && increment.damping <= stage.damping_share;
+                   enough = waits && damping > 0.0 && increment.damping <= nearly * stage.damping_share;
         if (waits && !position.stage_over && !stage.unbalanced(increment) && increment.damping < half * stage.damping_share)
             damping = std::clamp(firmer * damping, least_damping, 1.0 / least_damping);
         else if (!enough && !(waits && stage.rough(increment)) && increment.cuts == 0 &&
