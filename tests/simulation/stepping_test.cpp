@@ -163,6 +163,38 @@ TEST_CASE("damping is not lowered while fibres still move far, and where they co
     CHECK(short_report.increments.size() == 1);
 }
 
+TEST_CASE("damping that is steered to a pace lets a fibre creep evenly to where it leaps to if damping is halved") {
+    const Rod rod;
+    const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3);  // of the tip
+    Simulator<Smooth> direct(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
+    REQUIRE(direct.run({.increments = 1}).converged);
+    Loading<Smooth> loading;
+    const double pace = 0.05 * rod.length;
+    loading.stages = {{.increments = 1,
+                       .ramps = {{"load", 1.0}},
+                       .damping = 6.0 * stiffness,
+                       .damping_decay = 0.5,
+                       .until = simulation::until_settled(1e-3 * rod.radius, 0.0)}};
+    const auto greatest = [&](double steered) {
+        loading.stages[0].damping_pace = steered;
+        Simulator<Smooth> simulator(rod.pushed(2.0), test::tight_parameters<Smooth>(rod.radius));
+        const Report report = simulator.run(loading);
+        REQUIRE(report.converged);
+        CHECK((simulator.state() - direct.state()).cwiseAbs().maxCoeff() < 1e-7);
+        double most = 0.0;
+        Index even = 0;
+        for (const simulation::IncrementReport& increment : report.increments) {
+            most = std::max(most, increment.displacement);
+            even += increment.displacement > 0.8 * pace && increment.displacement < 1.2 * pace ? 1 : 0;
+        }
+        if (steered > 0.0) CHECK(even >= 5);
+        return most;
+    };
+    // Motion grows by no more than damping falls, so an increment overshoots only where the fibre becomes softer meanwhile.
+    CHECK(greatest(pace) < 1.2 * pace);
+    CHECK(greatest(0.0) > 1.5 * pace);
+}
+
 TEST_CASE("what has moved far is solved as loosely as a path is until it is at rest, and what a stage ends with never is") {
     Stage<Smooth> rest{.damping_calm = 0.1, .looseness = 5.0, .looseness_on_the_way = 100.0, .exact_end = true};
     simulation::Position position;

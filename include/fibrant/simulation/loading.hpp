@@ -78,6 +78,9 @@ struct Stage {
     /// Displacement up to which an increment is good enough for damping to fall where it waits, and for the stage to end, be its
     /// forces balanced badly [length], >= 0. See `rough`.
     double damping_still = 0.0;
+    /// Greatest displacement of an increment that damping is steered to: it changes by the factor that the last one moved over
+    /// this, in [1/4, 2], in the place of falling by `damping_decay` [length], >= 0. 0: it is not.
+    double damping_pace = 0.0;
     /// Greatest displacement of an increment after which damping is lowered [length], > 0.
     double damping_calm = std::numeric_limits<double>::infinity();
     /// Displacement beyond which an attempt at an increment is given up and cut [length], > 0.
@@ -189,6 +192,7 @@ struct Loading {
             core::require(stage.damping_calm > 0.0, "Stage.damping_calm", stage.damping_calm, "> 0");
             core::require_not_negative("Stage.damping_share", stage.damping_share);
             core::require_not_negative("Stage.damping_still", stage.damping_still);
+            core::require_not_negative("Stage.damping_pace", stage.damping_pace);
             core::require(stage.largest_displacement > 0.0, "Stage.largest_displacement", stage.largest_displacement, "> 0");
             core::require_between("Stage.looseness", stage.looseness, 1.0, 1000.0);
             core::require_between("Stage.looseness_on_the_way", stage.looseness_on_the_way, 1.0, 1000.0);

@@ -122,6 +122,9 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
         handover.until = until_settled(motion, parted, handover.damping_share);
     }
     relaxation.friction.reset();
+    // There damping is steered: halved blindly, slack fibres leap by more than a radius after increments that moved half of one,
+    // and energy is lost in leaps. By trial on 608 fibres; a pace of 0.35 r takes as many iterations, of 0.8 r attempts given up.
+    if (pull.drawn) handover.damping_pace = 2.0 * limit, relaxation.damping_pace = 1.4 * limit;
     Stage<M> stiffening = relaxation;
     stiffening.name = "stiffening";
     stiffening.allowed_penetration.reset();
@@ -132,7 +135,7 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     stiffening.damping_share = to_spare * share_at_rest;
     stiffening.until = until_settled(motion, parted, stiffening.damping_share);
     stiffening.damping = 4.0 * taut, stiffening.damping_waits = true;
-    stiffening.damping_still = motion;
+    stiffening.damping_still = motion, stiffening.damping_pace = 0.0;
     Stage<M> rest = stiffening;
     rest.name = "rest";
     rest.until = until_settled(settle.rest_motion_over_radius * r, parted, share_at_rest);
@@ -146,7 +149,7 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     // damping could be small against, and rest is that they move no more.
     if (!scales.driven)
         for (Stage<M>* stage : {&handover, &stiffening, &rest}) {
-            stage->damping = slack, stage->damping_decay = 1.0, stage->damping_share = 0.0;
+            stage->damping = slack, stage->damping_decay = 1.0, stage->damping_share = stage->damping_pace = 0.0;
             stage->damping_waits = stage->damping_goes_on = false;
         }
     Loading<M> loading;

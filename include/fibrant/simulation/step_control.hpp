@@ -25,9 +25,10 @@ concept StepControl = std::default_initializable<S> &&
 /// Steps that are halved, and damping that is doubled, until an increment converges; both come back after increments that were
 /// easy. The numbers are by trial on fabrics, mats and bundles, where nothing else is said.
 struct HalvedSteps {
-    static constexpr double half = 0.5;    ///< of an increment that has failed: a bisection of the way to go
-    static constexpr double harder = 4.0;  ///< factor on damping of all, or of few fibres, after an attempt that has failed
-    static constexpr double firmer = 2.0;  ///< the same after an increment that was hard
+    static constexpr double half = 0.5;      ///< of an increment that has failed: a bisection of the way to go
+    static constexpr double harder = 4.0;    ///< factor on damping of all, or of few fibres, after an attempt that has failed
+    static constexpr double firmer = 2.0;    ///< the same after an increment that was hard
+    static constexpr double quicker = 0.25;  ///< least factor of an increment where damping is steered to a pace: two halvings
     static constexpr double least_damping = 1e-3;   ///< over that of the stage: below, none; its inverse is the most
     static constexpr double vanishing = 1e-6;       ///< the same where damping waits: it ends by its share, and by halves
     static constexpr double few = 0.1;              ///< of the fibres, which alone are held harder
@@ -91,6 +92,8 @@ struct HalvedSteps {
                    enough = waits && damping > 0.0 && increment.damping <= nearly * stage.damping_share;
         if (waits && !position.stage_over && !stage.unbalanced(increment) && increment.damping < half * stage.damping_share)
             damping = std::clamp(firmer * damping, least_damping, 1.0 / least_damping);
+        else if (!waits && stage.damping_pace > 0.0 && increment.cuts == 0 && effort <= with_effort)
+            damping = steered(position, std::clamp(increment.displacement / stage.damping_pace, quicker, firmer));
         else if (!enough && !(waits && stage.rough(increment)) && increment.cuts == 0 &&
                  increment.displacement <= stage.damping_calm && effort <= with_ease)
             damping = std::max(damping * (damping > 1.0 ? half : std::pow(stage.damping_decay, position.fraction)),
@@ -106,6 +109,13 @@ struct HalvedSteps {
     }
 
 private:
+    /// Damping under which the next increment moves about as far as it is to: what it did under the last one tells.
+    static double steered(const Position& position, double factor) {
+        const double next = factor * position.damping;
+        return factor > 1.0 ? std::min(next, 1.0 / least_damping)
+                            : std::max(next, std::min(position.damping, position.damping_floor));
+    }
+
     /// @returns false where too many moved, or one that did is held as hard as may be
     static bool hold_restless(Position& position, const std::vector<double>& moved, double allowed) {
         const double most = moved.empty() ? 0.0 : *std::max_element(moved.begin(), moved.end());
