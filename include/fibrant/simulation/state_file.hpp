@@ -17,7 +17,7 @@
 
 namespace fibrant::simulation {
 
-inline constexpr const char* checkpoint_format = "fibrant checkpoint 22";
+inline constexpr const char* checkpoint_format = "fibrant checkpoint 23";
 
 /// Tells how fibres are cut and grouped: the same in programs whose compilers round differently.
 template <beam::BeamElement B>
