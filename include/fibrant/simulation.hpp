@@ -35,4 +35,5 @@
 #include <fibrant/simulation/step_control.hpp>
 #include <fibrant/simulation/stored_state.hpp>
 #include <fibrant/simulation/support_wrench.hpp>
+#include <fibrant/simulation/swing.hpp>
 #include <fibrant/simulation/watching.hpp>

@@ -704,6 +704,42 @@ TEST_CASE("accepting a state brings the stiffness of its zones to the target of 
     CHECK(contacts.zones()[0].stiffness == test::near(3.0 * before, 1e-12));
 }
 
+TEST_CASE("a fibre that comes by twice keeps each of its crossings: what stands at the other one is another zone's") {
+    // A hairpin whose legs cross a straight fibre, so near to each other that their zones have a part of it in common.
+    const double leg = 8.0 * r, half = 1.3 * r;
+    auto hairpin = test::curved_fibre(
+        [=](double t) {
+            const double whole = 2.0 * leg + std::numbers::pi * half, s = t * whole;
+            const double a = std::clamp((s - leg) / half, 0.0, std::numbers::pi);
+            const double straight = s < leg ? leg - s : s > whole - leg ? s - whole + leg : 0.0;
+            return Vec3(-half * std::cos(a), straight - half * std::sin(a), 1.95 * r);
+        },
+        r, 24);
+    const Scene scene({straight_fibre({-8 * r, 5 * r, 0}, {8 * r, 5 * r, 0}, r, 8), hairpin});
+    const Mesh& mesh = scene.mesh;
+    const Vector state = mesh.rest_state();
+    auto parameters = contact_parameters();
+    parameters.places = contact::Places::followed;
+    Contacts<> contacts(scene.assembly, mesh, parameters, proximity::GridSearch{proximity::GridSearch::Parameters{}}, penalty,
+                        Frictionless{});
+    for (int increment = 0; increment < 3; ++increment) {
+        CAPTURE(increment);
+        contacts.detect(state, state, 2.0 * r, false);
+        contacts.evaluate(state);
+        contacts.accept(state);
+        REQUIRE(contacts.zones().size() == 2);
+        for (const contact::Zone& zone : contacts.zones()) {
+            REQUIRE(zone.last == zone.first + 1);
+            const auto& element = contacts.elements()[core::at(zone.first)];
+            CHECK(element.u_j == test::near(zone.span.closest_j, 0.05));
+            CHECK(contacts.responses()[core::at(zone.first)].gap == test::near(-0.05 * r, 1e-3));
+        }
+        const auto& one = contacts.zones()[0].span;
+        const auto& other = contacts.zones()[1].span;
+        CHECK(std::min(one.b_i, other.b_i) > std::max(one.a_i, other.a_i));  // what they have in common
+    }
+}
+
 TEST_CASE("fibres bent around each other that do not move do not slip, nor when both turn, where sections are strained") {
     // Where a place stands beside the closest one, the way between centres is not across both fibres, and particles of sections
     // that are pressed together are apart: told along two normals, what is between them would be a slip.

@@ -123,7 +123,14 @@ private:
                                         const StationPair& crossing) {
         const Index i = zone.span.fibre_i, j = zone.span.fibre_j;
         std::vector<Eigen::Vector2d> known;
-        if (zone.settled) memory.visit_places(zone.span, [&](double u_i, double u_j) { known.emplace_back(u_i, u_j); });
+        // Of a fibre that comes by once more, as a loop does beside what it hangs in, the others are another zone's.
+        const double aside = most_beside * spacing * (mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius()) /
+                             mesh.fibre(j).element_length;
+        const double low = std::min(zone.span.a_j, zone.span.b_j) - aside, high = std::max(zone.span.a_j, zone.span.b_j) + aside;
+        if (zone.settled)
+            memory.visit_places(zone.span, [&](double u_i, double u_j) {
+                if (u_j >= low && u_j <= high) known.emplace_back(u_i, u_j);
+            });
         std::vector<Place> places;
         for (const Eigen::Vector2d& place :
              closest_places(mesh, state, zone.span, {crossing.u_i, crossing.u_j}, zone.joined, known))

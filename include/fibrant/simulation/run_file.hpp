@@ -8,6 +8,7 @@
 #include <fibrant/simulation/mean_motion.hpp>
 #include <fibrant/simulation/position.hpp>
 #include <fibrant/simulation/state_file.hpp>
+#include <fibrant/simulation/swing.hpp>
 
 #include <array>
 #include <cerrno>
@@ -30,13 +31,14 @@ struct RunParts {
     Equilibrium& equilibrium;
     Position& position;
     MeanMotion& motion;
+    Swing& swing;
     core::StageClock& clock;
     Mesh& mesh;
     Laws& laws;  // of sections
 };
 template <class Contacts, class Equilibrium, class Mesh, class Laws>
-RunParts(Vector&, std::vector<double>&, EnergyAccount&, Contacts&, Equilibrium&, Position&, MeanMotion&, core::StageClock&, Mesh&,
-         Laws&) -> RunParts<Contacts, Equilibrium, Mesh, Laws>;
+RunParts(Vector&, std::vector<double>&, EnergyAccount&, Contacts&, Equilibrium&, Position&, MeanMotion&, Swing&,
+         core::StageClock&, Mesh&, Laws&) -> RunParts<Contacts, Equilibrium, Mesh, Laws>;
 
 /// Writes all that a run goes on from to a checkpoint.
 template <Model M, class Contacts, class Equilibrium, class Mesh, class Laws>
@@ -56,6 +58,7 @@ void put_run(CheckpointWriter& file, const RunParts<Contacts, Equilibrium, Mesh,
     put(core::count(report.increments));
     for (const IncrementReport& increment : report.increments) put_increment(file, increment);
     run.motion.each(put);
+    run.swing.each(put);
     run.equilibrium.terms().each([&](auto& term) { term.each(put); });
 }
 
@@ -101,6 +104,13 @@ void get_rest(CheckpointReader& file, const RunParts<Contacts, Equilibrium, Mesh
         report.wall_seconds += increment.seconds;
     }
     run.motion.each(get);
+    const Index size = run.state.size();
+    run.swing.each([&]<class Value>(Value& value) {
+        if constexpr (std::is_same_v<Value, Vector>)
+            value = get_state(file, size, true);
+        else
+            get(value);
+    });
     run.equilibrium.terms().each([&](auto& term) {
         term.each([&]<class Value>(Value& value) {
             if constexpr (std::is_same_v<Value, Vector>)

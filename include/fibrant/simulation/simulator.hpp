@@ -11,6 +11,7 @@
 #include <fibrant/simulation/section_laws.hpp>
 #include <fibrant/simulation/snapshot_of.hpp>
 #include <fibrant/simulation/step_control.hpp>
+#include <fibrant/simulation/swing.hpp>
 #include <fibrant/simulation/watching.hpp>
 
 #include <algorithm>
@@ -141,7 +142,8 @@ private:
                 report.reason = present + reason;
                 return false;
             }
-            Vector trial = state_;
+            const bool loose = position_.looseness(stage) > 1.0;
+            Vector trial = swing_.begin(equilibrium_, state_, loose, increment.cuts);
             move_tools(amplitudes);
             const beam::Drive drive =
                 let_last(contacts_, equilibrium_, stage.duration * (progress - position_.progress), position_.step(stage));
@@ -185,6 +187,7 @@ private:
                 laws_.accept(mesh_, beam_, trial, energy_);
                 increment.energy = energy_.template closed<Equilibrium::moves>();
                 if (stage.damping_carried) motion_.learn(mesh_, state_, trial, change);
+                swing_.learn(equilibrium_, state_, trial, loose);
                 state_ = trial;
                 equilibrium_.ties().accept();
                 energy_.rewind(mesh_, state_, equilibrium_.reaction());
@@ -264,9 +267,9 @@ private:
         report.wall_seconds += core::seconds_since(start);
     }
 
-    /// All that goes into a checkpoint.
+    /// What a checkpoint holds.
     auto parts() noexcept {
-        return RunParts{state_, amplitudes_, energy_, contacts_, equilibrium_, position_, motion_, clock_, mesh_, laws_};
+        return RunParts{state_, amplitudes_, energy_, contacts_, equilibrium_, position_, motion_, swing_, clock_, mesh_, laws_};
     }
     auto checkpoint(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Report& report) {
         return [&](CheckpointWriter& file) {
@@ -302,6 +305,7 @@ private:
     Position position_;
     [[no_unique_address]] Steps steps_;
     MeanMotion motion_;
+    Swing swing_;
     EnergyAccount energy_;
     core::StageClock clock_;
 };
@@ -361,7 +365,7 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
     position_.from = amplitudes_;
     position_.holding.assign(core::at(mesh_.fibre_count()), 1.0);
     contacts_.places().follow(position_.following);
-    motion_ = MeanMotion(mesh_, amplitudes_.size());
+    motion_ = MeanMotion(mesh_, amplitudes_.size()), swing_ = {};
     ResumedFile kept(loading.checkpoint, loading.resume, loading.resume_before_end);
     if (!kept.from().empty()) resume(kept.from(), loading, stages, report);
     const StartOverlap begun(*this, stages.front(), position_.accepted == 0);

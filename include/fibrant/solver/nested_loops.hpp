@@ -54,6 +54,19 @@ inline constexpr double least_swing = 0.5;      ///< ratio of two contact passes
 inline constexpr double swing_likeness = 0.25;  ///< square of the cosine that two such travels have at least
 }  // namespace nested_numbers
 
+/// Multiple of the last travel from its end to that of a geometric series of travels (Aitken 1926).
+inline double end_of_series(double ratio) noexcept { return ratio / (1.0 - ratio); }
+/// The same of two travels that swing to and fro, < 0; 0 if they do not.
+/// @param last  the one before, of the same size
+template <class Equilibrium>
+double swing_end(const Equilibrium& equilibrium, const Vector& travel, const Vector& last) {
+    namespace with = nested_numbers;
+    const double along = equilibrium.product(travel, last), before = equilibrium.product(last, last);
+    const bool swings = along < -with::least_swing * before &&
+                        along * along >= with::swing_likeness * before * equilibrium.product(travel, travel);
+    return swings ? end_of_series(along / before) : 0.0;
+}
+
 /// Solves increments; loops inside are solved to a part of the last change of the loop outside.
 template <class Equilibrium, class Contacts, class Linear, class Passage>
 class NestedLoops {
@@ -225,15 +238,12 @@ private:
     /// Contact passes that swing to and fro about their end begin the next one there: elements along a line of contact, as
     /// between the strands of a plectoneme, stand elsewhere after each of them, and carry the fibres back.
     void settle_swing(Vector& state, const Vector& travel, Vector& last) const {
-        namespace with = nested_numbers;
-        const double along = last.size() > 0 ? equilibrium_->product(travel, last) : 0.0;
-        const double before = last.size() > 0 ? equilibrium_->product(last, last) : 0.0;
-        if (!(along < -with::least_swing * before) ||
-            along * along < with::swing_likeness * before * equilibrium_->product(travel, travel)) {
+        const double factor = last.size() > 0 ? swing_end(*equilibrium_, travel, last) : 0.0;
+        if (factor == 0.0) {
             last = travel;
             return;
         }
-        state += end_of_series(along / before) * travel;
+        state += factor * travel;
         equilibrium_->reset_stresses(state);
         last.resize(0);
     }
@@ -310,8 +320,6 @@ private:
         const double series = ratio < with::largest_ratio ? end_of_series(ratio) : with::largest_series;
         return std::min(series, with::longest_leap * radius_ / change);
     }
-    /// Multiple of the last travel from its end to that of a geometric series of travels (Aitken 1926).
-    static double end_of_series(double ratio) noexcept { return ratio / (1.0 - ratio); }
     static constexpr double same_way = 0.9;  ///< cosine of two travels that follow one mode
     static constexpr double growing = 1.3,
                             swinging = 0.7;  ///< ratios of two travels from which a series does not end by itself, or hardly
