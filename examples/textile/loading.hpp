@@ -131,7 +131,7 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
     prestress.apply(cell);
     if (smooth) prestress.keep_along(cell);
     simulation::ProgrammeStage stage;
-    stage.looseness = 1.0, stage.friction = hold * scene.settle.friction_coefficient;
+    stage.increments = 1, stage.looseness = 1.0, stage.friction = hold * scene.settle.friction_coefficient;
     std::unique_ptr<Simulator> simulator;
     const auto efforts_now = [&] { return cloth::cell_efforts(*simulator, area, prestress); };
     const std::array<const char*, 6> names{"n_x", "n_y", "n_xy", "m_x", "m_y", "m_xy"};
@@ -146,12 +146,12 @@ bool run_cell(const example::Output& whole, const Scene& scene, const cloth::Ass
     simulation::Report report;
     // Each strain starts where the cell rests, and not where another one has left it: sections that an increment takes anew where
     // places have slid to may drive these on, by more in each, where crossings are near each other.
-    const auto strain = [&](const std::string& name, double amount, Index increments = 1) -> cloth::CellVector {
+    const auto strain = [&](const std::string& name, double amount, std::size_t increments = 1) -> cloth::CellVector {
         simulator = std::make_unique<Simulator>(cell, parameters);
         simulator->start_from(output.checkpoint());
-        stage.name = name, stage.increments = increments, stage.ramps.clear();
+        stage.name = name, stage.ramps.clear();
         if (amount != 0.0) stage.ramps = {{name, amount, false}};
-        programme.stages = {stage};
+        programme.stages.assign(increments, stage);
         simulation::Loading<Model> loading = simulation::loading_of<Model>(programme);
         output.tell(loading);
         loading.checkpoint.clear();  // that of the rest stays
