@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Settles a list of odd but valid weaves or textiles and says how each ended: status, convergence, audit, least gap, increments,
 # time. Where a folder of scenes is given, each line of the list has a scene after its name. Names with `refused_` are to end
-# with status 2.
+# with status 2; those with `unstable_` with 1, for a stiffness that is symmetric and has a negative one on its diagonal.
 # usage: fabrics.sh <the program> <scene file or folder> <list of fabrics> <scratch folder> [every n-th]
 #   [least share that is clean, %] [only names like]
 program=$1
@@ -37,8 +37,12 @@ while read -r name sets; do
   (ulimit -t "$limit"
    exec "$program" "$start" --output "$out/$name" --threads 1 --quiet "$@" > "$out/$name.said" 2>&1 < /dev/null)
   status=$?
-  case $name in refused_*) expected=2 ;; *) expected=0 ;; esac
-  [ $status -eq $expected ] && echo "$name" >> "$out/clean"
+  case $name in refused_*) expected=2 ;; unstable_*) expected=1 ;; *) expected=0 ;; esac
+  if [ $expected -eq 1 ]; then
+    grep -q '"symmetric": true' "$out/$name/loading/summary.json" && grep -q '"stable": false' "$out/$name/loading/summary.json" \
+      || expected=unstable
+  fi
+  [ "$status" = "$expected" ] && echo "$name" >> "$out/clean"
   why=$(value reason)
   [ -n "$why" ] || why=$(head -c 150 "$out/$name.said" | tr '\n' ' ')
   printf '%-27s %4d %-9s %-5s %-8s %8.4f %5d %5d %6d %7.1f  %s\n' "$name" $status "$(value converged)" "$(value audit_clean)" \

@@ -98,27 +98,26 @@ CellVector cell_efforts(const Simulator& simulator, double area) {
     return efforts / area;
 }
 
-/// What six small strains, one at a time to both sides of the same state, say of a cell: the change of its efforts over each.
-/// Yarns that still creep change efforts as well, by as much an increment on either side: it falls out of the difference.
+/// What six small strains say of a cell, each by itself from the same state at rest, to both sides: the change of its efforts.
+/// What yarns creep by themselves in an increment is the same on either side: it falls out of the difference.
 struct CellStiffness {
-    std::array<double, 6> amount{};          ///< of each strain, not 0
-    std::vector<CellVector> before{};        ///< efforts without strain, in the increment before each of those below: 12
-    std::vector<CellVector> efforts{};       ///< at each of them, and at its opposite: 12
-    CellMatrix matrix = CellMatrix::Zero();  ///< of what `evaluate` found
-    double asymmetry = 0.0;                  ///< greatest |K_ij - K_ji| over sqrt(K_ii K_jj) [1]
-    double creep = 0.0;  ///< greatest change of an effort from before a strain to before its opposite, over what its own does [1]
+    std::array<double, 6> amount{};              ///< of each strain, not 0
+    CellVector unstrained = CellVector::Zero();  ///< efforts after an increment without a strain
+    CellVector later = CellVector::Zero();       ///< after two
+    std::vector<CellVector> efforts{};           ///< at each strain from rest, and at its opposite: 12
+    CellMatrix matrix = CellMatrix::Zero();      ///< of what `evaluate` found
+    double asymmetry = 0.0;                      ///< greatest |K_ij - K_ji| over sqrt(K_ii K_jj) [1]
+    double creep = 0.0;  ///< greatest change of an effort in an increment without a strain, over what its own strain does [1]
 
-    /// @throws std::invalid_argument unless there are 12 efforts, and 12 before them
+    /// @throws std::invalid_argument unless there are 12 efforts
     void evaluate() {
-        for (const auto* list : {&before, &efforts})
-            if (list->size() != 12) core::refuse("CellStiffness.efforts", std::to_string(list->size()), "12");
-        const auto change = [&](Index k) -> CellVector { return efforts[core::at(k)] - before[core::at(k)]; };
-        for (Index c = 0; c < 6; ++c) matrix.col(c) = 0.5 * (change(2 * c) - change(2 * c + 1)) / amount[core::at(c)];
+        if (efforts.size() != 12) core::refuse("CellStiffness.efforts", std::to_string(efforts.size()), "12");
+        for (std::size_t c = 0; c < 6; ++c)
+            matrix.col(static_cast<Index>(c)) = 0.5 * (efforts[2 * c] - efforts[2 * c + 1]) / amount[c];
         creep = 0.0;
-        for (Index c = 0; c < 6; ++c)
-            for (Index i = 0; i < 6; ++i)
-                if (const double own = std::abs(matrix(i, i) * amount[core::at(i)]); own > 0.0)
-                    creep = std::max(creep, std::abs((before[core::at(2 * c + 1)] - before[core::at(2 * c)])[i]) / own);
+        for (Index i = 0; i < 6; ++i)
+            if (const double own = std::abs(matrix(i, i) * amount[core::at(i)]); own > 0.0)
+                creep = std::max(creep, std::abs(later[i] - unstrained[i]) / own);
         asymmetry = 0.0;
         for (Index i = 0; i < 6; ++i)
             for (Index j = 0; j < 6; ++j)
