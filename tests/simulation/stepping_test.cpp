@@ -247,6 +247,18 @@ TEST_CASE("what has moved far is solved as loosely as a path is until it is at r
     CHECK(position.looseness(rest) == 1.0);
 }
 
+TEST_CASE("increments are passes of one iteration where they are solved loosely, loads stand, and no order parts fibres") {
+    Stage<Smooth> stage{.looseness = 10.0};
+    simulation::Position position{.progress = 1.0};
+    CHECK(position.iterates(stage));
+    position.progress = 0.5;
+    CHECK_FALSE(position.iterates(stage));
+    position.progress = 1.0, position.exact = true;
+    CHECK_FALSE(position.iterates(stage));
+    position.exact = false, stage.forced_orders = true;
+    CHECK_FALSE(position.iterates(stage));
+}
+
 TEST_CASE("damping that waits neither falls nor ends a stage after an increment whose forces balance far worse than it holds") {
     Stage<Smooth> stage{.damping = 1.0,
                         .damping_decay = 0.5,

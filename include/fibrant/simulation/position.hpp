@@ -106,6 +106,13 @@ struct Position {
         return on_its_way ? std::max(present.looseness, present.looseness_on_the_way) : present.looseness;
     }
 
+    /// Increments are the passes of one iteration: they are solved loosely, loads stand, and no order parts fibres by a step in
+    /// each of them.
+    template <Model M>
+    bool iterates(const Stage<M>& present) const noexcept {
+        return looseness(present) > 1.0 && progress >= 1.0 && !present.forced_orders;
+    }
+
     /// Whether a stage ends with an increment of which its `until` holds: one that is asked for an exact end with one that is
     /// within what is stated. Till then it goes on at looseness 1, but after an increment that had to be cut, or that moved so
     /// far that it is on its way again. To be asked once an increment.

@@ -142,7 +142,7 @@ private:
                 report.reason = present + reason;
                 return false;
             }
-            const bool loose = position_.looseness(stage) > 1.0;
+            const bool loose = position_.iterates(stage);
             Vector trial = swing_.begin(equilibrium_, state_, loose, increment.cuts);
             move_tools(amplitudes);
             const beam::Drive drive =

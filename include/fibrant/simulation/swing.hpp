@@ -12,7 +12,7 @@ namespace fibrant::simulation {
 class Swing {
 public:
     /// Where an increment begins.
-    /// @param loose  it keeps its normals
+    /// @param loose  it is one of those, and keeps its normals
     /// @param cuts   attempts at it that have failed: from then on it begins at the state that was accepted last
     template <class Equilibrium>
     Vector begin(Equilibrium& equilibrium, const Vector& state, bool loose, Index cuts) const {
