@@ -79,7 +79,7 @@ struct Stage {
     /// forces balanced badly [length], >= 0. See `rough`.
     double damping_still = 0.0;
     /// Greatest displacement of an increment that damping is steered to: it changes by the factor that the last one moved over
-    /// this, in [1/4, 2], in the place of falling by `damping_decay` [length], >= 0. 0: it is not.
+    /// this, in [1/4, 2], in the place of falling by `damping_decay`, unless it waits [length], >= 0. 0: it is not.
     double damping_pace = 0.0;
     /// Greatest displacement of an increment after which damping is lowered [length], > 0.
     double damping_calm = std::numeric_limits<double>::infinity();

@@ -123,14 +123,14 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     }
     relaxation.friction.reset();
     // There damping is steered: halved blindly, slack fibres leap by more than a radius after increments that moved half of one,
-    // and energy is lost in leaps. By trial on 608 fibres; a pace of 0.35 r takes as many iterations, of 0.8 r attempts given up.
+    // and energy is lost in leaps. By trial on 608 fibres; a pace of 0.35 r for 0.5 r takes as many iterations.
     if (pull.drawn) handover.damping_pace = 2.0 * limit, relaxation.damping_pace = 1.4 * limit;
     Stage<M> stiffening = relaxation;
     stiffening.name = "stiffening";
     stiffening.allowed_penetration.reset();
     // How deep contact points are says little where fibres bend sharply around each other: what ends is judged by the true gap,
     // at rest.
-    // What damping holds of loose increments is a little more once they are solved exactly: by 3 % on 608 fibres.
+    // What damping holds of loose increments is more once they are solved exactly.
     const double to_spare = 0.9;
     stiffening.damping_share = to_spare * share_at_rest;
     stiffening.until = until_settled(motion, parted, stiffening.damping_share);
