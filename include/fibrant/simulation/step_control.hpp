@@ -93,13 +93,12 @@ struct HalvedSteps {
         if (waits && !position.stage_over && !stage.unbalanced(increment) && increment.damping < half * stage.damping_share)
             damping = std::clamp(firmer * damping, least_damping, 1.0 / least_damping);
         else if (!waits && stage.damping_pace > 0.0 && increment.cuts == 0 && effort <= with_effort)
-            damping = steered(position, std::clamp(increment.displacement / stage.damping_pace, quicker, firmer));
+            damping = changed(position, std::clamp(increment.displacement / stage.damping_pace, quicker, firmer));
         else if (!enough && !(waits && stage.rough(increment)) && increment.cuts == 0 &&
                  increment.displacement <= stage.damping_calm && effort <= with_ease)
-            damping = std::max(damping * (damping > 1.0 ? half : std::pow(stage.damping_decay, position.fraction)),
-                               std::min(damping, position.damping_floor));
+            damping = changed(position, damping > 1.0 ? half : std::pow(stage.damping_decay, position.fraction));
         else if (stage.damping_decay < 1.0 && effort > with_effort)
-            damping = std::min(firmer * damping, 1.0 / least_damping);
+            damping = changed(position, firmer);
         if (damping < (waits ? vanishing : least_damping)) damping = 0.0;
         position.damping_floor *= floor_decay;
         // What holds a single fibre is halved after each increment without a cut, be it by its own factor or by that of all.
@@ -109,8 +108,8 @@ struct HalvedSteps {
     }
 
 private:
-    /// Damping under which the next increment moves about as far as it is to: what it did under the last one tells.
-    static double steered(const Position& position, double factor) {
+    /// Damping by a factor, below the most there is, or not below its floor unless it is there already.
+    static double changed(const Position& position, double factor) {
         const double next = factor * position.damping;
         return factor > 1.0 ? std::min(next, 1.0 / least_damping)
                             : std::max(next, std::min(position.damping, position.damping_floor));
