@@ -57,7 +57,8 @@ stiffness bending 0.001 bending
 "$program" "$scenes/cell_plain.toml" --output "$out/narrow" --quiet --set output.paraview=false --set levels.warp_spacing=0.3 ||
   fail "the cell of a plain weave whose warps are near each other"
 for name in cell narrow; do
-  awk '/"asymmetry"/ { gsub(/[,"]/, ""); found = 1; if ($2 > 2e-4) { print "asymmetry", $2; exit 1 } } END { if (!found) exit 1 }' \
+  awk '/"asymmetry"/ { gsub(/[,"]/, ""); found = 1; if ($2 > 2e-4) { print "asymmetry", $2; exit 1 } }
+    END { if (!found) exit 1 }' \
     "$out/$name/loading/summary.json" || fail "the stiffness of a cell is not symmetric: $name"
 done
 # Planes of symmetry along its threads keep bending from shear and twist from strains without friction as well.

@@ -128,7 +128,7 @@ TEST_CASE("an interrupted contact with friction resumes to the same bits") {
 
 TEST_CASE("an interrupted run in which one fibre is held harder than the others resumes to the same bits") {
     const Rod rod;
-    const double stiffness = 3.0 * rod.bending_stiffness() / std::pow(rod.length, 3);  // of the tip
+    const double stiffness = rod.tip_stiffness();
     Loading<Smooth> loading;
     loading.stages = {
         {.increments = 4, .ramps = {{"load", 1.0}}, .damping = 1e-3 * stiffness, .largest_displacement = 0.02 * rod.length}};

@@ -17,6 +17,8 @@ struct Rod {
     Index elements = 16;
 
     double bending_stiffness() const { return young * std::numbers::pi * std::pow(radius, 4) / 4.0; }
+    /// Of the tip, clamped at the other end [force / length].
+    double tip_stiffness() const { return 3.0 * bending_stiffness() / std::pow(length, 3); }
     scene::FibreSpecification specification() const {
         return {.from = Vec3::Zero(),
                 .to = Vec3(0, 0, length),
