@@ -398,9 +398,9 @@ TEST_CASE("a tool with a carrier that is none, or with a path as well, and a mod
           "Tool.turns = true, but it must be false, for a tool without a carrier (tool 0)");
     tool.carrier = scene::Station{0, 0.0}, tool.turns = false;
     assembly.add(tool);
-    auto all = test::pressed_parameters<test::RoughPressing>(r);
+    auto all = test::pressed_parameters<test::EveryDirector>(r);
     all.friction = {.friction_coefficient = 0.3, .reversible_displacement = 0.02 * r};
-    CHECK(test::refusal([&] { simulation::Simulator<test::RoughPressing>(assembly, all); }) ==
+    CHECK(test::refusal([&] { simulation::Simulator<test::EveryDirector>(assembly, all); }) ==
           "Tool.carrier = given, but it must be left out, for a model whose part Tools is not CarriedTools");
 }
 

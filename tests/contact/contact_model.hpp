@@ -15,7 +15,7 @@ namespace fibrant::test {
 /// @param allowed  penetration [length]
 template <simulation::Model M>
 simulation::ModelParameters<M> pressed_parameters(double allowed) {
-    simulation::ModelParameters<M> parameters;
+    simulation::ModelParameters<M> parameters = direct_parameters<M>();
     parameters.normal.regularisation_depth = 0.1 * allowed;
     parameters.contact.stiffness.allowed_penetration = allowed;
     parameters.iteration.step_tolerance = 1e-7;

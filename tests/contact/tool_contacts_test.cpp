@@ -31,7 +31,7 @@ const double r = 0.02, pi = std::numbers::pi;
 const law::RegularisedPenalty penalty({.regularisation_depth = 0.005 * r});
 const law::RegularisedCoulomb coulomb({.friction_coefficient = 0.3, .reversible_displacement = 0.02 * r});
 
-using Pressing = test::RoughPressing;
+using Pressing = test::EveryDirector;
 using Tools = contact::ToolContacts<Beam, law::RegularisedPenalty, law::RegularisedCoulomb>;
 using Simulator = simulation::Simulator<Pressing>;
 

@@ -18,7 +18,7 @@ using namespace fibrant;
 
 namespace acceptance_test {
 
-using test::Pressing;
+using Pressing = test::EveryDirector;
 using test::Smooth;
 
 const double r = 0.02, pi = std::numbers::pi, young = 7300.0, poisson = 0.3;

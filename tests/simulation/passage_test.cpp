@@ -18,7 +18,7 @@ using namespace fibrant;
 
 namespace passage_test {
 
-using test::Pressing;
+using Pressing = test::EveryDirector;
 using test::Smooth;
 
 const double r = 0.02, pi = std::numbers::pi;

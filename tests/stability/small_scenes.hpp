@@ -14,7 +14,7 @@
 
 namespace fibrant::test {
 
-using StableModel = Rough;
+using StableModel = EveryDirector;
 
 /// How an end is held.
 enum class Held { free, pinned, clamped };
@@ -110,7 +110,7 @@ inline scene::Assembly assembly_of(const SmallScene& small) {
 /// With multipliers `allowed` is what they leave.
 template <simulation::Model M>
 simulation::ModelParameters<M> parameters_of(const SmallScene& small) {
-    simulation::ModelParameters<M> parameters;
+    simulation::ModelParameters<M> parameters = direct_parameters<M>();
     const double r = small.radius();
     const typename StableModel::Normal::Parameters penalty{.regularisation_depth = 0.1 * small.allowed * r};
     if constexpr (law::Augmenting<typename M::Normal>)

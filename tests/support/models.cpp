@@ -3,9 +3,8 @@
 
 namespace fibrant::simulation {
 template class Simulator<test::Smooth>;
-template class Simulator<test::Pressing>;
-template class Simulator<test::RoughPressing>;
 template class Simulator<test::Multiplied>;
+template class Simulator<test::Centred>;
 template class Simulator<test::EveryDirector>;
 template class Simulator<test::EveryRod>;
 template class Simulator<test::EveryCable>;

@@ -5,8 +5,6 @@
 #include <verification/capstan_reference.hpp>
 #include <verification/elements.hpp>
 
-#include <fibrant/beam/on_centreline.hpp>
-
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -53,13 +51,11 @@ struct Drawn {
     double moment = 0.0;  ///< on the tool about its axis, over what the two forces at the ends exert [1]
 };
 
-using Tooled = test::RoughPressing;
+using Tooled = test::EveryDirector;
 /// Sections do not give way, as those of the reference.
 using RigidTooled = test::EveryRod;
 /// Friction without its lever.
-struct CentreTooled : Tooled {
-    using Beam = beam::OnCentreline<beam::DirectorBeam<3>, beam::FrictionLever::dropped>;
-};
+using CentreTooled = test::Centred;
 
 /// Half a turn around the guide, wound on without friction, then drawn. Motion stays in the plane of the turn.
 /// @tparam M      Tooled: the guide is a rigid cylinder; Rough: a held fibre, bent to a circle, whose outer side has its radius

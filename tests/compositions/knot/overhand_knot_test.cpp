@@ -18,7 +18,7 @@ namespace overhand_knot_test {
 
 namespace knot = compositions::knot;
 
-using Knotted = test::Rough;
+using Knotted = test::EveryDirector;
 const double r = 0.0201;
 
 knot::KnotParameters tied(double slenderness, Index elements, int crossings = 3) {
@@ -28,7 +28,7 @@ knot::KnotParameters tied(double slenderness, Index elements, int crossings = 3)
 }
 
 simulation::ModelParameters<Knotted> model(const knot::KnotParameters& parameters) {
-    simulation::ModelParameters<Knotted> all;
+    simulation::ModelParameters<Knotted> all = test::direct_parameters<Knotted>();
     all.normal = {.regularisation_depth = 1e-3 * r};
     all.friction = {.friction_coefficient = 0.0, .reversible_displacement = 0.02 * r};  // none, but where a stage sets it
     all.contact.stiffness.allowed_penetration = 1e-2 * r;

@@ -31,8 +31,9 @@ TEST_CASE("a mat that is pressed carries more and more, feels both plates alike,
                                   .elements = 5};
     const double r = parameters.radius, last = 0.17;
     const mat::PressParameters press{.height = last, .increments = 30};
-    simulation::Simulator<Mat> simulator(mat::boxed_mat(parameters, mat::random_fibres(parameters)),
-                                         mat::model_parameters<Mat>(parameters, press));
+    auto model = mat::model_parameters<Mat>(parameters, press);
+    model.solver.strategy = test::bundle_solver;
+    simulation::Simulator<Mat> simulator(mat::boxed_mat(parameters, mat::random_fibres(parameters)), model);
     const simulation::Loading<Mat> loading = mat::pressing<Mat>(parameters, press);
     std::vector<mat::MatState> states;
     struct Observer {

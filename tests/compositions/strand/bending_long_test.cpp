@@ -34,7 +34,7 @@ Bent bend(const strand::StrandParameters& parameters, const strand::Bending& ben
     Bent bent;
     bent.parameters = parameters;
     bent.parameters.material = {200000.0, 0.3};
-    simulation::ModelParameters<Rough> model;
+    auto model = test::direct_parameters<Rough>(test::bundle_solver);
     model.normal.regularisation_depth = 1e-2 * r;
     model.friction = {.friction_coefficient = mu, .reversible_displacement = 0.1 * r};
     model.contact.stiffness.allowed_penetration = 2e-2 * r;

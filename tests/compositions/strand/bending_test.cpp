@@ -29,7 +29,7 @@ strand::StrandParameters one_layer() {
 }
 
 simulation::ModelParameters<Rough> model(double friction) {
-    simulation::ModelParameters<Rough> parameters;
+    auto parameters = test::direct_parameters<Rough>(test::bundle_solver);
     parameters.normal.regularisation_depth = 2e-5 * r;
     parameters.friction = {.friction_coefficient = friction, .reversible_displacement = 2e-4 * r};
     parameters.contact.stiffness.allowed_penetration = 1e-4 * r;

@@ -30,7 +30,7 @@ struct Drawn {
     double force = 0.0, torque = 0.0, bound_torque = 0.0, unbalance = 0.0;
 };
 inline Drawn draw(const strand::RopeParameters& rope, double mu) {
-    simulation::ModelParameters<Bundle> model;
+    auto model = direct_parameters<Bundle>(bundle_solver);
     model.normal.regularisation_depth = 5e-4;
     model.friction = {.friction_coefficient = mu, .reversible_displacement = 0.02};
     model.contact.stiffness.allowed_penetration = 1e-3;

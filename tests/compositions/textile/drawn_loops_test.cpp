@@ -46,11 +46,11 @@ Drawn draw(double friction, Index increments) {
         }
         if (row == 1) upper = held;
     }
-    simulation::ModelParameters<test::Rough> parameters;
+    auto parameters = test::direct_parameters<test::EveryDirector>();
     parameters.normal.regularisation_depth = 1e-3 * r;
     parameters.friction = {.friction_coefficient = friction, .reversible_displacement = 0.02 * r};
     parameters.contact.stiffness.allowed_penetration = 1e-2 * r;
-    simulation::Simulator<test::Rough> simulator(assembly, parameters);
+    simulation::Simulator<test::EveryDirector> simulator(assembly, parameters);
     Drawn out;
     out.report = simulator.run({.increments = increments});
     for (const scene::Station& at : upper) out.force += simulator.reaction(at).y();
