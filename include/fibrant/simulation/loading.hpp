@@ -90,7 +90,7 @@ struct Stage {
     /// says so.
     std::optional<double> deepest{};
     double patience = 1.0;  ///< on the limit of Newton's iterations: what hardly resists bending converges slowly [1], in [1, 10]
-    double looseness = 1.0;  ///< on the tolerances of contact and normal passes, >= 1
+    double looseness = 1.0;  ///< on the tolerances of contact and normal passes, in [1, 1e4]
     /// The same, where it is more, from an increment that moved further than `damping_still`, or `damping_calm` where that is 0,
     /// until `until` holds, but not in the second half of `most_increments`: what goes on to another equilibrium in a stage that
     /// is to end at rest is on its way again, and takes many increments that nobody asks for, >= 1.
@@ -194,7 +194,7 @@ struct Loading {
             core::require_not_negative("Stage.damping_still", stage.damping_still);
             core::require_not_negative("Stage.damping_pace", stage.damping_pace);
             core::require(stage.largest_displacement > 0.0, "Stage.largest_displacement", stage.largest_displacement, "> 0");
-            core::require_between("Stage.looseness", stage.looseness, 1.0, 1000.0);
+            core::require_between("Stage.looseness", stage.looseness, 1.0, 1e4);
             core::require_between("Stage.looseness_on_the_way", stage.looseness_on_the_way, 1.0, 1000.0);
             core::require_between("Stage.patience", stage.patience, 1.0, 10.0);
             if (stage.allowed_penetration) core::require_positive("Stage.allowed_penetration", *stage.allowed_penetration);

@@ -43,6 +43,7 @@ inline constexpr double kept = 0.25;  ///< part of a search's reach that is move
 inline constexpr Index most_moves = 6, most_moves_bounded = 2;  ///< searches after such motions; where displacements are bounded
 inline constexpr Index first_searches = 2;                      ///< of an increment, which no small motion makes up for
 inline constexpr double coarsest_step = 0.02;                   ///< of an iteration within a pass [radius]
+inline constexpr double coarsest_by_looseness = 2e-5, coarsest_of_all = 0.05;  ///< the same, of a path looser than 1000
 inline constexpr double finer = 0.1;                            ///< part of a tolerance that a loop inside need not go below [1]
 // Extrapolation of passes that follow one mode, as a geometric series (Aitken 1926).
 inline constexpr double least_ratio = 0.4;  ///< of two travels, from which it pays [1]
@@ -260,6 +261,8 @@ private:
                        const Vector& searched, double bound, double looseness, AttemptReport& report) {
         namespace with = nested_numbers;
         const double finest = parameters_.step_tolerance * radius_;
+        const double coarsest =
+            std::clamp(with::coarsest_by_looseness * looseness, with::coarsest_step, with::coarsest_of_all) * radius_;
         const double enough = looseness * parameters_.normal_step_tolerance * radius_;
         double first = 0.0, change = std::numeric_limits<double>::infinity();
         Vector travel, last_travel;  // displacement of this pass and of the one before
@@ -285,8 +288,8 @@ private:
             }
             ++report.counts.normal_passes;
             const Vector before = state;
-            const double loose = std::isfinite(change) ? parameters_.inexact * change : with::coarsest_step * radius_;
-            const double tolerance = contact_possible_ ? std::clamp(loose, finest, with::coarsest_step * radius_) : finest;
+            const double loose = std::isfinite(change) ? parameters_.inexact * change : coarsest;
+            const double tolerance = contact_possible_ ? std::clamp(loose, finest, coarsest) : finest;
             const NewtonReport inner = newton.solve(state, tolerance, searched, bound, report.counts);
             if (inner.status == NewtonStatus::converged) equilibrium_->close_ties(state);
             report.residual = inner.residual.relative(), report.force_scale = inner.residual.scale, report.step = inner.step;
