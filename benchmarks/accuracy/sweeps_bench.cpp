@@ -136,7 +136,7 @@ int main(int argc, char** argv) {
     if (wanted("penetration")) {
         // Pressed by a whole radius, where tension counts and theory is of no use: against the least penetration with
         // multipliers.
-        const double exact = test::run<test::MultipliedModel>(test::sinking(1e-6)).support[0].z();
+        const double exact = test::run<test::Multiplied>(test::sinking(1e-6)).support[0].z();
         const auto error = [exact](const test::SmallScene&, const test::SmallResult& result) {
             return result.support[0].z() / exact - 1.0;
         };
@@ -146,13 +146,13 @@ int main(int argc, char** argv) {
             scene.cycle = {1.0};
             return scene;
         };
-        const Line held = small<test::MultipliedModel>("penetration", "multipliers", test::allowed_penetrations, at_once, error);
+        const Line held = small<test::Multiplied>("penetration", "multipliers", test::allowed_penetrations, at_once, error);
         write({{"penalty", alone}, {"multipliers", held}}, "two crossed fibres, pressed by a radius",
               "allowed penetration over the radius", "error of the force", "stability_penetration.svg");
     }
     if (wanted("penalty")) {
         const Line alone = small("penalty", "penalty", test::penalties, test::held_at, hard),
-                   held = small<test::MultipliedModel>("penalty", "multipliers", test::penalties, test::held_at, hard);
+                   held = small<test::Multiplied>("penalty", "multipliers", test::penalties, test::held_at, hard);
         const Line strand_alone = strand_at_penalties<Policy<Director>>("penalty", 0.0),
                    strand_held = strand_at_penalties<benchmarks::Held<Director>>("multipliers", 1e-2);
         write({{"crossed, penalty", alone},
