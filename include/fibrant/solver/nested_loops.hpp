@@ -44,7 +44,7 @@ inline constexpr Index most_moves = 6, most_moves_bounded = 2;  ///< searches af
 inline constexpr Index first_searches = 2;                      ///< of an increment, which no small motion makes up for
 inline constexpr double coarsest_step = 0.02;                   ///< of an iteration within a pass [radius]
 inline constexpr double coarsest_by_looseness = 2e-5, coarsest_of_all = 0.05;  ///< the same, of a path looser than 1000
-inline constexpr double finer = 0.1;                            ///< part of a tolerance that a loop inside need not go below [1]
+inline constexpr double finer = 0.1;  ///< part of a tolerance that a loop inside need not go below [1]
 // Extrapolation of passes that follow one mode, as a geometric series (Aitken 1926).
 inline constexpr double least_ratio = 0.4;  ///< of two travels, from which it pays [1]
 inline constexpr double largest_ratio =

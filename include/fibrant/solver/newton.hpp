@@ -194,8 +194,7 @@ public:
             const double enough = with::enough_of_residual * residual_tolerance(tolerance) /
                                   std::max(report.residual.relative(), residual_tolerance(tolerance));
             eta = std::clamp(with::forcing_factor * ratio * ratio,
-                             std::min(std::max(parameters_.linear_tolerance, enough), loosest),
-                             loosest);
+                             std::min(std::max(parameters_.linear_tolerance, enough), loosest), loosest);
             if (scale == 1.0 && report.step <= tolerance && report.residual.relative() <= residual_tolerance(tolerance)) {
                 report.status = NewtonStatus::converged;
                 return report;
