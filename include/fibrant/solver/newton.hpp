@@ -102,7 +102,7 @@ namespace newton_numbers {
 // Forcing terms of inexact Newton: eta = 0.9 (r / r_before)^2, at most 1e-2 (Eisenstat and Walker 1996, choice 2; their bound is
 // 0.9, but contact changes less along steps that are better solved), or half of the step in radii that an iteration may end with:
 // by trial on 608 fibres, those that end with 0.05 radii take the same steps at 5e-2 as at 1e-3.
-inline constexpr double forcing_factor = 0.9, loosest_forcing = 1e-2, forcing_by_step = 0.5;
+inline constexpr double forcing_factor = 0.9, loosest_forcing = 1e-2, forcing_by_step = 0.5, loosest_of_all = 5e-2;
 inline constexpr double enough_of_residual = 0.1;  ///< what the residual may have left, times this, is as good as nothing [1]
 inline constexpr double undriven = 1e-6;           ///< square of what is prescribed over that of a step: it has one energy [1]
 inline constexpr double inversion_cut = 0.25;      ///< of a step at whose end a cell is turned inside out [1]
@@ -138,7 +138,8 @@ public:
         NewtonReport report;
         Equilibrium& equilibrium = *equilibrium_;
         namespace with = newton_numbers;
-        const double loosest = std::max(with::loosest_forcing, with::forcing_by_step * tolerance / radius_);
+        const double loosest =
+            std::clamp(with::forcing_by_step * tolerance / radius_, with::loosest_forcing, with::loosest_of_all);
         double eta = loosest, worst = 0.0;
         bool mixed = parameters_.mixed;
         Index growing = 0;
