@@ -51,7 +51,8 @@ stiffness() {
 stiffness tension 0.001 tension
 stiffness shear 0.002 shear
 stiffness bending 0.001 bending
-# A cell that repeats: its six stiffnesses are symmetric. The others run on one thread, which is less work, and comes to the same bits.
+# A cell that repeats: its six stiffnesses are symmetric. The others run on one thread, which is less work and comes to the same
+# bits.
 "$program" "$scenes/cell_plain.toml" --output "$out/cell" --quiet --set output.paraview=false || fail "the cell of a plain weave"
 # Where crossings are near each other, errors of an increment would grow in the next ones.
 "$program" "$scenes/cell_plain.toml" --output "$out/narrow" --threads 1 --quiet --set output.paraview=false \

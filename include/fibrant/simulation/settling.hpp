@@ -62,8 +62,8 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     // next.
     common.allowed_penetration = soft, common.looseness = settle.looseness, common.damping = taut;
     // What begins drawn goes far in each increment: half of Newton's iterations went into a residual below 5 % of the forces.
-    const double far = 2.5;  // by trial on 608 fibres
-    if (pull.drawn) common.looseness *= far;
+    const double looser = 2.5;  // by trial on 608 fibres
+    if (pull.drawn) common.looseness *= looser;
     Stage<M> separation = common;
     separation.name = "separation";
     separation.forced_orders = scales.ordered, separation.gap_limit_when_cut = false, separation.damping = slack;
@@ -127,10 +127,9 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     relaxation.friction.reset();
     // There damping is steered: halved blindly, slack fibres leap by more than a radius after increments that moved half of one,
     // and energy is lost in leaps. By trial on 608 fibres; a pace of 0.35 r for 0.5 r takes as many iterations.
-    // What it holds is little there while contact is soft, where creeping takes a fourth of the iterations: what is left is what
-    // stiff contact moves.
     if (pull.drawn) {
         handover.damping_pace = 2.0 * limit, relaxation.damping_pace = limit;
+        // While contact is soft, creeping nearly to rest takes a fourth of the iterations: the rest is what stiff contact moves.
         const double nearly = 2.0;  // over the share at rest, by trial on 608 fibres
         relaxation.damping_share = std::min(share_on_the_way, nearly * share_at_rest);
         relaxation.until = until_settled(motion, parted, relaxation.damping_share);
