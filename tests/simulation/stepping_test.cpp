@@ -788,8 +788,8 @@ TEST_CASE("a loading that cannot be walked is refused before any work") {
     CHECK(refused(loading) == "Ramp.to = nan, but it must be finite");
     loading.stages = {{.looseness = 0.5}};
     CHECK(refused(loading).starts_with("Stage.looseness = 0.5,"));
-    loading.stages = {{.looseness_on_the_way = 2000.0}};
-    CHECK(refused(loading).starts_with("Stage.looseness_on_the_way = 2000,"));
+    loading.stages = {{.looseness_on_the_way = 2e4}};
+    CHECK(refused(loading).starts_with("Stage.looseness_on_the_way = 20000,"));
     loading.stages = {{.allowed_penetration = 0.0}};
     CHECK(refused(loading) == "Stage.allowed_penetration = 0, but it must be finite and > 0");
     loading.stages = {{.damping_calm = 0.0}};

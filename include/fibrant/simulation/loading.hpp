@@ -41,6 +41,8 @@ using GapLimitOf = std::conditional_t<law::GapLimiting<Normal>, std::optional<do
 
 /// Bound of `Stage::largest_fraction`: no radius is a thousand times another one's in a fabric [1].
 inline constexpr double most_fraction = 1e3;
+/// Bound of `Stage::looseness` and `looseness_on_the_way`: beyond it no pass would ask for anything [1].
+inline constexpr double most_looseness = 1e4;
 
 /// Part of a loading. Laws that are set replace the model's from this stage on.
 template <Model M>
@@ -93,7 +95,7 @@ struct Stage {
     double looseness = 1.0;  ///< on the tolerances of contact and normal passes, in [1, 1e4]
     /// The same, where it is more, from an increment that moved further than `damping_still`, or `damping_calm` where that is 0,
     /// until `until` holds, but not in the second half of `most_increments`: what goes on to another equilibrium in a stage that
-    /// is to end at rest is on its way again, and takes many increments that nobody asks for, >= 1.
+    /// is to end at rest is on its way again, and takes many increments that nobody asks for, in [1, 1e4].
     double looseness_on_the_way = 1.0;
     /// Where `until` is true of a loose increment, the stage goes on at looseness 1, and ends once it is true of such a one: what
     /// it ends with is an answer, within the tolerances that are stated.
@@ -194,8 +196,8 @@ struct Loading {
             core::require_not_negative("Stage.damping_still", stage.damping_still);
             core::require_not_negative("Stage.damping_pace", stage.damping_pace);
             core::require(stage.largest_displacement > 0.0, "Stage.largest_displacement", stage.largest_displacement, "> 0");
-            core::require_between("Stage.looseness", stage.looseness, 1.0, 1e4);
-            core::require_between("Stage.looseness_on_the_way", stage.looseness_on_the_way, 1.0, 1000.0);
+            core::require_between("Stage.looseness", stage.looseness, 1.0, most_looseness);
+            core::require_between("Stage.looseness_on_the_way", stage.looseness_on_the_way, 1.0, most_looseness);
             core::require_between("Stage.patience", stage.patience, 1.0, 10.0);
             if (stage.allowed_penetration) core::require_positive("Stage.allowed_penetration", *stage.allowed_penetration);
             if (stage.deepest) core::require_positive("Stage.deepest", *stage.deepest);

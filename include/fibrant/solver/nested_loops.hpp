@@ -289,7 +289,7 @@ private:
             ++report.counts.normal_passes;
             const Vector before = state;
             const double loose = std::isfinite(change) ? parameters_.inexact * change : coarsest;
-            const double tolerance = contact_possible_ ? std::clamp(loose, finest, coarsest) : finest;
+            const double tolerance = contact_possible_ ? std::clamp(loose, finest, std::max(finest, coarsest)) : finest;
             const NewtonReport inner = newton.solve(state, tolerance, searched, bound, report.counts);
             if (inner.status == NewtonStatus::converged) equilibrium_->close_ties(state);
             report.residual = inner.residual.relative(), report.force_scale = inner.residual.scale, report.step = inner.step;
