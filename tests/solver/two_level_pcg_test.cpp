@@ -122,6 +122,45 @@ TEST_CASE("a solve that takes long goes on with a finer space, which takes fewer
     CHECK(late.fine_unknowns() == 0);
 }
 
+TEST_CASE("a coarse space is kept while contacts open one by one, and formed anew where solves take longer, or at an analysis") {
+    auto system = test::chain_system(test::FabricSystem(bundle));
+    const Vector b = contact_load(system);
+    const double tolerance = 1e-6;
+    solver::TwoLevelPcg kept, fresh{{.systems_per_space = 1}};
+    Vector x, ax(b.size());
+    const auto solved = [&](solver::TwoLevelPcg& solver) {
+        REQUIRE(solver.prepare(assembly::seen(system)) == solver::SolveStatus::converged);
+        const solver::SolveReport report = solver.solve(assembly::seen(system), b, tolerance, x);
+        REQUIRE(report.status == solver::SolveStatus::converged);
+        system.apply(x, ax);
+        CHECK(solver::scaled_norm(system.layout(), Vector(b - ax)) <=
+              1.001 * tolerance * solver::scaled_norm(system.layout(), b));
+        return report.iterations;
+    };
+    const auto every = [&](Index nth, double factor) {
+        for (Index k = 0; k < core::count(system.points()); k += nth) system.points()[core::at(k)].stiffness *= factor;
+    };
+    kept.analyse(assembly::seen(system)), fresh.analyse(assembly::seen(system));
+    const int first = solved(kept);
+    CHECK(solved(fresh) == first);
+    every(20, 0.99);
+    const int other = solved(kept);
+    CHECK(kept.spaces_formed() == 1);
+    CHECK(other <= 1.3 * solved(fresh));
+    CHECK(fresh.spaces_formed() == 2);
+    // Contacts that are gone leave fibres held where they were: bundles bend otherwise than the space was formed for.
+    every(20, 1e-3), solved(kept);
+    CHECK(kept.spaces_formed() == 1);
+    solved(kept);
+    CHECK(kept.spaces_formed() == 2);
+    kept.analyse(assembly::seen(system)), fresh.analyse(assembly::seen(system));
+    solved(fresh);
+    const Vector alone = x;
+    solved(kept);
+    CHECK(kept.spaces_formed() == 1);
+    CHECK(x == alone);
+}
+
 TEST_CASE_TEMPLATE("two threads give the bits of one on systems large enough for both", Solver, solver::TwoLevelPcg,
                    solver::FibreBlockPcg, solver::FloatBlockCholesky) {
     const test::FabricSystem system(bundle);
@@ -171,6 +210,7 @@ TEST_CASE("parameters of two levels that mean nothing are refused by name") {
     CHECK(test::refusal([] { Solver{{.elements_per_station = 0}}; }).starts_with("TwoLevelPcg.elements_per_station = 0"));
     CHECK(test::refusal([] { Solver{{.refine_after = -1}}; }).starts_with("TwoLevelPcg.refine_after = -1"));
     CHECK(test::refusal([] { Solver{{.iteration_limit = 0}}; }).starts_with("TwoLevelPcg.iteration_limit = 0"));
+    CHECK(test::refusal([] { Solver{{.systems_per_space = 0}}; }).starts_with("TwoLevelPcg.systems_per_space = 0"));
 }
 
 TEST_CASE(
