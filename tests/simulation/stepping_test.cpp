@@ -199,6 +199,28 @@ TEST_CASE("damping that is steered to a pace lets a fibre creep evenly to where 
     CHECK(greatest(0.0) > 1.5 * pace);
 }
 
+TEST_CASE("springs that are steered to a pace go on below a thousandth of what they were, and do not vanish and come back") {
+    // An increment moves as far as the pace under 1e-4 of the springs: what moves in proportion to their inverse comes there.
+    constexpr double pace = 0.5, at_pace = 1e-4;
+    const auto greatest = [&](double steered) {
+        const Stage<Smooth> stage{
+            .damping = 1.0, .damping_decay = 0.5, .damping_pace = steered, .until = [](const auto&) { return false; }};
+        simulation::Position position;
+        position.progress = 1.0;
+        double most = 0.0;
+        for (Index k = 0; k < 30; ++k) {
+            if (position.damping == 0.0) return std::numeric_limits<double>::infinity();  // nothing holds it
+            simulation::IncrementReport increment;
+            increment.displacement = pace * at_pace / position.damping;
+            most = std::max(most, increment.displacement);
+            simulation::HalvedSteps().adapt_damping(position, stage, increment, 0.1);
+        }
+        return most;
+    };
+    CHECK(greatest(pace) == test::near(pace, 1e-12));
+    CHECK(std::isinf(greatest(0.0)));
+}
+
 TEST_CASE("what has moved far is solved as loosely as a path is until it is at rest, and what a stage ends with never is") {
     Stage<Smooth> rest{.damping_calm = 0.1, .looseness = 5.0, .looseness_on_the_way = 100.0, .exact_end = true};
     simulation::Position position;

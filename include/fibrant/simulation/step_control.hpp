@@ -30,7 +30,7 @@ struct HalvedSteps {
     static constexpr double firmer = 2.0;    ///< the same after an increment that was hard
     static constexpr double quicker = 0.25;  ///< least factor of an increment where damping is steered to a pace: two halvings
     static constexpr double least_damping = 1e-3;   ///< over that of the stage: below, none; its inverse is the most
-    static constexpr double vanishing = 1e-6;       ///< the same where damping waits: it ends by its share, and by halves
+    static constexpr double vanishing = 1e-6;       ///< the same where damping waits, or is steered: it ends by its share
     static constexpr double few = 0.1;              ///< of the fibres, which alone are held harder
     static constexpr double nearly = 1.5;           ///< of what damping may hold, by which it does not fall any more
     static constexpr double far = 0.25;             ///< of the greatest motion: what counts as restless
@@ -99,7 +99,9 @@ struct HalvedSteps {
             damping = changed(position, damping > 1.0 ? half : std::pow(stage.damping_decay, position.fraction));
         else if (stage.damping_decay < 1.0 && effort > with_effort)
             damping = changed(position, firmer);
-        if (damping < (waits ? vanishing : least_damping)) damping = 0.0;
+        // What is steered to a pace moves with a thousandth as far as before: without any it would leap, and springs that it
+        // takes then would vanish again by turns.
+        if (damping < (waits || stage.damping_pace > 0.0 ? vanishing : least_damping)) damping = 0.0;
         position.damping_floor *= floor_decay;
         // What holds a single fibre is halved after each increment without a cut, be it by its own factor or by that of all.
         const double share = half * (before > 0.0 ? before / std::max(damping, half * before) : 1.0);
