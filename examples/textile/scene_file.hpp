@@ -441,6 +441,11 @@ inline Scene read_scene(SceneReader& file) {
     scene.own_laws = yarn.material.transverse.given();
     cloth::YarnType binder = yarn;
     const bool bound = file.describes() || file.given("binder", "radius") || file.given("binder", "fibres");
+    // A section that nothing asks for would be as if it were heard.
+    const bool has_binder = scene.generator == "levels" || scene.generator == "stitched";
+    if (bound && !file.describes() && !scene.generator.empty() && !has_binder)
+        file.refuse("binder", file.given("binder", "radius") ? "radius" : "fibres",
+                    "left out: only levels and stitched have one");
     if (bound) {
         if (file.describes()) binder.radius = fibrant::core::unset;
         detail::read_type(file, "binder", false, binder);

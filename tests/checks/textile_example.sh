@@ -94,4 +94,5 @@ refused from_csv file.path=nowhere.csv nowhere.csv
 refused knit_plain weft_knit.loop_height=0.41 "weft_knit.loop_height = 0.41, but it must be >= "
 refused stitched stitched.row_spacing=0.7 "distance of thread"
 refused stitched stitched.sideways=0 "comes apart"
+refused braid_triaxial binder.radius=0.08 "binder.radius"
 exit 0
