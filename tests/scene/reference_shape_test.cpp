@@ -122,4 +122,18 @@ TEST_CASE("curves that are no fibre are refused by name") {
           }).starts_with("fibre.to: distance from fibre.from = 0,"));
 }
 
+TEST_CASE("a director that is not given lies across a plane curve, wherever its plane is") {
+    const Mat3 turn = Eigen::AngleAxisd(0.8, Vec3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
+    const double pi = std::numbers::pi;
+    const scene::Curve half_ring = [&](double t) { return Vec3(turn * Vec3(std::cos(pi * t), std::sin(pi * t), 0.0)); },
+                       wave = [&](double t) { return Vec3(turn * Vec3(t, 1e-3 * std::sin(4.0 * pi * t), 2.0)); };
+    for (const scene::Curve& curve : {half_ring, wave})
+        for (const scene::NodeFrame& frame : scene::reference_frames(curve, 21))
+            CHECK(std::abs(frame.director_1.dot(turn.col(2))) == test::near(1.0, 1e-12));
+    // Of a helix no plane is.
+    const Helix helix;
+    CHECK(scene::plane_normal(helix.curve()).isZero(0.0));
+    CHECK(scene::plane_normal([](double t) { return Vec3(t, 2.0 * t, 0.0); }).isZero(0.0));
+}
+
 }  // namespace reference_shape_test

@@ -33,7 +33,7 @@ struct FibreSpecification {
     CrossSection section{};  ///< at rest
     ElasticMaterial material{};
     Index elements = 0;            ///< along the fibre, >= 1
-    Vec3 director = Vec3::Zero();  ///< g_1 at the first end, less its axial part; zero: any
+    Vec3 director = Vec3::Zero();  ///< g_1 at the first end, less its axial part; zero: across a plane curve, else any
     Index group = -1;              ///< from Assembly::add_group, or -1
     /// The end is the start: `start`, or `curve` where there is none, closes smoothly, and so do the directors. The rest shape
     /// may be open: of a closed fibre that is given by its start alone it is straight.

@@ -73,6 +73,26 @@ inline Vec3 any_perpendicular(const Vec3& tangent) {
     return (direction - direction.dot(tangent) * tangent).normalized();
 }
 
+/// Normal of the plane that a curve lies in; nothing of one that is straight, or that leaves its plane by more than rounding.
+inline Vec3 plane_normal(const Curve& curve) {
+    constexpr Index samples = 64;
+    constexpr double flat = 1e-9, straight = 1e-6;  // of the greatest distance from its first point
+    std::vector<Vec3> from_first;
+    const Vec3 first = curve(0.0);
+    for (Index k = 1; k <= samples; ++k) from_first.push_back(curve(static_cast<double>(k) / samples) - first);
+    const auto greatest = [&](const auto& size) {
+        return *std::max_element(from_first.begin(), from_first.end(),
+                                 [&](const Vec3& a, const Vec3& b) { return size(a) < size(b); });
+    };
+    const Vec3 along = greatest([](const Vec3& x) { return x.norm(); });
+    const double extent = along.norm();
+    const Vec3 across = along.cross(greatest([&](const Vec3& x) { return along.cross(x).norm(); }));
+    if (!(across.norm() > straight * extent * extent)) return Vec3::Zero();
+    const Vec3 normal = across.normalized();
+    const auto off = [&](const Vec3& x) { return std::abs(x.dot(normal)) > flat * extent; };
+    return std::any_of(from_first.begin(), from_first.end(), off) ? Vec3(Vec3::Zero()) : normal;
+}
+
 /// What a curve may be like.
 ///
 /// Slower than a ten-thousandth of its mean speed a curve stands still: differences of its points have lost the digits of its
@@ -186,7 +206,8 @@ inline bool march(const Curve& curve, Index nodes, Index fine, const Vec3& direc
 /// (r x twist rate)^2.
 /// @param curve     regular (its derivative does not vanish)
 /// @param nodes     >= 2
-/// @param director  g_1 at the start is its part perpendicular to the tangent; zero: any
+/// @param director  g_1 at the start is its part perpendicular to the tangent; zero: the normal of a plane curve, so that what
+/// holds a section does to one side of that plane what it does to the other; else any
 /// @param name      what messages call the curve
 /// @param closed    the curve ends where it begins, and its tangent there is that of a curve that goes on
 /// @throws std::invalid_argument if the curve is not finite, stands still, jumps, runs too unevenly or does not close where it
@@ -196,7 +217,8 @@ inline ReferenceShape reference_shape(const Curve& curve, Index nodes, const Vec
     core::require_at_least("reference_frames.nodes", nodes, 2);
     constexpr Index fine = 16, finest = 256;  // substeps between nodes, for arc length and transport
     ReferenceShape shape;
-    for (Index steps = fine; !detail::march(curve, nodes, steps, director, name, closed, steps >= finest, shape);) steps *= 4;
+    const Vec3 first = director.isZero(0.0) ? plane_normal(curve) : director;
+    for (Index steps = fine; !detail::march(curve, nodes, steps, first, name, closed, steps >= finest, shape);) steps *= 4;
     return shape;
 }
 inline std::vector<NodeFrame> reference_frames(const Curve& curve, Index nodes, const Vec3& director = Vec3::Zero(),
