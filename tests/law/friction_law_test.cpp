@@ -93,6 +93,25 @@ TEST_CASE("the force is continuous where sticking turns into sliding") {
     CHECK((stuck.force - slid.force).norm() <= 1e-11 * bound);  // ten times the distance of the two slips
 }
 
+TEST_CASE("what slid begins the next increment with the stiffness of what sticks, whichever way it is rounded") {
+    // Histories that slid lie on the bound but for rounding: turned by any angle they are a little within or beyond it.
+    Index within = 0, beyond = 0;
+    for (int k = 0; k < 100; ++k) {
+        const Vec3 way(std::cos(0.1 * k), std::sin(0.1 * k), 0.0);
+        const History history = coulomb.response(5.0 * range * way, reaction, {}).history;
+        (history.reversible.norm() <= range ? within : beyond) += 1;
+        for (const double slip : {-1e-12, 0.0, 1e-12}) {
+            const Response answer = coulomb.response(slip * range * way, reaction, history);
+            CHECK((answer.tangent - bound / range * Mat3::Identity()).norm() <= 1e-12 * bound / range);
+            CHECK(answer.force.norm() <= bound * (1.0 + 1e-15));
+        }
+        const Response on = coulomb.response(1e-6 * range * way, reaction, history);
+        CHECK((on.tangent * way).norm() <= 1e-12 * bound / range);  // it slides on
+    }
+    CHECK(within > 10);  // both of them are there
+    CHECK(beyond > 10);
+}
+
 TEST_CASE("a reversal first unloads the spring, crosses zero and slides the other way after twice the range") {
     const History history = coulomb.response({5.0 * range, 0.0, 0.0}, reaction, {}).history;
     const Response unloaded = coulomb.response({-range, 0.0, 0.0}, reaction, history);

@@ -47,19 +47,27 @@ public:
         if (parameters_.friction_coefficient == 0.0) return answer;  // nothing is ever held, so nothing is remembered
         const Vec3 trial = history.reversible + slip;
         const double length = trial.norm();
-        if (length <= range) {
-            const double y = length / range, secant = bound / range * Rise::secant(y);
-            answer.force = secant * trial;
+        const auto rise = [&](double y) {  // answers its secant
+            const double secant = bound / range * Rise::secant(y);
             answer.tangent.diagonal().setConstant(secant);
             const double bend = bound / range * (Rise::slope(y) - Rise::secant(y));  // none of a straight rise
             if (bend != 0.0 && length > 0.0) answer.tangent += bend / (length * length) * trial * trial.transpose();
+            return secant;
+        };
+        if (length <= range) {
+            const double y = length / range;
+            answer.force = rise(y) * trial;
             answer.history.reversible = trial;
             answer.stored = bound * range * Rise::work(y);
             return answer;
         }
         const Vec3 direction = trial / length;
         answer.force = bound * direction;
-        answer.tangent = bound / length * (Mat3::Identity() - direction * direction.transpose());
+        // What slid in the last increment begins the next one at the bound: it is to begin it as its mirror image does.
+        if (length <= range * (1.0 + rounding))
+            rise(1.0);
+        else
+            answer.tangent = bound / length * (Mat3::Identity() - direction * direction.transpose());
         answer.history.reversible = range * direction;
         answer.stored = bound * range * Rise::work(1.0);
         answer.dissipated = bound * (length - range);
@@ -71,6 +79,7 @@ public:
     double reversible_displacement() const noexcept { return parameters_.reversible_displacement; }
 
 private:
+    static constexpr double rounding = 1e-9;  ///< of a slip, over the reversible displacement: of places a thousand times as far
     Parameters parameters_;
 };
 
