@@ -61,16 +61,16 @@ public:
     bool forced(const Element& element) const noexcept { return zones_[core::at(element.zone)].forced; }
     double stiffness(const Element& element) const noexcept { return zones_[core::at(element.zone)].stiffness; }
 
-    /// Outer loop: zones, stations and particles anew. What contacts remember comes from the elements that they replace.
+    /// Outer loop: zones, stations and particles anew. Contacts remember what those that they replace did.
     /// @param state     current
     /// @param accepted  last accepted state: gap shifts and slips count from there
     /// @param reach     beyond touching [length]
     /// @param forced    keep forced orders
     void detect(const Vector& state, const Vector& accepted, double reach, bool forced) {
-        std::vector<Zone> found = find_zones(*mesh_, state, search_, parameters_.detection, orders_, reach, forced);
+        std::vector<Zone> all = find_zones(*mesh_, state, search_, parameters_.detection, orders_, reach, forced);
         core::parallel_for(
-            core::count(found), [&](Index z) { inherit(found[core::at(z)], state); }, core::light_items);
-        zones_ = std::move(found);
+            core::count(all), [&](Index z) { inherit(all[core::at(z)], state, all); }, core::light_items);
+        zones_ = std::move(all);
         regenerate(state, accepted);
     }
 
@@ -297,14 +297,14 @@ public:
 private:
     void for_elements(const auto& body) const { core::parallel_for(core::count(elements_), body, core::light_items); }
 
-    void inherit(Zone& zone, const Vector& state) const {
+    void inherit(Zone& zone, const Vector& state, const std::vector<Zone>& all) const {
         rules_.apply(zone);
         const Zone* before = predecessor(zones_, zone.span, 1.0, accepted_.periods());
         keep_watch(zone, before);
         zone.stiffness = before ? before->stiffness : parameters_.stiffness.initial_fraction * zone.reference;
         if (!accepted_zones_.empty()) zone.deepest = before ? before->deepest : 0.0;
         if (zone.forced) return;
-        places_.mark(*mesh_, state, zone, before);
+        places_.mark(*mesh_, state, zone, before, all);
         const double angle = crossing_angle_deg(*mesh_, state, zone.span, !zone.followed);
         const double shift = !before ? 0.0 : parameters_.spacing.angle_hysteresis_deg * (before->crossing ? -1.0 : 1.0);
         zone.crossing = angle > places_.angle_share(zone) * (parameters_.spacing.crossing_angle_deg + shift);
@@ -323,7 +323,7 @@ private:
         constexpr Index block = 8;  // zones
         const Index blocks = (to - from + block - 1) / block;
         std::vector<std::vector<Element>> made(core::at(blocks));
-        const double forced_keep = 0.5;  // radii of clearance beyond which a forced pair needs no element
+        const double forced_keep = 0.5;  // radii apart, from which a forced pair needs no element
         core::parallel_for<core::Share::turns>(
             blocks,
             [&](Index b) {

@@ -5,11 +5,13 @@
 #include <fibrant/contact/closest_places.hpp>
 #include <fibrant/contact/contact_parameters.hpp>
 #include <fibrant/contact/contact_record.hpp>
+#include <fibrant/contact/free_legs.hpp>
 #include <fibrant/contact/valley_stations.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace fibrant::contact {
@@ -31,16 +33,18 @@ public:
     /// Whether crossings are followed from the next detection on, if it is as needed.
     void follow(bool whether) noexcept { all_ = whether; }
     /// Says whether crossings of a zone are followed. As needed they are wherever fibres are bent around each other as only loops
-    /// are, or clasp each other, whatever increments lead there.
-    void mark(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Zone* before) const {
-        zone.followed = wanted(mesh, state, zone, before, all_);
+    /// are, hang in each other by legs that let them swing aside, or clasp each other, whatever increments lead there.
+    /// @param zones  all that there are
+    void mark(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Zone* before,
+              const std::vector<Zone>& zones) const {
+        zone.followed = wanted(mesh, state, zone, before, all_, zones);
         zone.settled = zone.followed && before && before->settled;
         if (zone.settled) zone.slanting = before->slanting;
     }
     /// Whether what `follow` says decides about some zone of an attempt, as the fibres lay before it.
     bool matters(const beam::Mesh<B>& mesh, const Vector& state, const std::vector<Zone>& zones) const {
         const auto differs = [&](const Zone& zone) {
-            return !zone.forced && wanted(mesh, state, zone, &zone, !all_) != zone.followed;
+            return !zone.forced && wanted(mesh, state, zone, &zone, !all_, zones) != zone.followed;
         };
         return zones.empty() || std::any_of(zones.begin(), zones.end(), differs);
     }
@@ -182,16 +186,21 @@ private:
         return normal.dot(element.normal) < 0.0 ? Vec3(-normal) : normal;
     }
     /// @param all  every crossing is
-    bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before, bool all) const {
+    bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before, bool all,
+                std::span<const Zone> zones) const {
         if (!beam::DeformableSections<B> && oval_pair(mesh, zone.span.fibre_i, zone.span.fibre_j))
             return false;  // centrelines say too little of where they touch
         if (places_ != Places::as_needed || all) return places_ != Places::renewed;
-        return bend_around(mesh, state, zone.span) > loop - (before && before->followed ? hysteresis : 0.0) ||
+        const bool followed = before && before->followed;
+        return bend_around(mesh, state, zone.span) > loop - (followed ? hysteresis : 0.0) ||
+               swing_of(mesh, state, zone.span, zones) > swing - (followed ? swing_hysteresis : 0.0) ||
                clasped(mesh, state, zone.span);
     }
     /// Distance over radius of curvature from which two fibres are a loop around each other: cloths have a tenth. Less by the
     /// second once they are followed.
     static constexpr double loop = 0.25, hysteresis = 0.05;
+    /// The same for the factor by which passes would swing them aside: bending takes up to half of it.
+    static constexpr double swing = 0.75, swing_hysteresis = 0.25;
     /// A section is one of a place, and less than an element away from it.
     static bool stand(const beam::Mesh<B>& mesh, const auto& element, const auto& one) noexcept {
         return near(mesh, element.fibre_i, element.u_i, one.i) && near(mesh, element.fibre_j, element.u_j, one.j);

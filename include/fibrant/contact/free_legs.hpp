@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// @file How easily a fibre that hangs in another one swings aside, by the legs that hold it.
+
+#include <fibrant/contact/fibre_patch.hpp>
+#include <fibrant/contact/zone_stiffness.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace fibrant::contact {
+
+/// Numbers of the estimate below.
+namespace leg_numbers {
+/// Sine of the turn of either leg from which a fibre hangs in another one as a loop does [1]: half of a right angle. Fibres of a
+/// cloth turn by less unless it is jammed, and then they are bent around each other by far more than `loop`.
+inline constexpr double least_sine = 0.7;
+inline constexpr double least_bend = 0.02;  ///< distance over radius of curvature below which nothing hangs [1]
+inline constexpr double carries = 1.05;     ///< distance of other fibres that end a leg [touching distance]
+inline constexpr int most_steps = 64;       ///< of a touching distance: a longer leg counts as it is there
+}  // namespace leg_numbers
+
+/// The way on one fibre from a crossing to where it bends back, meets another fibre, or ends.
+struct FreeLeg {
+    double length = 0.0, sine = 0.0;  ///< [length]; of its turn, towards the other fibre of the crossing [1]
+};
+
+/// @param normal  to the other fibre of the crossing, unit
+/// @param way     1 or -1, along the fibre
+/// @param zones   all that there are, of which others end the leg
+template <class B>
+FreeLeg free_leg(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, const Vec3& normal, double way,
+                 double touching, std::span<const Zone> zones, const proximity::ProximityZone& own) noexcept {
+    namespace with = leg_numbers;
+    const double step = touching / mesh.fibre(fibre).element_length, none = std::numeric_limits<double>::infinity();
+    const auto [low, high] = mesh.bounds(fibre);
+    double end = way > 0.0 ? high - u : u - low;  // [elements]
+    const auto meets = [&](double there) {
+        const double ahead = mesh.wrapped(fibre, way * (there - u));
+        // Places that are nearer than the fibres touch are of the same crossing.
+        end = ahead > step ? std::min(end, ahead) : end;
+    };
+    if (const double around = mesh.fibre(fibre).closed ? static_cast<double>(mesh.fibre(fibre).elements) : none; around < none)
+        end = std::min(end, 0.5 * around);
+    for (const Zone& zone : zones) {
+        const proximity::ProximityZone& span = zone.span;
+        if ((span.fibre_i != fibre && span.fibre_j != fibre) || span == own) continue;
+        const double apart =
+            with::carries * (mesh.fibre(span.fibre_i).section.radius() + mesh.fibre(span.fibre_j).section.radius());
+        if (span.distance > apart) continue;
+        if (span.fibre_i == fibre) meets(span.closest_i);
+        if (span.fibre_j == fibre) meets(span.closest_j);
+    }
+    FreeLeg leg;
+    const Vec3 tangent = mesh.derivative(state, fibre, mesh.wrapped(fibre, u)).normalized();
+    Vec3 from = mesh.position(state, fibre, mesh.wrapped(fibre, u));
+    for (int k = 1; k <= with::most_steps; ++k) {
+        const double there = u + way * std::min(k * step, end);
+        const Vec3 direction = way * mesh.derivative(state, fibre, mesh.wrapped(fibre, there)).normalized(),
+                   to = mesh.position(state, fibre, mesh.wrapped(fibre, there));
+        const double sine = direction.dot(normal);
+        if (!(sine > leg.sine)) break;
+        leg.sine = sine, leg.length += (to - from).norm(), from = to;
+        if (k * step >= end || way * direction.dot(tangent) <= 0.0) break;
+    }
+    return leg;
+}
+
+/// By how much a fibre that hangs in another one swings aside in a contact pass, over what it was aside before, if places are
+/// renewed outside of Newton's method: force / (radius of curvature x sideways stiffness). The force is 2 T sin(turn) and the
+/// stiffness T (1 / l + 1 / m) of legs l and m under a tension T, which falls out. Bending makes it less [1].
+/// @param zones  all that there are
+template <class B>
+double swing_of(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& span,
+                std::span<const Zone> zones) noexcept {
+    namespace with = leg_numbers;
+    const Index i = span.fibre_i, j = span.fibre_j;
+    const PairGeometry pair = pair_geometry(mesh, state, i, j, span.closest_i, span.closest_j);
+    const double distance = pair.centres.norm(), touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
+    if (!(distance > 0.0)) return 0.0;
+    double most = 0.0;
+    for (const bool of_j : {false, true}) {
+        const Vec3 normal = (of_j ? -1.0 : 1.0) / distance * pair.centres;
+        const double curvature = normal.dot(of_j ? pair.bend_j : pair.bend_i);
+        if (curvature * distance < with::least_bend) continue;
+        const auto leg = [&](double way) {
+            return free_leg(mesh, state, of_j ? j : i, of_j ? span.closest_j : span.closest_i, normal, way, touching, zones,
+                            span);
+        };
+        const FreeLeg one = leg(1.0);
+        if (one.sine < with::least_sine) continue;
+        const FreeLeg other = leg(-1.0);
+        if (other.sine < with::least_sine) continue;
+        most = std::max(most, curvature * 2.0 * std::min(one.sine, other.sine) / (1.0 / one.length + 1.0 / other.length));
+    }
+    return most;
+}
+
+}  // namespace fibrant::contact
