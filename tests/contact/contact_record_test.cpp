@@ -102,6 +102,24 @@ TEST_CASE("the nearest record is found by brute force too") {
     }
 }
 
+TEST_CASE("a station that is new beside the middle of two lines begins with what the middle remembers, on either side") {
+    struct Station {
+        int fibre_i = 0, fibre_j = 1;
+        double u_i = 10.0, u_j = 10.0;
+        int place = 0, slide = 1;
+    };
+    const double apart = 0.2;  // elements
+    Memory memory;
+    memory.assign({record(0, 1, 10.0 - apart, 10.0, -0.4, 0.1), record(0, 1, 10.0, 10.0, 0.0, 0.2),
+                   record(0, 1, 10.0 + apart, 10.0, 0.4, 0.1)});
+    for (const double side : {-1.0, 1.0})
+        for (const double off : {-1e-14, 0.0, 1e-14}) {
+            const auto read = memory.friction(Station{.u_i = 10.0 + off, .u_j = 10.0 + side * apart}, 0.75);
+            CHECK(read.along == 0.0);
+            CHECK(read.across == 0.2);
+        }
+}
+
 TEST_CASE("a tangential vector is rebuilt from its two components, and turns with the fibres") {
     std::mt19937 generator(7);
     std::normal_distribution<double> value;

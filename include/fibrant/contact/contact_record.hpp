@@ -144,12 +144,15 @@ public:
     }
 
     /// Nearest record of the pair within `range` on both fibres [elements], or null.
-    const Record* nearest(Index i, Index j, double u_i, double u_j, double range) const noexcept {
+    /// @param aside  what the shorter one of both ways counts, over the longer one [1]
+    const Record* nearest(Index i, Index j, double u_i, double u_j, double range, double aside = 0.0) const noexcept {
         const Record* best = nullptr;
         double least = range;
         visit(i, j, u_i, u_j, range, [&](const Record& record, double d_i, double d_j) {
             const double distance = std::max(std::abs(d_i), std::abs(d_j));
-            if (distance <= least && (!best || distance < least)) least = distance, best = &record;
+            if (distance > range) return;
+            const double counted = distance + aside * std::min(std::abs(d_i), std::abs(d_j));
+            if (!best || counted < least) least = counted, best = &record;
         });
         return best;
     }
@@ -186,7 +189,8 @@ public:
     RecordedFriction<Friction> friction(const Element& element, double range) const noexcept requires core::Active<Friction> {
         const double same = 0.25;  // elements
         if (element.place >= 0) {
-            const Record* here = nearest(element.fibre_i, element.fibre_j, element.u_i, element.u_j, same);
+            // Beside the middle of two lines that cross, the middle is as near as the first station of the other line.
+            const Record* here = nearest(element.fibre_i, element.fibre_j, element.u_i, element.u_j, same, 1.0);
             if (here) return here->friction;
             if (element.slide != 0) return {};
         }
