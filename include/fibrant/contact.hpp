@@ -20,6 +20,7 @@
 #include <fibrant/contact/element_placing.hpp>
 #include <fibrant/contact/fibre_patch.hpp>
 #include <fibrant/contact/followed_places.hpp>
+#include <fibrant/contact/free_legs.hpp>
 #include <fibrant/contact/intermediate_geometry.hpp>
 #include <fibrant/contact/learned_contacts.hpp>
 #include <fibrant/contact/meeting_point.hpp>

@@ -107,6 +107,7 @@ public:
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
         Vector searched, travel, last_travel;  // state of the last search, displacements of the last pass and of the one before
         const bool strict = looseness <= 1.0;
+        turn_ = 0.0, closing_ = false;
         Index passes = 0, searches = 0, moves = 0, renewals = 0, stiffenings = 0;
         // Further than so many searches reach: what hardly anything holds goes on for ever, and where displacements have a bound,
         // more damping or a smaller increment costs less than to follow it.
@@ -171,6 +172,11 @@ public:
                 settle_swing(state, travel, last_travel);
                 continue;
             }
+            // What carries may turn without moving anything: normals are brought to rest by themselves, once.
+            if (strict && !closing_ && turn_ > parameters_.normal_tolerance) {
+                closing_ = true, ++passes;
+                continue;
+            }
             if (!multipliers_change()) {
                 if (!strict || report.residual <= parameters_.residual_tolerance) break;
                 // Inner loops are solved to a part of what the outer ones move: what is accepted is solved to what is stated.
@@ -205,6 +211,11 @@ public:
         if (contact_possible_) depth = contact::depth_over_allowed(*contacts_, contacts_->parameters().stiffness);
         report.use = {report.residual / parameters_.residual_tolerance, turn_ / parameters_.normal_tolerance,
                       contact_possible_ ? change / (parameters_.contact_tolerance * radius_) : 0.0, depth.value};
+        if (strict && report.use.turn > 1.0) {
+            report.reason = "normals do not settle: the last pass turned them by " + core::text(turn_) + " radians";
+            report.unsettled = travel, report.astray = true;
+            return report;
+        }
         if (strict && report.use.penetration > 1.0 && contacts_->parameters().stiffness.adapts()) {
             report.reason = contact::text(depth);
             return report;
@@ -276,7 +287,8 @@ private:
                 });
                 // The contact elements will move on all the same: no need to be finer than a part of what this pass moved.
                 const bool settled = turn < looseness * parameters_.normal_tolerance && change < enough;
-                if (settled || change < std::max(with::finer * parameters_.inexact * first, with::finer * enough)) break;
+                const bool enough_moved = change < std::max(with::finer * parameters_.inexact * first, with::finer * enough);
+                if (settled || (enough_moved && !(closing_ && turn > parameters_.normal_tolerance))) break;
                 // Fibres that roll over each other creep in equal steps: go several of them at once.
                 const double factor = extrapolation(travel, last_travel, change);
                 if (factor != 0.0) {
@@ -350,7 +362,8 @@ private:
     const Passage* passage_;
     IterationParameters parameters_;
     double radius_;
-    double turn_ = 0.0;  // of normals, in the last normal pass
+    double turn_ = 0.0;     // of normals, in the last normal pass
+    bool closing_ = false;  // contact passes have settled before normals had
     bool contact_possible_;
     core::StageClock* clock_;
 };
