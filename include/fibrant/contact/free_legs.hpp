@@ -27,6 +27,7 @@ struct FreeLeg {
     double length = 0.0, sine = 0.0;  ///< [length]; of its turn, towards the other fibre of the crossing [1]
 };
 
+/// The leg of a crossing on one of its fibres.
 /// @param normal  to the other fibre of the crossing, unit
 /// @param way     1 or -1, along the fibre
 /// @param zones   all that there are, of which others end the leg
