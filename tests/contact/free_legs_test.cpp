@@ -56,6 +56,19 @@ TEST_CASE("waves of a cloth hold each other, but where it is as good as jammed")
     }
 }
 
+TEST_CASE("rings that wind around each other lie along each other, and do not hang") {
+    const auto ring = [](double away) {  // from the axis, at this angle
+        return test::curved_fibre(
+            [=](double t) {
+                const double a = 2.0 * pi * t;
+                return Vec3((R + r * std::cos(a + away)) * std::cos(a), (R + r * std::cos(a + away)) * std::sin(a),
+                            r * std::sin(a + away));
+            },
+            r, 40);
+    };
+    CHECK(swing(test::mesh_of({ring(0.0), ring(pi)})) == 0.0);
+}
+
 TEST_CASE("a leg ends where another fibre lies on it") {
     const test::Mesh mesh = test::mesh_of(hooks(40));
     contact::Zone other;

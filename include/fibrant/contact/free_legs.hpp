@@ -3,6 +3,7 @@
 /// @file How easily a fibre that hangs in another one swings aside, by the legs that hold it.
 
 #include <fibrant/contact/fibre_patch.hpp>
+#include <fibrant/contact/normal_direction.hpp>
 #include <fibrant/contact/zone_stiffness.hpp>
 
 #include <algorithm>
@@ -17,6 +18,9 @@ namespace leg_numbers {
 /// Sine of the turn of either leg from which a fibre hangs in another one as a loop does [1]: half of a right angle. Fibres of a
 /// cloth turn by less unless it is jammed, and then they are bent around each other by far more than `loop`.
 inline constexpr double least_sine = 0.7;
+/// Sine of the angle between fibres below which they wind around each other or lie along each other, and do not hang: less than
+/// that of `clasped`, so that hooks at 30 degrees are on one side of it [1].
+inline constexpr double least_crossing = 0.45;
 inline constexpr double least_bend = 0.02;  ///< distance over radius of curvature below which nothing hangs [1]
 inline constexpr double carries = 1.05;     ///< distance of other fibres that end a leg [touching distance]
 inline constexpr int most_steps = 64;       ///< of a touching distance: a longer leg counts as it is there
@@ -80,7 +84,7 @@ double swing_of(const beam::Mesh<B>& mesh, const Vector& state, const proximity:
     const Index i = span.fibre_i, j = span.fibre_j;
     const PairGeometry pair = pair_geometry(mesh, state, i, j, span.closest_i, span.closest_j);
     const double distance = pair.centres.norm(), touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
-    if (!(distance > 0.0)) return 0.0;
+    if (!(distance > 0.0) || sine_between(pair.t_i, pair.t_j) < with::least_crossing) return 0.0;
     double most = 0.0;
     for (const bool of_j : {false, true}) {
         const Vec3 normal = (of_j ? -1.0 : 1.0) / distance * pair.centres;
