@@ -25,6 +25,7 @@ struct Hooks {
     bool directed = true;                           ///< directors of ends whose stretches are free are given
     contact::Places places = contact::Places::as_needed;
     bool free_stretch = false;  ///< of the sections that are held
+    bool directed = true;       ///< directors of ends whose stretches are free are given
     double tolerance = 1.0;     ///< of all loops, over the default [1]
 };
 
