@@ -31,7 +31,8 @@ double swing(const test::Mesh& mesh, std::vector<contact::Zone> others = {}) {
     proximity::ProximityZone zone = test::zone_of(middle - 0.5, middle + 0.5, middle - 0.5, middle + 0.5);
     zone.distance = 2.0 * r;
     others.emplace_back().span = zone;
-    return contact::swing_of(mesh, mesh.rest_state(), zone, std::span<const contact::Zone>(others));
+    const contact::PairGeometry pair = contact::pair_geometry(mesh, mesh.rest_state(), 0, 1, middle, middle);
+    return contact::swing_of(mesh, mesh.rest_state(), zone, pair, std::span<const contact::Zone>(others));
 }
 
 TEST_CASE("half rings swing aside by curvature x leg x sine of its turn, whatever their elements") {

@@ -18,11 +18,7 @@ namespace fibrant::contact {
 
 /// How far two fibres are bent around each other where a zone of theirs is closest: distance over radius of curvature, of the one
 /// that is bent more towards the other [1]. A fibre's mean over a patch has the corner that a force at a node shears it into.
-template <class B>
-double bend_around(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& zone) noexcept {
-    const PairGeometry pair = pair_geometry(mesh, state, zone.fibre_i, zone.fibre_j, zone.closest_i, zone.closest_j);
-    return 1.0 - pair.closeness.diagonal().minCoeff();
-}
+inline double bend_around(const PairGeometry& pair) noexcept { return 1.0 - pair.closeness.diagonal().minCoeff(); }
 
 /// Places of the crossings that are followed, beside the contact elements of a set. Where none is it holds nothing.
 template <class B>
@@ -192,8 +188,10 @@ private:
             return false;  // centrelines say too little of where they touch
         if (places_ != Places::as_needed || all) return places_ != Places::renewed;
         const bool followed = before && before->followed;
-        return bend_around(mesh, state, zone.span) > loop - (followed ? hysteresis : 0.0) ||
-               swing_of(mesh, state, zone.span, zones) > swing - (followed ? swing_hysteresis : 0.0) ||
+        const PairGeometry pair =
+            pair_geometry(mesh, state, zone.span.fibre_i, zone.span.fibre_j, zone.span.closest_i, zone.span.closest_j);
+        return bend_around(pair) > loop - (followed ? hysteresis : 0.0) ||
+               swing_of(mesh, state, zone.span, pair, zones) > swing - (followed ? swing_hysteresis : 0.0) ||
                clasped(mesh, state, zone.span);
     }
     /// Distance over radius of curvature from which two fibres are a loop around each other: cloths have a tenth. Less by the

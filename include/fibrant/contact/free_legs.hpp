@@ -34,37 +34,23 @@ struct FreeLeg {
 /// The leg of a crossing on one of its fibres.
 /// @param normal  to the other fibre of the crossing, unit
 /// @param way     1 or -1, along the fibre
-/// @param zones   all that there are, of which others end the leg
+/// @param end     after which it is over [elements]
 template <class B>
 FreeLeg free_leg(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, const Vec3& normal, double way,
-                 double touching, std::span<const Zone> zones, const proximity::ProximityZone& own) noexcept {
+                 double touching, double end = std::numeric_limits<double>::infinity()) noexcept {
     namespace with = leg_numbers;
-    const double step = touching / mesh.fibre(fibre).element_length, none = std::numeric_limits<double>::infinity();
+    const double step = touching / mesh.fibre(fibre).element_length;
     const auto [low, high] = mesh.bounds(fibre);
-    double end = way > 0.0 ? high - u : u - low;  // [elements]
-    const auto meets = [&](double there) {
-        const double ahead = mesh.wrapped(fibre, way * (there - u));
-        // Places that are nearer than the fibres touch are of the same crossing.
-        end = ahead > step ? std::min(end, ahead) : end;
-    };
-    if (const double around = mesh.fibre(fibre).closed ? static_cast<double>(mesh.fibre(fibre).elements) : none; around < none)
-        end = std::min(end, 0.5 * around);
-    for (const Zone& zone : zones) {
-        const proximity::ProximityZone& span = zone.span;
-        if ((span.fibre_i != fibre && span.fibre_j != fibre) || span == own) continue;
-        const double apart =
-            with::carries * (mesh.fibre(span.fibre_i).section.radius() + mesh.fibre(span.fibre_j).section.radius());
-        if (span.distance > apart) continue;
-        if (span.fibre_i == fibre) meets(span.closest_i);
-        if (span.fibre_j == fibre) meets(span.closest_j);
-    }
+    end = std::min(end, way > 0.0 ? high - u : u - low);
+    if (mesh.fibre(fibre).closed) end = std::min(end, 0.5 * static_cast<double>(mesh.fibre(fibre).elements));
     FreeLeg leg;
-    const Vec3 tangent = mesh.derivative(state, fibre, mesh.wrapped(fibre, u)).normalized();
-    Vec3 from = mesh.position(state, fibre, mesh.wrapped(fibre, u));
+    const auto at = [&](double there) { return mesh.wrapped(fibre, there); };
+    const Vec3 tangent = mesh.derivative(state, fibre, at(u)).normalized();
+    Vec3 from = mesh.position(state, fibre, at(u));
     for (int k = 1; k <= with::most_steps; ++k) {
         const double there = u + way * std::min(k * step, end);
-        const Vec3 direction = way * mesh.derivative(state, fibre, mesh.wrapped(fibre, there)).normalized(),
-                   to = mesh.position(state, fibre, mesh.wrapped(fibre, there));
+        const Vec3 direction = way * mesh.derivative(state, fibre, at(there)).normalized(),
+                   to = mesh.position(state, fibre, at(there));
         const double sine = direction.dot(normal);
         if (!(sine > leg.sine)) break;
         leg.sine = sine, leg.length += (to - from).norm(), from = to;
@@ -73,32 +59,57 @@ FreeLeg free_leg(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, do
     return leg;
 }
 
+/// Way along a fibre from a crossing to where it meets another fibre [elements].
+/// @param least  nearer places are of the same crossing [elements]
+/// @param own    zone of the crossing
+template <class B>
+double next_on_leg(const beam::Mesh<B>& mesh, Index fibre, double u, double way, double least, std::span<const Zone> zones,
+                   const proximity::ProximityZone& own) noexcept {
+    double next = std::numeric_limits<double>::infinity();
+    const auto meets = [&](double there) {
+        const double ahead = mesh.wrapped(fibre, way * (there - u));
+        if (ahead > least) next = std::min(next, ahead);
+    };
+    for (const Zone& zone : zones) {
+        const proximity::ProximityZone& span = zone.span;
+        if ((span.fibre_i != fibre && span.fibre_j != fibre) || span == own) continue;
+        const double touching = mesh.fibre(span.fibre_i).section.radius() + mesh.fibre(span.fibre_j).section.radius();
+        if (span.distance > leg_numbers::carries * touching) continue;
+        if (span.fibre_i == fibre) meets(span.closest_i);
+        if (span.fibre_j == fibre) meets(span.closest_j);
+    }
+    return next;
+}
+
 /// By how much a fibre that hangs in another one swings aside in a contact pass, over what it was aside before, if places are
 /// renewed outside of Newton's method: force / (radius of curvature x sideways stiffness). The force is 2 T sin(turn) and the
 /// stiffness T (1 / l + 1 / m) of legs l and m under a tension T, which falls out. Bending makes it less [1].
+/// @param pair   at the closest place of the zone
 /// @param zones  all that there are
 template <class B>
-double swing_of(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& span,
+double swing_of(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& span, const PairGeometry& pair,
                 std::span<const Zone> zones) noexcept {
     namespace with = leg_numbers;
-    const Index i = span.fibre_i, j = span.fibre_j;
-    const PairGeometry pair = pair_geometry(mesh, state, i, j, span.closest_i, span.closest_j);
-    const double distance = pair.centres.norm(), touching = mesh.fibre(i).section.radius() + mesh.fibre(j).section.radius();
+    const double distance = pair.centres.norm();
     if (!(distance > 0.0) || sine_between(pair.t_i, pair.t_j) < with::least_crossing) return 0.0;
+    const double touching = mesh.fibre(span.fibre_i).section.radius() + mesh.fibre(span.fibre_j).section.radius();
     double most = 0.0;
     for (const bool of_j : {false, true}) {
         const Vec3 normal = (of_j ? -1.0 : 1.0) / distance * pair.centres;
         const double curvature = normal.dot(of_j ? pair.bend_j : pair.bend_i);
         if (curvature * distance < with::least_bend) continue;
+        const Index fibre = of_j ? span.fibre_j : span.fibre_i;
+        const double u = of_j ? span.closest_j : span.closest_i, least = touching / mesh.fibre(fibre).element_length;
+        const auto turns = [&](const FreeLeg& leg) { return leg.sine >= with::least_sine; };
+        // Fibres of a cloth bend back after a few steps: only what hangs looks for what else it meets.
+        if (!turns(free_leg(mesh, state, fibre, u, normal, 1.0, touching))) continue;
+        if (!turns(free_leg(mesh, state, fibre, u, normal, -1.0, touching))) continue;
         const auto leg = [&](double way) {
-            return free_leg(mesh, state, of_j ? j : i, of_j ? span.closest_j : span.closest_i, normal, way, touching, zones,
-                            span);
+            return free_leg(mesh, state, fibre, u, normal, way, touching, next_on_leg(mesh, fibre, u, way, least, zones, span));
         };
-        const FreeLeg one = leg(1.0);
-        if (one.sine < with::least_sine) continue;
-        const FreeLeg other = leg(-1.0);
-        if (other.sine < with::least_sine) continue;
-        most = std::max(most, curvature * 2.0 * std::min(one.sine, other.sine) / (1.0 / one.length + 1.0 / other.length));
+        const FreeLeg one = leg(1.0), other = leg(-1.0);
+        if (turns(one) && turns(other))
+            most = std::max(most, curvature * 2.0 * std::min(one.sine, other.sine) / (1.0 / one.length + 1.0 / other.length));
     }
     return most;
 }
