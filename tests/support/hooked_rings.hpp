@@ -22,7 +22,6 @@ struct Hooks {
     double angle_deg = 90.0;                        ///< between the planes of both
     double radius = 0.05, ring_over_radius = 20.0;  // mm
     double lower_radius = 1.0;                      ///< of the second ring's fibre, over that of the first
-    bool directed = true;                           ///< directors of ends whose stretches are free are given
     contact::Places places = contact::Places::as_needed;
     bool free_stretch = false;  ///< of the sections that are held
     bool directed = true;       ///< directors of ends whose stretches are free are given
