@@ -138,28 +138,6 @@ TEST_CASE("the work of the loads is the energy stored, within the order of the t
     }
 }
 
-TEST_CASE("what turns an end about the fibre or around a place does the work that is stored, in turns of a tenth") {
-    // Along chords it was a fifteenth less in turns of 36 degrees: 1 - sin(a) / a.
-    const Rod rod;
-    const double whole = 2.0 * std::numbers::pi;
-    struct Case {
-        Vec3 turn, pivot;
-        double within;  // trapezia are exact where the moment grows in proportion to the turn
-    };
-    for (const Case& c : {Case{whole * Vec3::UnitZ(), Vec3(0, 0, rod.length), 2e-3},
-                          Case{whole * Vec3::UnitZ(), Vec3(0.02 * rod.length, 0, 0), 1e-2}}) {
-        scene::Assembly assembly = rod.clamped();
-        assembly.clamp(scene::last_end(0), Vec3::Zero(), c.turn, c.pivot);
-        Simulator simulator(assembly, test::tight_parameters<Smooth>(rod.radius));
-        const simulation::Report report = simulator.run(Loading{.increments = 10});
-        CAPTURE(report.reason);
-        REQUIRE(report.converged);
-        std::printf("turned by a whole turn: energy balance off by %.1e of %.3e in %td increments\n",
-                    report.energy.error() / report.energy.elastic, report.energy.elastic, core::count(report.increments));
-        CHECK(std::abs(report.energy.error()) < c.within * report.energy.elastic);
-    }
-}
-
 TEST_CASE(
     "a half ring that is opened stays in its plane and symmetric, however its directors stand, if its ends keep their shape") {
     const double r = 0.05, ring = 20.0 * r, pi = std::numbers::pi;

@@ -12,19 +12,10 @@
 #include <cmath>
 #include <span>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 namespace fibrant::connection {
-
-/// A held nodal vector that is turned in an increment: the rates at which it leaves its first place and comes to its last one, of
-/// the whole way [length], and what is held of it there.
-struct TurnedWay {
-    Index vector = -1;
-    Vec3 rate_from = Vec3::Zero(), rate_to = Vec3::Zero();
-    Mat3 held_from = Mat3::Zero(), held_to = Mat3::Zero();
-};
 
 /// Holds of a scene, merged by nodal vector. Where two holds of a vector overlap, the one added first decides.
 template <beam::BeamElement B>
@@ -139,36 +130,6 @@ public:
             if (sum > most.first) most = {sum, item.vector};
         }
         return most;
-    }
-
-    /// Vectors that go along arcs between amplitudes, since a hold turns them: forces turn with them, and work along the arc.
-    /// @param before, after  states at both
-    std::vector<TurnedWay> turned_ways(std::span<const double> from, std::span<const double> to, const Vector& before,
-                                       const Vector& after) const {
-        constexpr double part = 1e-4, least = 1e-6;  // of the way that a rate is of; of a turn that counts [radian]
-        std::vector<TurnedWay> ways;
-        for (const Item& item : items_) {
-            const double a = from[core::at(item.channel)], b = to[core::at(item.channel)];
-            const bool position = item.hold.vector == scene::NodeVector::position;
-            if (a == b || !item.hold.rotation || (turning && !position)) continue;  // vectors of rotations turn about their axes
-            const Mat3 first = item.hold.rotation(a), last = item.hold.rotation(b);
-            if (core::rotation_vector(Mat3(last * first.transpose())).norm() < least) continue;
-            const double step = part * (b - a);
-            const auto rate = [&](double low, double amplitude, const Mat3& turn, const Vector& state) {
-                const Mat3 further = item.hold.rotation(low + step) * item.hold.rotation(low).transpose();
-                const Vec3 spin = core::rotation_vector(further) / part,
-                           pivot = position ? Vec3(item.hold.pivot + shift_of(item, amplitude)) : Vec3(Vec3::Zero()),
-                           shift = (shift_of(item, low + step) - shift_of(item, low)) / part;
-                const Mat3 axes = item.hold.axes == scene::Axes::section ? Mat3(turn * item.basis) : turn;
-                return std::pair<Vec3, Mat3>(spin.cross(state.segment<3>(3 * item.vector) - pivot) + shift,
-                                             axes * item.hold.directions * axes.transpose());
-            };
-            TurnedWay& way = ways.emplace_back();
-            way.vector = item.vector;
-            std::tie(way.rate_from, way.held_from) = rate(a, a, first, before);
-            std::tie(way.rate_to, way.held_to) = rate(b - step, b, last, after);
-        }
-        return ways;
     }
 
     /// Throws std::invalid_argument where holds of one vector ask for different places in a direction that both hold, and, if

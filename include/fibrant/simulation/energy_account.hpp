@@ -2,7 +2,6 @@
 #pragma once
 /// @file Keeps the energy balance of a run, increment by increment.
 
-#include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/core/types.hpp>
 #include <fibrant/law/normal_law.hpp>
 #include <fibrant/simulation/report.hpp>
@@ -12,8 +11,6 @@
 #include <limits>
 #include <string>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 namespace fibrant::simulation {
 
@@ -80,8 +77,7 @@ public:
                 if (term.begins()) external_ = equilibrium.external() + equilibrium.reaction();
                 balance_.kinetic = term.kinetic(to);
             });
-        const Vector forces = equilibrium.external() + equilibrium.reaction();
-        balance_.external += along_arcs(way, forces) + trapezium(way, external_, forces);
+        balance_.external += trapezium(way, external_, equilibrium.external() + equilibrium.reaction());
         balance_.damped += trapezium(way, damping_, equilibrium.damping_force(to));
         if constexpr (requires { contacts.tools(); })
             balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(true);
@@ -134,9 +130,6 @@ public:
         }
     }
 
-    /// Held vectors that the next increment to be booked takes along arcs.
-    void turn(std::vector<connection::TurnedWay> turned) { turned_ = std::move(turned); }
-
     /// The balance of an increment of which all is booked. What a motion misses then is lost to the scheme that moves it.
     template <bool Moves>
     const EnergyBalance& closed() {
@@ -183,19 +176,6 @@ private:
         if constexpr (stepped) contacts.normal_law().rest(still);
         return stepped;
     }
-    /// Work of what holds turned vectors along their arcs, less that along the chords which trapezia take.
-    double along_arcs(const Vector& way, const Vector& forces) const {
-        double work = 0.0;
-        for (const connection::TurnedWay& one : turned_) {
-            const auto of = [&](const Vector& force, const Mat3& held, const Vec3& rate) {
-                if (force.size() != way.size()) return 0.0;
-                const Vec3 holds = held * force.segment<3>(3 * one.vector);
-                return 0.5 * holds.dot(rate - way.segment<3>(3 * one.vector));
-            };
-            work += of(external_, one.held_from, one.rate_from) + of(forces, one.held_to, one.rate_to);
-        }
-        return work;
-    }
     /// Half of the work of a force on a way, and of that which it was before. @param last  becomes the force
     static double trapezium(const Vector& way, Vector& last, const Vector& force) {
         if (last.size() != force.size()) last = Vector::Zero(force.size());
@@ -205,8 +185,7 @@ private:
     }
 
     EnergyBalance balance_;
-    std::vector<connection::TurnedWay> turned_;  ///< in the increment that is booked
-    Vector external_, damping_, contact_;        ///< forces at the end of the last increment [force]
+    Vector external_, damping_, contact_;  ///< forces at the end of the last increment [force]
 };
 
 }  // namespace fibrant::simulation

@@ -26,8 +26,8 @@
 
 namespace fibrant::simulation {
 
-/// A scene in mechanical equilibrium, taken through a loading by quasi-static increments; with `inertia::Inertia` by steps of
-/// time.
+/// A scene in mechanical equilibrium, taken through a loading by quasi-static increments; with `inertia::Inertia` in motion, by
+/// steps of time.
 template <Model M>
 class Simulator {
 public:
@@ -76,12 +76,12 @@ public:
         return equilibrium_.reaction().size() > 0 ? Vec3(equilibrium_.reaction().template segment<3>(first_of(at, vector)))
                                                   : Vec3(Vec3::Zero());
     }
-    /// A nodal vector now.
+    /// Value of a nodal vector now.
     Vec3 value(const scene::Station& at, scene::NodeVector vector = scene::NodeVector::position) const {
         return state_.segment<3>(first_of(at, vector));
     }
 
-    /// The present state as data.
+    /// The present state as plain data.
     observe::Snapshot snapshot() const;
 
     /// Takes over what contacts and laws remember from a run of the same fibres, whose state the assembly begins at.
@@ -113,7 +113,7 @@ private:
         if (stage.friction) contacts_.friction_law() = *stage.friction;
     }
 
-    /// One accepted increment, after its cuts; gave_up(attempt) hears of it.
+    /// One accepted increment, after the cuts it takes; gave_up(attempt) hears of it.
     template <class GaveUp>
     bool advance(const Loading<M>& loading, const std::vector<Stage<M>>& stages, const Stage<M>& stage, Report& report,
                  const GaveUp& gave_up) {
@@ -154,7 +154,7 @@ private:
             const solver::IterationParameters iteration = parameters_.iteration.of_attempt(stage.patience, astray);
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
                 equilibrium_, contacts_, linear_, passage_, iteration, radius_, touching, clock_);
-            // A limited gap moves fibres by it: the search looks so far.
+            // A limited gap moves fibres by about the limit: the search looks so far.
             const double shown = stage.forced_orders ? stride * stage.gap_limit.value_or(0.0) : 0.0;
             const double ahead = std::max(position_.displacement, shown);
             const auto solve = [&] {
@@ -178,13 +178,11 @@ private:
                 contacts_.restore(), equilibrium_.restore(), rehearsed = true;
                 continue;
             }
-            if (attempt.converged) {
-                energy_.turn(equilibrium_.motion().turned_ways(amplitudes_, amplitudes, state_, trial));
+            if (attempt.converged)
                 attempt.refuse(energy_.book(
                     equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again(),
                     [&](EnergyAccount& energy) { laws_.book(mesh_, beam_, trial, energy); }, drive.duration / stage.duration,
                     1.0 - progress));
-            }
             if (attempt.converged) {
                 laws_.accept(mesh_, beam_, trial, energy_);
                 increment.energy = energy_.template closed<Equilibrium::moves>();
@@ -231,7 +229,7 @@ private:
         if (may_grow(equilibrium_, loading.growth)) steps_.grow(position_, stage, increment, loading.growth, effort);
         increment.number = position_.accepted, increment.stage = stage.name, increment.stage_progress = position_.progress;
         increment.progress = part_done(stages, position_.stage, position_.progress);
-        // At rest: what holds takes no more force than the balance may miss.
+        // At rest: what holds takes no more force than the balance may miss anyway.
         const bool reached = position_.progress >= 1.0 && !position_.calming.resting && (!stage.until || stage.until(increment));
         const bool held = stage.held(increment);
         deep_ = touching && reached && !held && !laws_.again()
@@ -312,7 +310,8 @@ private:
     core::StageClock clock_;
 };
 
-// What a program calls stands outside of the class: `extern template class` leaves it to the file that has `template class`.
+// What a program calls stands outside of the class: `extern template class` then leaves all below it to the file that has
+// `template class`.
 
 template <Model M>
 Simulator<M>::Simulator(const scene::Assembly& assembly, const ModelParameters<M>& parameters)
@@ -393,7 +392,7 @@ Report Simulator<M>::run_watched(const Loading<M>& loading, std::span<const Watc
                 finish(report, start);
                 return report;
             }
-            // Observers first: what a checkpoint holds has been shown.
+            // Observers first: what a checkpoint holds has been shown, and what is shown twice is told by number.
             clock_.time(core::Part::output, [&] {
                 for (const Watcher& watcher : watchers) show(watcher, report.increments.back());
                 const auto now = core::wall_seconds();
