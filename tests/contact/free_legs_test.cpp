@@ -32,7 +32,7 @@ double swing(const test::Mesh& mesh, std::vector<contact::Zone> others = {}) {
     zone.distance = 2.0 * r;
     others.emplace_back().span = zone;
     const contact::PairGeometry pair = contact::pair_geometry(mesh, mesh.rest_state(), 0, 1, middle, middle);
-    return contact::swing_of(mesh, mesh.rest_state(), zone, pair, std::span<const contact::Zone>(others));
+    return contact::swing_of(mesh, mesh.rest_state(), zone, pair, contact::ZonesOfFibres(others));
 }
 
 TEST_CASE("half rings swing aside by curvature x leg x sine of its turn, whatever their elements") {

@@ -61,15 +61,16 @@ public:
     bool forced(const Element& element) const noexcept { return zones_[core::at(element.zone)].forced; }
     double stiffness(const Element& element) const noexcept { return zones_[core::at(element.zone)].stiffness; }
 
-    /// Outer loop: zones, stations and particles anew. Contacts remember what those that they replace did.
+    /// Outer loop: zones, stations and particles anew, with what contacts remember.
     /// @param state     current
     /// @param accepted  last accepted state: gap shifts and slips count from there
     /// @param reach     beyond touching [length]
     /// @param forced    keep forced orders
     void detect(const Vector& state, const Vector& accepted, double reach, bool forced) {
         std::vector<Zone> all = find_zones(*mesh_, state, search_, parameters_.detection, orders_, reach, forced);
+        const ZonesOfFibres of(all);
         core::parallel_for(
-            core::count(all), [&](Index z) { inherit(all[core::at(z)], state, all); }, core::light_items);
+            core::count(all), [&](Index z) { inherit(all[core::at(z)], state, of); }, core::light_items);
         zones_ = std::move(all);
         regenerate(state, accepted);
     }
@@ -297,7 +298,7 @@ public:
 private:
     void for_elements(const auto& body) const { core::parallel_for(core::count(elements_), body, core::light_items); }
 
-    void inherit(Zone& zone, const Vector& state, const std::vector<Zone>& all) const {
+    void inherit(Zone& zone, const Vector& state, const ZonesOfFibres& all) const {
         rules_.apply(zone);
         const Zone* before = predecessor(zones_, zone.span, 1.0, accepted_.periods());
         keep_watch(zone, before);

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace fibrant::contact {
@@ -31,16 +30,16 @@ public:
     /// Says whether crossings of a zone are followed. As needed they are wherever fibres are bent around each other as only loops
     /// are, hang in each other by legs that let them swing aside, or clasp each other, whatever increments lead there.
     /// @param zones  all that there are
-    void mark(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Zone* before,
-              const std::vector<Zone>& zones) const {
+    void mark(const beam::Mesh<B>& mesh, const Vector& state, Zone& zone, const Zone* before, const ZonesOfFibres& zones) const {
         zone.followed = wanted(mesh, state, zone, before, all_, zones);
         zone.settled = zone.followed && before && before->settled;
         if (zone.settled) zone.slanting = before->slanting;
     }
     /// Whether what `follow` says decides about some zone of an attempt, as the fibres lay before it.
     bool matters(const beam::Mesh<B>& mesh, const Vector& state, const std::vector<Zone>& zones) const {
+        const ZonesOfFibres of_fibres(zones);
         const auto differs = [&](const Zone& zone) {
-            return !zone.forced && wanted(mesh, state, zone, &zone, !all_, zones) != zone.followed;
+            return !zone.forced && wanted(mesh, state, zone, &zone, !all_, of_fibres) != zone.followed;
         };
         return zones.empty() || std::any_of(zones.begin(), zones.end(), differs);
     }
@@ -183,7 +182,7 @@ private:
     }
     /// @param all  every crossing is
     bool wanted(const beam::Mesh<B>& mesh, const Vector& state, const Zone& zone, const Zone* before, bool all,
-                std::span<const Zone> zones) const {
+                const ZonesOfFibres& zones) const {
         if (!beam::DeformableSections<B> && oval_pair(mesh, zone.span.fibre_i, zone.span.fibre_j))
             return false;  // centrelines say too little of where they touch
         if (places_ != Places::as_needed || all) return places_ != Places::renewed;

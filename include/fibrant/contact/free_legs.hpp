@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
+#include <vector>
 
 namespace fibrant::contact {
 
@@ -59,25 +61,57 @@ FreeLeg free_leg(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, do
     return leg;
 }
 
+/// The zones that each fibre has a part in: a loop looks for its neighbours among its own, be there as many others as may.
+class ZonesOfFibres {
+public:
+    /// @param zones  have to outlive this, where they are
+    explicit ZonesOfFibres(std::span<const Zone> zones) : zones_{zones} {
+        Index fibres = 0;
+        each_part([&](Index fibre, Index) { fibres = std::max(fibres, fibre + 1); });
+        first_.assign(core::at(fibres + 1), 0);
+        each_part([&](Index fibre, Index) { ++first_[core::at(fibre)]; });
+        std::partial_sum(first_.begin(), first_.end(), first_.begin());
+        parts_.resize(core::at(first_.back()));
+        each_part([&](Index fibre, Index zone) { parts_[core::at(--first_[core::at(fibre)])] = zone; });
+    }
+    /// Calls body(zone) for each zone of a fibre.
+    template <class Body>
+    void each(Index fibre, const Body& body) const {
+        if (fibre + 1 >= core::count(first_)) return;
+        for (Index k = first_[core::at(fibre)]; k < first_[core::at(fibre + 1)]; ++k) body(zones_[core::at(parts_[core::at(k)])]);
+    }
+
+private:
+    template <class Body>
+    void each_part(const Body& body) const {
+        for (Index z = 0; z < core::count(zones_); ++z) {
+            const proximity::ProximityZone& span = zones_[core::at(z)].span;
+            body(span.fibre_i, z);
+            if (span.fibre_j != span.fibre_i) body(span.fibre_j, z);
+        }
+    }
+    std::span<const Zone> zones_;
+    std::vector<Index> first_, parts_;  // of each fibre in `parts_`, and one more; numbers of zones
+};
+
 /// Way along a fibre from a crossing to where it meets another fibre [elements].
 /// @param least  nearer places are of the same crossing [elements]
 /// @param own    zone of the crossing
 template <class B>
-double next_on_leg(const beam::Mesh<B>& mesh, Index fibre, double u, double way, double least, std::span<const Zone> zones,
+double next_on_leg(const beam::Mesh<B>& mesh, Index fibre, double u, double way, double least, const ZonesOfFibres& zones,
                    const proximity::ProximityZone& own) noexcept {
     double next = std::numeric_limits<double>::infinity();
     const auto meets = [&](double there) {
         const double ahead = mesh.wrapped(fibre, way * (there - u));
         if (ahead > least) next = std::min(next, ahead);
     };
-    for (const Zone& zone : zones) {
+    zones.each(fibre, [&](const Zone& zone) {
         const proximity::ProximityZone& span = zone.span;
-        if ((span.fibre_i != fibre && span.fibre_j != fibre) || span == own) continue;
         const double touching = mesh.fibre(span.fibre_i).section.radius() + mesh.fibre(span.fibre_j).section.radius();
-        if (span.distance > leg_numbers::carries * touching) continue;
+        if (span == own || span.distance > leg_numbers::carries * touching) return;
         if (span.fibre_i == fibre) meets(span.closest_i);
         if (span.fibre_j == fibre) meets(span.closest_j);
-    }
+    });
     return next;
 }
 
@@ -88,7 +122,7 @@ double next_on_leg(const beam::Mesh<B>& mesh, Index fibre, double u, double way,
 /// @param zones  all that there are
 template <class B>
 double swing_of(const beam::Mesh<B>& mesh, const Vector& state, const proximity::ProximityZone& span, const PairGeometry& pair,
-                std::span<const Zone> zones) noexcept {
+                const ZonesOfFibres& zones) noexcept {
     namespace with = leg_numbers;
     const double distance = pair.centres.norm();
     if (!(distance > 0.0) || sine_between(pair.t_i, pair.t_j) < with::least_crossing) return 0.0;
