@@ -61,7 +61,7 @@ public:
     bool forced(const Element& element) const noexcept { return zones_[core::at(element.zone)].forced; }
     double stiffness(const Element& element) const noexcept { return zones_[core::at(element.zone)].stiffness; }
 
-    /// Outer loop: zones, stations and particles anew, with what contacts remember.
+    /// Outer loop: zones, stations, particles anew, with what contacts remember.
     /// @param state     current
     /// @param accepted  last accepted state: gap shifts and slips count from there
     /// @param reach     beyond touching [length]
