@@ -287,8 +287,8 @@ private:
                 });
                 // The contact elements will move on all the same: no need to be finer than a part of what this pass moved.
                 const bool settled = turn < looseness * parameters_.normal_tolerance && change < enough;
-                const bool enough_moved = change < std::max(with::finer * parameters_.inexact * first, with::finer * enough);
-                if (settled || (enough_moved && !(closing_ && turn > parameters_.normal_tolerance))) break;
+                const bool hardly_moved = change < std::max(with::finer * parameters_.inexact * first, with::finer * enough);
+                if (settled || (hardly_moved && !(closing_ && turn > parameters_.normal_tolerance))) break;
                 // Fibres that roll over each other creep in equal steps: go several of them at once.
                 const double factor = extrapolation(travel, last_travel, change);
                 if (factor != 0.0) {
