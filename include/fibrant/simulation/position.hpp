@@ -119,7 +119,8 @@ struct Position {
     template <Model M>
     bool ends(const Stage<M>& present, bool settled, const IncrementReport& increment) noexcept {
         within = increment.damping <= present.damping_share ? within + 1 : 0;
-        settled = settled && (!present.damping_waits || looseness(present) <= 1.0 || within >= lasting);
+        const bool balanced = increment.residual <= present.damping_share;  // what damping holds tells all of the balance
+        settled = settled && (!present.damping_waits || looseness(present) <= 1.0 || balanced || within >= lasting);
         const bool stated = !present.exact_end || looseness(present) <= 1.0 || increment.use.greatest() <= 1.0;
         const double near = present.damping_still > 0.0 ? present.damping_still : present.damping_calm;
         const bool early = 2 * in_stage < present.most_increments, far = early && increment.displacement > near;

@@ -143,9 +143,7 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     stiffening.allowed_penetration.reset(), stiffening.looseness = settle.looseness;
     // How deep contact points are says little where fibres bend sharply around each other: what ends is judged by the true gap,
     // at rest.
-    // What damping holds of loose increments is more once they are solved exactly.
-    const double to_spare = 0.9;
-    stiffening.damping_share = to_spare * share_at_rest;
+    stiffening.damping_share = share_at_rest;
     if (pull.drawn) stiffening.deepest = allowed;  // a loose increment after a mend costs less than an exact one
     stiffening.until = until_settled(motion, parted, stiffening.damping_share);
     stiffening.damping = 4.0 * taut, stiffening.damping_waits = true;
@@ -155,7 +153,7 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     rest.until = until_settled(settle.rest_motion_over_radius * r, parted, share_at_rest);
     rest.damping_share = share_at_rest;
     rest.enough_increments = std::numeric_limits<Index>::max();
-    rest.deepest = allowed, rest.looseness = 5.0, rest.exact_end = true, rest.damping_goes_on = true;
+    rest.deepest = allowed, rest.looseness = 1.0, rest.exact_end = true, rest.damping_goes_on = true;
     // With hardly any damping left an equilibrium may turn out to be unstable: a tube of crossing helices necks, and goes radii
     // to the next one.
     rest.looseness_on_the_way = settle.looseness;

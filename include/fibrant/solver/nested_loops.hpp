@@ -44,6 +44,8 @@ inline constexpr Index most_moves = 6, most_moves_bounded = 2;  ///< searches af
 inline constexpr Index first_searches = 2;                      ///< of an increment, which no small motion makes up for
 inline constexpr double coarsest_step = 0.02;                   ///< of an iteration within a pass [radius]
 inline constexpr double coarsest_by_looseness = 2e-5, coarsest_of_all = 0.05;  ///< the same, of a path looser than 1000
+/// The same over what is expected to move, of a path: of one that creeps a coarser iteration leaves more than it moves [1].
+inline constexpr double of_expected = 0.5;
 inline constexpr double finer = 0.1;  ///< part of a tolerance that a loop inside need not go below [1]
 // Extrapolation of passes that follow one mode, as a geometric series (Aitken 1926).
 inline constexpr double least_ratio = 0.4;  ///< of two travels, from which it pays [1]
@@ -97,6 +99,10 @@ public:
         namespace with = nested_numbers;
         AttemptReport report;
         Newton<Equilibrium, Contacts, Linear> newton(*equilibrium_, *contacts_, *linear_, parameters_, radius_, *clock_);
+        const bool strict = looseness <= 1.0;
+        double coarsest =
+            std::clamp(with::coarsest_by_looseness * looseness, with::coarsest_step, with::coarsest_of_all) * radius_;
+        if (!strict && expected > 0.0) coarsest = std::min(coarsest, with::of_expected * expected);
         // What is driven goes on as it did: a search that reaches just so far would have to be repeated every other time.
         if (const double least = driven(state); least > 0.0) expected = with::ahead * std::max(expected, least);
         const double reach =
@@ -106,7 +112,6 @@ public:
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
         Vector searched, travel, last_travel;  // state of the last search, displacements of the last pass and of the one before
-        const bool strict = looseness <= 1.0;
         turn_ = 0.0, closing_ = false;
         Index passes = 0, searches = 0, moves = 0, renewals = 0, stiffenings = 0;
         // Further than so many searches reach: what hardly anything holds goes on for ever, and where displacements have a bound,
@@ -139,7 +144,7 @@ public:
                 linear_->analyse(assembly::seen(equilibrium_->system()));
             });
             const Vector before_pass = state;
-            const bool moved = !normal_passes(newton, state, accepted, searched, bound, looseness, report);
+            const bool moved = !normal_passes(newton, state, accepted, searched, bound, looseness, coarsest, report);
             if (!report.reason.empty()) {
                 report.unsettled = newton.last_step();
                 return report;
@@ -267,13 +272,12 @@ private:
         return false;
     }
 
-    /// Normal passes on one set of contact elements. @returns false if the search has to be repeated first.
+    /// Normal passes on one set of contact elements. @param coarsest  of the iteration in the first one [length]
+    /// @returns false if the search has to be repeated first.
     bool normal_passes(Newton<Equilibrium, Contacts, Linear>& newton, Vector& state, const Vector& accepted,
-                       const Vector& searched, double bound, double looseness, AttemptReport& report) {
+                       const Vector& searched, double bound, double looseness, double coarsest, AttemptReport& report) {
         namespace with = nested_numbers;
         const double finest = parameters_.step_tolerance * radius_;
-        const double coarsest =
-            std::clamp(with::coarsest_by_looseness * looseness, with::coarsest_step, with::coarsest_of_all) * radius_;
         const double enough = looseness * parameters_.normal_step_tolerance * radius_;
         double first = 0.0, change = std::numeric_limits<double>::infinity();
         Vector travel, last_travel;  // displacement of this pass and of the one before
