@@ -4,6 +4,7 @@
 /// refusing, help and echo.
 
 #include "bound.hpp"
+#include "nearest_name.hpp"
 #include "scene_text.hpp"
 
 #include <fibrant/core/parameters.hpp>
@@ -118,7 +119,7 @@ public:
         if (!found->is_string()) refuse(section, key, *found, "a text");
         value = found->as_string()->get();
         if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), value) == allowed.end())
-            refuse(section, key, *found, "one of " + joined(allowed));
+            refuse(section, key, *found, "one of " + joined(allowed) + meant(nearest_name(value, allowed)));
         if (value.size() > longest_text || value.find('\0') != std::string::npos)
             refuse(section, key, *found, "a text of at most 4096 characters, none of them 0");
         entry.value = quoted(value);
@@ -245,14 +246,24 @@ private:
                                            [&, &wanted = title](const Entry& entry) { return entry.section == wanted; });
             if (!known || !section.is_table())
                 throw std::invalid_argument(file_ + ": " + clipped(title) + (section.is_table() ? " = [section]" : "") +
-                                            ", but it must be one of the sections " + joined(sections()));
+                                            ", but it must be one of the sections " + joined(sections()) +
+                                            meant(nearest_name(title, sections())));
             for (const auto& [name_in, value] : *section.as_table()) {
                 const std::string key{name_in.str()};
                 if (value.is_table() && is_section(title + "." + key)) continue;
-                if (entry(title, key) == nullptr) refuse(title, clipped(key), value, "one of the keys " + joined(keys(title)));
+                if (entry(title, key) == nullptr)
+                    refuse(title, clipped(key), value, "one of the keys " + joined(keys(title)) + meant_by(title, key));
             }
             refuse_unknown(*section.as_table(), title + ".");
         }
+    }
+    static std::string meant(const std::string& name) { return name.empty() ? name : ": perhaps " + name + " is meant"; }
+    /// What a key that nobody knows may stand for: one of its section that is like it, or one of its name elsewhere.
+    std::string meant_by(const std::string& section, const std::string& key) const {
+        if (const std::string near = nearest_name(key, keys(section)); !near.empty()) return meant(near);
+        for (const Entry& told : entries_)
+            if (told.key == key) return ": perhaps it belongs to [" + told.section + "]";
+        return "";
     }
     bool is_section(const std::string& title) const {
         return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& told) { return told.section == title; });

@@ -99,11 +99,28 @@ TEST_CASE("a number is read whole, is one, and lies within its bound") {
 }
 
 TEST_CASE("a key that nobody knows is told before one that is missing: it may be that") {
-    CHECK(refused("[rod]\nradios = 2\n") == "rod.radios = 2, but it must be one of the keys radius, depth, elements, bent, name");
+    CHECK(refused("[rod]\nradios = 2\n") ==
+          "rod.radios = 2, but it must be one of the keys radius, depth, elements, bent, name: perhaps radius is meant");
     CHECK(refused("[rod]\ndepth = 0.2\n") ==
           "rod.radius is missing, but it must be given: of the rod, a number finite and > 0, in any unit from 1e-30 to 1e+30");
     CHECK(refused("[[rod]]\nradius = 2\n") == "rod is a list, but it must be a section, [rod]");
-    CHECK(refused("[rods]\nradius = 2\n") == "rods = [section], but it must be one of the sections rod, load");
+    CHECK(refused("[rods]\nradius = 2\n") ==
+          "rods = [section], but it must be one of the sections rod, load: perhaps rod is meant");
+}
+
+TEST_CASE("what is misspelt is told with the name that it is like, and what is in the wrong section with the right one") {
+    const auto ends = [&](const std::string& text, const std::string& end) { return refused(text).ends_with(end); };
+    CHECK(ends(sound + "elemnets = 9\n", "bent, name: perhaps elements is meant"));  // swapped
+    CHECK(ends(sound + "Depth = 0.1\n", "bent, name: perhaps depth is meant"));      // a capital
+    CHECK(ends(sound + "ramps = []\n", "bent, name: perhaps it belongs to [load]"));
+    CHECK(ends(sound + "colour = 1\n", "bent, name"));  // like none
+    CHECK(ends(sound + "[laod]\nramps = []\n", "rod, load: perhaps load is meant"));
+    CHECK(ends(sound + "[surroundings]\n", "rod, load"));
+    CHECK(example::nearest_name(std::string(100000, 'a'), {std::string(100001, 'a')}).empty());
+    CHECK(example::misprints("depth", "depth") == 0);
+    CHECK(example::misprints("abcd", "") == 4);
+    CHECK(example::misprints("radius", "raduis") == 1);
+    CHECK(example::misprints("kitten", "sitting") == 3);
 }
 
 TEST_CASE("what would run out of stack or memory is refused as text") {
