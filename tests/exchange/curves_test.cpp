@@ -111,6 +111,18 @@ TEST_CASE("what is wrong in a file is refused by file, place and value") {
     CHECK(refusal([] {
               curves_of_vtk("# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS -3 float\n", "d.vtk");
           }).find("POINTS = -3") != std::string::npos);
+    const auto vtk_lines = [](const std::string& rest) {
+        return refusal([&] {
+            curves_of_vtk("# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 1 0 0\n" + rest,
+                          "d.vtk");
+        });
+    };
+    CHECK(vtk_lines("LINES 1 3\n2 0 0.5\n").find("point = 0.5, but it must be one of 2") != std::string::npos);
+    CHECK(vtk_lines("LINES 1 3\n2.5 0 1\n").find("points of a line = 2.5, but it must be a whole number") != std::string::npos);
+    CHECK(vtk_lines("LINES 1 3\n1e300 0 1\n").find("points of a line = 1e+300, but it must be a whole number") !=
+          std::string::npos);
+    CHECK(vtk_lines("LINES 1 3\n2 0 1\nPOINT_DATA 3\n").find("POINT_DATA = 3, but it must be 2") != std::string::npos);
+    CHECK(vtk_lines("LINES 1 3\n2 0 1\nPOINT_DATA 2\n").empty());
     std::vector<FileCurve> sharp{FileCurve{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(2, 1, 0)}}};
     CHECK(refusal([&] { cleaned(sharp, "e.csv"); }).find("e.csv:curve 0, point 1: chords turn by 90 degrees") == 0);
     CHECK(refusal([&] {
@@ -134,6 +146,26 @@ TEST_CASE("what ParaView is given is read again, whatever way its numbers are wr
         "type=\"Int32\" Name=\"connectivity\" format=\"binary\">CAAAAAAAAAABAAAA</DataArray><DataArray type=\"Int32\" "
         "Name=\"offsets\" format=\"binary\">BAAAAA==AgAAAA==</DataArray></Lines></Piece></PolyData></VTKFile>";
     CHECK(curves_of_vtp(ascii, "g.vtp").at(0).points == std::vector<Vec3>{Vec3(0, 0, 0), Vec3(1, 2, 3)});
+    // Counts that do not fit what follows, places that are none, and a file that was cut short behind its last number.
+    const auto changed = [](std::string text, const std::string& from, const std::string& to) {
+        const std::size_t at = text.find(from);
+        REQUIRE(at != std::string::npos);
+        text.replace(at, from.size(), to);
+        return refusal([&] { curves_of_vtp(text, "g.vtp"); });
+    };
+    CHECK(changed(ascii, "NumberOfPoints=\"2\"", "NumberOfPoints=\"3\"") ==
+          "g.vtp: NumberOfPoints = 3, but it must be 2, as many as there are");
+    CHECK(changed(ascii, "NumberOfPoints=\"2\"", "NumberOfPoints=\"2\" NumberOfLines=\"7\"") ==
+          "g.vtp: NumberOfLines = 7, but it must be 1, as many as there are");
+    CHECK(changed(ascii, "NumberOfComponents=\"3\"", "NumberOfComponents=\"2\"") ==
+          "g.vtp: Points: NumberOfComponents = 2, but it must be 3");
+    CHECK(changed(ascii, "1 2 3<", "1 2<") == "g.vtp: Points: 5 numbers, but it must be three a point");
+    CHECK(changed(ascii, "format=\"binary\">CAAAAAAAAAABAAAA", "format=\"ascii\">0 0.5") ==
+          "g.vtp: point = 0.5 of a line, but it must be one of 2");
+    const std::string whole = data.text();
+    CHECK(refusal([&] {
+              curves_of_vtp(std::string_view(whole).substr(0, whole.find("</AppendedData>") + 3), "g.vtp");
+          }).find("the file ends early, before </VTKFile>") != std::string::npos);
     CHECK(refusal([] { curves_of_vtp("<VTKFile type=\"ImageData\"/>", "g.vtp"); }).find("g.vtp: VTKFile type = ImageData") == 0);
     CHECK(refusal([] { curves_of_vtp("<VTKFile", "g.vtp"); }).find("is no XML") != std::string::npos);
 }

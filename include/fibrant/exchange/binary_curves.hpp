@@ -6,6 +6,7 @@
 #include <fibrant/observe/text_file.hpp>
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -95,8 +96,14 @@ inline std::vector<FileCurve> curves_of_vtk(std::string_view bytes, const std::s
     const auto begin = [&] {
         if (binary) reader.line();
     };
+    const auto whole = [&](double value, const std::string& field) {
+        constexpr double exact = 9007199254740992.0;  // 2^53: every whole number below it is a double
+        if (!(std::abs(value) < exact) || value != std::floor(value))
+            reader.refuse(field + " = " + core::text(value) + ", but it must be a whole number");
+        return static_cast<Index>(value);
+    };
     const auto index = [&](double value) {
-        if (!(value >= 0.0) || value >= static_cast<double>(points.size()))
+        if (!(value >= 0.0) || value != std::floor(value) || value >= static_cast<double>(points.size()))
             reader.refuse("point = " + core::text(value) + ", but it must be one of " + std::to_string(points.size()));
         return static_cast<Index>(value);
     };
@@ -124,7 +131,7 @@ inline std::vector<FileCurve> curves_of_vtk(std::string_view bytes, const std::s
                 const std::string type(reader.word());
                 begin();
                 std::vector<Index> offsets;
-                for (Index k = 0; k < count; ++k) offsets.push_back(static_cast<Index>(read_one(type, "offset")));
+                for (Index k = 0; k < count; ++k) offsets.push_back(whole(read_one(type, "offset"), "offset"));
                 if (std::string(reader.word()) != "CONNECTIVITY") reader.refuse("OFFSETS without CONNECTIVITY");
                 const std::string second(reader.word());
                 begin();
@@ -141,7 +148,7 @@ inline std::vector<FileCurve> curves_of_vtk(std::string_view bytes, const std::s
                 while (reader.place() < mark) reader.raw<char>();
                 begin();
                 for (Index read = 0; read < size;) {
-                    const auto n = static_cast<Index>(read_one("int", "points of a line"));
+                    const Index n = whole(read_one("int", "points of a line"), "points of a line");
                     if (n < 0 || read + n + 1 > size)
                         reader.refuse("points of a line = " + std::to_string(n) + ", but it must fit the size of LINES");
                     lines.emplace_back();
@@ -154,7 +161,9 @@ inline std::vector<FileCurve> curves_of_vtk(std::string_view bytes, const std::s
             }
         } else if (word == "POINT_DATA" || word == "CELL_DATA") {
             section = word;
-            reader.text_number<Index>(word);
+            if (const Index told = reader.text_number<Index>(word); word == "POINT_DATA" && told != core::count(points))
+                reader.refuse("POINT_DATA = " + std::to_string(told) + ", but it must be " + std::to_string(points.size()) +
+                              ", as many as there are points");
         } else if (word == "SCALARS") {
             const std::string name(reader.word()), type(reader.word());
             const std::string_view rest = reader.line();

@@ -11,6 +11,8 @@
 
 #include <pugixml.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -61,6 +63,8 @@ public:
             if (mark == std::string_view::npos)
                 refuse_file(file_, "byte " + std::to_string(begin), "AppendedData without its mark _");
             const std::string_view tag = bytes.substr(begin, end - begin);
+            if (bytes.rfind("</VTKFile>") == std::string_view::npos || bytes.rfind("</VTKFile>") < mark)
+                refuse_file(file_, "byte " + std::to_string(bytes.size()), "the file ends early, before </VTKFile>");
             base64_ = tag.find("base64") != std::string_view::npos;
             appended_ = bytes.substr(mark + 1);
             head = std::string(bytes.substr(0, begin)) + "</VTKFile>";
@@ -152,26 +156,44 @@ inline std::vector<FileCurve> curves_of_vtp(std::string_view bytes, const std::s
     const detail::VtpArrays arrays(bytes, file);
     std::vector<FileCurve> curves;
     for (const pugi::xml_node& piece : arrays.data().children("Piece")) {
-        const std::vector<double> points = arrays.numbers(piece.child("Points").child("DataArray"));
+        const pugi::xml_node places = piece.child("Points").child("DataArray");
+        const std::vector<double> points = arrays.numbers(places);
+        const auto require_count = [&](const char* field, std::size_t found) {  // where the piece tells it
+            const std::string told = piece.attribute(field).value();
+            if (!told.empty() && told != std::to_string(found))
+                refuse_file(file, "",
+                            field + (" = " + told.substr(0, 60)) + ", but it must be " + std::to_string(found) +
+                                ", as many as there are");
+        };
+        if (const std::string components = places.attribute("NumberOfComponents").as_string("3"); components != "3")
+            refuse_file(file, "", "Points: NumberOfComponents = " + components.substr(0, 60) + ", but it must be 3");
+        if (points.size() % 3 != 0)
+            refuse_file(file, "", "Points: " + std::to_string(points.size()) + " numbers, but it must be three a point");
+        require_count("NumberOfPoints", points.size() / 3);
         std::vector<double> connectivity, offsets, radii;
         for (const pugi::xml_node& array : piece.child("Lines").children("DataArray"))
             (std::string(array.attribute("Name").value()) == "offsets" ? offsets : connectivity) = arrays.numbers(array);
         for (const pugi::xml_node& array : piece.child("PointData").children("DataArray"))
             if (std::string(array.attribute("Name").value()) == "radius") radii = arrays.numbers(array);
+        require_count("NumberOfLines", offsets.size());
+        if (!radii.empty() && 3 * radii.size() != points.size())
+            refuse_file(file, "",
+                        "radius: " + std::to_string(radii.size()) + " numbers, but it must be " +
+                            std::to_string(points.size() / 3) + ", one a point");
         std::size_t first = 0;
         for (const double end : offsets) {
-            if (!(end >= static_cast<double>(first)) || end > static_cast<double>(connectivity.size()))
+            if (!(end >= static_cast<double>(first)) || end != std::floor(end) || end > static_cast<double>(connectivity.size()))
                 refuse_file(file, "", "offset = " + core::text(end) + ", but it must rise and be within the lines");
             FileCurve curve;
             for (; first < static_cast<std::size_t>(end); ++first) {
                 const double k = connectivity[first];
-                if (!(k >= 0.0) || 3.0 * k + 2.0 >= static_cast<double>(points.size()))
+                if (!(k >= 0.0) || k != std::floor(k) || 3.0 * k + 2.0 >= static_cast<double>(points.size()))
                     refuse_file(
                         file, "",
                         "point = " + core::text(k) + " of a line, but it must be one of " + std::to_string(points.size() / 3));
                 const auto at = static_cast<std::size_t>(k);
                 curve.points.emplace_back(points[3 * at], points[3 * at + 1], points[3 * at + 2]);
-                if (at < radii.size()) curve.radii.push_back(radii[at]);
+                if (!radii.empty()) curve.radii.push_back(radii[at]);
             }
             if (!curve.radii.empty()) {
                 curve.radius = curve.radii.front();
