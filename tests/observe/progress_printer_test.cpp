@@ -69,6 +69,23 @@ TEST_CASE("a heading stands above lines of its width, with the time left at the 
     CHECK(lines[0].find("moment") == std::string::npos);
 }
 
+TEST_CASE("a stage that waits for rest takes some time more than what is said to be left, and its last increment none") {
+    std::ostringstream out;
+    observe::ProgressPrinter printer({.radius = 0.05}, out);
+    printer.reported(increment(1, 0.5, 20.0));
+    for (const bool waits : {true, true, false}) {
+        simulation::IncrementReport rest = increment(2, 1.0, 20.0);
+        rest.waits = waits;
+        printer.reported(rest);
+    }
+    const std::vector<std::string> lines = lines_of(out);
+    REQUIRE(lines.size() == 5);
+    CHECK(lines[2].ends_with(" 0:00+"));
+    CHECK(lines[3].ends_with(" 0:00+"));
+    CHECK(lines[4].ends_with(" 0:00"));
+    CHECK(lines[2].size() == lines[0].size());
+}
+
 TEST_CASE("an attempt that was given up says why") {
     std::ostringstream out;
     const observe::ProgressPrinter printer({.radius = 1.0}, out);

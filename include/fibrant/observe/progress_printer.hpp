@@ -29,7 +29,8 @@ inline std::string clock_text(double seconds) {
 /// An observer that prints a line after each increment, under a heading, and one for each attempt that was given up.
 ///
 /// depth/r is the greatest penetration; left is the time that the rest of the programme takes at the pace of this process'
-/// increments so far, from the second on: a stage that ends as soon as it is at rest takes less.
+/// increments so far, from the second on. A + behind it says that the present stage takes some time more: it goes on until fibres
+/// have parted or are at rest, and nothing says when that is.
 class ProgressPrinter {
 public:
     struct Parameters {
@@ -64,7 +65,8 @@ public:
         else
             seconds_ += increment.seconds;
         const double done = increment.progress - first_;
-        const std::string left = done > 0.0 ? clock_text(seconds_ * (1.0 - increment.progress) / done) : "?";
+        const std::string left =
+            done > 0.0 ? clock_text(seconds_ * (1.0 - increment.progress) / done) + (increment.waits ? "+" : "") : "?";
         print("%4td %-10.10s %5.1f%% %6td %6td %6td %8.1e %9td %9td %7.4f %4td %8s", increment.number, increment.stage.c_str(),
               100.0 * increment.progress, counts.contact_passes, counts.newton, counts.linear_iterations, increment.residual,
               increment.contact.elements, increment.contact.active, increment.contact.greatest_penetration / parameters_.radius,

@@ -53,6 +53,12 @@ struct Position {
         return present.duration * fraction / static_cast<double>(present.increments);
     }
 
+    /// Tells which increment has been accepted, and how far its stage has come.
+    template <Model M>
+    void tell(const Stage<M>& present, IncrementReport& increment) const {
+        increment.number = accepted, increment.stage = present.name, increment.stage_progress = progress;
+    }
+
     /// An attempt has failed: the other way of finding places is tried before anything else is, once at a size of increment.
     /// Where that fails too the first one is taken up again. What would be the same attempt once more is none.
     /// @param state   last accepted one

@@ -35,6 +35,7 @@ struct IncrementReport {
     std::string stage;
     double stage_progress = 0;       ///< in [0, 1]
     double progress = 0;             ///< of the whole loading, in [0, 1]
+    bool waits = false;              ///< its stage has come to its end, and goes on until fibres part or rest
     double fraction = 1;             ///< of the stage's increment, smaller after cuts
     Index cuts = 0;                  ///< rejected attempts at it
     solver::IterationCounts counts;  ///< rejected attempts included

@@ -227,7 +227,7 @@ private:
             position_.calming.soften_after(increment.unstable, increment.displacement / radius_, Calming::softest(mesh_));
         ++position_.accepted, position_.in_stage += position_.calming.resting ? 0 : 1;
         if (may_grow(equilibrium_, loading.growth)) steps_.grow(position_, stage, increment, loading.growth, effort);
-        increment.number = position_.accepted, increment.stage = stage.name, increment.stage_progress = position_.progress;
+        position_.tell(stage, increment);
         increment.progress = part_done(stages, position_.stage, position_.progress);
         // At rest: what holds takes no more force than the balance may miss anyway.
         const bool reached = position_.progress >= 1.0 && !position_.calming.resting && (!stage.until || stage.until(increment));
@@ -237,6 +237,7 @@ private:
                     : std::string();
         const bool ends = position_.ends(stage, reached && !held && deep_.empty(), increment);
         position_.stage_over = !laws_.again() && (ends || position_.enough(stage, report));
+        increment.waits = increment.stage_progress >= 1.0 && !position_.stage_over;
         steps_.adapt_damping(position_, stage, increment, effort);
         contacts_.accept(state_), equilibrium_.accept(state_);
         if constexpr (HasSolid<M>)
