@@ -50,13 +50,29 @@ inline std::string short_number(double value, const char* format = "%.4g") {
     std::snprintf(text, sizeof text, format, value);
     return text;
 }
+/// Lists and objects with the numbers in them of four digits; texts in them as they are.
+inline std::string short_numbers(const std::string& value) {
+    std::string text;
+    bool quoted = false;
+    for (std::size_t k = 0; k < value.size();) {
+        const char c = value[k];
+        const bool number = !quoted && (c == '-' || (c >= '0' && c <= '9'));
+        const std::size_t end = number ? std::min(value.find_first_not_of("+-.0123456789eE", k), value.size()) : k + 1;
+        const std::string part = value.substr(k, end - k);
+        const bool whole = part.find_first_of(".eE") == std::string::npos;
+        text += !number || whole ? part : short_number(std::strtod(part.c_str(), nullptr));
+        if (c == '"' && (k == 0 || value[k - 1] != '\\')) quoted = !quoted;
+        k = end;
+    }
+    return text;
+}
 /// A value for a reader: numbers with four digits, texts without quotes.
 inline std::string shown(const std::string& value) {
     if (value == "true") return "yes";
     if (value == "false") return "no";
     if (value == "null") return "-";
     if (!value.empty() && value[0] == '"') return observe::xml_escaped(value.substr(1, value.size() - 2));
-    if (value.find_first_of("{[") != std::string::npos) return "<pre>" + observe::xml_escaped(value) + "</pre>";
+    if (value.find_first_of("{[") != std::string::npos) return "<pre>" + observe::xml_escaped(short_numbers(value)) + "</pre>";
     if (value.find_first_of(".e") == std::string::npos) return value;
     return short_number(std::strtod(value.c_str(), nullptr));
 }

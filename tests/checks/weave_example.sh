@@ -31,6 +31,7 @@ documented() {
 }
 documented "$out/whole"
 grep -q 'The result is good' "$out/whole/report.html" || fail "report.html does not say that the result is good"
+grep -A 2 'where the time went' "$out/whole/report.html" | grep -q '[0-9][.][0-9]\{6\}' && fail "report.html has figures of all digits"
 grep -q '<script src\|<link\|url(' "$out/whole/report.html" && fail "report.html needs other files"
 
 "$weave" "$scene" --output "$out/parts" $small --set settle.separation_increments=6
