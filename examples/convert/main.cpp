@@ -2,6 +2,8 @@
 // Converts centrelines of fibres between files of other programs, and to surfaces and voxels.
 //   convert IN [--output FILE]... [--voxels SPACING] [--box X0 Y0 Z0 X1 Y1 Z1] [--map x|y|z] [--stations SPACING] [--radius R]
 //           [--scale S] [--metre M] [--largest-turn DEGREES] [--report]
+#include "../support/command_line.hpp"
+
 #include <fibrant/exchange/files.hpp>
 #include <fibrant/observe/json.hpp>
 
@@ -105,7 +107,7 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 2;
+        return example::ends_by(app, error, "convert");
     }
     try {
         require_quantity("--scale", clean.scale);

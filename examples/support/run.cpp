@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "command_line.hpp"
 #include "example.hpp"
 #include "program.hpp"
 
@@ -110,7 +111,7 @@ int run(int argc, char** argv, const Program& program) {
         if (!keys && scene.empty()) throw CLI::RequiredError("scene");
         if (!keys && app.count("--output") == 0) throw CLI::RequiredError("--output");
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 2;
+        return ends_by(app, error, program.name);
     }
     keep_freed_memory();
     const ListeningForStops listening;

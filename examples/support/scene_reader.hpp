@@ -306,7 +306,9 @@ private:
     [[noreturn]] void refuse(const std::string& section, const std::string& key, const toml::node& value,
                              const std::string& bound) const {
         std::ostringstream text;
-        if (value.is_floating_point())
+        if (value.is_table() && !value.as_table()->is_inline())
+            text << "[section]";
+        else if (value.is_floating_point())
             text << plain_text(value.as_floating_point()->get());
         else
             text << toml::node_view<const toml::node>{value};

@@ -76,8 +76,11 @@ text "[output]\n\0377\0376 = 1\n" "scene.toml:"
 try "nonsense = [section], but it must be one of the sections" "$out/scene.toml" --output "$out/results" --quiet
 
 of options
-try "scene is required" --output "$out/results"
+try "$name: scene is required" --output "$out/results"
 try "--output is required" "$scene"
+try "$name: --threads has too few values, but it must have 1" "$scene" --output "$out/results" --threads
+try "$name: --output has 2 values, but it must have at most 1" "$scene" --output "$out/results" --output "$out/others"
+try "$name: " "$scene" "$scene" --output "$out/results"
 try "--no-such-option" "$scene" --output "$out/results" --no-such-option
 try "--resume" "$scene" --output "$out/results" --resume --overwrite
 try "--output is empty" "$scene" --output ""

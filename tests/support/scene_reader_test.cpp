@@ -104,6 +104,8 @@ TEST_CASE("a key that nobody knows is told before one that is missing: it may be
     CHECK(refused("[rod]\ndepth = 0.2\n") ==
           "rod.radius is missing, but it must be given: of the rod, a number finite and > 0, in any unit from 1e-30 to 1e+30");
     CHECK(refused("[[rod]]\nradius = 2\n") == "rod is a list, but it must be a section, [rod]");
+    CHECK(refused("[rod.rod]\nradius = 2\n").starts_with("rod.rod = [section], but it must be one of the keys"));
+    CHECK(refused("[rod.radius]\na = 2\n").starts_with("rod.radius = [section], but it must be a number"));
     CHECK(refused("[rods]\nradius = 2\n") ==
           "rods = [section], but it must be one of the sections rod, load: perhaps rod is meant");
 }
