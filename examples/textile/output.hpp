@@ -3,6 +3,7 @@
 /// @file What a run of a textile writes: summary, tables of yarns and crossings, pictures.
 
 #include "../support/example.hpp"
+#include "../support/room.hpp"
 
 #include <fibrant/compositions/textile/audit.hpp>
 #include <fibrant/compositions/textile/imported.hpp>
@@ -86,6 +87,22 @@ inline void tell(const cloth::Textile& textile, const cloth::TopologyAudit& audi
                  audit.links_changed, audit.greatest_linking_change,
                  audit.first_yarn < 0 ? "-" : textile.label(audit.first_yarn).c_str(),
                  audit.second_yarn < 0 ? "-" : textile.label(audit.second_yarn).c_str());
+}
+
+/// Refuses voxels that there is no memory for, or that are larger than the sample.
+/// @param drawn  before it is settled
+inline void require_voxels(const example::SceneReader& file, double spacing,
+                           const std::vector<fibrant::exchange::FileCurve>& drawn) {
+    if (!(spacing > 0.0)) return;
+    constexpr double bytes_a_cell = 600.0;  // measured, with the files of them
+    const fibrant::exchange::VoxelGrid grid = fibrant::exchange::grid_around(drawn, spacing);
+    const fibrant::Index most = *std::max_element(grid.counts.begin(), grid.counts.end());
+    file.check(most > 1, "output", "voxel_spacing", "less than the sample is long");
+    const double bytes = bytes_a_cell * static_cast<double>(grid.cells());
+    const example::Room room = example::memory_room();
+    file.check(bytes <= room.bytes, "output", "voxel_spacing",
+               "larger: " + std::to_string(grid.cells()) + " voxels take some " + example::memory_text(bytes) +
+                   " of memory, and " + room.text());
 }
 
 /// yarns.csv, pairs.csv and crossings.csv, and the fibres as centrelines.csv and fibres.glb; yarns as bodies where they are asked

@@ -127,8 +127,14 @@ inline void read_load(SceneReader& file, Load& load) {
     load.parameters.axis = axis[0] - 'x', load.parameters.across = across[0] - 'x';
     if (file.describes()) return;
     file.check(axis != across, "loading", "across", "another axis than loading.axis");
+    // What is missing is told by `complete`.
+    if (std::isnan(load.parameters.amount) || (!plates && !load.cell && std::isnan(load.parameters.grip))) return;
+    constexpr double largest_strain =
+        0.01;  // a stiffness is that of small strains: waves of yarns are some hundredths themselves
     if (load.cell)
-        file.check(load.parameters.amount != 0.0, "loading", "amount", "not 0");
+        file.check(load.parameters.amount != 0.0 && std::abs(load.parameters.amount) <= largest_strain, "loading", "amount",
+                   "from " + fibrant::core::text(-largest_strain) + " to " + fibrant::core::text(largest_strain) +
+                       ", and not 0, of a cell");
     else
         load.parameters.validate();
 }
@@ -406,6 +412,7 @@ constexpr double bytes_an_unknown = 6000.0;
 inline Scene read_scene(SceneReader& file) {
     file.names({{"FlatBraid.", "flat_braid."},
                 {"TubularBraid.", "tubular_braid."},
+                {"LevelPlan.warp_types", "levels.kinds"},
                 {"LevelPlan.", "levels."},
                 {"lift", "levels.lifts: lift"},
                 {"levels: ", "levels.levels: "},
@@ -421,7 +428,9 @@ inline Scene read_scene(SceneReader& file) {
                 {"SettleParameters.", "settle."},
                 {"Fineness.", "yarn."},
                 {"LoadCaseParameters.name", "loading.case"},
-                {"LoadCaseParameters.", "loading."}});
+                {"LoadCaseParameters.", "loading."},
+                {"grid_around: ", "output.voxel_spacing: "},
+                {"VoxelGrid.counts: ", "output.voxel_spacing: "}});
     Scene scene;
     cloth::YarnType yarn;
     std::string ends = "held";
@@ -485,6 +494,9 @@ inline Scene read_scene(SceneReader& file) {
               "factor on the tolerances of passes on the way to rest");
     file.read("settle", "damping", settle.damping, example::between(1e-6, 1e6), "1",
               "factor on the damping that follows from tension, bending and the distance of crossings");
+    file.check(settle.allowed_penetration_over_radius <= settle.gap_limit_over_radius, "contact",
+               "allowed_penetration_over_radius",
+               "<= settle.gap_limit_over_radius = " + fibrant::core::text(settle.gap_limit_over_radius));
     example::read_linear_solver(file, scene.linear_solver);
     if (scene.generator.empty() && !file.describes()) {
         for (const std::string& name : generators)  // nobody has asked for its section yet

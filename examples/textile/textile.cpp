@@ -29,6 +29,11 @@ bool settle(const textile::Scene& scene, example::SceneReader& file, example::Ou
     simulation::Simulator<Yarns> simulator(assembled.assembly, parameters);
     const observe::Snapshot drawn = simulation::snapshot_of(simulator.mesh(), simulator.mesh().start_state());
 
+    // What comes after the settling is refused before it.
+    textile::require_voxels(file, scene.voxel_spacing, textile::cloth::curves_of(drawn, assembled.path_of));
+    if (scene.load.wanted && !scene.load.cell)
+        textile::cloth::load_case(scene.textile, assembled, drawn, simulator.mesh().start_state(), scene.load.parameters);
+
     if (scene.load.wanted) output.parts = {output.folder / "loading"};
     output.open(file);
     example::Recorder recorder(output, radius, [&]() -> std::vector<observe::Column> {

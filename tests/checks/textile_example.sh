@@ -78,8 +78,11 @@ for file in tows.yarns.stl tows.yarns.vtp tows.yarns.csv cells.vti cells.voxels.
   [ -s "$out/tension/$file" ] || fail "there is no $file"
 done
 refused() {
-  text=$("$program" "$scenes/$1.toml" --output "$out/refused" --set "$2" 2>&1)
+  scene=$scenes/$1.toml
+  [ -f "$scene" ] || scene=$out/$1.toml
+  text=$("$program" "$scene" --output "$out/refused" --set "$2" 2>&1)
   [ $? -eq 2 ] || fail "$2 was not refused"
+  [ ! -e "$out/refused" ] || fail "$2 was refused after something was written"
   case $text in
     *"$3"*) ;;
     *) fail "the refusal of $2 does not say $3: $text" ;;
@@ -95,4 +98,11 @@ refused knit_plain weft_knit.loop_height=0.41 "weft_knit.loop_height = 0.41, but
 refused stitched stitched.row_spacing=0.7 "distance of thread"
 refused stitched stitched.sideways=0 "comes apart"
 refused braid_triaxial binder.radius=0.08 "binder.radius"
+refused interlock 'levels.levels=["333333","01232"]' "levels.levels[1] = 5 columns"
+refused orthogonal 'levels.kinds=["binder"]' "levels.kinds = 1, but it must be one for each warp, 3"
+# What comes after the settling is refused before it.
+refused straight loading.grip=1.9 "loading.grip = 1.9, but it must be < half the length of the sample"
+refused straight output.voxel_spacing=5.0 "output.voxel_spacing = 5, but it must be less than the sample is long"
+refused straight output.voxel_spacing=1e-7 "output.voxel_spacing"
+refused cell_plain loading.amount=0.5 "loading.amount = 0.5, but it must be from -0.01 to 0.01"
 exit 0

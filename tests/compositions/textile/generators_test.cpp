@@ -333,6 +333,19 @@ TEST_CASE("a level matrix has warps x columns x layers crossings, and warp w lie
     CHECK(refusal([] {
               woven({.levels = levels_of({"01"}), .column_spacing = 0.15, .warp_spacing = 0.3, .warp = yarn(), .weft = yarn()});
           }).find("LevelPlan.column_spacing") == 0);
+    const auto rows = [](const std::vector<std::string>& levels, Index columns) {
+        LevelPlan plan{.levels = levels_of(levels), .columns = columns, .column_spacing = 0.6, .warp_spacing = 0.3};
+        plan.warp = plan.weft = yarn();
+        return refusal([&] { plan.validate(); });
+    };
+    CHECK(
+        rows({"0101", "101"}, 0) ==
+        "LevelPlan.levels[1] = 3 columns, but it must be a number of columns that divides the 4 of the first row, unless columns "
+        "are given");
+    CHECK(rows({"01", "1010"}, 0).find("LevelPlan.levels[1] = 4 columns") == 0);  // the rest would be unheard
+    CHECK(rows({"0101", "10"}, 0).empty());
+    CHECK(rows({"0101", "1"}, 0).empty());
+    CHECK(rows({"0101", "101"}, 12).empty());
 }
 
 TEST_CASE("a weave that goes on has its middle at the origin, and all of its yarns have theirs across it") {

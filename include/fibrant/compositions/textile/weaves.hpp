@@ -61,6 +61,11 @@ struct LevelPlan {
                 if (levels[w][c] < 0 || levels[w][c] > layers)
                     core::refuse("LevelPlan.levels[" + std::to_string(w) + "][" + std::to_string(c) + "]",
                                  std::to_string(levels[w][c]), "in [0, layers = " + std::to_string(layers) + "]");
+            // A digit that was forgotten would shift the rest of its row.
+            if (columns == 0 && column_count() % core::count(levels[w]) != 0)
+                core::refuse("LevelPlan.levels[" + std::to_string(w) + "]", std::to_string(levels[w].size()) + " columns",
+                             "a number of columns that divides the " + std::to_string(column_count()) +
+                                 " of the first row, unless columns are given");
         }
         core::require_positive("LevelPlan.warp_spacing", warp_spacing);
         core::require_not_negative("LevelPlan.layer_spacing", layer_spacing);
