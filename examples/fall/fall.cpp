@@ -157,6 +157,23 @@ bool solve(example::SceneReader& file, example::Output& output) {
                timed ? "left out, for no lid that presses" : "given, for a lid that presses");
     const double reach = std::hypot(0.5 * shape.length, shape.radius);
     file.check(shape.drum > reach, "drum", "radius", "> " + core::text(reach) + ", or the fibres are not in it");
+    constexpr double widest = 1e6;  // radii of a fibre: of the gap to the wall ten digits are left
+    file.check(shape.drum <= widest * shape.radius, "drum", "radius",
+               "<= " + core::text(widest * shape.radius) + ", 1e6 radii of a fibre");
+    file.check(gravity > 0.0 || presses, "motion", "gravity", "> 0, or nothing moves");
+    file.check(damping <= duration, "material", "damping", "<= motion.duration = " + core::text(duration));
+    if (gravity > 0.0) {
+        const double fewest = std::ceil(duration / std::sqrt(2.0 * shape.radius / gravity));
+        file.check(static_cast<double>(steps) >= fewest, "motion", "steps",
+                   ">= " + core::text(fewest) + ", or a fibre falls from rest by more than its radius in a step");
+    }
+    // All of what presses, borne by the fibres side by side on the floor.
+    const double presses_by = static_cast<double>(shape.fibres) * density * gravity * std::numbers::pi * shape.radius *
+                                  shape.radius * shape.length +
+                              shape.lid_mass * gravity + shape.lid_force,
+                 softest = presses_by / (static_cast<double>(shape.fibres) * shape.length * shape.radius);
+    file.check(line >= softest, "contact", "line_stiffness",
+               ">= " + core::text(softest) + ", or weight, lid and press sink fibres into the floor by more than a radius");
     example::require_element(file, "nest", shape.elements, shape.length, shape.radius);
     example::require_room(file, "nest", "fibres", example::unknowns_of(shape.fibres, shape.elements), 6000.0);
 

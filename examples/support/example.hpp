@@ -186,6 +186,7 @@ inline observe::JsonObject write_summary(const Output& output, const fibrant::si
                                          observe::JsonObject begin = {}) {
     observe::JsonObject& json = begin;
     json.add("converged", report.converged).add("audit_clean", audit.clean()).add("reason", report.reason);
+    if (!report.converged && !stopped()) std::fprintf(stderr, "the run stopped: %s\n", report.reason.c_str());  // also if quiet
     json.add("least_gap_over_radius", audit.least_gap.gap_over_radius).add("deepest_allowed_over_radius", audit.allowed / radius);
     if (audit.tool_gap.tool >= 0) json.add("least_tool_gap_over_radius", audit.tool_gap.gap / radius);
     // Of the last increment, then the most of any, over what is stated: 1 or less where that was kept.

@@ -60,7 +60,8 @@ inline void require_room(const SceneReader& file, const std::string& section, co
                     memory_text(there.bytes) + ", which is what " + there.said);
 }
 
-/// Refuses elements that are far shorter than a fibre is thick, whose count is a slip of the pen.
+/// Refuses elements that are far shorter than a fibre is thick, or so long that a fibre is a thread without bending: their count
+/// or the length of the fibre is a slip of the pen.
 /// @param least  length of an element that is allowed [radius]
 inline void require_element(const SceneReader& file, const std::string& section, Index elements, double length, double radius,
                             double least = 0.1) {
@@ -68,6 +69,10 @@ inline void require_element(const SceneReader& file, const std::string& section,
     file.check(most >= 1.0, section, "elements",
                "in fibres that are longer: " + fibrant::core::text(length) + " is shorter than " + fibrant::core::text(least) +
                    " radii = " + fibrant::core::text(least * radius));
+    constexpr double longest = 1e7;  // radii: (r / L)^2 = 1e-14, bending is lost in the last digits of stretching
+    const double fewest = std::ceil(length / (longest * radius));
+    file.check(static_cast<double>(elements) >= fewest, section, "elements",
+               ">= " + fibrant::core::text(fewest) + ", or elements are longer than 1e7 radii");
     file.check(static_cast<double>(elements) <= most, section, "elements",
                "<= " + fibrant::core::text(most) + ", or elements are shorter than " + fibrant::core::text(least) + " radii");
 }

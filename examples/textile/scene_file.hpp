@@ -449,9 +449,10 @@ inline Scene read_scene(SceneReader& file) {
     example::read_transverse(file, "yarn", law, yarn.material.transverse);
     scene.own_laws = yarn.material.transverse.given();
     cloth::YarnType binder = yarn;
-    const bool bound = file.describes() || file.given("binder", "radius") || file.given("binder", "fibres");
     // A section that nothing asks for would be as if it were heard.
     const bool has_binder = scene.generator == "levels" || scene.generator == "stitched";
+    const bool bound = file.describes() || file.given("binder", "radius") || file.given("binder", "fibres") ||
+                       (has_binder && file.has_section("binder"));
     if (bound && !file.describes() && !scene.generator.empty() && !has_binder)
         file.refuse("binder", file.given("binder", "radius") ? "radius" : "fibres",
                     "left out: only levels and stitched have one");

@@ -206,7 +206,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     example::read_material(file, "material", asked.material);
     file.require("material", "strength", asked.strength.strength, example::positive(), "force/length^2",
                  "stress that 1/e of pieces of the reference length bear (Weibull)");
-    file.require("material", "weibull_modulus", asked.strength.modulus, example::above(0.0, 1000.0), "1",
+    file.require("material", "weibull_modulus", asked.strength.modulus, example::between(0.1, 1000.0), "1",
                  "m: the larger, the less strength varies");
     file.require("material", "reference_length", asked.strength.reference_length, example::positive(), "length",
                  "length of the pieces whose strength that is");

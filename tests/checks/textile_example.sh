@@ -99,6 +99,8 @@ refused stitched stitched.row_spacing=0.7 "distance of thread"
 refused stitched stitched.sideways=0 "comes apart"
 refused braid_triaxial binder.radius=0.08 "binder.radius"
 refused interlock 'levels.levels=["333333","01232"]' "levels.levels[1] = 5 columns"
+sed '/^\[binder\]/,$d' "$scenes/orthogonal.toml" > "$out/bound.toml" && printf '[binder]\naspect = 0.5\n' >> "$out/bound.toml"
+refused bound output.paraview=false "binder.aspect = 0.5, but it must be >= 1"
 refused orthogonal 'levels.kinds=["binder"]' "levels.kinds = 1, but it must be one for each warp, 3"
 # What comes after the settling is refused before it.
 refused straight loading.grip=1.9 "loading.grip = 1.9, but it must be < half the length of the sample"

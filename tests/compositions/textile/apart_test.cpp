@@ -286,6 +286,24 @@ TEST_CASE("radii that a file has are those of its fibres, where nobody says anot
     CHECK(refusal([&] { textile_of(curves, type, {}); }).find("radius of curve 0 = not given") == 0);
 }
 
+TEST_CASE("a curve of a file that is there twice, or so far away that it loses the digits of a radius, is refused") {
+    YarnType type = yarn(1);
+    type.radius = 0.05;
+    std::vector<exchange::FileCurve> twice = side_by_side(0.2);
+    CHECK(refusal([&] { textile_of(twice, type, {}); }).empty());
+    const std::size_t of = twice.size();
+    twice.push_back(twice.front());
+    const std::string again = "yarn " + std::to_string(of);
+    CHECK(refusal([&] { textile_of(twice, type, {}); }).starts_with(again));
+    CHECK(refusal([&] { textile_of(twice, type, {}); }).find("where yarn 0") != std::string::npos);
+    std::reverse(twice.back().points.begin(), twice.back().points.end());
+    CHECK(refusal([&] { textile_of(twice, type, {}); }).starts_with(again));
+    for (Vec3& point : twice.back().points) point.x() += 1e8;
+    CHECK(refusal([&] { textile_of(twice, type, {}); }).starts_with(again + ", point 0 = (10000000"));
+    for (Vec3& point : twice.back().points) point.x() -= 0.99e8;
+    CHECK(refusal([&] { textile_of(twice, type, {}); }).empty());
+}
+
 TEST_CASE("a net so short that neighbours do not hook into each other is refused by its periods") {
     const auto said = [](double periods, Index yarns) {
         return refusal([&] { net({.yarns = yarns, .spacing = 0.8, .period = 3.0, .periods = periods, .type = yarn(1)}); });

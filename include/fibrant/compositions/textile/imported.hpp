@@ -65,15 +65,45 @@ inline void require_room(const Textile& textile) {
                      std::to_string(type.fibres) + " fibres of each curve of the file to lie beside those of the next one");
 }
 
+namespace detail {
+/// Refuses a curve that is so far away that its digits say too little of its fibres, and one that is there twice: by which side
+/// the two should part would be a guess.
+/// @param radius_of  each curve
+inline void require_places(const std::vector<exchange::FileCurve>& curves, const std::vector<double>& radius_of) {
+    constexpr double farthest = 1e9, same = 1e-6;  // radii; of a radius seven digits are left at the first
+    const auto label = [&](std::size_t c) {
+        return "yarn " + std::to_string(c) + (curves[c].name.empty() ? "" : " '" + curves[c].name + "'");
+    };
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+        const std::vector<Vec3>& points = curves[c].points;
+        for (std::size_t k = 0; k < points.size(); ++k)
+            if (points[k].norm() > farthest * radius_of[c])
+                core::refuse(label(c) + ", point " + std::to_string(k), scene::text(points[k]),
+                             "within 1e9 radii of the origin, or its digits say too little of a fibre of radius " +
+                                 core::text(radius_of[c]));
+        const auto near = [&](const Vec3& p, const Vec3& q) { return (p - q).norm() <= same * radius_of[c]; };
+        for (std::size_t b = 0; b < c; ++b) {
+            const std::vector<Vec3>& others = curves[b].points;
+            if (others.size() == points.size() && (std::equal(points.begin(), points.end(), others.begin(), near) ||
+                                                   std::equal(points.begin(), points.end(), others.rbegin(), near)))
+                core::refuse(label(c), "where " + label(b) + " lies",
+                             "in a place of its own: which side is its would be a guess");
+        }
+    }
+}
+}  // namespace detail
+
 /// A textile of yarns, one a curve, at rest as they are drawn; crossings are those that their heights say.
 /// @param type    of all yarns; its radius, where it is not set, is that of the file, the mean of its points
 /// @param smooth  width of the Gaussian that points are smoothed by [points], >= 0
-/// @throws std::invalid_argument naming the curve whose radius nobody says, or a radius of fibres at which yarns have room
+/// @throws std::invalid_argument naming the curve whose radius nobody says, one that is there twice or too far away, or a radius
+/// of fibres at which yarns have room
 inline Textile textile_of(const std::vector<exchange::FileCurve>& curves, const YarnType& type, const View& view,
                           double smooth = 0.0) {
     Textile textile;
     textile.name = "imported";
     textile.view = view;
+    std::vector<double> radius_of;
     for (std::size_t c = 0; c < curves.size(); ++c) {
         const exchange::FileCurve& curve = curves[c];
         YarnType own = type;
@@ -82,6 +112,7 @@ inline Textile textile_of(const std::vector<exchange::FileCurve>& curves, const 
                                              : std::accumulate(curve.radii.begin(), curve.radii.end(), 0.0) /
                                                    static_cast<double>(curve.radii.size());
         if (std::isnan(own.radius)) core::refuse("radius of curve " + std::to_string(c), "not given", "in the file, or told");
+        radius_of.push_back(own.radius);
         Index number = 0;
         while (number < core::count(textile.types) && textile.types[core::at(number)].radius != own.radius) ++number;
         if (number == core::count(textile.types)) textile.types.push_back(own);
@@ -96,6 +127,7 @@ inline Textile textile_of(const std::vector<exchange::FileCurve>& curves, const 
                                  scene::SplineSteps::by_distance, path.name);
         textile.paths.push_back(std::move(path));
     }
+    detail::require_places(curves, radius_of);
     textile.crossings = crossings_of(textile);
     require_room(textile);
     return textile;
