@@ -102,7 +102,7 @@ try "input is required" --report
 try "--output = not given, but it must be given, or --report" "$good"
 option "--no-such-option" --report --no-such-option
 option "--output has too few values, but it must have 1" --output
-option "--box has too few values, but it must have 6" --output "$out/results.vti" --voxels 0.05 --box 0 0 0 1 1
+option "--box has 5 values, but it must have at least 6" --output "$out/results.vti" --voxels 0.05 --box 0 0 0 1 1
 option "--scale has 2 values, but it must have at most 1" --report --scale 1 --scale 2
 for ending in toml png "" stll yarns.csvx voxels.stl map.inp profile.svg; do
   option "--output = $out/results.$ending, but it must be a name that ends in one of .csv" --output "$out/results.csv" --output "$out/results.$ending"
