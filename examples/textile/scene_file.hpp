@@ -129,8 +129,7 @@ inline void read_load(SceneReader& file, Load& load) {
     file.check(axis != across, "loading", "across", "another axis than loading.axis");
     // What is missing is told by `complete`.
     if (std::isnan(load.parameters.amount) || (!plates && !load.cell && std::isnan(load.parameters.grip))) return;
-    constexpr double largest_strain =
-        0.01;  // a stiffness is that of small strains: waves of yarns are some hundredths themselves
+    constexpr double largest_strain = 0.1;  // a stiffness is that of small strains: waves of yarns are some tenths themselves
     if (load.cell)
         file.check(load.parameters.amount != 0.0 && std::abs(load.parameters.amount) <= largest_strain, "loading", "amount",
                    "from " + fibrant::core::text(-largest_strain) + " to " + fibrant::core::text(largest_strain) +

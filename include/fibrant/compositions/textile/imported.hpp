@@ -81,12 +81,25 @@ inline void require_places(const std::vector<exchange::FileCurve>& curves, const
                 core::refuse(label(c) + ", point " + std::to_string(k), scene::text(points[k]),
                              "within 1e9 radii of the origin, or its digits say too little of a fibre of radius " +
                                  core::text(radius_of[c]));
-        const auto near = [&](const Vec3& p, const Vec3& q) { return (p - q).norm() <= same * radius_of[c]; };
-        for (std::size_t b = 0; b < c; ++b) {
+    }
+    // Curves that are the same have the same place on any line, be they drawn to and fro.
+    const Vec3 line(1.0, 0.618034, 0.414214);  // no two are in a simple ratio: curves of a pattern rarely share a place on it
+    std::vector<std::pair<double, std::size_t>> places;
+    for (std::size_t c = 0; c < curves.size(); ++c)
+        if (const auto& points = curves[c].points; !points.empty())
+            places.emplace_back(line.dot(points.front() + points.back()), c);
+    std::sort(places.begin(), places.end());
+    for (std::size_t p = 0; p < places.size(); ++p) {
+        const std::size_t c = places[p].second;
+        const std::vector<Vec3>& points = curves[c].points;
+        const double reach = 2.0 * line.norm() * same * radius_of[c];
+        const auto near = [&](const Vec3& x, const Vec3& y) { return (x - y).norm() <= same * radius_of[c]; };
+        for (std::size_t q = p + 1; q < places.size() && places[q].first - places[p].first <= reach; ++q) {
+            const std::size_t b = places[q].second;
             const std::vector<Vec3>& others = curves[b].points;
             if (others.size() == points.size() && (std::equal(points.begin(), points.end(), others.begin(), near) ||
                                                    std::equal(points.begin(), points.end(), others.rbegin(), near)))
-                core::refuse(label(c), "where " + label(b) + " lies",
+                core::refuse(label(std::max(b, c)), "where " + label(std::min(b, c)) + " lies",
                              "in a place of its own: which side is its would be a guess");
         }
     }
