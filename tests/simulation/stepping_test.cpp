@@ -246,13 +246,18 @@ TEST_CASE("what has moved far is solved as loosely as a path is until it is at r
     // Where damping waits, three loose increments in a row settle, whatever moves in one of them, and an exact one does.
     rest.damping_waits = true, rest.damping_share = 1e-4;
     position = {};
-    near.damping = 0.9e-4;
+    near.damping = 0.9e-4, near.residual = 1.1e-4;
     for (const Index row : {1, 2, 3}) {
         CHECK_FALSE(position.ends(rest, true, near));
         CHECK(position.exact == (row == 3));
     }
     CHECK(position.ends(rest, true, near));
-    near.damping = 1.1e-4;
+    // So does a loose one of which all that forces miss is as little as damping may hold.
+    position = {};
+    near.residual = 0.9e-4;
+    CHECK_FALSE(position.ends(rest, true, near));
+    CHECK(position.exact);
+    near.damping = 1.1e-4, near.residual = 1.1e-4;
     position = {.within = 2};
     CHECK_FALSE(position.ends(rest, true, near));
     CHECK(position.within == 0);
@@ -297,10 +302,10 @@ TEST_CASE("damping that waits neither falls nor ends a stage after an increment 
     const simulation::HalvedSteps steps;
     simulation::IncrementReport increment;
     increment.displacement = 0.1, increment.damping = 5e-4;
-    const auto next = [&](double residual) {  // of a tolerance of 1e-4
+    const auto next = [&](double residual, double damping = 1.0) {  // of a tolerance of 1e-4
         increment.residual = residual, increment.use.residual = residual / 1e-4;
         simulation::Position position;
-        position.progress = 1.0;
+        position.progress = 1.0, position.damping = damping;
         steps.adapt_damping(position, stage, increment, 0.2);
         return position.damping;
     };
@@ -321,9 +326,14 @@ TEST_CASE("damping that waits neither falls nor ends a stage after an increment 
     CHECK(next(1e-4) == 1.0);
     increment.damping = 1.6e-4;
     CHECK(next(1e-4) == 0.5);
-    // Less than half of it lets damping rise, unless forces balance badly.
+    // Less than half of it lets damping rise, unless forces balance badly, or all is at rest but for the count of increments.
     increment.damping = 0.4e-4;
+    CHECK(next(0.9e-3) == 1.0);
+    stage.until = [](const simulation::IncrementReport&) { return false; };
     CHECK(next(0.9e-3) == 2.0);
+    // Softer than a thousandth it rises by as much, not to there; what has none begins there.
+    CHECK(next(0.9e-3, 1e-4) == 2e-4);
+    CHECK(next(0.9e-3, 0.0) == 1e-3);
     CHECK(next(1.1e-3) == 1.0);
     // What balances as well as is stated does, however little damping holds.
     stage.damping_share = increment.damping = 1e-7;
