@@ -321,7 +321,9 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         file.require("chain_mail", "columns", mail.columns, example::between(2, 100), "number of rings in a row");
         file.require("chain_mail", "ring_radius", mail.ring_radius, positive, "length",
                      "radius of a ring, to the middle of its wire");
-        file.read("chain_mail", "pitch", mail.pitch, positive, "length", "distance of rings in a row; left out: 2.6 ring radii");
+        file.read("chain_mail", "pitch", mail.pitch, positive, "length",
+                  "distance of rings in a row, of two ring radii and a radius of the wire at least as they are drawn; left out: "
+                  "2.6 ring radii");
         file.read("chain_mail", "row_pitch", mail.row_pitch, positive, "length", "distance of rows; left out: 0.9 ring radii");
         file.read("chain_mail", "tilt_deg", mail.tilt_deg, example::above(0.0, 80.0), "degree",
                   "tilt of rings, one way and the other in turn");

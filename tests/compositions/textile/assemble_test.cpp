@@ -10,6 +10,7 @@
 #include <fibrant/compositions/textile/knits.hpp>
 #include <fibrant/compositions/textile/load_cases.hpp>
 #include <fibrant/compositions/textile/periodic.hpp>
+#include <fibrant/compositions/textile/settle.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
 #include <fibrant/compositions/textile/yarn_contacts.hpp>
@@ -285,6 +286,17 @@ TEST_CASE("ends of a net are pulled along it and keep their distances, so that t
         const std::vector<Vec3>& points = drawn[static_cast<std::size_t>(pull.at.fibre)].points;
         CHECK((points.back() - points[points.size() - 2]).normalized().y() < 0.95);
     }
+}
+
+TEST_CASE(
+    "rings that are at rest as drawn come to rest once nothing moves: no force is left that damping could be small against") {
+    Textile mail = chain_mail({.rows = 2, .columns = 2, .ring_radius = 1.0, .type = yarn(1)});
+    const auto driven = [&] { return scales_of(mail, assemble(mail, {})).driven; };
+    CHECK(!driven());
+    mail.paths[0].guides.push_back({0.5});  // something holds it
+    CHECK(driven());
+    mail.paths[0].guides.clear(), mail.paths[1].straight = true;  // bent into a ring
+    CHECK(driven());
 }
 
 TEST_CASE("the audit of links sees rings that came apart, though nothing touches") {

@@ -413,6 +413,21 @@ TEST_CASE("leno has two crossings a pick and one a gap for each pair, always in 
     CHECK(refusal([&] { validate(weave); }).empty());
 }
 
+TEST_CASE("the outermost wefts of a leno keep their places along its ends where pairs cross them, so that none is pushed off") {
+    const double spacing = 0.6;
+    const Textile weave =
+        leno({.pairs = 3, .picks = 4, .pick_spacing = 1.0, .pair_spacing = spacing, .aside = 0.15, .type = yarn()});
+    for (Index m = 0; m < 4; ++m) {
+        const Path& weft = weave.paths[core::at(6 + m)];
+        REQUIRE(core::count(weft.guides) == (m == 0 || m == 3 ? 3 : 0));
+        for (std::size_t k = 0; k < weft.guides.size(); ++k) {
+            const double width = weft.curve(1.0).y() - weft.curve(0.0).y();  // rounding is that of it
+            CHECK(std::abs(weft.curve(weft.guides[k].at).y() - spacing * static_cast<double>(k)) < 1e-12 * width);
+            CHECK((weft.guides[k].directions - Mat3(Vec3::UnitX() * Vec3::UnitX().transpose())).norm() == 0.0);
+        }
+    }
+}
+
 TEST_CASE("a triaxial weave crosses each pair once at most, in cyclic order, and every yarn alternates") {
     const Textile weave = triaxial_weave({.spacing = 0.8, .radius = 2.4, .type = yarn()});
     std::vector<std::pair<Index, Index>> pairs;
@@ -570,6 +585,25 @@ TEST_CASE("a ring of chain mail is linked once with each of four neighbours, and
         }
     CHECK(links[4 * 2 + 1] == 4);  // inside
     CHECK(links[0] == 1);          // at a corner that a row stands back from
+}
+
+TEST_CASE("rings of a row of mail are drawn a radius of the wire from each other at least, and are linked as further ones are") {
+    for (const double r : {0.08, 0.2}) {
+        const ChainMail touching{.rows = 3, .columns = 3, .ring_radius = 1.0, .pitch = 2.0, .row_pitch = 0.9, .type = yarn(r)};
+        const Textile mail = chain_mail(touching);
+        // The nearest points of neighbours of a row: half a turn and none.
+        const double between = (mail.paths[1].curve(0.5) - mail.paths[0].curve(0.0)).norm();
+        CHECK(between == test::near(r, 1e-12));
+        ChainMail apart = touching;
+        apart.pitch = 2.0 + 2.0 * r;
+        const Textile further = chain_mail(apart);
+        CHECK((further.paths[1].curve(0.5) - further.paths[0].curve(0.0)).norm() == test::near(2.0 * r, 1e-12));
+        const std::vector<Line> near_lines = lines_of(mail), far_lines = lines_of(further);
+        for (std::size_t i = 0; i < near_lines.size(); ++i)
+            for (std::size_t j = i + 1; j < near_lines.size(); ++j)
+                CHECK(std::abs(observe::linking_number(near_lines[i].points, near_lines[j].points)) ==
+                      std::abs(observe::linking_number(far_lines[i].points, far_lines[j].points)));
+    }
 }
 
 TEST_CASE("yarns of a net clasp each other at every turn: two crossings, one above, then the other") {

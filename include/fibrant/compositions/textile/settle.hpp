@@ -36,8 +36,10 @@ inline simulation::SettlingScales scales_of(const Textile& textile, const Assemb
     }
     simulation::SettlingScales scales = simulation::scales_of(fibres, false);
     scales.ordered = !assembled.assembly.orders().empty();
+    // Rings that are at rest as drawn only push each other apart.
     scales.driven = std::any_of(textile.paths.begin(), textile.paths.end(), [](const Path& path) {
-        return path.kind != PathKind::open || path.ends != Ends::free || !path.guides.empty() || path.straight;
+        const bool ends_hold = path.kind == PathKind::periodic || (path.kind == PathKind::open && path.ends != Ends::free);
+        return ends_hold || !path.guides.empty() || path.straight;
     });
     return scales;
 }

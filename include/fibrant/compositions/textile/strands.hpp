@@ -105,12 +105,16 @@ inline Textile plied(const Plied& rope) {
 struct ChainMail {
     Index rows = 3, columns = 3;       ///< >= 2
     double ring_radius = core::unset;  ///< of the middle line [length]
-    double pitch = core::unset;        ///< of rings in a row [length]; unset: 2.6 ring radii
-    double row_pitch = core::unset;    ///< unset: 0.9 ring radii
-    double tilt_deg = 35.0;            ///< of rings about the direction of the rows [degree], in (0, 80]
-    YarnType type{};                   ///< of all yarns
+    /// Of rings in a row [length]; unset: 2.6 ring radii. They are drawn two ring radii and a radius of the wire apart at least:
+    /// they part by more in any case, and lines that touch could do so to either side.
+    double pitch = core::unset;
+    double row_pitch = core::unset;  ///< unset: 0.9 ring radii
+    double tilt_deg = 35.0;          ///< of rings about the direction of the rows [degree], in (0, 80]
+    YarnType type{};                 ///< of all yarns
 
     double along() const noexcept { return std::isnan(pitch) ? 2.6 * ring_radius : pitch; }
+    /// Of rings in a row as they are drawn [length].
+    double apart() const noexcept { return std::max(along(), 2.0 * ring_radius + type.radius); }
     double across() const noexcept { return std::isnan(row_pitch) ? 0.9 * ring_radius : row_pitch; }
     void validate() const {
         core::require_at_least("ChainMail.rows", rows, 2);
@@ -137,7 +141,7 @@ inline Textile drawn(const ChainMail& mail) {
     for (Index j = 0; j < mail.rows; ++j)
         for (Index i = 0; i < mail.columns; ++i) {
             const double tilt = (j % 2 == 0 ? 1.0 : -1.0) * mail.tilt_deg * std::numbers::pi / 180.0;
-            const Vec3 centre(mail.along() * (static_cast<double>(i) + (j % 2 == 0 ? 0.0 : 0.5)),
+            const Vec3 centre(mail.apart() * (static_cast<double>(i) + (j % 2 == 0 ? 0.0 : 0.5)),
                               mail.across() * static_cast<double>(j), 0.0);
             const Vec3 side(0.0, std::cos(tilt), std::sin(tilt));
             Path path;

@@ -231,6 +231,7 @@ inline Textile woven(const LevelPlan& plan) {
 }
 
 /// Leno: pairs of a ground end and a doup end that crosses to its other side between picks, below it, and lies above all wefts.
+/// Where pairs cross them, the outermost wefts keep their places along the ends, as beside wefts of a longer sample.
 struct LenoWeave {
     Index pairs = 2, picks = 6;         ///< >= 1, >= 2
     double pick_spacing = core::unset;  ///< [length], > 0
@@ -285,6 +286,13 @@ inline Textile drawn(const LenoWeave& weave) {
         path.curve = [=](double t) {
             return Vec3(x, width * (t - 0.5) + 0.5 * weave.pair_spacing * static_cast<double>(weave.pairs - 1), 0.0);
         };
+        // Behind an outermost weft no pair crosses any more: pulled straight, pairs would push it along to their ends, and the
+        // crossing before it off them.
+        if (m == 0 || m + 1 == weave.picks)
+            for (Index k = 0; k < weave.pairs; ++k)
+                path.guides.push_back(
+                    {0.5 + weave.pair_spacing * (static_cast<double>(k) - 0.5 * static_cast<double>(weave.pairs - 1)) / width,
+                     Vec3::UnitX() * Vec3::UnitX().transpose()});
         textile.paths.push_back(std::move(path));
     }
     textile.crossings = crossings_of(textile);
