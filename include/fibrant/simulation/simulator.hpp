@@ -194,7 +194,7 @@ private:
                 amplitudes_ = amplitudes;
                 increment.residual = attempt.residual, increment.use = attempt.use;
                 increment.displacement = attempt.displacement;
-                increment.damping = attempt.force_scale > 0.0 ? equilibrium_.norm(energy_.damping()) / attempt.force_scale : 0.0;
+                increment.damping = attempt.acts(radius_) ? equilibrium_.norm(energy_.damping()) / attempt.force_scale : 0.0;
                 increment.fraction = position_.fraction, increment.unstable = attempt.counts.indefinite > 0;
                 increment.springs = position_.damping, increment.hardest_springs = position_.hardest();
                 position_.progress = progress;

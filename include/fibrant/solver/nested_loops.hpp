@@ -27,6 +27,12 @@ struct AttemptReport {
     Vector unsettled;           ///< last step, or displacement of the last pass or of the whole, of an attempt that has failed
     double allowed = 0.0;       ///< what that may be anywhere without harm [length]
 
+    /// It has forces, and has moved by more than rounding of a radius: where nothing acts a part of them is rounding by rounding.
+    bool acts(double radius) const noexcept {
+        constexpr double rounding = 1e-12;  // over a thousand times that of a place in a scene of a few hundred radii
+        return force_scale > 0.0 && displacement > rounding * radius;
+    }
+
     /// One that has converged is not accepted, if there is a reason why: whoever moved most is not at fault.
     void refuse(std::string why) {
         reason = std::move(why);
