@@ -106,5 +106,5 @@ refused orthogonal 'levels.kinds=["binder"]' "levels.kinds = 1, but it must be o
 refused straight loading.grip=1.9 "loading.grip = 1.9, but it must be < half the length of the sample"
 refused straight output.voxel_spacing=5.0 "output.voxel_spacing = 5, but it must be less than the sample is long"
 refused straight output.voxel_spacing=1e-7 "output.voxel_spacing"
-refused cell_plain loading.amount=0.5 "loading.amount = 0.5, but it must be from -0.01 to 0.01"
+refused cell_plain loading.amount=0.5 "loading.amount = 0.5, but it must be from -0.1 to 0.1"
 exit 0

@@ -90,9 +90,9 @@ struct HalvedSteps {
         // takes what it takes.
         const bool waits = stage.damping_waits && position.progress >= 1.0,
                    enough = waits && damping > 0.0 && increment.damping <= nearly * stage.damping_share;
-        const bool settling = stage.until && stage.until(increment);  // and to be so once more
-        if (waits && !position.stage_over && !settling && !stage.unbalanced(increment) &&
-            increment.damping < half * stage.damping_share)
+        const auto settling = [&] { return stage.until && stage.until(increment); };  // and to be so once more
+        if (waits && !position.stage_over && !stage.unbalanced(increment) && increment.damping < half * stage.damping_share &&
+            !settling())
             damping = damping > 0.0 ? std::min(firmer * damping, 1.0 / least_damping) : least_damping;
         else if (!waits && stage.damping_pace > 0.0 && increment.cuts == 0 && effort <= with_effort)
             damping = changed(position, std::clamp(increment.displacement / stage.damping_pace, quicker, firmer));
