@@ -90,10 +90,10 @@ inline void tell(const cloth::Textile& textile, const cloth::TopologyAudit& audi
 }
 
 /// Refuses voxels that there is no memory for, or that are larger than the sample.
-/// @param drawn  before it is settled
+/// @param spacing  of them [length], > 0
+/// @param drawn    before it is settled
 inline void require_voxels(const example::SceneReader& file, double spacing,
                            const std::vector<fibrant::exchange::FileCurve>& drawn) {
-    if (!(spacing > 0.0)) return;
     constexpr double bytes_a_cell = 600.0;  // measured, with the files of them
     const fibrant::exchange::VoxelGrid grid = fibrant::exchange::grid_around(drawn, spacing);
     const fibrant::Index most = *std::max_element(grid.counts.begin(), grid.counts.end());

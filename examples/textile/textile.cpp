@@ -30,7 +30,8 @@ bool settle(const textile::Scene& scene, example::SceneReader& file, example::Ou
     const observe::Snapshot drawn = simulation::snapshot_of(simulator.mesh(), simulator.mesh().start_state());
 
     // What comes after the settling is refused before it.
-    textile::require_voxels(file, scene.voxel_spacing, textile::cloth::curves_of(drawn, assembled.path_of));
+    if (scene.voxel_spacing > 0.0)
+        textile::require_voxels(file, scene.voxel_spacing, textile::cloth::curves_of(drawn, assembled.path_of));
     if (scene.load.wanted && !scene.load.cell)
         textile::cloth::load_case(scene.textile, assembled, drawn, simulator.mesh().start_state(), scene.load.parameters);
 

@@ -63,7 +63,7 @@ public:
             if (mark == std::string_view::npos)
                 refuse_file(file_, "byte " + std::to_string(begin), "AppendedData without its mark _");
             const std::string_view tag = bytes.substr(begin, end - begin);
-            if (bytes.rfind("</VTKFile>") == std::string_view::npos || bytes.rfind("</VTKFile>") < mark)
+            if (bytes.find("</VTKFile>", mark) == std::string_view::npos)
                 refuse_file(file_, "byte " + std::to_string(bytes.size()), "the file ends early, before </VTKFile>");
             base64_ = tag.find("base64") != std::string_view::npos;
             appended_ = bytes.substr(mark + 1);

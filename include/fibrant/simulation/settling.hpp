@@ -151,7 +151,6 @@ Loading<M> settling(const SettlingScales& scales, const SettleParameters& settle
     Stage<M> rest = stiffening;
     rest.name = "rest";
     rest.until = until_settled(settle.rest_motion_over_radius * r, parted, share_at_rest);
-    rest.damping_share = share_at_rest;
     rest.enough_increments = std::numeric_limits<Index>::max();
     rest.deepest = allowed, rest.looseness = 1.0, rest.exact_end = true, rest.damping_goes_on = true;
     // With hardly any damping left an equilibrium may turn out to be unstable: a tube of crossing helices necks, and goes radii

@@ -29,7 +29,7 @@ struct AttemptReport {
 
     /// It has forces, and has moved by more than rounding of a radius: where nothing acts a part of them is rounding by rounding.
     bool acts(double radius) const noexcept {
-        constexpr double rounding = 1e-12;  // over a thousand times that of a place in a scene of a few hundred radii
+        constexpr double rounding = 1e-12;  // some ten times that of a place in a scene of a few hundred radii
         return force_scale > 0.0 && displacement > rounding * radius;
     }
 

@@ -68,19 +68,18 @@ inline void require_room(const Textile& textile) {
 namespace detail {
 /// Refuses a curve that is so far away that its digits say too little of its fibres, and one that is there twice: by which side
 /// the two should part would be a guess.
-/// @param radius_of  each curve
-inline void require_places(const std::vector<exchange::FileCurve>& curves, const std::vector<double>& radius_of) {
+/// @param textile  its yarns, one a curve
+inline void require_places(const Textile& textile, const std::vector<exchange::FileCurve>& curves) {
     constexpr double farthest = 1e9, same = 1e-6;  // radii; of a radius seven digits are left at the first
-    const auto label = [&](std::size_t c) {
-        return "yarn " + std::to_string(c) + (curves[c].name.empty() ? "" : " '" + curves[c].name + "'");
-    };
+    const auto label = [&](std::size_t c) { return scene::label("yarn", static_cast<Index>(c), curves[c].name); };
+    const auto radius = [&](std::size_t c) { return textile.types[core::at(textile.paths[c].type)].radius; };
     for (std::size_t c = 0; c < curves.size(); ++c) {
         const std::vector<Vec3>& points = curves[c].points;
         for (std::size_t k = 0; k < points.size(); ++k)
-            if (points[k].norm() > farthest * radius_of[c])
-                core::refuse(label(c) + ", point " + std::to_string(k), scene::text(points[k]),
-                             "within 1e9 radii of the origin, or its digits say too little of a fibre of radius " +
-                                 core::text(radius_of[c]));
+            if (points[k].norm() > farthest * radius(c))
+                core::refuse(
+                    label(c) + ", point " + std::to_string(k), scene::text(points[k]),
+                    "within 1e9 radii of the origin, or its digits say too little of a fibre of radius " + core::text(radius(c)));
     }
     // Curves that are the same have the same place on any line, be they drawn to and fro.
     const Vec3 line(1.0, 0.618034, 0.414214);  // no two are in a simple ratio: curves of a pattern rarely share a place on it
@@ -92,8 +91,8 @@ inline void require_places(const std::vector<exchange::FileCurve>& curves, const
     for (std::size_t p = 0; p < places.size(); ++p) {
         const std::size_t c = places[p].second;
         const std::vector<Vec3>& points = curves[c].points;
-        const double reach = 2.0 * line.norm() * same * radius_of[c];
-        const auto near = [&](const Vec3& x, const Vec3& y) { return (x - y).norm() <= same * radius_of[c]; };
+        const double reach = 2.0 * line.norm() * same * radius(c);
+        const auto near = [&](const Vec3& x, const Vec3& y) { return (x - y).norm() <= same * radius(c); };
         for (std::size_t q = p + 1; q < places.size() && places[q].first - places[p].first <= reach; ++q) {
             const std::size_t b = places[q].second;
             const std::vector<Vec3>& others = curves[b].points;
@@ -116,7 +115,6 @@ inline Textile textile_of(const std::vector<exchange::FileCurve>& curves, const 
     Textile textile;
     textile.name = "imported";
     textile.view = view;
-    std::vector<double> radius_of;
     for (std::size_t c = 0; c < curves.size(); ++c) {
         const exchange::FileCurve& curve = curves[c];
         YarnType own = type;
@@ -125,7 +123,6 @@ inline Textile textile_of(const std::vector<exchange::FileCurve>& curves, const 
                                              : std::accumulate(curve.radii.begin(), curve.radii.end(), 0.0) /
                                                    static_cast<double>(curve.radii.size());
         if (std::isnan(own.radius)) core::refuse("radius of curve " + std::to_string(c), "not given", "in the file, or told");
-        radius_of.push_back(own.radius);
         Index number = 0;
         while (number < core::count(textile.types) && textile.types[core::at(number)].radius != own.radius) ++number;
         if (number == core::count(textile.types)) textile.types.push_back(own);
@@ -140,7 +137,7 @@ inline Textile textile_of(const std::vector<exchange::FileCurve>& curves, const 
                                  scene::SplineSteps::by_distance, path.name);
         textile.paths.push_back(std::move(path));
     }
-    detail::require_places(curves, radius_of);
+    detail::require_places(textile, curves);
     textile.crossings = crossings_of(textile);
     require_room(textile);
     return textile;
