@@ -68,6 +68,8 @@ public:
     Equilibrium& operator=(const Equilibrium&) = delete;
 
     const System& system() const noexcept { return system_; }
+    /// Bands of chains are to have all that lies within them, however small the system.
+    void fill_bands() noexcept { system_.slides_in_bands_beyond = 0; }
     const std::vector<Vec3>& targets() const noexcept { return targets_; }
     const beam::Mesh<B>& mesh() const noexcept { return *mesh_; }
     const connection::PrescribedMotion<B>& motion() const noexcept { return motion_; }

@@ -40,6 +40,8 @@ public:
         }
     }
     Index parts() const noexcept { return core::count(runs_); }
+    /// Of the values taken last.
+    const scene::DofLayout& layout() const noexcept { return *layout_; }
     const std::vector<Run>& runs(Index part) const noexcept { return runs_[core::at(part)]; }
 
     /// @param bands  of the chains that own parts have nodes of
@@ -59,6 +61,13 @@ public:
                         if (own.empty() || own.back() != std::pair(k, side)) own.emplace_back(k, side);
                     }
                 }
+            }
+        wholes_.assign(runs_.size(), {});
+        for (Index k = 0; k < core::count(terms.wholes()); ++k)
+            for (const Index v : terms.wholes()[core::at(k)].vectors) {
+                const Index part = cut.owner()[core::at(v)] - first_part_;
+                if (part >= 0 && part < parts() && (wholes_[core::at(part)].empty() || wholes_[core::at(part)].back() != k))
+                    wholes_[core::at(part)].push_back(k);
             }
         held_.assign(runs_.size(), {});
         for (Index h = 0; h < core::count(layout.held); ++h) {
@@ -85,6 +94,7 @@ public:
                 for (std::size_t i = 0; i < mine.size(); ++i)
                     if ((*owner_)[core::at(mine[i])] == own) y.segment<3>(3 * Index{mine[i]}) += own_weights[i] * force;
             }
+            for (const Index k : wholes_[core::at(part)]) add_whole(terms_->wholes()[core::at(k)], own, x, y);
             for (const Index h : held_[core::at(part)]) {
                 const scene::HeldVector& held = layout_->held[core::at(h)];
                 y.segment<3>(3 * held.vector) = (held.free * y.segment<3>(3 * held.vector)).eval();
@@ -93,6 +103,17 @@ public:
     }
 
 private:
+    void add_whole(const PairTerms::Whole& term, int own, const Vector& x, Vector& y) const {
+        const Index count = core::count(term.vectors);
+        for (Index i = 0; i < count; ++i) {
+            const Index v = term.vectors[core::at(i)];
+            if ((*owner_)[core::at(v)] != own) continue;
+            Vec3 force = Vec3::Zero();
+            for (Index j = 0; j < count; ++j)
+                force += term.stiffness.block<3, 3>(3 * i, 3 * j) * x.segment<3>(3 * term.vectors[core::at(j)]);
+            y.segment<3>(3 * v) += force;
+        }
+    }
     /// @tparam Block  m if known when compiled (a director beam), or Eigen::Dynamic
     template <int Block>
     void add_band(const Run& run, const Vector& x, Vector& y) const {
@@ -119,7 +140,7 @@ private:
     Index first_part_ = 0;
     std::vector<std::vector<Run>> runs_;                             // of each own part
     std::vector<std::vector<std::pair<Index, std::size_t>>> sides_;  // of each own part: term, side
-    std::vector<std::vector<Index>> held_;                           // of each own part: numbers among those of the layout
+    std::vector<std::vector<Index>> wholes_, held_;                  // of each own part: numbers in the terms, in the layout
     const scene::DofLayout* layout_ = nullptr;
     const std::vector<Matrix>* bands_ = nullptr;
     const PairTerms* terms_ = nullptr;

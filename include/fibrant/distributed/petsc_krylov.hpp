@@ -49,6 +49,7 @@ public:
 class PetscKrylov {
 public:
     using Levels = SubdomainLevels<MpiExchange>;
+    static constexpr bool reads_whole_bands = true;
     struct Parameters {
         typename SubdomainLevels<MpiExchange>::Parameters levels{};  ///< of the preconditioner
         std::string options{};  ///< as "-ksp_type fgmres -ksp_monitor", for the whole process; tolerances are those of solves
@@ -76,7 +77,7 @@ public:
         if (code != 0) core::refuse("PetscKrylov.options", "\"" + parameters_.options + "\"", "options that PETSc takes");
     }
 
-    /// @throws std::invalid_argument for closed chains and ties, which are not shared among ranks yet
+    /// @throws std::invalid_argument for closed chains and images of periodic cells, which are not shared among ranks yet
     /// @throws std::length_error for more unknowns than PETSc counts
     template <assembly::LinearSystem System>
     void analyse(const System& system) {
@@ -107,7 +108,6 @@ public:
         petsc_check(KSPSetInitialGuessNonzero(work.method, PETSC_TRUE));
         petsc_check(KSPSetFromOptions(work.method));
     }
-    /// @throws std::invalid_argument for terms that PairTerms refuses
     template <assembly::LinearSystem System>
     solver::SolveStatus prepare(const System& system) {
         return levels_.prepare(system);

@@ -8,6 +8,7 @@
 #include <fibrant/distributed/part_product.hpp>
 #include <fibrant/distributed/piece_system.hpp>
 #include <fibrant/distributed/rank_use.hpp>
+#include <fibrant/distributed/shared_ties.hpp>
 
 #include <fibrant/core/stage_clock.hpp>
 #include <fibrant/solver/chain_sweeps.hpp>
@@ -27,7 +28,9 @@ namespace fibrant::distributed {
 /// Two levels, by A-DEF2 of Tang, Nabben, Vuik and Erlangga (Journal of Scientific Computing 39, 2009): z = N r, then z += Q (r -
 /// A z). N adds up the sweeps forth and back of each subdomain over its pieces of chains (ChainSweeps), and the motions of whole
 /// chains that are cut (ChainJoints); Q = P (P^T A P)^-1 P^T with P a RigidCoarseSpace of the whole scene, whose system is
-/// gathered and factored by all.
+/// gathered and factored by all. Where vectors are tied, P^T A P has springs in the place of the ties, so Q is not that of A: the
+/// balanced z = (Q + (1 - Q A) N (1 - A Q)) r of Mandel (Communications in Numerical Methods in Engineering 9, 1993) takes its
+/// place, which is positive definite with any Q, for one product more.
 ///
 /// The number of subdomains belongs to the scene. Every sum is one of subdomains, added in their order: its bits depend on the
 /// system and on that number, not on ranks and threads.
@@ -48,10 +51,9 @@ public:
     explicit SubdomainLevels(const Parameters& parameters)
         : parameters_{core::validated(parameters)}, exchange_{parameters.exchange} {}
 
-    /// @throws std::invalid_argument for closed chains and ties, which are not shared among ranks yet
+    /// @throws std::invalid_argument for closed chains and images of periodic cells, which are not shared among ranks yet
     template <assembly::LinearSystem System>
     void analyse(const System& system);
-    /// @throws std::invalid_argument for terms that PairTerms refuses
     template <assembly::LinearSystem System>
     solver::SolveStatus prepare(const System& system);
     /// Of the last preparation, the worst of all ranks.
@@ -101,11 +103,13 @@ public:
     /// y = A x in own vectors, of an x that is refreshed.
     void apply(const Vector& x, Vector& y) {
         timed(work_->use.product_seconds, [&] { work_->product.apply(x, y); });
+        timed(work_->use.waiting_seconds,
+              [&] { work_->ties.complete(exchange_, work_->product.layout(), x, y, work_->use.traffic); });
     }
-    /// Held directions have no part in z.
-    static void project(const scene::DofLayout& layout, Vector& z) {
-        for (const scene::HeldVector& held : layout.held)
-            z.segment<3>(3 * held.vector) = (held.free * z.segment<3>(3 * held.vector)).eval();
+    /// Held directions and what is tied have no part in z, of which own vectors are known.
+    void project(const scene::DofLayout& layout, Vector& z) {
+        project_held(layout, z);
+        timed(work_->use.waiting_seconds, [&] { work_->ties.project(exchange_, layout, z, work_->use.traffic); });
     }
     /// r = b - A x in own vectors; x is refreshed.
     void find_residual(const Vector& b, Vector& x, Vector& r) {
@@ -124,10 +128,11 @@ public:
     void smooth(const scene::DofLayout& layout, const Vector& r, Vector& z);
     /// z += Q r in own vectors.
     void add_coarse(const scene::DofLayout& layout, const Vector& r, Vector& z);
-    /// z = (N + Q - Q A N) r in own vectors; z is refreshed before its coarse part.
+    /// z = (N + Q - Q A N) r in own vectors; z is refreshed before its coarse part. Balanced where vectors are tied.
     void precondition(const scene::DofLayout& layout, const Vector& r, Vector& z) {
         Vector& left = work_->left;
         if (left.size() != r.size()) left.setZero(r.size());
+        if (!layout.ties.empty()) return balance(layout, r, z, left);
         smooth(layout, r, z);
         refresh(z);
         apply(z, left);
@@ -158,14 +163,16 @@ public:
         const auto begun = core::wall_seconds();
         Work& work = *work_;
         work.free = b;
-        project(layout, work.free);
+        scene::project_free(layout, work.free);  // all ranks know all of b
         const Vector& free = work.free;
         const solver::SolveReport report = iterate(free, norm);
         timed(work.use.waiting_seconds, [&] { gather_owned(exchange_, work.cut, work.runs, x, work.use.traffic); });
-        for (const scene::HeldVector& held : layout.held) {
-            const Index k = 3 * held.vector;
-            x.segment<3>(k) += (b.segment<3>(k) - free.segment<3>(k)) / layout.held_stiffness(held.vector);
-        }
+        const auto add_held = [&](Index v, Index like) {
+            x.segment<3>(3 * v) += (b.segment<3>(3 * v) - free.segment<3>(3 * v)) / layout.held_stiffness(like);
+        };
+        for (const scene::HeldVector& held : layout.held) add_held(held.vector, held.vector);
+        for (const scene::Tie& tie : layout.ties)
+            for (const Index v : tie.vectors) add_held(v, tie.vectors.front());
         work.use.solves += 1, work.use.iterations += report.iterations;
         work.use.whole_seconds += core::seconds_since(begun);
         return report;
@@ -182,12 +189,13 @@ private:
         std::vector<Matrix> bands;  // of chains that own parts have elements of
         PartProduct product;
         ChainJoints joints;
+        SharedTies ties;
         Halo halo;
         std::vector<Halo::Reader> fixed_readers;  // of bands
         std::vector<std::vector<int>> stations;   // of each part, own or not
         std::vector<std::vector<int>> places;     // of each own part: place of a station in its list
         std::vector<Index> station_counts;        // numbers that each rank gives
-        Vector free, slots, moved, left, station_values;
+        Vector free, slots, moved, left, motion, station_values;
         std::vector<double> own_values, all_values, sums;
         solver::SolveStatus status = solver::SolveStatus::not_finite;
         RankUse use;
@@ -219,6 +227,25 @@ private:
         if (exchange_.ranks() == 1) return;
         work_->use.traffic.gatherings += 1, work_->use.traffic.gathered_bytes += 8 * numbers;
     }
+    static void project_held(const scene::DofLayout& layout, Vector& z) {
+        for (const scene::HeldVector& held : layout.held)
+            z.segment<3>(3 * held.vector) = (held.free * z.segment<3>(3 * held.vector)).eval();
+    }
+    /// z = (Q + (1 - Q A) N (1 - A Q)) r
+    void balance(const scene::DofLayout& layout, const Vector& r, Vector& z, Vector& left) {
+        Vector& motion = work_->motion;
+        if (motion.size() != r.size()) motion.setZero(r.size());
+        for_owned([&](Index k) { z.segment<3>(k).setZero(); });
+        add_coarse(layout, r, z);
+        project(layout, z);
+        find_residual(r, z, left);
+        smooth(layout, left, motion);
+        refresh(motion);
+        apply(motion, left);
+        for_owned([&](Index k) { z.segment<3>(k) += motion.segment<3>(k), left.segment<3>(k) = -left.segment<3>(k); });
+        add_coarse(layout, left, z);
+        project(layout, z);
+    }
     void find_stations(const scene::DofLayout& layout);
 
     Parameters parameters_;
@@ -234,15 +261,15 @@ void SubdomainLevels<E>::analyse(const System& system) {
     for (const scene::Chain& chain : layout.chains)
         if (chain.closed)
             core::refuse("SubdomainLevels.system", "a closed chain", "of open ones: rings are not shared among ranks yet");
-    if (!layout.ties.empty())
-        core::refuse("SubdomainLevels.system", "ties of vectors",
-                     "without averages and periodic cells: they are not shared among ranks yet");
+    if (!layout.images.empty())
+        core::refuse("SubdomainLevels.system", "images of fibres", "without periodic cells: they are not shared among ranks yet");
     work.cut = Subdomains(system, parameters_.cut);
     work.runs = BlockRuns(work.cut.parts(), exchange_.ranks());
     work.pieces.analyse(layout, work.cut, first_part(), last_part());
     work.sweeps.analyse(work.pieces.layout());
     work.product = PartProduct(layout, work.cut, first_part(), last_part());
     work.joints.analyse(layout, work.cut, work.runs, rank());
+    work.ties.analyse(layout, work.cut, work.runs, exchange_.ranks());
     work.coarse.analyse(system, parameters_.fibres_per_cluster, parameters_.elements_per_station);
     work.fixed_readers = band_readers(layout, work.cut, work.runs);
     find_stations(layout);
@@ -383,7 +410,7 @@ void SubdomainLevels<E>::smooth(const scene::DofLayout& layout, const Vector& r,
         core::parallel_for(
             work.pieces.slots(), [&](Index s) { slots.segment<3>(3 * s) = r.segment<3>(3 * work.pieces.vector()[core::at(s)]); },
             core::light_items);
-        project(work.pieces.layout(), slots);
+        project_held(work.pieces.layout(), slots);
         work.sweeps.apply(work.pieces.layout(), work.slots, work.moved, [](const Vector&, Vector&) {});
     });
     for_owned([&](Index k) { z.segment<3>(k).setZero(); });

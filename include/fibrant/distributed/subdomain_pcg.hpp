@@ -19,6 +19,7 @@ class SubdomainPcg {
     using Levels = SubdomainLevels<E>;
 
 public:
+    static constexpr bool reads_whole_bands = true;
     struct Parameters {
         typename SubdomainLevels<E>::Parameters levels{};  ///< of the preconditioner
         int iteration_limit = 2000;                        ///< > 0
@@ -30,12 +31,11 @@ public:
     SubdomainPcg() : SubdomainPcg(Parameters{}) {}
     explicit SubdomainPcg(const Parameters& parameters) : parameters_{core::validated(parameters)}, levels_{parameters.levels} {}
 
-    /// @throws std::invalid_argument for closed chains and ties, which are not shared among ranks yet
+    /// @throws std::invalid_argument for closed chains and images of periodic cells, which are not shared among ranks yet
     template <assembly::LinearSystem System>
     void analyse(const System& system) {
         levels_.analyse(system);
     }
-    /// @throws std::invalid_argument for terms that PairTerms refuses
     template <assembly::LinearSystem System>
     solver::SolveStatus prepare(const System& system) {
         return levels_.prepare(system);

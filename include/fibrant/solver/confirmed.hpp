@@ -21,6 +21,7 @@ namespace fibrant::solver {
 template <class Iterative>
 class Confirmed {
 public:
+    static constexpr bool reads_whole_bands = ReadsWholeBands<Iterative>;
     struct Parameters {
         typename Iterative::Parameters iterative{};
         Index small = 6000;  ///< unknowns up to which a factorisation costs no more than the iteration, >= 0

@@ -128,7 +128,9 @@ public:
           linear_{&linear},
           parameters_{parameters},
           radius_{radius},
-          clock_{&clock} {}
+          clock_{&clock} {
+        if constexpr (ReadsWholeBands<Linear>) equilibrium.fill_bands();
+    }
 
     /// @param state      iterated in place
     /// @param tolerance  of the step [length]

@@ -14,6 +14,7 @@ template <class... Strategies>
 class OneOf {
 public:
     using Strategy = std::variant<Strategies...>;
+    static constexpr bool reads_whole_bands = (ReadsWholeBands<Strategies> || ...);
     explicit OneOf(Strategy strategy) : strategy_{std::move(strategy)} {}
 
     template <class System>
