@@ -53,6 +53,7 @@ bool run(const fabric_loading::LoadFile& load, example::SceneReader& file, examp
     fabric_loading::require_channels(file, load, connection::Channels(scene.assembly).names());
     parameters.iteration = load.scene.iteration;
     example::choose_solver(parameters, load.scene.linear_solver);
+    const example::RankFolder own(output);
     if (load.points_per_element > 0) parameters.contact.spacing.points_per_element = static_cast<double>(load.points_per_element);
     simulation::Simulator<LoadedWeave> simulator(scene.assembly, parameters);
     output.open(file, load.scene.told);
@@ -67,6 +68,7 @@ bool run(const fabric_loading::LoadFile& load, example::SceneReader& file, examp
     });
     simulation::Loading<LoadedWeave> loading = simulation::loading_of<LoadedWeave>(load.programme);
     output.tell(loading, 20.0);
+    example::stop_together(loading);
     const simulation::Report report = simulator.run(loading, recorder);
 
     const observe::Snapshot snapshot = simulator.snapshot();

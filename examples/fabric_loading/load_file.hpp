@@ -145,7 +145,9 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     const auto take = [&](const char* key, auto& to, const auto& from) {
         if (file.given("solver", key)) to = from;
     };
-    take("linear_solver", load.scene.linear_solver, solver);
+    take("linear_solver", load.scene.linear_solver.strategy, solver.strategy);
+    take("subdomains", load.scene.linear_solver.subdomains, solver.subdomains);
+    take("petsc_options", load.scene.linear_solver.petsc_options, solver.petsc_options);
     take("step_tolerance", iteration.step_tolerance, told.step_tolerance),
         take("residual_tolerance", iteration.residual_tolerance, told.residual_tolerance);
     take("contact_tolerance", iteration.contact_tolerance, told.contact_tolerance),

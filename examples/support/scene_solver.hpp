@@ -7,8 +7,6 @@
 #include "usual_keys.hpp"
 #ifdef FIBRANT_WITH_MPI
 #include "ranks.hpp"
-
-#include <fibrant/contact/contact_parameters.hpp>
 #else
 #include <fibrant/solver/any_solver.hpp>
 #endif
@@ -18,10 +16,8 @@ namespace example {
 #ifdef FIBRANT_WITH_MPI
 inline constexpr bool run_by_ranks = true;
 using SceneSolver = RankSolver;
-/// Where contacts touch stands within Newton's method, as in the chapter: what sliding adds to the tangent is not shared yet.
 inline void choose_solver(auto& parameters, const LinearSolver& how) {
     parameters.solver = {how.strategy, static_cast<int>(how.subdomains), how.petsc_options};
-    parameters.contact.places = fibrant::contact::Places::renewed;
 }
 /// All ranks stop after the same increment.
 inline void stop_together(auto& loading) { loading.stop = stopped_together; }

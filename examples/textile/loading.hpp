@@ -235,6 +235,7 @@ std::pair<fibrant::observe::JsonObject, bool> run_load_case(const example::Outpu
     });
     simulation::Loading<Model> loading = simulation::loading_of<Model>(programme_of(scene, assembled));
     output.tell(loading, 20.0);
+    example::stop_together(loading);
     const simulation::Report report = simulator.run(loading, recorder);
     const observe::Snapshot after = simulator.snapshot();
     const simulation::Audit audit = example::audit(output, simulator, radius);

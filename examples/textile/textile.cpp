@@ -74,9 +74,6 @@ bool settle(const textile::Scene& scene, example::SceneReader& file, example::Ou
 
 /// @throws std::invalid_argument for what ranks do not share yet
 void require_open(const textile::Scene& scene, const example::SceneReader& file) {
-    if (scene.load.wanted)
-        file.refuse("loading", "case",
-                    "left out: bodies at edges are not shared among ranks; `textile --resume` loads what settled");
     const auto& paths = scene.textile.paths;
     const auto rings = [](const auto& path) { return path.kind == textile::cloth::PathKind::closed; };
     if (!scene.textile.lattice.empty() || std::any_of(paths.begin(), paths.end(), rings))
