@@ -25,7 +25,7 @@ knit=$(dirname "$scene")/knit_plain.toml
 for run in "1 1" "3 2"; do
   set -- $run
   on "$1" "$2" "$textile" "$knit" --output "$out/knit_$1" $small || fail "the knit did not settle on $1 ranks"
-  on "$1" "$2" "$textile" "$scene" --output "$out/pulled_$1" $small --set loading.case=tension --set loading.grip=0.3 \
+  on "$1" "$2" "$textile" "$scene" --output "$out/pulled_$1" $small --set loading.case=tension --set loading.grip=0.1 \
     --set loading.amount=0.005 || fail "the braid was not pulled on $1 ranks"
   figures "$out/knit_$1" $tables >"$out/knit_$1.figures" || fail "tables of the knit are missing"
   figures "$out/pulled_$1/loading" >"$out/pulled_$1.figures" || fail "tables of the load are missing"
