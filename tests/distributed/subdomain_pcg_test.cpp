@@ -165,16 +165,44 @@ test::SyntheticSystem coupled_chains(unsigned seed) {
         system.dense.push_back(std::move(slide));
     }
     system.description.motions.front().stiffness = Matrix::Constant(1, 1, 40.0);
+    for (scene::Tie& tie : system.description.ties) tie.support = 3.0;
     system.finish();
     return system;
 }
 
+/// The system whose bands have springs in the place of its ties, as those of beams do.
+struct Supported {
+    const test::SyntheticSystem* of;
+    const scene::DofLayout& layout() const { return of->layout(); }
+    void apply(const Vector& x, Vector& y) const { of->apply(x, y); }
+    void chain_band(Index c, Matrix& blocks) const {
+        of->chain_band(c, blocks);
+        const scene::Chain& chain = layout().chains[core::at(c)];
+        for (const scene::Tie& tie : layout().ties)
+            for (const Index v : tie.vectors) {
+                const Index own = v - chain.first_vector, per_node = chain.vectors_per_node;
+                if (own < 0 || own >= chain.nodes * per_node) continue;
+                const double length = layout().length[core::at(v)];
+                blocks.block<3, 3>(3 * own, 3 * (own % per_node)).diagonal().array() += tie.support * length * length;
+            }
+    }
+    void node_blocks(Index c, Matrix& blocks) const {
+        chain_band(c, blocks);
+        blocks = blocks.leftCols(3 * layout().chains[core::at(c)].vectors_per_node).eval();
+    }
+    template <class Visitor>
+    void visit(Visitor& visitor) const {
+        of->visit(visitor);
+    }
+};
+
 TEST_CASE("chains that touch themselves, places that slide, vectors that are held and averages: on any number of ranks") {
     Index on_themselves = 0;
     for (const unsigned seed : {1u, 2u, 3u}) {
-        const test::SyntheticSystem system = coupled_chains(seed);
+        const test::SyntheticSystem synthetic = coupled_chains(seed);
+        const Supported system{&synthetic};
         const assembly::VectorPlaces places(system.layout());
-        on_themselves += std::count_if(system.points.begin(), system.points.end(), [&](const auto& point) {
+        on_themselves += std::count_if(synthetic.points.begin(), synthetic.points.end(), [&](const auto& point) {
             return places.chain(point.vectors.front()) == places.chain(point.vectors.back());
         });
         Vector b(system.layout().unknowns()), left(b.size());

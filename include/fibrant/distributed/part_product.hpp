@@ -69,6 +69,13 @@ public:
                 if (part >= 0 && part < parts() && (wholes_[core::at(part)].empty() || wholes_[core::at(part)].back() != k))
                     wholes_[core::at(part)].push_back(k);
             }
+        supports_.assign(runs_.size(), {});
+        for (const scene::Tie& tie : layout.ties)
+            for (const Index v : tie.vectors) {
+                const double length = layout.length[core::at(v)];
+                const Index part = cut.owner()[core::at(v)] - first_part_;
+                if (part >= 0 && part < parts()) supports_[core::at(part)].emplace_back(v, tie.support * length * length);
+            }
         held_.assign(runs_.size(), {});
         for (Index h = 0; h < core::count(layout.held); ++h) {
             const Index part = cut.owner()[core::at(layout.held[core::at(h)].vector)] - first_part_;
@@ -95,6 +102,8 @@ public:
                     if ((*owner_)[core::at(mine[i])] == own) y.segment<3>(3 * Index{mine[i]}) += own_weights[i] * force;
             }
             for (const Index k : wholes_[core::at(part)]) add_whole(terms_->wholes()[core::at(k)], own, x, y);
+            // What bands have in the place of ties is no part of A.
+            for (const auto& [v, support] : supports_[core::at(part)]) y.segment<3>(3 * v) -= support * x.segment<3>(3 * v);
             for (const Index h : held_[core::at(part)]) {
                 const scene::HeldVector& held = layout_->held[core::at(h)];
                 y.segment<3>(3 * held.vector) = (held.free * y.segment<3>(3 * held.vector)).eval();
@@ -141,6 +150,7 @@ private:
     std::vector<std::vector<Run>> runs_;                             // of each own part
     std::vector<std::vector<std::pair<Index, std::size_t>>> sides_;  // of each own part: term, side
     std::vector<std::vector<Index>> wholes_, held_;                  // of each own part: numbers in the terms, in the layout
+    std::vector<std::vector<std::pair<Index, double>>> supports_;    // of each own part: tied vectors, and what bands hold them by
     const scene::DofLayout* layout_ = nullptr;
     const std::vector<Matrix>* bands_ = nullptr;
     const PairTerms* terms_ = nullptr;
