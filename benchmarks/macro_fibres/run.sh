@@ -5,8 +5,8 @@
 # a plot (.svg) of what differs from the finest that was computed.
 # usage: benchmarks/macro_fibres/run.sh PROGRAMS FOLDER [FIBRES...]
 #   PROGRAMS  folder of the programs, build/release/bin after `cmake --build --preset release`
-#   FIBRES    computed fibres a tow, 7 19 38 76 unless said; settled,N (a fabric that is not loaded) for 380, which takes hours
-# What is in FOLDER already is kept: a run that was interrupted goes on.
+#   FIBRES    computed fibres a tow, 7 19 38 76 unless said; settled,N is not loaded and stretched,N not sheared: 380 take hours
+# What has come to its end in FOLDER is kept: a run that was interrupted goes on.
 set -eu
 [ $# -ge 2 ] || { sed -n '3,9s/^# //p' "$0"; exit 2; }
 programs=$1
@@ -19,7 +19,7 @@ status=0
 compute() { # PROGRAM SCENE NAME [option]...
   program=$1 scene=$2 name=$3
   shift 3
-  if [ -e "$folder/$name/summary.json" ]; then return; fi
+  if grep -qs '"converged": true' "$folder/$name/summary.json"; then return; fi
   echo "$name"
   again=
   [ ! -e "$folder/$name/checkpoint.bin" ] || again=--resume
@@ -28,10 +28,10 @@ compute() { # PROGRAM SCENE NAME [option]...
     { echo "$name: status $?, see $folder/$name.log"; status=1; }
 }
 for choice in ${*:-7 19 38 76}; do
-  fibres=${choice#settled,}
+  fibres=${choice#*,}
   # Elements of the finest mesh for all, so that nothing but fibres differs.
   compute weave plain "plain_$fibres" --set "warp.fibres=$fibres" --set fabric.elements=32
-  [ "$fibres" = "$choice" ] || continue
+  [ "$choice" != "settled,$fibres" ] || continue
   # A step may move 0.05 mm, two and a half radii of 76 fibres.
   far=$(awk "BEGIN { print 0.05 / (0.009 * sqrt(380 / $fibres)) }")
   of="--set settled.checkpoint=$folder/plain_$fibres/checkpoint.bin --set loading.tow_ends=fibres
@@ -40,6 +40,7 @@ for choice in ${*:-7 19 38 76}; do
   # shellcheck disable=SC2086
   compute fabric_loading equibiaxial "stretched_$fibres" $of --set "$set_of" --set 'stretch.ramps=["strain = 0.005"]' \
     --set stretch.increments=10
+  [ "$choice" = "$fibres" ] || continue
   # shellcheck disable=SC2086
   compute fabric_loading shear "sheared_$fibres" $of --set "$set_of" --set 'loading.stages=["tighten","shear"]' \
     --set 'shear.ramps=["shear = 0.35"]' --set shear.increments=70 --set shear.damping=1e-3

@@ -54,8 +54,8 @@ def figures(fibres):
     }
     for strain in (0.002, 0.005):
         found[f"force at {100 * strain:g} % [N]"] = of_load(f"stretched_{fibres}", "stretch", "strain", "force", strain)
-    for angle in (0.1, 0.2, 0.35):
-        found[f"shear moment at {angle:g} [N mm]"] = of_load(f"sheared_{fibres}", "shear", "shear", "moment", angle)
+    for angle in (5, 10, 15, 19):
+        found[f"force of shear at {angle} degrees [N]"] = of_load(f"sheared_{fibres}", "shear", "angle_deg", "force", angle)
     return found
 
 
@@ -93,7 +93,7 @@ print("| least gap over the radius; energy missed over the work | " + " | ".join
 plot = Plot("what macro-fibres miss of the finest", "fibres a tow", "relative difference", (5, 500), (1e-4, 1), True, True)
 for k, (name, points) in enumerate((n, p) for n, p in errors.items() if n in
                                    ("crimp", "thickness [mm]", "width of a tow [mm]", "volume fraction",
-                                    "force at 0.5 % [N]", "shear moment at 0.2 [N mm]")):
+                                    "force at 0.5 % [N]", "force of shear at 15 degrees [N]")):
     shown = [(n, max(error, 1e-4)) for n, error in points]
     plot.line(shown, colours[k], name)
     plot.points(shown, colours[k])
