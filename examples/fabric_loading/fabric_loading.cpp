@@ -49,7 +49,7 @@ bool run(const fabric_loading::LoadFile& load, example::SceneReader& file, examp
     }
     const Vector state = refined ? refined->state : checkpoint([&] { return simulation::checkpoint_state(start, mesh); });
     const observe::Snapshot settled = simulation::snapshot_of(mesh, state);
-    const cloth::LoadCase scene = cloth::load_case(load.name, settled, fabric, load.tow_ends);
+    const cloth::LoadCase scene = cloth::load_case(load.name, settled, fabric, load.tow_ends, load.forming);
     fabric_loading::require_channels(file, load, connection::Channels(scene.assembly).names());
     parameters.iteration = load.scene.iteration;
     example::choose_solver(parameters, load.scene.linear_solver);

@@ -7,6 +7,7 @@
 
 #include <fibrant/compositions/weave/load_cases.hpp>
 #include <fibrant/compositions/weave/settle.hpp>
+#include <fibrant/exchange/surface_files.hpp>
 #include <fibrant/simulation/programme.hpp>
 
 #include <algorithm>
@@ -31,6 +32,7 @@ struct LoadFile {
     Index points_per_element = 0;            ///< spacing of contacts, if it is another
     Index parts = 1;                         ///< that each element of the settled fabric is cut into
     cloth::FabricParameters settled_fabric;  ///< before that
+    cloth::FormingParameters forming;        ///< of a case of that name
     fibrant::simulation::LoadProgramme programme;
 };
 
@@ -59,7 +61,8 @@ inline fibrant::simulation::ProgrammeStage read_stage(SceneReader& file, const s
     std::vector<std::string> ramps;
     file.require(name, "increments", stage.increments, example::between(1, 100000), "increments of each ramp");
     file.read(name, "ramps", ramps,
-              "what is driven, as texts \"channel = value\": strain, shear, bend, plates, pull or tension, as the case has them");
+              "what is driven, as texts \"channel = value\": strain, shear, bend, plates, pull, punch, holder or tension, as the "
+              "case has them");
     file.read(name, "cycles", stage.cycles, example::between(0, 10000), "how many times there and back; 0: there only");
     file.read(name, "back", stage.back, example::between(-1e6, 1e6), "1", "value at which each cycle ends");
     file.read(name, "rest", stage.rest, "after its ramps, go on until the fabric is at rest");
@@ -72,6 +75,24 @@ inline fibrant::simulation::ProgrammeStage read_stage(SceneReader& file, const s
         stage.friction = coefficient;
     for (const std::string& text : ramps) stage.ramps.push_back(read_ramp(file, name, text));
     return stage;
+}
+
+/// The tools that form a fabric.
+inline void read_forming(SceneReader& file, const std::filesystem::path& folder, LoadFile& load) {
+    cloth::FormingParameters& forming = load.forming;
+    const auto length = example::above(0.0, 1e6);
+    std::string punch;
+    file.read("forming", "punch", punch, {},
+              "STL file of a closed surface that points up along z, from the folder of this file; left out: a ball");
+    file.is_a_place("forming", "punch");
+    file.read("forming", "punch_radius", forming.punch_radius, length, "length", "radius of the ball, where no punch is given");
+    file.read("forming", "hole_radius", forming.hole_radius, length, "length", "radius of the hole of die and holder");
+    file.read("forming", "ring_width", forming.ring_width, length, "length", "width of die and holder around the hole");
+    file.read("forming", "edge_radius", forming.edge_radius, length, "length", "radius of the edges of die and holder");
+    file.names({{"FormingParameters.", "forming."}});
+    if (load.name != "forming" || file.describes()) return;
+    if (!punch.empty()) forming.punch = fibrant::exchange::read_surface(folder / punch);
+    forming.validate();
 }
 
 /// @param file  of the load case; paths in it count from its folder
@@ -117,8 +138,9 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
     weave::read_iteration(file, solver, told);
     file.read("solver", "overshoot", told.overshoot, {.low = 0.0, .high = 1e6, .above = true, .endless = true}, "1",
               "Newton's step is cut where the energy rises at its end by more than this part of the slope at which it fell");
+    read_forming(file, folder, load);
     if (file.describes()) read_stage(file, "STAGE");
-    const std::vector<std::string> known{"settled", "loading", "contact", "solver",   "output",
+    const std::vector<std::string> known{"settled", "loading", "contact", "solver",   "output", "forming",
                                          "fabric",  "warp",    "weft",    "material", "settle"};
     for (const std::string& name : stages) {
         if (std::find(known.begin(), known.end(), name) != known.end())

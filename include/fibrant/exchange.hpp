@@ -5,6 +5,7 @@
 #include <fibrant/exchange/binary_curves.hpp>
 #include <fibrant/exchange/curves.hpp>
 #include <fibrant/exchange/files.hpp>
+#include <fibrant/exchange/surface_files.hpp>
 #include <fibrant/exchange/text_curves.hpp>
 #include <fibrant/exchange/tubes.hpp>
 #include <fibrant/exchange/voxel_tables.hpp>

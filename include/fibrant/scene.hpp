@@ -16,3 +16,5 @@
 #include <fibrant/scene/spline.hpp>
 #include <fibrant/scene/tied_vectors.hpp>
 #include <fibrant/scene/tool.hpp>
+#include <fibrant/scene/tool_surface.hpp>
+#include <fibrant/scene/triangle_surface.hpp>

@@ -10,6 +10,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <type_traits>
@@ -282,6 +283,28 @@ TEST_CASE("a tool that is too fast for a fibre is refused by name, and a slower 
             if (report.converged) CHECK(z == test::near(-10.5 * r, 2e-2));
             CHECK(z < 0.5 * r);
         }
+    }
+}
+
+TEST_CASE("a thin plate that is too fast for a fibre is refused by name, and a slower one takes the fibre along") {
+    for (const Index increments : {1, 40}) {
+        CAPTURE(increments);
+        scene::Assembly scene;
+        clamp(scene, scene.add(fibre({-50 * r, 0, 0}, {50 * r, 0, 0}, r, 10)), Vec3::Zero());
+        scene::Tool blade;
+        blade.shape = scene::ToolShape::surface, blade.channel = "motion";
+        blade.surface = std::make_shared<scene::Block>(scene::Block::Parameters{.half = {r, 4 * r, 0.5 * r}, .edge = 0.3 * r});
+        blade.origin = {0, 0, 3.0 * r}, blade.displacement = {0, 0, -8.0 * r};
+        scene.add(blade);
+        simulation::Simulator<Pressing> simulator(scene, test::model_parameters<Pressing>(r));
+        Failures failures;
+        const simulation::Report report = simulator.run({.increments = increments}, failures);
+        const double z = simulator.value({0, 0.5}).z();
+        CAPTURE(report.reason);
+        if (increments > 1) REQUIRE(report.converged);
+        if (increments == 1) CHECK(failures.name("fibre 0 at 0.5 of its length changes sides with tool 0"));
+        if (report.converged) CHECK(z == test::near(-6.5 * r, 2e-2));
+        CHECK(z < 0.5 * r);
     }
 }
 

@@ -312,6 +312,7 @@ struct Swept {
         std::optional<proximity::Approach> beyond(const Lines& lines, Index k, const scene::Tool& tool,
                                                   const proximity::MovingSegment& way) const {
             const double half = lines.half[core::at(lines.of(k))], widths = tool.radius + half;
+            if (tool.shape == scene::ToolShape::surface) return into_body(tool, way, half);
             for (const double s : {0.0, 1.0}) {  // a surface that curves away from fibres, or not at all, is nearest at ends
                 const Vec3 from = s == 0.0 ? way.start : way.end, to = from + (s == 0.0 ? way.start_motion : way.end_motion);
                 const double before = scene::tool_distance(tool, from).distance, after = scene::tool_distance(tool, to).distance;
@@ -345,6 +346,28 @@ struct Swept {
             if (!at.close) return {};
             at.t = touch();
             return at;
+        }
+
+        /// The same of a body of any shape, which may be thin: points of the segment, half a fibre's width apart, go their way in
+        /// steps that are no longer than what is free about them.
+        static std::optional<proximity::Approach> into_body(const scene::Tool& tool, const proximity::MovingSegment& way,
+                                                            double half) {
+            const auto points = static_cast<Index>(std::ceil((way.end - way.start).norm() / half));
+            for (Index k = 0; k <= points; ++k) {
+                const double s = points > 0 ? static_cast<double>(k) / static_cast<double>(points) : 0.0;
+                const Vec3 from = way.start + s * (way.end - way.start),
+                           motion = way.start_motion + s * (way.end_motion - way.start_motion);
+                const double length = motion.norm();
+                double free = scene::tool_distance(tool, from).distance, touch = 1.0;
+                if (free < 0.0 || free >= length) continue;  // it has been there before, or does not get there
+                for (double time = 0.0; time < 1.0;) {
+                    if (free < half) touch = std::min(touch, time);
+                    time = std::min(1.0, time + std::max(free, meeting * half) / length);
+                    free = scene::tool_distance(tool, from + time * motion).distance;
+                    if (free < 0.0) return proximity::Approach{true, time, s, std::min(touch, time), 0.0};
+                }
+            }
+            return {};
         }
 
         const beam::Mesh<B>* mesh_;

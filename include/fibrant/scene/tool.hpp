@@ -1,35 +1,39 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Rigid tools that fibres touch: planes, cylinders and spheres, held or moved on a path.
+/// @file Rigid tools that fibres touch: planes, cylinders, spheres and bodies of any shape, held or moved on a path.
 
 #include <fibrant/core/parameters.hpp>
 #include <fibrant/core/types.hpp>
 #include <fibrant/scene/conditions.hpp>
+#include <fibrant/scene/tool_surface.hpp>
 
 #include <functional>
+#include <memory>
 #include <string>
 
 namespace fibrant::scene {
 
 /// Surfaces that a rigid tool may have.
-enum class ToolShape { plane, cylinder, sphere };
+enum class ToolShape { plane, cylinder, sphere, surface };
 
-/// A rigid, unbounded surface. Fibres stay on one side of it: where the normal of a plane points, outside a cylinder or a
-/// sphere, inside a hollow one.
+/// A rigid surface. Fibres stay on one side of it: where the normal of a plane points, outside a cylinder, a sphere or another
+/// body, inside a hollow one. Planes and cylinders have no end.
 ///
 /// A material point X of the tool is at origin + rotation(a) (X - origin) + displacement(a); a is the amplitude of the channel.
 struct Tool {
     std::string name{};                  ///< in tables and messages
     ToolShape shape = ToolShape::plane;  ///< of its surface
-    Vec3 origin = Vec3::Zero();          ///< a point of the plane or of the cylinder's axis, or the centre of the sphere [length]
+    Vec3 origin = Vec3::Zero();          ///< a point of the plane or of the cylinder's axis, the centre of the sphere, or where
+                                         ///< the origin of another body stands [length]
     Vec3 axis = Vec3::UnitZ();           ///< normal of the plane, on the fibres' side, or direction of the cylinder; made unit
     double radius = core::unset;         ///< of a cylinder or a sphere [length], > 0
-    bool hollow = false;                 ///< fibres are inside the cylinder or the sphere
-    double friction_factor = 1.0;        ///< on the coefficient of the friction law [1], >= 0
-    std::string channel = "tools";       ///< whose amplitude drives it
-    Vec3 displacement = Vec3::Zero();    ///< at amplitude 1 [length]
-    std::function<Vec3(double)> path{};  ///< displacement at amplitude a, where it is not proportional
-    std::function<Mat3(double)> rotation{};  ///< at amplitude a, about the origin; none: identity
+    bool hollow = false;                 ///< fibres are inside the cylinder, the sphere or the body
+    std::shared_ptr<const ToolSurface> surface{};  ///< of a body of any shape: TriangleSurface, Block, Ring or one's own
+    double friction_factor = 1.0;                  ///< on the coefficient of the friction law [1], >= 0
+    std::string channel = "tools";                 ///< whose amplitude drives it
+    Vec3 displacement = Vec3::Zero();              ///< at amplitude 1 [length]
+    std::function<Vec3(double)> path{};            ///< displacement at amplitude a, where it is not proportional
+    std::function<Mat3(double)> rotation{};        ///< at amplitude a, about the origin; none: identity
     /// Particle of a centreline that carries it, for models whose part Tools is contact::CarriedTools: the tool moves as that
     /// does and pushes it with what it feels. The fibre itself does not touch the tool. Without a fibre there is none.
     Station carrier{};
@@ -41,7 +45,10 @@ struct Tool {
         require_finite("Tool.displacement", displacement);
         require_at("Tool", 0.0, path, rotation);
         core::require_positive("Tool.axis: length", axis.norm());
-        if (shape != ToolShape::plane) core::require_positive("Tool.radius", radius);
+        if (shape == ToolShape::cylinder || shape == ToolShape::sphere) core::require_positive("Tool.radius", radius);
+        if ((shape == ToolShape::surface) != (surface != nullptr))
+            core::refuse("Tool.surface", surface ? "given" : "none",
+                         surface ? "left out, for a tool of another shape" : "given, for a tool of this shape");
         core::require_not_negative("Tool.friction_factor", friction_factor);
         if (carried() && (!displacement.isZero(0.0) || path || rotation))
             core::refuse("Tool.carrier", "given", "left out, for a tool that is driven along a path");
@@ -73,18 +80,16 @@ inline ToolPose tool_pose(const Tool& tool, double amplitude) {
     return pose;
 }
 
-/// Distance of a point from a tool's surface, < 0 beyond it, and its gradient.
-struct ToolDistance {
-    double distance;  ///< [length]
-    Vec3 normal;      ///< unit, away from the tool
-};
-
 /// Distance of a point from a tool's surface.
 /// @param tool  with a unit axis
 /// @param x     in the tool's own axes, as it stands at amplitude 0 [length]
 inline ToolDistance tool_distance(const Tool& tool, const Vec3& x) {
     Vec3 from = x - tool.origin;
     if (tool.shape == ToolShape::plane) return {from.dot(tool.axis), tool.axis};
+    if (tool.shape == ToolShape::surface) {
+        const ToolDistance outside = tool.surface->distance(from);
+        return tool.hollow ? ToolDistance{-outside.distance, -outside.normal} : outside;
+    }
     if (tool.shape == ToolShape::cylinder) from -= from.dot(tool.axis) * tool.axis;
     const double length = from.norm();
     // On the axis no direction is better than another; fibres never rest there, but a search may ask.

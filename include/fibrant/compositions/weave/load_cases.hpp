@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Load cases of a dry fabric: extension, shear, bending, compaction, a tow that is pulled out (Durville, section 15.4.2).
+/// @file Load cases of a dry fabric: extension, shear, bending, compaction, a tow that is pulled out (Durville, section 15.4.2),
+/// forming by a punch.
 
 #include <fibrant/compositions/weave/edges.hpp>
+#include <fibrant/compositions/weave/forming.hpp>
 #include <fibrant/compositions/weave/measures.hpp>
 #include <fibrant/core/rotation.hpp>
 #include <fibrant/scene/dof_layout.hpp>
@@ -28,8 +30,8 @@ inline constexpr const char* pull_channel = "pull";  ///< displacement of a tow'
 
 /// Names of the load cases of a fabric, as scenes spell them.
 inline const std::vector<std::string>& load_case_names() {
-    static const std::vector<std::string> names{"release", "equibiaxial", "uniaxial",   "shear",
-                                                "frame",   "bending",     "compaction", "pull_out"};
+    static const std::vector<std::string> names{"release", "equibiaxial", "uniaxial", "shear",  "frame",
+                                                "bending", "compaction",  "pull_out", "forming"};
     return names;
 }
 
@@ -51,6 +53,7 @@ struct LoadCase {
     double pulled_from = 0.0;             ///< where it was along x [length]
     std::vector<Index> pulled_fibres{};   ///< of that tow
     std::array<Index, 2> plates{-1, -1};  ///< below and above
+    FormingTools forming{};               ///< whose holder and die are the plates
     double width = 0.0, height = 0.0;     ///< between the edges along x and along y at the start [length]
     double plate_distance = 0.0;          ///< at the start [length]
     double middle_spacing = 0.0;          ///< of middle crossings at the start [length]
@@ -96,9 +99,10 @@ inline double arc_rise(double x, double width) noexcept { return (x * x - 0.25 *
 /// A load case of a settled fabric: its ends, channels and stages.
 /// @param name      one of load_case_names()
 /// @param snapshot  the settled fabric
+/// @param forming   the tools of "forming", in which no end is held
 /// @throws std::invalid_argument naming the field that is wrong
 inline LoadCase load_case(const std::string& name, const observe::Snapshot& snapshot, const FabricParameters& fabric,
-                          TowEnds ends = TowEnds::kept) {
+                          TowEnds ends = TowEnds::kept, const FormingParameters& forming = {}) {
     using scene::Coordinate;
     const auto& names = load_case_names();
     if (std::find(names.begin(), names.end(), name) == names.end()) core::refuse("load_case.name", name, "a load case");
@@ -185,6 +189,10 @@ inline LoadCase load_case(const std::string& name, const observe::Snapshot& snap
             plate.channel = plate_channel;
             load.plates[above ? 1 : 0] = load.assembly.add(plate);
         }
+    } else if (name == "forming") {
+        load.forming = add_forming_tools(load.assembly, snapshot, forming);
+        load.plates = {load.forming.holder, load.forming.die};
+        return load;
     } else {  // pull_out
         const Index tow = fabric.warp_tows / 2;
         west.left_out = east.left_out = {tow};
@@ -296,6 +304,13 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
         const auto& tools = simulator.contacts().tools();
         figures = {{"thickness", load.plate_distance * (1.0 - simulator.amplitude(plate_channel))},
                    {"force", 0.5 * std::abs((tools.reaction(load.plates[1]).force - tools.reaction(load.plates[0]).force).z())}};
+    } else if (load.name == "forming") {
+        const auto& tools = simulator.contacts().tools();
+        const scene::Tool& punch = tools.tools()[core::at(load.forming.punch)];
+        figures = {{"stroke", (tools.pose(load.forming.punch).place(punch.origin) - punch.origin).z()},
+                   {"force", -tools.reaction(load.forming.punch).force.z()},
+                   {"die_force", tools.reaction(load.forming.die).force.z()},
+                   {"greatest_shear_deg", greatest_shear_deg(snapshot, load.fabric)}};
     } else {
         figures = {{"displacement", ties.motion().position(load.puller).x() - load.pulled_from},
                    {"force", ties.wrench(load.puller).force.x()},
@@ -306,6 +321,7 @@ std::vector<Figure> load_figures(const LoadCase& load, const Simulator& simulato
         if (ties.motion().parent(body) < 0) sum += ties.wrench(body).force;  // and that of those that hang on it
     for (const Index plate : load.plates)
         if (plate >= 0) sum -= simulator.contacts().tools().reaction(plate).force;
+    if (load.forming.punch >= 0) sum -= simulator.contacts().tools().reaction(load.forming.punch).force;
     for (const Edge edge : all_edges) {
         const Index body = load.bodies.of(edge);
         if (body < 0) continue;
