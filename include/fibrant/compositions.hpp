@@ -46,6 +46,7 @@
 #include <fibrant/compositions/weave/fabric_limits.hpp>
 #include <fibrant/compositions/weave/fabric_parameters.hpp>
 #include <fibrant/compositions/weave/fibre_figures.hpp>
+#include <fibrant/compositions/weave/forming.hpp>
 #include <fibrant/compositions/weave/load_cases.hpp>
 #include <fibrant/compositions/weave/measures.hpp>
 #include <fibrant/compositions/weave/packing.hpp>
