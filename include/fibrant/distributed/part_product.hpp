@@ -150,7 +150,7 @@ private:
     std::vector<std::vector<Run>> runs_;                             // of each own part
     std::vector<std::vector<std::pair<Index, std::size_t>>> sides_;  // of each own part: term, side
     std::vector<std::vector<Index>> wholes_, held_;                  // of each own part: numbers in the terms, in the layout
-    std::vector<std::vector<std::pair<Index, double>>> supports_;    // of each own part: tied vectors, and what bands hold them by
+    std::vector<std::vector<std::pair<Index, double>>> supports_;  // of each own part: tied vectors, and what bands hold them by
     const scene::DofLayout* layout_ = nullptr;
     const std::vector<Matrix>* bands_ = nullptr;
     const PairTerms* terms_ = nullptr;

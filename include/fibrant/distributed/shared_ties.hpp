@@ -21,8 +21,7 @@ public:
     void analyse(const scene::DofLayout& layout, const Subdomains& cut, const BlockRuns& runs, int ranks) {
         vectors_.assign(core::at(ranks), {});
         for (const scene::Tie& tie : layout.ties)
-            for (const Index v : tie.vectors)
-                vectors_[core::at(runs.rank_of(cut.owner()[core::at(v)]))].push_back(v);
+            for (const Index v : tie.vectors) vectors_[core::at(runs.rank_of(cut.owner()[core::at(v)]))].push_back(v);
         for (std::vector<Index>& own : vectors_) std::sort(own.begin(), own.end());
     }
 

@@ -62,7 +62,9 @@ concept LinearSolver = core::Policy<S> && assembly::LinearSystem<T> &&
 
 /// A strategy that multiplies by the bands of chains: a system has to give it all that lies within them.
 template <class S>
-concept ReadsWholeBands = requires { requires S::reads_whole_bands; };
+concept ReadsWholeBands = requires {
+    requires S::reads_whole_bands;
+};
 
 /// Norm of a residual, in which forces on directions count as forces at the surface: each 3-vector is divided by its
 /// length in the layout [force].

@@ -264,7 +264,7 @@ TEST_CASE("forming begins with tools that touch the fabric and do not overlap it
           "FormingParameters.hole_radius = nan, but it must be finite and > 0");
 
     CHECK(greatest_shear_deg(snapshot, fabric) < 0.05);  // waves between nodes are cubic
-    const double angle = 0.3;  // x of the wefts' nodes goes along with y: warps stay
+    const double angle = 0.3;                            // x of the wefts' nodes goes along with y: warps stay
     for (observe::FibreSnapshot& fibre : snapshot.fibres)
         for (Vec3& node : fibre.position) node.x() += std::tan(angle) * node.y();
     // Tows are waved: their tangents at crossings lie in the plane.
