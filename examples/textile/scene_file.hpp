@@ -7,6 +7,7 @@
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/compositions/textile/braids.hpp>
+#include <fibrant/compositions/textile/free_ends.hpp>
 #include <fibrant/compositions/textile/imported.hpp>
 #include <fibrant/compositions/textile/knits.hpp>
 #include <fibrant/compositions/textile/load_cases.hpp>
@@ -14,6 +15,7 @@
 #include <fibrant/compositions/textile/plies.hpp>
 #include <fibrant/compositions/textile/settle.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
+#include <fibrant/compositions/textile/triaxial_weave.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
 #include <fibrant/exchange/files.hpp>
 
@@ -404,6 +406,22 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
     return made;
 }
 
+/// Refuses free ends of yarns that are straight at rest and come off: nothing but friction holds those.
+inline void check_free_ends(const SceneReader& file, const Scene& scene) {
+    const std::string drawn = ", or ends.straight_at_rest = false of yarns that are drawn apart: ";
+    if (scene.generator == "plied" && scene.textile.paths.front().straight)
+        file.refuse("ends", "kind", "held, pulled or periodic" + drawn + "plies that are straight at rest unwind");
+    const cloth::FrictionNeeded needed = cloth::friction_that_holds(scene.textile);
+    if (needed.coefficient <= scene.settle.friction_coefficient) return;
+    constexpr double plausible = 2.0;  // friction: more of it is no remedy
+    const std::string more = needed.coefficient < plausible
+                                 ? ", or contact.friction_coefficient >= " + fibrant::core::text(needed.coefficient)
+                                 : std::string();
+    file.refuse("ends", "kind",
+                "held or pulled" + more + drawn + scene.textile.label(needed.path) +
+                    " is straight at rest, and comes off the yarns that bend it");
+}
+
 }  // namespace detail
 
 /// That a run takes, contacts and solver included.
@@ -552,6 +570,7 @@ inline Scene read_scene(SceneReader& file) {
         cloth::require_holding(scene.textile, scene.generator == "stitched" ? "stitched.sideways: crossings"
                                               : scene.generator == "levels" ? "levels.levels: crossings"
                                                                             : "textile.generator: crossings");
+    if (ends == "free") detail::check_free_ends(file, scene);
     return scene;
 }
 

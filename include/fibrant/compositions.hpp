@@ -24,6 +24,7 @@
 #include <fibrant/compositions/textile/braids.hpp>
 #include <fibrant/compositions/textile/cell_prestress.hpp>
 #include <fibrant/compositions/textile/crossings.hpp>
+#include <fibrant/compositions/textile/free_ends.hpp>
 #include <fibrant/compositions/textile/imported.hpp>
 #include <fibrant/compositions/textile/interlaced.hpp>
 #include <fibrant/compositions/textile/knits.hpp>
@@ -33,6 +34,7 @@
 #include <fibrant/compositions/textile/settle.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
 #include <fibrant/compositions/textile/textile.hpp>
+#include <fibrant/compositions/textile/triaxial_weave.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
 #include <fibrant/compositions/textile/yarn_contacts.hpp>
 #include <fibrant/compositions/textile/yarn_fibres.hpp>

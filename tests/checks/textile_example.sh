@@ -102,6 +102,10 @@ refused interlock 'levels.levels=["333333","01232"]' "levels.levels[1] = 5 colum
 sed '/^\[binder\]/,$d' "$scenes/orthogonal.toml" > "$out/bound.toml" && printf '[binder]\naspect = 0.5\n' >> "$out/bound.toml"
 refused bound output.paraview=false "binder.aspect = 0.5, but it must be >= 1"
 refused orthogonal 'levels.kinds=["binder"]' "levels.kinds = 1, but it must be one for each warp, 3"
+# Ends that nothing holds: yarns that are straight at rest come off, if friction does not keep them.
+refused braid_flat ends.kind=free "comes off the yarns that bend it"
+refused yarn_plied ends.kind=free "unwind"
+refused interlock ends.kind=free "contact.friction_coefficient >= 0."
 # What comes after the settling is refused before it.
 refused straight loading.grip=1.9 "loading.grip = 1.9, but it must be < half the length of the sample"
 refused straight output.voxel_spacing=5.0 "output.voxel_spacing = 5, but it must be less than the sample is long"

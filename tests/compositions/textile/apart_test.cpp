@@ -8,6 +8,7 @@
 #include <fibrant/compositions/textile/knits.hpp>
 #include <fibrant/compositions/textile/plies.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
+#include <fibrant/compositions/textile/triaxial_weave.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 

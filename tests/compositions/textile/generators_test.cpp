@@ -7,6 +7,7 @@
 #include <fibrant/compositions/textile/knits.hpp>
 #include <fibrant/compositions/textile/plies.hpp>
 #include <fibrant/compositions/textile/strands.hpp>
+#include <fibrant/compositions/textile/triaxial_weave.hpp>
 #include <fibrant/compositions/textile/weaves.hpp>
 #include <fibrant/observe/linking.hpp>
 
@@ -425,6 +426,23 @@ TEST_CASE("the outermost wefts of a leno keep their places along its ends where 
             CHECK(std::abs(weft.curve(weft.guides[k].at).y() - spacing * static_cast<double>(k)) < 1e-12 * width);
             CHECK((weft.guides[k].directions - Mat3(Vec3::UnitX() * Vec3::UnitX().transpose())).norm() == 0.0);
         }
+    }
+}
+
+TEST_CASE("no end of a triaxial weave of single fibres stands on another yarn or just behind one, whatever the sample's radius") {
+    for (const auto& sample : {std::pair{0.8, 1.2}, {0.8, 2.0}, {0.8, 2.4}, {0.45, 1.0}, {0.6, 1.4}}) {
+        const double spacing = sample.first, radius = sample.second;
+        CAPTURE(spacing);
+        CAPTURE(radius);
+        const Textile weave = triaxial_weave({.spacing = spacing, .radius = radius, .type = yarn(), .height_over_radius = 0.5});
+        const std::vector<Line> lines = lines_of(weave);
+        double nearest = spacing;
+        for (std::size_t a = 0; a < lines.size(); ++a)
+            for (std::size_t b = 0; b < lines.size(); ++b)
+                for (const Vec3& end : {lines[a].points.front(), lines[a].points.back()})
+                    for (const Vec3& point : lines[b].points)
+                        if (a != b) nearest = std::min(nearest, std::hypot(point.x() - end.x(), point.y() - end.y()));
+        CHECK(nearest > 0.12);  // 3 radii along itself are 0.13 across the other, at 60 degrees; diameters are 0.1
     }
 }
 

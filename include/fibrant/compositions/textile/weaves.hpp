@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file Weaves of any number of layers from a matrix of levels, lift plans, leno and triaxial weaves.
+/// @file Weaves of any number of layers from a matrix of levels, and lift plans, and leno.
 
 #include <fibrant/compositions/textile/interlaced.hpp>
 
@@ -308,80 +308,6 @@ inline Textile leno(const LenoWeave& weave) {
     return laid(weave, &LenoWeave::pick_spacing, "LenoWeave.pick_spacing", 2.0 * half_room(weave.type),
                 {{"pair_spacing", weave.pair_spacing}, {"aside", weave.aside}}, weave.type,
                 [](const LenoWeave& one) { return detail::drawn(one); });
-}
-
-/// Three families of straight yarns at 0, 60 and -60 degrees within a circle, no three of which meet at a point.
-struct TriaxialWeave {
-    double spacing = core::unset;      ///< of a family, across it [length], > 0
-    double radius = core::unset;       ///< of the circle within which yarns cross [length], > spacing
-    YarnType type{};                   ///< of all yarns
-    double height_over_radius = 1.05;  ///< of yarns at crossings out of the middle plane [1], > 0; of several fibres >= 1.05
-
-    void validate() const {
-        core::require_positive("TriaxialWeave.spacing", spacing);
-        core::require(radius > spacing, "TriaxialWeave.radius", radius, "> spacing");
-        constexpr double most = 10000.0;  // yarns of a family
-        core::require(radius <= 0.5 * most * spacing, "TriaxialWeave.radius", radius,
-                      "<= " + core::text(0.5 * most * spacing) + ", 5000 spacings");
-        type.validate();
-        core::require_positive("TriaxialWeave.height_over_radius", height_over_radius);
-        require_height("TriaxialWeave.height_over_radius", height_over_radius, type);
-    }
-};
-
-namespace detail {
-inline Textile drawn(const TriaxialWeave& weave) {
-    Textile textile;
-    textile.name = "triaxial weave";
-    textile.apart_by.fill({"TriaxialWeave.spacing", weave.spacing});
-    textile.types = {weave.type};
-    std::vector<Index> family;
-    const double overhang = 0.75 * weave.spacing;
-    for (Index f = 0; f < 3; ++f) {
-        const double angle = std::numbers::pi / 3.0 * (f == 0 ? 0.0 : f == 1 ? 1.0 : -1.0);
-        const Vec3 along(std::cos(angle), std::sin(angle), 0.0), across(-along.y(), along.x(), 0.0);
-        // With a quarter of the spacing, and one family by half of it more, lines of three families never meet in one point. By
-        // a quarter more all ways from crossing to crossing are alike and as long as can be, which yarns of several fibres need.
-        const bool several = weave.type.fibres > 1;
-        const double more = several ? 0.25 : 0.5, shift = (0.25 + (f == 2 ? more : 0.0)) * weave.spacing;
-        const auto most = static_cast<Index>(std::floor(weave.radius / weave.spacing)) + 1;
-        for (Index k = -most; k <= most; ++k) {
-            const double d = shift + weave.spacing * static_cast<double>(k), chord = weave.radius * weave.radius - d * d;
-            if (chord < 0.25 * weave.spacing * weave.spacing) continue;
-            const double half = std::sqrt(chord) + overhang;
-            Path path;
-            path.name = std::string(1, static_cast<char>('A' + f)) + std::to_string(k);
-            path.family = f;
-            double from = -half, to = half;
-            if (several) {  // ends lie half way between crossings: some fibres of a yarn would cross another, and some not
-                const double other = std::numbers::pi / 3.0 * (f == 1 ? -1.0 : 1.0);  // a family beside this one
-                const Vec3 beside(-std::sin(other), std::cos(other), 0.0);
-                const double offset = (f == 1 ? 0.25 + more : 0.25) * weave.spacing, step = weave.spacing / std::sqrt(3.0),
-                             first = (offset - d * across.dot(beside)) / along.dot(beside);
-                for (double* end : {&from, &to}) *end = first + step * (std::floor((*end - first) / step) + 0.5);
-            }
-            const double middle = 0.5 * (from + to), reach = 0.5 * (to - from);
-            path.curve = [=](double t) { return Vec3(d * across + (middle + reach * (2.0 * t - 1.0)) * along); };
-            textile.paths.push_back(std::move(path));
-            family.push_back(f);
-        }
-    }
-    interlace(
-        textile,
-        [&](const PlanCrossing& crossing) {
-            const Index a = family[core::at(crossing.first)], b = family[core::at(crossing.second)];
-            return one_above((a + 1) % 3 == b);
-        },
-        weave.height_over_radius * half_thickness(weave.type));
-    return textile;
-}
-}  // namespace detail
-
-/// Orders are cyclic by families: the first above the second, the second above the third, the third above the first. One crossing
-/// a pair that meets.
-inline Textile triaxial_weave(const TriaxialWeave& weave) {
-    return laid(weave, &TriaxialWeave::spacing, "TriaxialWeave.spacing", 2.0 * half_room(weave.type), {{"radius", weave.radius}},
-                weave.type, [](const TriaxialWeave& one) { return detail::drawn(one); });
 }
 
 }  // namespace fibrant::compositions::textile
