@@ -410,7 +410,7 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
 inline void check_free_ends(const SceneReader& file, const Scene& scene) {
     const std::string drawn = ", or ends.straight_at_rest = false of yarns that are drawn apart: ";
     if (scene.generator == "plied" && scene.textile.paths.front().straight)
-        file.refuse("ends", "kind", "held, pulled or periodic" + drawn + "plies that are straight at rest unwind");
+        file.refuse("ends", "kind", "held or pulled" + drawn + "plies that are straight at rest unwind");
     const cloth::FrictionNeeded needed = cloth::friction_that_holds(scene.textile);
     if (needed.coefficient <= scene.settle.friction_coefficient) return;
     constexpr double plausible = 2.0;  // friction: more of it is no remedy
