@@ -161,18 +161,34 @@ private:
         const std::vector<double>& arcs = arcs_[core::at(p)];
         const Index n = core::count(arcs);
         if (n < 3) return 0.0;
-        Matrix all = Matrix::Zero(2 * n, 2 * n);
-        for (Index k = 0; k + 1 < n; ++k) all.block<4, 4>(2 * k, 2 * k) += stiffness(p, way(p, core::at(k)));
-        Matrix held(n, n), mixed(n, n), turned(n, n), places(n, 3);
-        for (Index i = 0; i < n; ++i)
-            for (Index j = 0; j < n; ++j)
-                held(i, j) = all(2 * i, 2 * j), mixed(i, j) = all(2 * i, 2 * j + 1), turned(i, j) = all(2 * i + 1, 2 * j + 1);
         const Vec3 axis = textile_.view.axis.normalized();
+        Matrix places(n, 3), slopes = Matrix::Zero(n, 3), forces = Matrix::Zero(n, 3);
         for (Index k = 0; k < n; ++k) {
             const Vec3 place = point(p, arcs[core::at(k)]);
             places.row(k) = place - place.dot(axis) * axis;
         }
-        const Matrix forces = held * places - mixed * turned.llt().solve(mixed.transpose() * places);
+        // No moment acts at a knot: a tridiagonal system for the slopes, solved from the first one on and back.
+        std::vector<Eigen::Matrix4d> pieces;
+        Vector pivot = Vector::Zero(n);
+        for (Index k = 0; k + 1 < n; ++k) {
+            const Eigen::Matrix4d& e = pieces.emplace_back(stiffness(p, way(p, core::at(k))));
+            pivot[k] += e(1, 1), pivot[k + 1] += e(3, 3);
+            slopes.row(k) -= e(1, 0) * places.row(k) + e(1, 2) * places.row(k + 1);
+            slopes.row(k + 1) -= e(3, 0) * places.row(k) + e(3, 2) * places.row(k + 1);
+        }
+        for (Index k = 0; k + 1 < n; ++k) {
+            const double factor = pieces[core::at(k)](1, 3) / pivot[k];
+            pivot[k + 1] -= factor * pieces[core::at(k)](1, 3), slopes.row(k + 1) -= factor * slopes.row(k);
+        }
+        slopes.row(n - 1) /= pivot[n - 1];
+        for (Index k = n - 2; k >= 0; --k)
+            slopes.row(k) = (slopes.row(k) - pieces[core::at(k)](1, 3) * slopes.row(k + 1)) / pivot[k];
+        for (Index k = 0; k + 1 < n; ++k)
+            for (const Index end : {0, 1}) {
+                const Eigen::RowVector4d e = pieces[core::at(k)].row(2 * end);
+                forces.row(k + end) +=
+                    e[0] * places.row(k) + e[1] * slopes.row(k) + e[2] * places.row(k + 1) + e[3] * slopes.row(k + 1);
+            }
         return forces.rowwise().norm().sum();
     }
     /// Yarns may not be in each other: Newton's method on a penalty, which is convex, each step as long as its energy falls.
