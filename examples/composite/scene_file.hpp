@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <numbers>
 #include <string>
 
 namespace composite {
@@ -109,6 +110,13 @@ inline Scene read_scene(example::SceneReader& file) {
                ">= a thousandth of the radius of a fibre = " + fibrant::core::text(1e-3 * thickest));
     file.check(matrix.cover <= 1e4 * thickest, "matrix", "cover",
                "<= 10000 radii of a fibre = " + fibrant::core::text(1e4 * thickest));
+    if (load.load == LoadCase::bending) {
+        const double length = fabric.fibre_length(fibrant::compositions::weave::Family::warp),
+                     sharpest = length / matrix.cover * 180.0 / std::numbers::pi;
+        file.check(std::abs(load.angle_deg) < sharpest, "load", "angle_deg",
+                   "less than " + fibrant::core::text(sharpest) +
+                       " either way, at which the radius of the arc is matrix.cover = " + fibrant::core::text(matrix.cover));
+    }
     if (!scene.settled.empty())
         file.check(std::filesystem::is_regular_file(scene.settled), "load", "settled", "a checkpoint that is there");
     const double solid = 6.0 * static_cast<double>(matrix.cells_along + 1) * static_cast<double>(matrix.cells_across + 1) *

@@ -14,8 +14,10 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fabric_loading {
@@ -35,6 +37,38 @@ struct LoadFile {
     cloth::FormingParameters forming;        ///< of a case of that name
     fibrant::simulation::LoadProgramme programme;
 };
+
+/// Every channel of a load case, with what it may be driven to: beyond that there is no such state of a fabric.
+inline std::vector<std::pair<std::string, example::Bound>> channel_bounds(const std::string& load_case) {
+    using std::numbers::pi;
+    return {{cloth::strain_channel, example::inside(-0.9, 10.0)},
+            // Sides of a frame lie on each other at a right angle.
+            {cloth::shear_channel, load_case == "frame" ? example::inside(-0.5 * pi, 0.5 * pi) : example::inside(-10.0, 10.0)},
+            {cloth::bend_channel, example::between(-pi, pi)},        // of either edge: the arc closes
+            {cloth::plate_channel, example::inside(-10.0, 1.0)},     // at 1 they touch each other
+            {cloth::pull_channel, example::between(-1e4, 1e4)},      // spacings: longer than any tow
+            {cloth::tension_channel, example::between(-0.2, 0.2)}};  // of E A, as settle.tension_strain
+}
+
+/// Refuses what a ramp of the stage, or the way back of its cycles, cannot be driven to.
+inline void check_ramps(const SceneReader& file, const fibrant::simulation::ProgrammeStage& stage, const std::string& load_case) {
+    const auto bounds = channel_bounds(load_case);
+    for (const fibrant::simulation::Ramp& ramp : stage.ramps) {
+        const auto found = std::find_if(bounds.begin(), bounds.end(), [&](const auto& one) { return one.first == ramp.channel; });
+        if (found == bounds.end()) {
+            std::vector<std::string> names;
+            for (const auto& one : bounds) names.push_back(one.first);
+            const std::string meant = example::nearest_name(ramp.channel, names);
+            file.refuse(stage.name, "ramps",
+                        "of channels that there are, and " + ramp.channel + " is none" +
+                            (meant.empty() ? "" : ": perhaps " + meant + " is meant"));
+        }
+        file.check(found->second.holds(ramp.to), stage.name, "ramps",
+                   "such that " + ramp.channel + " is " + found->second.text());
+        file.check(stage.cycles == 0 || found->second.holds(stage.back), stage.name, "back",
+                   found->second.text() + ", as " + ramp.channel + " is");
+    }
+}
 
 /// A ramp as "channel = value".
 inline fibrant::simulation::Ramp read_ramp(const SceneReader& file, const std::string& section, const std::string& text) {
@@ -151,6 +185,7 @@ inline LoadFile read_load_file(SceneReader& file, const std::filesystem::path& f
         read_stage(file, name);  // those that this run leaves out are checked as well
     file.complete();
     file.check(!stages.empty(), "loading", "stages", "a list of at least one name of a stage");
+    for (const auto& stage : programme.stages) check_ramps(file, stage, load.name);
     for (const auto& stage : programme.stages)
         file.check(
             static_cast<double>(stage.increments) * std::exp2(static_cast<double>(programme.halvings)) <= 1e6, stage.name,

@@ -159,6 +159,13 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.check(std::abs(given.rotation) * given.length <= 200.0 * std::numbers::pi, "loading", "rotation",
                "such that the ends turn by at most 100 turns against each other, <= " +
                    core::text(200.0 * std::numbers::pi / given.length));
+    // By no more than loading.strain may do to a straight wire.
+    const auto check_rotation = [&](double helix_radius, double turn_rate) {
+        const double drawn = std::hypot(1.0 + given.strain, helix_radius * (turn_rate + given.rotation)) /
+                             std::hypot(1.0, helix_radius * turn_rate);
+        file.check(given.rotation == 0.0 || drawn < 2.0, "loading", "rotation",
+                   "such that no wire is drawn to twice its length, and one is to " + core::text(drawn) + " times");
+    };
     file.check(given.strain != 0.0 || given.rotation != 0.0, "loading", "strain",
                "other than 0 where loading.rotation is 0: nothing would be done");
     example::require_element(file, "strand", given.elements, given.length, given.radius);
@@ -174,12 +181,16 @@ bool solve(example::SceneReader& file, example::Output& output) {
     if (rope_lay == 0.0) {
         strand::StrandParameters parameters = strand::regular_strand(wires, given.radius, given.lay, alternate);
         if (core_radius > 0.0) parameters.core_radius = core_radius;
+        for (std::size_t k = 0; k < parameters.layers.size(); ++k)
+            check_rotation(parameters.helix_radius(k), parameters.turn_rate(k));
         parameters.length = given.length, parameters.elements = given.elements, parameters.material = given.material;
         return draw(given, strand::straight_strand(parameters), parameters, file, output, {});
     }
     strand::RopeParameters rope =
         strand::rope_of_seven(given.radius, given.lay, rope_lay, given.length, apart * given.radius, overlap * given.radius);
     rope.elements = given.elements, rope.material = given.material;
+    for (const strand::StrandLayer& layer : rope.layers)
+        check_rotation(layer.helix_radius, std::tan(layer.lay()) / layer.helix_radius);
     const strand::RopeStiffness sliding = strand::stiffness_bound(rope), stuck = strand::stiffness_bound(rope, true);
     return draw(
         given, strand::straight_rope(rope), rope, file, output,

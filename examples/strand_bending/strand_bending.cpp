@@ -17,7 +17,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace fibrant;
@@ -199,6 +201,13 @@ bool solve(example::SceneReader& file, example::Output& output) {
         parameters.material = inner;
     }
     parameters.length = length > 0.0 ? length : turns * pitch;
+    // The wires on the inner side of the arc would have no length left.
+    const std::size_t outermost = parameters.layers.size() - 1;
+    const double thick = parameters.helix_radius(outermost) + parameters.layers[outermost].radius,
+                 sharpest = parameters.length / thick * 180.0 / std::numbers::pi;
+    for (const auto& [key, to] : {std::pair{"angle_deg", angle}, std::pair{"back_to_deg", back}})
+        file.check(std::isnan(to) || std::abs(to) < sharpest, "loading", key,
+                   "less than " + core::text(sharpest) + " either way, at which the radius of the arc is that of the strand");
     // Sixteen a turn follow a helix; wires of opposite hands cross each other every two diameters, and hardly bend in between.
     parameters.elements =
         elements > 0 ? elements : static_cast<Index>(std::ceil(std::max(16.0 * turns, parameters.length / (7.0 * radius))));

@@ -64,6 +64,7 @@ struct Output {
     void open(const SceneReader& file, const std::string& more = {}) {
         told = file.scene() + more;
         locked = std::make_shared<const ResultsFolder>(folder);
+        require_free_names(folder);
         const std::string found = earlier_results(folder), name = "--output " + folder.string();
         const auto anywhere = [&](const char* file_name) {
             return std::filesystem::exists(folder / file_name) || std::any_of(parts.begin(), parts.end(), [&](const auto& part) {

@@ -105,4 +105,19 @@ inline std::string earlier_results(const std::filesystem::path& folder) {
     return names;
 }
 
+/// Refuses a folder that has folders by the names of files that results have, or a file by that of their folder: some are written
+/// at the end of the work.
+/// @throws std::invalid_argument
+inline void require_free_names(const std::filesystem::path& folder) {
+    std::error_code error;
+    for (const char* name : {"checkpoint.bin", "settled.bin", "increments.csv", "summary.json", "levels.csv", "parameters.toml",
+                             "view.svg", "section.svg", "report.html"})
+        if (std::filesystem::is_directory(folder / name, error))
+            throw std::invalid_argument("--output " + folder.string() + ": " + name +
+                                        " in it is a folder, but results have a file of that name");
+    if (std::filesystem::exists(folder / "paraview", error) && !std::filesystem::is_directory(folder / "paraview", error))
+        throw std::invalid_argument("--output " + folder.string() +
+                                    ": paraview in it is a file, but results have a folder of that name");
+}
+
 }  // namespace example

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -84,6 +85,8 @@ bool solve(const Program& program, SceneReader& scene, Output& output, const std
 #endif
     try {
         return program.solve(scene, output);
+    } catch (const std::filesystem::filesystem_error& error) {  // such as a folder that is not empty
+        throw std::runtime_error(error.path1().string() + ": cannot be made or taken away: " + error.code().message());
     } catch (const std::invalid_argument& error) {  // of the command line: as it is
         throw std::invalid_argument(std::string_view(error.what()).substr(0, 2) == "--" ? error.what()
                                                                                         : scene.told(error.what()));

@@ -82,7 +82,7 @@ public:
                             std::isnan(value) ? "" : fibrant::observe::shortest(value));
         const toml::node* found = find(section, key);
         if (found == nullptr) return false;
-        if (!found->is_number()) refuse(section, key, *found, "a number " + bound.text());
+        if (!found->is_number()) refuse(section, key, *found, "a number " + bound.text() + written(*found, "0.5 or 5e-1"));
         value = as_double(*found);
         if (!bound.holds(value)) refuse(section, key, *found, bound.text());
         entry.value = fibrant::observe::shortest(value);
@@ -94,7 +94,8 @@ public:
         if (found == nullptr) return false;
         if (!found->is_integer())
             refuse(section, key, *found,
-                   "a whole number " + bound.text() + (found->is_number() ? ", without a point or an exponent" : ""));
+                   "a whole number " + bound.text() + (found->is_number() ? ", without a point or an exponent" : "") +
+                       written(*found, "1000"));
         value = static_cast<Index>(found->as_integer()->get());
         if (!bound.holds(static_cast<double>(value))) refuse(section, key, *found, bound.text());
         entry.value = std::to_string(value);
@@ -333,6 +334,9 @@ private:
         if (equals == std::string::npos || dot == std::string::npos || dot > equals || dot == 0 || dot + 1 == equals)
             fibrant::core::refuse("--set", clipped(text), "section.key=value");
         const std::string section = trimmed(text.substr(0, dot)), key = trimmed(text.substr(dot + 1, equals - dot - 1));
+        if (section.empty() || key.empty() || section.front() == '.' || section.back() == '.' ||
+            section.find("..") != std::string::npos)
+            fibrant::core::refuse("--set", clipped(text), "section.key=value");
         const std::string value = trimmed(text.substr(equals + 1));
         if (value.empty()) fibrant::core::refuse("--set", clipped(text), "section.key=value, and the value is missing");
         if (value.find_first_of("\r\n") != std::string::npos)
@@ -374,6 +378,13 @@ private:
         for (const Entry& told : entries_)
             if (told.section == section) answer.push_back(told.key);
         return answer;
+    }
+    /// How a number is written, where a text stands for one: in quotes, with a comma, or with a point at its end.
+    static std::string written(const toml::node& node, const char* example) {
+        const auto* text = node.as_string();
+        const bool meant = text != nullptr && text->get().find_first_of("0123456789") != std::string::npos &&
+                           text->get().find_first_not_of("0123456789+-.,_eE ") == std::string::npos;
+        return meant ? std::string(", written as ") + example + " without quotes" : "";
     }
     static std::string joined(const std::vector<std::string>& names) {
         std::string text;

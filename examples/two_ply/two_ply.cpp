@@ -54,6 +54,9 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.check(std::abs(turns) <= 2.0 * static_cast<double>(parameters.elements), "loading", "turns",
                "at most 2 rods.elements = " + core::text(2.0 * static_cast<double>(parameters.elements)) +
                    ", for an element may not turn by more than half a turn");
+    const double around = parameters.length * (1.0 + parameters.force / stiffness) / (2.0 * std::numbers::pi * parameters.radius);
+    file.check(std::abs(turns) <= around, "loading", "turns",
+               "at most " + core::text(around) + ", or rods are shorter than what goes around each other");
     example::require_element(file, "rods", parameters.elements, parameters.length, parameters.radius);
     example::require_room(file, "rods", "elements", example::unknowns_of(2, parameters.elements), 20000.0);
     file.names({{"TwoPlyParameters.force", "loading.force"}, {"TwoPlyParameters.", "rods."}});

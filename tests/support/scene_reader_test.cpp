@@ -83,7 +83,15 @@ TEST_CASE("that a file is read is told once, and only of a file whose keys are t
 TEST_CASE("a number is read whole, is one, and lies within its bound") {
     for (const char* text : {"0,5", "0.02 rad", "0.02 0.03", "\"0.2\"", "true", "[0.2]", "{a = 1}", "", "0.1\n[load]"})
         CHECK(!refused(sound, {std::string("rod.depth=") + text}).empty());
-    CHECK(refused(sound, {"rod.depth=0,5"}) == "rod.depth = '0,5', but it must be a number > 0 and <= 0.5");
+    CHECK(refused(sound, {"rod.depth=0,5"}) ==
+          "rod.depth = '0,5', but it must be a number > 0 and <= 0.5, written as 0.5 or 5e-1 without quotes");
+    for (const char* text : {".5", "5.", "1_", "'0.2'", "\"1e-1\"", "0.02 0.03"})  // a number was meant
+        CHECK(refused(sound, {std::string("rod.depth=") + text}).ends_with("written as 0.5 or 5e-1 without quotes"));
+    CHECK(refused(sound, {"rod.elements='7'"}).ends_with(", written as 1000 without quotes"));
+    for (const char* text : {"thick", "0.02 rad", "e", "[0.2]"})
+        CHECK(refused(sound, {std::string("rod.depth=") + text}).ends_with("a number > 0 and <= 0.5"));
+    for (const char* text : {"rod..depth=1", "rod. =1", " .depth=1", ".rod.depth=1", "rod.. =1"})
+        CHECK(refused(sound, {text}).ends_with("but it must be section.key=value"));
     for (const char* text : {"nan", "inf", "-inf", "0", "-0.0", "0.6", "1e400"})
         CHECK(refused(sound, {std::string("rod.depth=") + text}).starts_with("rod.depth = "));
     for (const char* text :
