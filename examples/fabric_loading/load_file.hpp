@@ -46,6 +46,8 @@ inline std::vector<std::pair<std::string, example::Bound>> channel_bounds(const 
             {cloth::shear_channel, load_case == "frame" ? example::inside(-0.5 * pi, 0.5 * pi) : example::inside(-10.0, 10.0)},
             {cloth::bend_channel, example::between(-pi, pi)},        // of either edge: the arc closes
             {cloth::plate_channel, example::inside(-10.0, 1.0)},     // at 1 they touch each other
+            {cloth::punch_channel, example::between(-1e3, 1e3)},     // radii of the hole
+            {cloth::holder_channel, example::inside(-10.0, 1.0)},    // as plates
             {cloth::pull_channel, example::between(-1e4, 1e4)},      // spacings: longer than any tow
             {cloth::tension_channel, example::between(-0.2, 0.2)}};  // of E A, as settle.tension_strain
 }
