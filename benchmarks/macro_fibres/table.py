@@ -90,11 +90,11 @@ print("| settled: unknowns, processor time [s], memory [MB] | " + " | ".join(
 print("| least gap over the radius; energy missed over the work | " + " | ".join(
     f"{t['least_gap_over_radius']:.4f}; {t['energy_error_over_work']:.1e}" for t in told.values()) + " |")
 
-plot = Plot("what macro-fibres miss of the finest", "fibres a tow", "relative difference", (5, 500), (1e-4, 1), True, True)
+plot = Plot("what macro-fibres miss of the finest", "fibres a tow", "relative difference", (4, 500), (1e-4, 1), True, True)
 for k, (name, points) in enumerate((n, p) for n, p in errors.items() if n in
                                    ("crimp", "thickness [mm]", "width of a tow [mm]", "volume fraction",
                                     "force at 0.5 % [N]", "force of shear at 15 degrees [N]")):
     shown = [(n, max(error, 1e-4)) for n, error in points]
     plot.line(shown, colours[k], name)
     plot.points(shown, colours[k])
-plot.write(folder / "macro_fibres.svg")
+plot.write(folder / "macro_fibres.svg", keys_at="bottom")
