@@ -258,30 +258,25 @@ inline Textile drawn(const LenoWeave& weave) {
     textile.apart_by = {ApartBy{"LenoWeave.pick_spacing", weave.pick_spacing}, ApartBy{"LenoWeave.aside", weave.aside}, {}};
     textile.types = {weave.type};
     const double p = weave.pick_spacing, s = weave.aside, h = 2.1 * half_height(weave.type), beyond = p;
-    const bool several = weave.type.fibres > 1;
-    const double wefts = p * static_cast<double>(weave.picks - 1);  // from the first to the last
-    // Where the doup is at x, beside its ground end's y. Between picks at a height of -2 h, at picks h. Beyond the outermost
-    // picks it keeps its side: no end stands on a crossing.
-    const auto doup_at = [=](double x) {
-        const double f = std::numbers::pi * std::clamp(x, 0.0, wefts) / p, c = std::cos(f), u = c * c;
-        // A single fibre parts from its ground end. Yarns of several fibres go round it in an ellipse, which is as far to
-        // the side where they are at its height as it is below: u of 1/3.
-        const double way = !several || u >= 1.0 / 3.0 ? (several ? std::copysign(1.0, c) : c) : c * std::sqrt(6.0 - 9.0 * u);
-        return Vec3(x, s * way, h * (-0.5 + 1.5 * std::cos(2.0 * f)));
-    };
-    // Where nothing rubs the pull straightens doups, and ground ends take up their waves: they are drawn in by as much, and are
-    // to stay behind the last weft.
-    const double waves = scene::length_of([&](double t) { return doup_at(wefts * t); }, 64 * weave.picks) - wefts;
-    const double pulled = std::max(p, waves + 4.0 * half_width(weave.type));
-    const double length = wefts + beyond + pulled;
+    const double length = p * static_cast<double>(weave.picks - 1) + 2.0 * beyond;
     const double width = weave.pair_spacing * static_cast<double>(weave.pairs - 1) + 4.0 * s + 2.0 * p;
+    const bool several = weave.type.fibres > 1;
     for (Index k = 0; k < weave.pairs; ++k) {
         const double y = weave.pair_spacing * static_cast<double>(k);
         Path ground, doup;
         ground.name = "ground " + std::to_string(k), doup.name = "doup " + std::to_string(k);
         ground.family = 0, doup.family = 1;
         ground.curve = [=](double t) { return Vec3(length * t - beyond, y, -h); };
-        doup.curve = [=](double t) { return Vec3(doup_at(length * t - beyond) + y * Vec3::UnitY()); };
+        // Between picks at a height of -2 h, at picks h. Beyond the outermost picks it keeps its side: no end stands on a
+        // crossing.
+        doup.curve = [=](double t) {
+            const double x = length * t - beyond, f = std::numbers::pi * std::clamp(x, 0.0, length - 2.0 * beyond) / p;
+            const double c = std::cos(f), u = c * c;
+            // A single fibre parts from its ground end. Yarns of several fibres go round it in an ellipse, which is as far to
+            // the side where they are at its height as it is below: u of 1/3.
+            const double way = !several || u >= 1.0 / 3.0 ? (several ? std::copysign(1.0, c) : c) : c * std::sqrt(6.0 - 9.0 * u);
+            return Vec3(x, y + s * way, h * (-0.5 + 1.5 * std::cos(2.0 * f)));
+        };
         textile.paths.push_back(std::move(ground)), textile.paths.push_back(std::move(doup));
     }
     for (Index m = 0; m < weave.picks; ++m) {
