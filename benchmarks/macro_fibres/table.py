@@ -78,7 +78,8 @@ for name in all_figures[counts[0]]:
         off = "" if value is None or n == known[-1][0] else f" ({100 * (value / finest - 1):+.1f} %)"
         cells.append("-" if value is None else f"{value:.4g}{off}")
     print(f"| {name} | " + " | ".join(cells) + " |")
-for title, part in (("settled: increments, Newton, linear iterations", "plain"), ("stretched", "stretched"), ("sheared", "sheared")):
+for title, part in (("settled: increments, Newton, linear iterations", "plain"), ("stretched", "stretched"),
+                    ("sheared", "sheared")):
     told = {n: summary(f"{part}_{n}") for n in counts}
     if any(told.values()):
         print(f"| {title} | " + " | ".join(

@@ -13,14 +13,8 @@ fail() {
   exit 1
 }
 [ -x "$weave" ] || { echo "fabric_loading_example: left out, for there is no weave beside the program"; exit 0; }
-small="fabric.warp_tows=2 fabric.weft_tows=2 fabric.elements=20 warp.fibres=3 warp.real_fibres=60 warp.aspect=1"
-list=""
-set --
-for value in $small; do
-  set -- "$@" --set "$value"
-  list="$list${list:+, }\"$value\""
-done
-"$weave" "$scenes/weave/plain.toml" --output "$out/settled" "$@" --set output.paraview=false --set output.pictures=false --quiet || fail "the small scene did not settle"
+. "$(dirname "$0")/small_fabric.sh"
+"$weave" "$scenes/weave/plain.toml" --output "$out/settled" "$@" || fail "the small scene did not settle"
 "$loading" "$scenes/fabric_loading/release.toml" --output "$out/released" --set "settled.set=[$list]" \
   --set settled.checkpoint="$out/settled/checkpoint.bin" --quiet || fail "edges were not released"
 "$loading" "$scenes/fabric_loading/equibiaxial.toml" --output "$out/stretched" --set "settled.set=[$list]" --set stretch.increments=2 \

@@ -12,15 +12,9 @@ rm -rf "$out"
 mkdir -p "$out" || exit 1
 . "$(dirname "$0")/ranks.sh"
 [ -x "$weave" ] || { echo "fabric_loading_ranks: left out, for there is no weave_mpi beside the program"; exit 0; }
-small="fabric.warp_tows=2 fabric.weft_tows=2 fabric.elements=20 warp.fibres=3 warp.real_fibres=60 warp.aspect=1"
-list=""
-set --
-for value in $small; do
-  set -- "$@" --set "$value"
-  list="$list${list:+, }\"$value\""
-done
-on 1 1 "$weave" "$(dirname "$release")/../weave/plain.toml" --output "$out/settled" "$@" --set output.paraview=false \
-  --set output.pictures=false --quiet || fail "the small scene did not settle"
+. "$(dirname "$0")/small_fabric.sh"
+on 1 1 "$weave" "$(dirname "$release")/../weave/plain.toml" --output "$out/settled" "$@" ||
+  fail "the small scene did not settle"
 load() { # ranks threads scene name checkpoint ...
   ranks=$1 threads=$2 scene=$3 name=$4 checkpoint=$5
   shift 5

@@ -130,7 +130,8 @@ if [ -n "$ready" ]; then
   try "--output $earlier: holds results of an earlier run (summary.json): --overwrite begins anew" "$ready" --output "$earlier" --quiet
   try "--output $earlier: holds results (summary.json) but no checkpoint.bin to resume from" "$ready" --output "$earlier" --quiet --resume
   mkdir -p "$out/taken/report.html" "$out/blocked/checkpoint.bin.before/kept" "$out/named" && : > "$out/named/paraview"
-  try "--output $out/taken: report.html in it is a folder, but results have a file" "$ready" --output "$out/taken" --quiet --overwrite
+  try "--output $out/taken: report.html in it is a folder, but results have a file" "$ready" --output "$out/taken" --quiet \
+    --overwrite
   try "--output $out/named: paraview in it is a file, but results have a folder" "$ready" --output "$out/named" --quiet --overwrite
   try "checkpoint.bin.before: cannot be made or taken away: " "$ready" --output "$out/blocked" --quiet --overwrite
   head -c 5000 "$program" > "$earlier/checkpoint.bin"

@@ -108,7 +108,7 @@ public:
     }
     /// Held directions and what is tied have no part in z, of which own vectors are known.
     void project(const scene::DofLayout& layout, Vector& z) {
-        project_held(layout, z);
+        scene::project_held(layout, z);
         timed(work_->use.waiting_seconds, [&] { work_->ties.project(exchange_, layout, z, work_->use.traffic); });
     }
     /// r = b - A x in own vectors; x is refreshed.
@@ -167,12 +167,7 @@ public:
         const Vector& free = work.free;
         const solver::SolveReport report = iterate(free, norm);
         timed(work.use.waiting_seconds, [&] { gather_owned(exchange_, work.cut, work.runs, x, work.use.traffic); });
-        const auto add_held = [&](Index v, Index like) {
-            x.segment<3>(3 * v) += (b.segment<3>(3 * v) - free.segment<3>(3 * v)) / layout.held_stiffness(like);
-        };
-        for (const scene::HeldVector& held : layout.held) add_held(held.vector, held.vector);
-        for (const scene::Tie& tie : layout.ties)
-            for (const Index v : tie.vectors) add_held(v, tie.vectors.front());
+        scene::add_held(layout, b, free, x);
         work.use.solves += 1, work.use.iterations += report.iterations;
         work.use.whole_seconds += core::seconds_since(begun);
         return report;
@@ -226,10 +221,6 @@ private:
     void count_gathering(Index numbers) noexcept {
         if (exchange_.ranks() == 1) return;
         work_->use.traffic.gatherings += 1, work_->use.traffic.gathered_bytes += 8 * numbers;
-    }
-    static void project_held(const scene::DofLayout& layout, Vector& z) {
-        for (const scene::HeldVector& held : layout.held)
-            z.segment<3>(3 * held.vector) = (held.free * z.segment<3>(3 * held.vector)).eval();
     }
     /// z = (Q + (1 - Q A) N (1 - A Q)) r
     void balance(const scene::DofLayout& layout, const Vector& r, Vector& z, Vector& left) {
@@ -410,7 +401,7 @@ void SubdomainLevels<E>::smooth(const scene::DofLayout& layout, const Vector& r,
         core::parallel_for(
             work.pieces.slots(), [&](Index s) { slots.segment<3>(3 * s) = r.segment<3>(3 * work.pieces.vector()[core::at(s)]); },
             core::light_items);
-        project_held(work.pieces.layout(), slots);
+        scene::project_held(work.pieces.layout(), slots);
         work.sweeps.apply(work.pieces.layout(), work.slots, work.moved, [](const Vector&, Vector&) {});
     });
     for_owned([&](Index k) { z.segment<3>(k).setZero(); });

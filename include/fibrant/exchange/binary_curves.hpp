@@ -9,13 +9,22 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace fibrant::exchange {
 
 namespace detail {
+
+/// @throws std::invalid_argument where there is no file that can be read
+inline std::string bytes_of_file(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) refuse_file(path.string(), "", "is no file that can be read");
+    return observe::read_file(path);
+}
 
 /// Reads a file of words, and of numbers that stand in it as bytes.
 class ByteReader {

@@ -79,9 +79,7 @@ inline std::string yarn_file_of(const std::vector<FileYarn>& yarns, const std::s
 /// @throws std::invalid_argument for what cannot be read, by file, place and value
 inline std::vector<FileCurve> read_curves(const std::filesystem::path& path, const CleanParameters& clean = {}) {
     const std::string name = path.string(), kind = ending(path);
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) refuse_file(name, "", "is no file that can be read");
-    const std::string bytes = observe::read_file(path);
+    const std::string bytes = detail::bytes_of_file(path);
     std::vector<FileCurve> curves;
     if (kind == "csv" || kind == "txt")
         curves = curves_of_csv(bytes, name);

@@ -3,15 +3,16 @@
 /// @file Closed surfaces of triangles in STL files, as rigid tools: moulds, punches, holders.
 
 #include <fibrant/exchange/binary_curves.hpp>
-#include <fibrant/observe/text_file.hpp>
 #include <fibrant/scene/triangle_surface.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -70,7 +71,7 @@ inline std::shared_ptr<const scene::TriangleSurface> surface_of_stl(std::string_
     core::require_positive("surface_of_stl.scale", scale);
     const std::vector<Vec3> all = detail::stl_corners(bytes, file);
     std::vector<std::uint32_t> order(all.size());
-    for (std::size_t k = 0; k < all.size(); ++k) order[k] = static_cast<std::uint32_t>(k);
+    std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](std::uint32_t k) { return std::array{all[k][0], all[k][1], all[k][2]}; };
     std::sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b) || (key(a) == key(b) && a < b); });
     std::vector<Vec3> corners;
@@ -86,9 +87,7 @@ inline std::shared_ptr<const scene::TriangleSurface> surface_of_stl(std::string_
     }
 }
 inline std::shared_ptr<const scene::TriangleSurface> read_surface(const std::filesystem::path& path, double scale = 1.0) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) refuse_file(path.string(), "", "is no file that can be read");
-    return surface_of_stl(observe::read_file(path), path.string(), scale);
+    return surface_of_stl(detail::bytes_of_file(path), path.string(), scale);
 }
 
 }  // namespace fibrant::exchange

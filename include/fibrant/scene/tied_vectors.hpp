@@ -70,19 +70,24 @@ inline void complete_ties(const DofLayout& layout, const Vector& x, Vector& y) {
 /// @param free  F b
 inline void add_held(const DofLayout& layout, const Vector& b, const Vector& free, Vector& x) {
     const auto add = [&](Index vector, double stiffness) {
-        x.segment<3>(3 * vector) = (b.segment<3>(3 * vector) - free.segment<3>(3 * vector)) / stiffness;
+        x.segment<3>(3 * vector) += (b.segment<3>(3 * vector) - free.segment<3>(3 * vector)) / stiffness;
     };
     for (const HeldVector& held : layout.held) add(held.vector, layout.held_stiffness(held.vector));
     for (const Tie& tie : layout.ties)
         for (const Index vector : tie.vectors) add(vector, layout.held_stiffness(tie.vectors.front()));
 }
 
-/// x <- F x: what held vectors and ties leave free of a vector of unknowns.
-inline void project_free(const DofLayout& layout, Vector& x) {
+/// x <- x within the free directions of held vectors, whatever is tied.
+inline void project_held(const DofLayout& layout, Vector& x) {
     for (const HeldVector& held : layout.held) {
         const Vec3 v = x.segment<3>(3 * held.vector);
         x.segment<3>(3 * held.vector) = held.free * v;
     }
+}
+
+/// x <- F x: what held vectors and ties leave free of a vector of unknowns.
+inline void project_free(const DofLayout& layout, Vector& x) {
+    project_held(layout, x);
     project_ties(layout, x);
 }
 

@@ -48,10 +48,7 @@ struct FormingTools {
 inline FormingTools add_forming_tools(scene::Assembly& assembly, const observe::Snapshot& snapshot,
                                       const FormingParameters& parameters) {
     parameters.validate();
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const observe::FibreSnapshot& fibre : snapshot.fibres)
-        for (const Vec3& node : fibre.position)
-            low = std::min(low, node.z() - fibre.section.radius()), high = std::max(high, node.z() + fibre.section.radius());
+    const auto [low, high] = heights(snapshot);
     FormingTools tools;
     tools.thickness = high - low;
     double wide = parameters.punch_radius, top = parameters.punch_radius;

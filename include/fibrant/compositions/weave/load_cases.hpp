@@ -176,10 +176,7 @@ inline LoadCase load_case(const std::string& name, const observe::Snapshot& snap
             }
         }
     } else if (name == "compaction") {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (const observe::FibreSnapshot& fibre : snapshot.fibres)
-            for (const Vec3& node : fibre.position)
-                low = std::min(low, node.z() - fibre.section.radius()), high = std::max(high, node.z() + fibre.section.radius());
+        const auto [low, high] = heights(snapshot);
         load.plate_distance = high - low;
         for (const bool above : {false, true}) {
             scene::Tool plate;

@@ -6,6 +6,7 @@
 #include <fibrant/observe/least_gap.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -77,6 +78,15 @@ inline CrimpMeasures crimp_measures(const observe::Snapshot& snapshot, const Fab
         (family == Family::warp ? answer.warp : answer.weft) = sum / static_cast<double>(fabric.tows(family) * fibres);
     }
     return answer;
+}
+
+/// Heights of the lowest and of the highest surface of all fibres at their nodes, free ends included [length].
+inline std::array<double, 2> heights(const observe::Snapshot& snapshot) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const observe::FibreSnapshot& fibre : snapshot.fibres)
+        for (const Vec3& node : fibre.position)
+            low = std::min(low, node.z() - fibre.section.radius()), high = std::max(high, node.z() + fibre.section.radius());
+    return {low, high};
 }
 
 /// Outline of the woven part: what is measured does not depend on the free ends.
