@@ -14,3 +14,4 @@
 #include <fibrant/connection/prescribed_motion.hpp>
 #include <fibrant/connection/rigid_bodies.hpp>
 #include <fibrant/connection/solid_places.hpp>
+#include <fibrant/connection/turned_work.hpp>

@@ -69,6 +69,7 @@ public:
     /// Unknowns beyond which bands have them. Smaller systems are factored where a preconditioner is indefinite without them:
     /// crossings at the limit of jamming need such exact steps.
     Index slides_in_bands_beyond = 6000;
+    void fill_bands() noexcept { slides_in_bands_beyond = 0; }
 
     /// Part of a point term that is not symmetric: `column` (x) `row` beside its stiffness [force / length, 1].
     struct Skew {

@@ -69,10 +69,16 @@ public:
 
     const System& system() const noexcept { return system_; }
     /// Bands of chains are to have all that lies within them, however small the system.
-    void fill_bands() noexcept { system_.slides_in_bands_beyond = 0; }
+    void fill_bands() noexcept { system_.fill_bands(); }
     const std::vector<Vec3>& targets() const noexcept { return targets_; }
     const beam::Mesh<B>& mesh() const noexcept { return *mesh_; }
     const connection::PrescribedMotion<B>& motion() const noexcept { return motion_; }
+    /// Of what holds turn: what forces do beyond what a trapezium takes [force * length].
+    double beyond_chords(const connection::Way& way) const {
+        double sum = motion_.beyond_chords(way);
+        if constexpr (has_solid) sum += solid_.beyond_chords(way);
+        return sum;
+    }
     const Ties& ties() const noexcept { return ties_; }
     Ties& ties() noexcept { return ties_; }
     const Solid& solid() const noexcept { return solid_; }

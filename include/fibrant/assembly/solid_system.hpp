@@ -64,6 +64,7 @@ public:
     void add_diagonal(Index vector, const Mat3& stiffness) { fibres_.add_diagonal(vector, stiffness); }
     const Row row(Index fibre, Index node) const { return fibres_.row(fibre, node); }
     void index_points() { fibres_.index_points(); }
+    void fill_bands() noexcept { fibres_.fill_bands(); }
 
     /// y = A x
     void apply(const Vector& x, Vector& y) const {

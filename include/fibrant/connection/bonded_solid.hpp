@@ -4,6 +4,7 @@
 
 #include <fibrant/connection/carriers.hpp>
 #include <fibrant/connection/channels.hpp>
+#include <fibrant/connection/turned_work.hpp>
 #include <fibrant/core/symmetric_eigen.hpp>
 #include <fibrant/solid/hexahedron.hpp>
 
@@ -127,6 +128,33 @@ public:
                 targets.push_back(directions * goal);
             }
         }
+    }
+
+    /// As of `PrescribedMotion`.
+    double beyond_chords(const Way& way) const {
+        std::array<std::vector<scene::HeldVector>, 2> held;
+        std::vector<Vec3> targets;
+        double sum = 0.0;
+        for (std::size_t first = 0, entry = 0; first < held_.size(); ++entry) {
+            const Index node = held_[first].first;
+            const scene::SolidHold* turned = nullptr;
+            Index channel = -1;
+            for (; first < held_.size() && held_[first].first == node; ++first) {
+                const auto& [hold, driven] = holds_[core::at(held_[first].second)];
+                const bool goes = way.amplitudes[0][core::at(driven)] != way.amplitudes[1][core::at(driven)];
+                if (!turned && hold.rotation && goes) turned = &hold, channel = driven;
+            }
+            if (!turned) continue;
+            std::array<Turned, 2> ends;
+            for (const std::size_t k : {0u, 1u}) {
+                if (held[k].empty()) hold(way.amplitudes[k], held[k], targets);
+                const double amplitude = way.amplitudes[k][core::at(channel)];
+                ends[k] = {turned->rotation(amplitude), turned->goal(turned->pivot, amplitude),
+                           way.place(k, first_vector_ + node), way.force(k, first_vector_ + node, held[k][entry].free)};
+            }
+            sum += beyond_chord(ends);
+        }
+        return sum;
     }
 
     /// Adds internal forces of cells and bonds.

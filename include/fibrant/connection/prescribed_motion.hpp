@@ -4,11 +4,13 @@
 
 #include <fibrant/beam/mesh.hpp>
 #include <fibrant/connection/channels.hpp>
+#include <fibrant/connection/turned_work.hpp>
 #include <fibrant/core/ordering.hpp>
 #include <fibrant/core/rotation.hpp>
 #include <fibrant/core/symmetric_eigen.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <string>
@@ -98,6 +100,34 @@ public:
                 free -= fresh * fresh.transpose();
             }
         }
+    }
+
+    /// What forces on vectors that holds turn do beyond what a trapezium takes (`beyond_chord`) [force * length].
+    double beyond_chords(const Way& way) const {
+        std::array<std::vector<scene::HeldVector>, 2> held;
+        std::vector<Vec3> targets;
+        double sum = 0.0;
+        for (std::size_t first = 0, last = 0, entry = 0; first < items_.size(); first = last, ++entry) {
+            while (last < items_.size() && items_[last].vector == items_[first].vector) ++last;
+            const std::span<const Item> holds = std::span<const Item>(items_).subspan(first, last - first);
+            const auto item = std::find_if(holds.begin(), holds.end(), [&](const Item& one) {
+                const bool position = one.hold.vector == scene::NodeVector::position;
+                const std::size_t channel = core::at(one.channel);
+                return one.hold.rotation && way.amplitudes[0][channel] != way.amplitudes[1][channel] && (!turning || position);
+            });
+            if (item == holds.end()) continue;
+            std::array<Turned, 2> ends;
+            for (const std::size_t k : {0u, 1u}) {
+                if (held[k].empty()) at(way.amplitudes[k], *way.states[k], held[k], targets);
+                const double amplitude = way.amplitudes[k][core::at(item->channel)];
+                Vec3 about = shift_of(*item, amplitude);
+                if (item->hold.vector == scene::NodeVector::position) about += item->hold.pivot;
+                ends[k] = {item->hold.rotation(amplitude), about, way.place(k, item->vector),
+                           way.force(k, item->vector, held[k][entry].free)};
+            }
+            sum += beyond_chord(ends);
+        }
+        return sum;
     }
 
     /// Greatest turn of a held section on the way between amplitudes, which may be several times around, and the vector that is

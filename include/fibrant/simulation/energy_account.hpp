@@ -7,8 +7,10 @@
 #include <fibrant/simulation/report.hpp>
 #include <fibrant/term/term.hpp>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <type_traits>
 
@@ -17,15 +19,16 @@ namespace fibrant::simulation {
 /// Books what an increment took, stored and lost.
 ///
 /// Loads and supports work by trapezia: their forces vary linearly from the state that an increment starts from to that which it
-/// ends with. Contact elements are renewed in between, turned and weighed anew with the fibres. The forces of those that carry
-/// the end are therefore not those that the start was in balance with, and what contact stores and takes, which is booked on the
-/// elements of the end, is of a path that begins with a jump of forces. Along a path without it renewal works as well, by half of
-/// that jump: counted as rearranged with what the elements store at once, it leaves an error of second order. Fibres along each
-/// other have their normals of then, or those that slid around each other would seem to have been deep in each other. A pair that
-/// lies far deeper where the increment started than its zone did is of places that came together since: it carried nothing there,
-/// and has none of this.
+/// ends with, those on what a hold turns as the turned section sees them. Contact elements are renewed in between, turned and
+/// weighed anew with the fibres. The forces of those that carry the end are therefore not those that the start was in balance
+/// with, and what contact stores and takes, which is booked on the elements of the end, is of a path that begins with a jump of
+/// forces. Along a path without it renewal works as well, by half of that jump: counted as rearranged with what the elements
+/// store at once, it leaves an error of second order. Fibres along each other have their normals of then, or those that slid
+/// around each other would seem to have been deep in each other. A pair that lies far deeper where the increment started than its
+/// zone did is of places that came together since: it carried nothing there, and has none of this.
 class EnergyAccount {
 public:
+    using Amplitudes = std::array<std::span<const double>, 2>;
     const EnergyBalance& balance() const noexcept { return balance_; }
     /// Force of the damping at the end of the last increment [force].
     const Vector& damping() const noexcept { return damping_; }
@@ -66,9 +69,11 @@ public:
     }
 
     /// An increment that has converged; contacts are evaluated at its end, before and after.
-    /// @param leap  it starts from an overlap that is imposed: it has no balance to check
+    /// @param amplitudes  of all channels where it starts and where it ends
+    /// @param leap        it starts from an overlap that is imposed: it has no balance to check
     template <class Equilibrium, class Contacts>
-    void book(const Equilibrium& equilibrium, Contacts& contacts, const Vector& from, const Vector& to, bool leap) {
+    void book(const Equilibrium& equilibrium, Contacts& contacts, const Amplitudes& amplitudes, const Vector& from,
+              const Vector& to, bool leap) {
         const double error_before = balance_.error();
         const Vector way = to - from;
         if constexpr (Equilibrium::moves)
@@ -77,7 +82,9 @@ public:
                 if (term.begins()) external_ = equilibrium.external() + equilibrium.reaction();
                 balance_.kinetic = term.kinetic(to);
             });
+        const Vector before = external_.size() == to.size() ? external_ : Vector(Vector::Zero(to.size()));
         balance_.external += trapezium(way, external_, equilibrium.external() + equilibrium.reaction());
+        balance_.external += equilibrium.beyond_chords({amplitudes, {&from, &to}, {&before, &external_}});
         balance_.damped += trapezium(way, damping_, equilibrium.damping_force(to));
         if constexpr (requires { contacts.tools(); })
             balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(true);
@@ -111,21 +118,21 @@ public:
     /// @param part  of the stage's duration that the increment lasts
     /// @param left  of it, after that
     template <class Equilibrium, class Contacts, class Laws>
-    std::string book(Equilibrium& equilibrium, Contacts& contacts, const Vector& from, const Vector& to, bool leap,
-                     const Laws& laws, [[maybe_unused]] double part, [[maybe_unused]] double left) {
+    std::string book(Equilibrium& equilibrium, Contacts& contacts, const Amplitudes& amplitudes, const Vector& from,
+                     const Vector& to, bool leap, const Laws& laws, [[maybe_unused]] double part, [[maybe_unused]] double left) {
         if constexpr (Equilibrium::moves) {
             std::string reason;
             equilibrium.terms().moving([&](auto& term) { reason = term.refusal(to); });
             if (!reason.empty()) return reason;
             const EnergyAccount before = *this;
-            book(equilibrium, contacts, from, to, leap), laws(*this);
+            book(equilibrium, contacts, amplitudes, from, to, leap), laws(*this);
             term::StepEnergy step = of_step(before.balance_);
             step.part = part, step.left = left;
             equilibrium.terms().moving([&](auto& term) { reason = term.refusal(step); });
             if (!reason.empty()) *this = before;
             return reason;
         } else {
-            book(equilibrium, contacts, from, to, leap), laws(*this);
+            book(equilibrium, contacts, amplitudes, from, to, leap), laws(*this);
             return {};
         }
     }

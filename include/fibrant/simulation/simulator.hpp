@@ -154,7 +154,7 @@ private:
             const solver::IterationParameters iteration = parameters_.iteration.of_attempt(stage.patience, astray);
             solver::NestedLoops<Equilibrium, Contacts, typename M::Solver, Passage> loops(
                 equilibrium_, contacts_, linear_, passage_, iteration, radius_, touching, clock_);
-            // A limited gap moves fibres by about the limit: the search looks so far.
+            // A limited gap moves fibres by about it: so far to look.
             const double shown = stage.forced_orders ? stride * stage.gap_limit.value_or(0.0) : 0.0;
             const double ahead = std::max(position_.displacement, shown);
             const auto solve = [&] {
@@ -172,7 +172,7 @@ private:
             const Index most = std::max<Index>(1, attempt.counts.normal_passes) * iteration.newton_limit;
             effort = static_cast<double>(attempt.counts.newton) / static_cast<double>(most);
             if (attempt.converged) attempt.refuse(laws_.refusal(mesh_, beam_, trial));
-            // What nothing foretells would be held back: the first tells.
+            // What nothing foretells is held back: the first tells.
             if (attempt.converged && stage.damping_carried && stage.damping > 0.0 && !rehearsed && !motion_.foretells(change)) {
                 motion_.learn(mesh_, state_, trial, change);
                 contacts_.restore(), equilibrium_.restore(), rehearsed = true;
@@ -180,7 +180,7 @@ private:
             }
             if (attempt.converged)
                 attempt.refuse(energy_.book(
-                    equilibrium_, contacts_, state_, trial, stage.forced_orders || laws_.again(),
+                    equilibrium_, contacts_, {amplitudes_, amplitudes}, state_, trial, stage.forced_orders || laws_.again(),
                     [&](EnergyAccount& energy) { laws_.book(mesh_, beam_, trial, energy); }, drive.duration / stage.duration,
                     1.0 - progress));
             if (attempt.converged) {
