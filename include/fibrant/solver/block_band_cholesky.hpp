@@ -192,7 +192,8 @@ private:
                 accepted[core::at(lane)] = false;
                 pivot[lane] = 1.0;
             }
-            const Wide root = pivot.sqrt();
+            Wide root;  // lane by lane: of packets of AVX-512 Eigen gives it to the last digit but one, and lanes would differ
+            for (int lane = 0; lane < Lanes; ++lane) root[lane] = std::sqrt(pivot[lane]);
             const Wide over = 1.0 / root;
             c[j * m + j] = root;
             for (int i = j + 1; i < m; ++i) {
