@@ -40,6 +40,12 @@ public:
         }
         slot_of_.assign(core::at(whole.vectors()), -1);
         for (Index s = 0; s < core::count(vector_); ++s) slot_of_[core::at(vector_[core::at(s)])] = s;
+        in_piece_.assign(core::at(whole.vectors()), 0);
+        for (const Piece& piece : cut.pieces()) {
+            const scene::Chain& chain = whole.chains[core::at(piece.chain)];
+            const auto first = in_piece_.begin() + chain.first_vector + piece.first_node * chain.vectors_per_node;
+            std::fill(first, first + piece.nodes * chain.vectors_per_node, 1);
+        }
         piece_of_.clear();
         for (Index p = 0; p < core::count(pieces_); ++p)
             piece_of_.insert(piece_of_.end(),
@@ -107,8 +113,9 @@ private:
         Index term;
         std::size_t first;  // of its slots
     };
-    /// Keeps a term between two pieces of a part. Vectors of a particle that its piece does not have are replaced by others of
-    /// the piece, without weight: all terms have as many.
+    /// Keeps a term between two pieces of a part: of each particle the first of all pieces that it lies in, whoever has it, or
+    /// what is kept would depend on the ranks. Vectors of a particle that its piece does not have are replaced by others of the
+    /// piece, without weight: all terms have as many.
     void add(Index k) {
         const PairTerms::Term term = (*terms_)[k];
         if (!terms_->usual(term)) return;  // ChainCouplings leaves them out as well, but by those that come first here
@@ -119,9 +126,9 @@ private:
             const auto vectors = term.side(side);
             const auto weights = term.weights_of(side);
             const auto known =
-                std::find_if(vectors.begin(), vectors.end(), [&](std::int32_t v) { return slot_of_[core::at(v)] >= 0; });
+                std::find_if(vectors.begin(), vectors.end(), [&](std::int32_t v) { return in_piece_[core::at(v)] != 0; });
             const auto drop = [&] { slots_.resize(begin), weights_.resize(begin); };
-            if (known == vectors.end()) return drop();
+            if (known == vectors.end() || slot_of_[core::at(*known)] < 0) return drop();
             const Index piece = piece_of_[core::at(slot_of_[core::at(*known)])];
             const scene::Chain& chain = layout_.chains[core::at(piece)];
             const Index end = chain.first_vector + chain.nodes * chain.vectors_per_node;
@@ -147,6 +154,7 @@ private:
     std::vector<Piece> pieces_;
     scene::DofLayout layout_;
     std::vector<Index> vector_, slot_of_, piece_of_;  // of each slot; of each vector, or -1; of each slot
+    std::vector<char> in_piece_;                      // of each vector: whether a piece has it, here or elsewhere
     const std::vector<Matrix>* bands_ = nullptr;
     const PairTerms* terms_ = nullptr;
     std::vector<Local> local_;
