@@ -2,6 +2,7 @@
 // A woven fabric is settled, put between two layers of matrix, bonded to them, and bent, twisted, drawn or sheared.
 //   composite SCENE.toml --output DIR [--set section.key=value]... [--threads N] [--resume | --overwrite] [--quiet]
 #include "../support/program.hpp"
+#include "../support/scene_solver.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
 
@@ -11,8 +12,11 @@
 #include <fibrant/law/shaped_friction.hpp>
 #include <fibrant/material/elastic.hpp>
 #include <fibrant/proximity/grid_search.hpp>
-#include <fibrant/solver/any_solver.hpp>
+#ifdef FIBRANT_WITH_MPI
+#include <fibrant/distributed/shared_fibres.hpp>
+#else
 #include <fibrant/solver/solid_pcg.hpp>
+#endif
 
 #include <filesystem>
 #include <stdexcept>
@@ -25,6 +29,16 @@ namespace parts = compositions::composite;
 
 namespace {
 
+#ifdef FIBRANT_WITH_MPI
+using BondedSolver = distributed::SharedSolidPcg<distributed::MpiExchange>;
+void divide(BondedSolver::Parameters& parameters, const example::LinearSolver& how) {
+    parameters.fibres.cut.parts = static_cast<int>(how.subdomains);
+}
+#else
+using BondedSolver = solver::SolidPcg;
+void divide(BondedSolver::Parameters&, const example::LinearSolver&) {}
+#endif
+
 /// @tparam Own  sections and friction obey laws of their own; else sections are isotropic and friction is Coulomb's
 template <bool Own>
 struct DryOf {
@@ -32,13 +46,13 @@ struct DryOf {
     using Proximity = proximity::GridSearch;
     using Normal = law::LimitedGap<law::RegularisedPenalty>;
     using Friction = std::conditional_t<Own, law::ShapedFriction, law::RegularisedCoulomb>;
-    using Solver = solver::AnySolver;
+    using Solver = example::SceneSolver;
 };
 template <bool Own>
 struct CompositeOf : DryOf<Own> {
     using Solid = connection::BondedSolid<solid::Hexahedron<solid::EnhancedStrains, solid::NeoHookean>, connection::NeverDebonds>;
     using Connections = connection::RigidBodies;
-    using Solver = solver::SolidPcg;
+    using Solver = BondedSolver;
 };
 
 /// File of the settled fabric.
@@ -54,6 +68,7 @@ void settle(simulation::Simulator<Dry>& dry, const composite::Scene& scene, cons
     loading.checkpoint = settled_of(scene, output);
     loading.checkpoint_seconds = 1e9, loading.resume = output.resume || !scene.settled.empty();
     loading.scene = scene.weave.told, loading.other_scene = output.other_scene, loading.stop = example::stopped;
+    example::stop_together(loading);
     loading.resume_before_end = scene.settled.empty();  // the account of energy goes on from contacts
     auto progress = example::progress_printer(cloth::smallest_radius(scene.weave.fabric), 0, output.quiet);
     const simulation::Report report = dry.run(loading, progress);
@@ -70,11 +85,12 @@ bool run(const composite::Scene& scene, const example::SceneReader& file, exampl
         !std::filesystem::exists(settled_of(scene, output)))
         throw std::invalid_argument("--other-scene: " + output.checkpoint() + " goes on from the settled fabric in " +
                                     settled_of(scene, output) + ", which is missing: --overwrite begins anew");
+    const example::RankFolder own(output);
     output.open(file);
     const scene::Assembly flat = cloth::unsettled_fabric(fabric, scene.weave.settle);
     auto dry_parameters = cloth::model_parameters<Dry>(fabric, scene.weave.settle);
     dry_parameters.iteration = scene.weave.iteration;
-    dry_parameters.solver.strategy = scene.weave.linear_solver.strategy;
+    example::choose_solver(dry_parameters, scene.weave.linear_solver);
     simulation::Simulator<Dry> dry(flat, dry_parameters);
     settle(dry, scene, output);
 
@@ -88,6 +104,7 @@ bool run(const composite::Scene& scene, const example::SceneReader& file, exampl
     parameters.iteration.largest_margin = 8.0;  // edges swing far
     parameters.iteration.overshoot = scene.overshoot;
     parameters.solver.carried = scene.carried;
+    divide(parameters.solver, scene.weave.linear_solver);
     parameters.solid.bonding_factor = scene.matrix.bonding_factor, parameters.solid.section_factor = scene.matrix.section_factor;
     simulation::Simulator<Composite> simulator(composite.assembly, parameters);
     simulator.go_on_from(dry);
@@ -107,6 +124,7 @@ bool run(const composite::Scene& scene, const example::SceneReader& file, exampl
     });
     auto loading = parts::loading_of<Composite>(fabric, scene.weave.settle, scene.load);
     output.tell(loading, 20.0);
+    example::stop_together(loading);
     const simulation::Report report = simulator.run(loading, watch, recorder);
     const composite::CurvePoint end = point(parts::edge_wrench(simulator, composite));
     composite::write_curve(output, end);

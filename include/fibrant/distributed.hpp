@@ -12,6 +12,7 @@
 #include <fibrant/distributed/piece_system.hpp>
 #include <fibrant/distributed/rank_use.hpp>
 #include <fibrant/distributed/routes.hpp>
+#include <fibrant/distributed/shared_fibres.hpp>
 #include <fibrant/distributed/shared_ties.hpp>
 #include <fibrant/distributed/subdomain_levels.hpp>
 #include <fibrant/distributed/subdomain_pcg.hpp>

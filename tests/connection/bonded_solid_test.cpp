@@ -5,6 +5,8 @@
 #include "../support/random_vector.hpp"
 
 #include <fibrant/connection/bonded_solid.hpp>
+#include <fibrant/distributed/shared_fibres.hpp>
+#include <fibrant/distributed/thread_ranks.hpp>
 #include <fibrant/solver/solid_pcg.hpp>
 
 #include <near.hpp>
@@ -424,34 +426,66 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("conjugate gradients find what a direct solver does, in few iterations however stiff bonds are") {
-    for (const double factor : {1.0, 1000.0}) {
-        Scene scene(cube(some_gradient(), {1000.0, 0.3}, {7e4, 0.3}), {.bonding_factor = factor, .section_factor = factor});
+/// A linear system of fibres in a block, and a load on all of it.
+struct Linear {
+    Scene scene;
+    SparseMatrix matrix;
+    Vector load, exact;
+    explicit Linear(double factor)
+        : scene{cube(some_gradient(), {1000.0, 0.3}, {7e4, 0.3}), {.bonding_factor = factor, .section_factor = factor}} {
         scene.equilibrium.begin(std::vector<double>(1, 0.0), scene.state);
         scene.equilibrium.linearise(scene.state, false, 0.0);
-        const auto& system = scene.equilibrium.system();
-        SparseMatrix a;
-        assembly::assemble_from_terms(system, a);
+        assembly::assemble_from_terms(system(), matrix);
         std::mt19937 generator(4);
         std::uniform_real_distribution<double> draw(-1.0, 1.0);
-        Vector b(a.rows()), x;
-        for (Index k = 0; k < b.size(); ++k) b[k] = draw(generator) * system.layout().length[core::at(k / 3)];
-        const Vector exact = Eigen::SimplicialLDLT<SparseMatrix>(a).solve(b);
+        load.resize(matrix.rows());
+        for (Index k = 0; k < load.size(); ++k) load[k] = draw(generator) * system().layout().length[core::at(k / 3)];
+        exact = Eigen::SimplicialLDLT<SparseMatrix>(matrix).solve(load);
+    }
+    const System& system() const { return scene.equilibrium.system(); }
+};
+
+TEST_CASE("conjugate gradients find what a direct solver does, in few iterations however stiff bonds are") {
+    for (const double factor : {1.0, 1000.0}) {
+        const Linear linear(factor);
+        const System& system = linear.system();
+        Vector x;
         int iterations[2];
         for (const bool carried : {false, true}) {
             solver::SolidPcg pcg({.carried = carried});
             pcg.analyse(system);
             REQUIRE(pcg.prepare(system) == solver::SolveStatus::converged);
-            const solver::SolveReport report = pcg.solve(system, b, 1e-10, x);
+            const solver::SolveReport report = pcg.solve(system, linear.load, 1e-10, x);
             CHECK(report.status == solver::SolveStatus::converged);
-            const Vector difference = a * (x - exact);
-            CHECK(difference.norm() <= 1e-8 * b.norm());
+            const Vector difference = linear.matrix * (x - linear.exact);
+            CHECK(difference.norm() <= 1e-8 * linear.load.norm());
             iterations[carried ? 1 : 0] = report.iterations;
         }
         MESSAGE("bonds times " << factor << ": iterations " << iterations[1] << ", with blocks for fibres and solid alone "
                                << iterations[0]);
         CHECK(iterations[1] <= 40);
     }
+}
+
+template <distributed::Exchange E>
+Vector solved(const Linear& linear, const typename E::Parameters& exchange = {}) {
+    typename distributed::SharedSolidPcg<E>::Parameters parameters;
+    parameters.fibres.cut.parts = 4, parameters.fibres.exchange = exchange;
+    distributed::SharedSolidPcg<E> pcg(parameters);
+    pcg.analyse(linear.system());
+    Vector x = Vector::Zero(linear.load.size());
+    if (pcg.prepare(linear.system()) == solver::SolveStatus::converged) pcg.solve(linear.system(), linear.load, 1e-10, x);
+    return x;
+}
+
+TEST_CASE("ranks that share the fibres of a composite find what a direct solver does, with the same bits however many") {
+    const Linear linear(1.0);
+    const Vector alone = solved<distributed::OneRank>(linear);
+    const Vector difference = linear.matrix * (alone - linear.exact);
+    CHECK(difference.norm() <= 1e-8 * linear.load.norm());
+    for (const int ranks : {2, 3})
+        distributed::run_on_threads(ranks,
+                                    [&](const auto& own) { CHECK(solved<distributed::ThreadRank>(linear, own) == alone); });
 }
 
 TEST_CASE("wrong input is refused by name") {

@@ -140,6 +140,16 @@ public:
         add_coarse(layout, left, z);
         project(layout, z);
     }
+    /// z = (Q + (1 - Q A) N (1 - A Q)) r in own vectors: positive definite whatever r is.
+    void balance(const scene::DofLayout& layout, const Vector& r, Vector& z) {
+        Vector& left = work_->left;
+        if (left.size() != r.size()) left.setZero(r.size());
+        balance(layout, r, z, left);
+    }
+    /// All ranks get all of x, of which each has its own vectors.
+    void share(Vector& x) {
+        timed(work_->use.waiting_seconds, [&] { gather_owned(exchange_, work_->cut, work_->runs, x, work_->use.traffic); });
+    }
     /// x = (N + Q) b in own vectors: both are positive, and so is b.x.
     void descend(const scene::DofLayout& layout, const Vector& b, Vector& x) {
         Vector& motion = work_->left;
@@ -166,7 +176,7 @@ public:
         scene::project_free(layout, work.free);  // all ranks know all of b
         const Vector& free = work.free;
         const solver::SolveReport report = iterate(free, norm);
-        timed(work.use.waiting_seconds, [&] { gather_owned(exchange_, work.cut, work.runs, x, work.use.traffic); });
+        share(x);
         scene::add_held(layout, b, free, x);
         work.use.solves += 1, work.use.iterations += report.iterations;
         work.use.whole_seconds += core::seconds_since(begun);
@@ -222,7 +232,6 @@ private:
         if (exchange_.ranks() == 1) return;
         work_->use.traffic.gatherings += 1, work_->use.traffic.gathered_bytes += 8 * numbers;
     }
-    /// z = (Q + (1 - Q A) N (1 - A Q)) r
     void balance(const scene::DofLayout& layout, const Vector& r, Vector& z, Vector& left) {
         Vector& motion = work_->motion;
         if (motion.size() != r.size()) motion.setZero(r.size());

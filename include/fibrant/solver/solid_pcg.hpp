@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <concepts>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -26,8 +27,17 @@ concept SystemWithSolid = assembly::LinearSystem<T> && requires(const T system) 
     system.solid().carriers();
 };
 
-/// M^-1 = M_f^-1 + A_s^-1 + C (C^T A C)^-1 C^T: M_f the two levels of TwoLevelPcg for the fibres, A_s the solids' own block,
-/// factored, C the motions in which the solids move and take the fibres along.
+/// What a preconditioner of the fibres offers.
+template <class T>
+concept FibrePreconditioner = std::constructible_from<T, typename T::Parameters> &&
+    requires(T own, const assembly::SystemView system, const Vector r, Vector z) {
+    own.analyse(system);
+    { own.prepare(system) } -> std::same_as<SolveStatus>;
+    own.precondition(system, r, z);
+};
+
+/// M^-1 = M_f^-1 + A_s^-1 + C (C^T A C)^-1 C^T: M_f a preconditioner of the fibres, the two levels of TwoLevelPcg if not told,
+/// A_s the solids' own block, factored, C the motions in which the solids move and take the fibres along.
 ///
 /// In M_f and A_s fibres and solids are held by their bonds to the other at rest: right for motions that differ from fibre to
 /// solid, and far too stiff for those in which both move together, the more so the stiffer the bonds. Those C has; alone
@@ -37,10 +47,14 @@ concept SystemWithSolid = assembly::LinearSystem<T> && requires(const T system) 
 ///
 /// Where nodes are tied, the parts have the supports of the ties in their place, and what a tie leaves free, the motions of free
 /// bodies, would be held by them: C^T A C is let go along these motions.
-class SolidPcg {
+///
+/// @tparam Fibres  preconditions the fibres; symmetric and positive definite
+template <FibrePreconditioner Fibres>
+class SolidPcgWith {
 public:
+    static constexpr bool reads_whole_bands = ReadsWholeBands<Fibres>;
     struct Parameters {
-        TwoLevelPcg::Parameters fibres{};
+        typename Fibres::Parameters fibres{};
         int iteration_limit = 2000;  ///< > 0
         bool carried = true;         ///< false: without C
         void validate() const {
@@ -48,8 +62,8 @@ public:
             core::require_at_least("SolidPcg.iteration_limit", iteration_limit, 1);
         }
     };
-    SolidPcg() : SolidPcg(Parameters{}) {}
-    explicit SolidPcg(const Parameters& parameters) : parameters_{core::validated(parameters)}, fibres_{parameters.fibres} {}
+    SolidPcgWith() : SolidPcgWith(Parameters{}) {}
+    explicit SolidPcgWith(const Parameters& parameters) : parameters_{core::validated(parameters)}, fibres_{parameters.fibres} {}
 
     template <SystemWithSolid System>
     void analyse(const System& system) {
@@ -108,7 +122,8 @@ public:
                         if (carrier == nullptr) return;
                         const auto& cell = system.solid().cell(carrier->cell);
                         for (int k = 0; k < 8; ++k)
-                            z.segment<3>(3 * v) += carrier->weights[k] * work.together_motion.segment<3>(3 * cell[core::at(k)]);
+                            z.segment<3>(3 * v) +=
+                                carrier->weights[k] * work.together_motion.template segment<3>(3 * cell[core::at(k)]);
                     },
                     first < 8192 ? first : 1);
             }
@@ -116,7 +131,7 @@ public:
             z.tail(3 * nodes) = work.motion;
             if (parameters_.carried) z.tail(3 * nodes) += work.together_motion;
         };
-        if constexpr (UnsymmetricSystem<System>)
+        if constexpr (UnsymmetricSystem<System> && requires { parameters_.fibres.unsymmetric; })
             if (parameters_.fibres.unsymmetric && system.unsymmetric())
                 return stabilised_biconjugate_gradient(system, precondition, b, tolerance, parameters_.iteration_limit,
                                                        work.biconjugate, x);
@@ -251,7 +266,7 @@ private:
         if (work_->alone.unknowns() != 3 * system.solid().nodes()) analyse_alone(system);
         if (!parameters_.carried) return;
         struct Pairs {
-            const SolidPcg& self;
+            const SolidPcgWith& self;
             const System& system;
             std::vector<std::pair<Index, Index>> cells;
             std::vector<Index> own;
@@ -310,7 +325,7 @@ private:
     template <class System>
     bool sum(const System& system) {
         struct Sum {
-            const SolidPcg& self;
+            const SolidPcgWith& self;
             const System& system;
             BlockCholesky<float>& matrix;
             const assembly::HeldProjector held;
@@ -395,8 +410,10 @@ private:
     }
 
     Parameters parameters_;
-    TwoLevelPcg fibres_;
+    Fibres fibres_;
     Workspace<Work> work_;
 };
+
+using SolidPcg = SolidPcgWith<TwoLevelPcg>;
 
 }  // namespace fibrant::solver
