@@ -104,6 +104,14 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.check(parameters.height <= 1e5, "mat", "fibres",
                "<= " + core::text(std::floor(1e5 * static_cast<double>(parameters.fibres) / parameters.height)) +
                    ", or the box is higher than 100000 radii");
+    mat::MatParameters shorter = parameters;  // until a piece of it that is not left out fits into its box
+    while (shorter.length > (1.0 + 1e-9) * mat::longest_piece(shorter) / mat::shortest_piece) {
+        shorter.length = mat::longest_piece(shorter) / mat::shortest_piece;
+        shorter.height = shorter.volume_fraction(1.0) / fraction;
+    }
+    file.check(
+        shorter.length == parameters.length, "mat", "length",
+        "<= " + core::text(shorter.length) + ", or the sides of the box leave less than a tenth of a fibre, which is left out");
     example::require_element(file, "mat", parameters.elements, parameters.length, 1.0);
     example::require_room(file, "mat", "fibres",
                           3.0 * static_cast<double>(parameters.fibres) * (2.0 * static_cast<double>(parameters.elements) + 1.0),
@@ -115,17 +123,24 @@ bool solve(example::SceneReader& file, example::Output& output) {
         return seeds > 1 ? output.folder / ("seed_" + std::to_string(seed + k)) : output.folder;
     };
     for (Index k = 0; seeds > 1 && k < seeds; ++k) output.parts.push_back(folder_of(k));
+    // Each mat is drawn once before anything is written: what cannot be drawn is told here.
+    constexpr Index draws_a_fibre = 1000;  // that of fibres ten times as long as the box is wide one in some hundred is in it
+    parameters.draws = std::max(parameters.draws, draws_a_fibre * parameters.fibres);
+    const auto seeded = [&](Index k) {
+        parameters.seed = static_cast<std::uint64_t>(seed + k);
+        return mat::random_fibres(parameters);
+    };
+    for (Index k = 0; k < seeds; ++k) seeded(k);
     output.open(file);
 
     observe::CsvWriter table(output.folder / "levels.csv");
     observe::LogLogPlot plot{"pressure on the plates", "volume fraction", "pressure over modulus", {}};
     bool converged = true;
     for (Index k = 0; k < seeds && !example::stopped(); ++k) {
-        parameters.seed = static_cast<std::uint64_t>(seed + k);
         example::Output own = output;
         own.folder = folder_of(k);
         std::filesystem::create_directories(own.folder);
-        const scene::Assembly boxed = mat::boxed_mat(parameters, mat::random_fibres(parameters));
+        const scene::Assembly boxed = mat::boxed_mat(parameters, seeded(k));
         simulation::Simulator<Mat> simulator(boxed, mat::model_parameters<Mat>(parameters, levels));
         example::Recorder recorder(own, 1.0, [&]() -> std::vector<observe::Column> {
             const mat::MatState state = mat::measure(simulator, parameters);

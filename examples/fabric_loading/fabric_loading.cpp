@@ -56,6 +56,7 @@ bool run(const fabric_loading::LoadFile& load, example::SceneReader& file, examp
     const example::RankFolder own(output);
     if (load.points_per_element > 0) parameters.contact.spacing.points_per_element = static_cast<double>(load.points_per_element);
     simulation::Simulator<LoadedWeave> simulator(scene.assembly, parameters);
+    output.parts = {output.folder / "before", output.folder / "after"};
     output.open(file, load.scene.told);
     if (refined) simulation::write_state<LoadedWeave>(start = (output.folder / "refined.bin").string(), mesh, *refined);
     simulator.start_from(start);

@@ -51,7 +51,7 @@ struct Output {
     /// allowed to be, and what contact points may leave unseen.
     double deepest_over_radius = fibrant::core::unset;
     std::string told;                             ///< what the scene is, line by line: kept in checkpoints
-    std::vector<std::filesystem::path> parts{};   ///< folders in it that have checkpoints of their own
+    std::vector<std::filesystem::path> parts{};   ///< folders in it that results go to as well
     std::shared_ptr<const ResultsFolder> locked;  ///< the folder, from `open` on
     /// Is shown the end of the run and its summary, once all files are written; empty: nobody is.
     std::function<void(const observe::Snapshot&, const observe::JsonObject&)> ended{};
@@ -64,7 +64,7 @@ struct Output {
     void open(const SceneReader& file, const std::string& more = {}) {
         told = file.scene() + more;
         locked = std::make_shared<const ResultsFolder>(folder);
-        require_free_names(folder);
+        require_free_names(folder, parts);
         const std::string found = earlier_results(folder), name = "--output " + folder.string();
         const auto anywhere = [&](const char* file_name) {
             return std::filesystem::exists(folder / file_name) || std::any_of(parts.begin(), parts.end(), [&](const auto& part) {

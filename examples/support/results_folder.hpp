@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -15,7 +16,9 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace example {
 
@@ -105,19 +108,31 @@ inline std::string earlier_results(const std::filesystem::path& folder) {
     return names;
 }
 
-/// Refuses a folder that has folders by the names of files that results have, or a file by that of their folder: some are written
-/// at the end of the work.
+/// Refuses a folder in which something is in the way of results, some of which are written at the end of the work: a folder that
+/// is named as one of their files may be, a file by the name of one of their folders.
+/// @param parts  folders in it that results go to as well
 /// @throws std::invalid_argument
-inline void require_free_names(const std::filesystem::path& folder) {
+inline void require_free_names(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& parts = {}) {
+    // A folder of one of these endings is hardly ever a user's, and each program has names of its own.
+    static constexpr std::array<std::string_view, 15> endings{".bin", ".before", ".csv",     ".json", ".toml",
+                                                              ".svg", ".html",   ".partial", ".part", ".glb",
+                                                              ".inp", ".raw",    ".stl",     ".vti",  ".vtp"};
+    const std::string name = "--output " + folder.string() + ": ";
     std::error_code error;
-    for (const char* name : {"checkpoint.bin", "settled.bin", "increments.csv", "summary.json", "levels.csv", "parameters.toml",
-                             "view.svg", "section.svg", "report.html"})
-        if (std::filesystem::is_directory(folder / name, error))
-            throw std::invalid_argument("--output " + folder.string() + ": " + name +
-                                        " in it is a folder, but results have a file of that name");
-    if (std::filesystem::exists(folder / "paraview", error) && !std::filesystem::is_directory(folder / "paraview", error))
-        throw std::invalid_argument("--output " + folder.string() +
-                                    ": paraview in it is a file, but results have a folder of that name");
+    for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder, error)) {
+        const std::string ending = entry.path().extension().string();
+        if (std::find(endings.begin(), endings.end(), ending) != endings.end() && entry.is_directory(error))
+            throw std::invalid_argument(name + entry.path().filename().string() +
+                                        " in it is a folder, but results have files of such names");
+    }
+    std::vector<std::filesystem::path> folders = parts;
+    folders.push_back(folder / "paraview");
+    for (const std::filesystem::path& own : folders)
+        if (std::filesystem::exists(own, error) && !std::filesystem::is_directory(own, error))
+            throw std::invalid_argument(name + own.filename().string() +
+                                        " in it is a file, but results have a folder of that name");
+    for (const std::filesystem::path& part : parts)
+        if (std::filesystem::is_directory(part, error)) require_free_names(part);
 }
 
 }  // namespace example

@@ -5,6 +5,7 @@
 #include "../support/example.hpp"
 #include "../support/program.hpp"
 #include "../support/report_page.hpp"
+#include "../support/table.hpp"
 #include "../support/usual_keys.hpp"
 
 #include <fibrant/beam/with_law.hpp>
@@ -115,7 +116,6 @@ simulation::ModelParameters<Yarn> model_of(const Asked& asked) {
 bool draw_bundle(const Asked& asked, const example::SceneReader& file, example::Output& output) {
     simulation::Simulator<Yarn> simulator(bundle(asked), model_of(asked));
     output.open(file);
-    double most = 0.0, at = 0.0;
     const auto stress = [&] {
         double force = 0.0;
         for (Index f = 0; f < asked.fibres; ++f) force += simulator.reaction(scene::last_end(f)).z();
@@ -123,7 +123,6 @@ bool draw_bundle(const Asked& asked, const example::SceneReader& file, example::
     };
     const auto strain = [&] { return asked.strain * simulator.amplitude(drive); };
     example::Recorder recorder(output, asked.radius, [&]() -> std::vector<observe::Column> {
-        if (stress() > most) most = stress(), at = strain();
         return {{"strain", strain()}, {"stress", stress()}, {"stress_over_strength", stress() / asked.strength.strength}};
     });
     simulation::Loading<Yarn> loading;
@@ -136,6 +135,11 @@ bool draw_bundle(const Asked& asked, const example::SceneReader& file, example::
     const simulation::Report report = simulator.run(loading, recorder);
     example::write_pictures(output, simulator.snapshot(), -60.0, 20.0);
     const simulation::Audit audit = example::audit(output, simulator, asked.radius);
+    // Of the table, which a run that was resumed has whole.
+    double most = 0.0, at = 0.0;
+    const example::Table table(output.folder / "increments.csv");
+    for (const auto& [drawn, borne] : table.line("", table.column("strain"), table.column("stress")).points)
+        if (borne > most) most = borne, at = drawn;
     // Daniels (1945): fibres of a length L without friction carry (m e)^(-1/m) s at most, s = s0 (L0/L)^(1/m).
     const double m = asked.strength.modulus,
                  own = asked.strength.strength * std::pow(asked.strength.reference_length / asked.length, 1.0 / m);

@@ -129,11 +129,14 @@ if [ -n "$ready" ]; then
   mkdir -p "$earlier" && echo "{}" > "$earlier/summary.json"
   try "--output $earlier: holds results of an earlier run (summary.json): --overwrite begins anew" "$ready" --output "$earlier" --quiet
   try "--output $earlier: holds results (summary.json) but no checkpoint.bin to resume from" "$ready" --output "$earlier" --quiet --resume
-  mkdir -p "$out/taken/report.html" "$out/blocked/checkpoint.bin.before/kept" "$out/named" && : > "$out/named/paraview"
-  try "--output $out/taken: report.html in it is a folder, but results have a file" "$ready" --output "$out/taken" --quiet \
-    --overwrite
+  mkdir -p "$out/named" && : > "$out/named/paraview"
+  # Of whatever name a program gives to a file, at the end of its work or before it.
+  for file in report.html top.svg slice_x.svg curve.svg checkpoint.bin.before checkpoint.bin.part; do
+    mkdir -p "$out/taken.$file/$file/kept"
+    try "--output $out/taken.$file: $file in it is a folder, but results have files of such names" "$ready" \
+      --output "$out/taken.$file" --quiet --overwrite
+  done
   try "--output $out/named: paraview in it is a file, but results have a folder" "$ready" --output "$out/named" --quiet --overwrite
-  try "checkpoint.bin.before: cannot be made or taken away: " "$ready" --output "$out/blocked" --quiet --overwrite
   head -c 5000 "$program" > "$earlier/checkpoint.bin"
   try "--resume: " "$ready" --output "$earlier" --quiet --resume
   try "checkpoint.bin" "$ready" --output "$earlier" --quiet --resume --other-scene

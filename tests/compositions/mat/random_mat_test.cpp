@@ -245,6 +245,40 @@ TEST_CASE("stacked fibres touch a lid and a floor, are apart from each other, an
     CHECK(test::refusal([&] { parameters.validate(); }).find("MatParameters.bend_deg = 20") == 0);
 }
 
+TEST_CASE("no piece of fibres that are cut is longer than the sides of the box allow, and some are nearly as long") {
+    for (const double tilt : {0.0, 30.0, 90.0})
+        for (const double spread : {10.0, 90.0}) {
+            mat::MatParameters parameters{.radius = 0.01,
+                                          .length = 4.0,
+                                          .width = 1.0,
+                                          .height = 0.4,
+                                          .fibres = 400,
+                                          .cut = true,
+                                          .tilt_deg = tilt,
+                                          .spread_deg = spread,
+                                          .clearance = -2.0,
+                                          .material = {7300.0, 0.3}};
+            const double most = mat::longest_piece(parameters);
+            double longest = 0.0;
+            for (const mat::MatFibre& piece : mat::random_fibres(parameters)) longest = std::max(longest, piece.length);
+            CHECK(longest <= most * (1.0 + 1e-12));
+            CHECK(longest >= 0.95 * most);  // of thousands of pieces, one in hundreds is so near to a diagonal
+        }
+    // A fibre of which a tenth is longer than any piece is to blame itself, not how many there are.
+    mat::MatParameters parameters{.radius = 0.01,
+                                  .length = 20.0,
+                                  .width = 1.0,
+                                  .height = 0.4,
+                                  .fibres = 4,
+                                  .cut = true,
+                                  .tilt_deg = 0.0,
+                                  .clearance = -2.0};
+    parameters.draws = 20000;
+    REQUIRE(mat::shortest_piece * parameters.length > mat::longest_piece(parameters));
+    const std::string refused = test::refusal([&] { mat::random_fibres(parameters); });
+    CHECK(refused.find("MatParameters.length = 20, but it must be less, or width more: of 20000 fibres") == 0);
+}
+
 TEST_CASE("a box that is full, and what is not a mat, is refused by name") {
     mat::MatParameters parameters{
         .radius = 0.02, .length = 0.8, .width = 1.2, .height = 0.2, .fibres = 1000, .material = {7300.0, 0.3}};

@@ -196,8 +196,20 @@ inline MatFibre cut_at_sides(const MatParameters& parameters, const MatFibre& fi
     return piece;
 }
 
+/// What is left of a fibre that is cut is at least this part of its length, or it is left out [1].
+constexpr double shortest_piece = 0.1;
+
+/// The longest straight piece of any direction within the tilt and the spread that fits between the sides of the box [length].
+inline double longest_piece(const MatParameters& parameters) {
+    const double degree = std::numbers::pi / 180.0,
+                 across = parameters.width - 2.0 * (1.0 + std::max(0.0, parameters.clearance)) * parameters.radius,
+                 flat = across / std::cos(std::min(parameters.spread_deg, 45.0) * degree),  // a square's diagonal is the most
+        room = std::max(0.0, parameters.height - 2.0 * parameters.radius);
+    return std::hypot(flat, std::min(room, flat * std::tan(parameters.tilt_deg * degree)));
+}
+
 /// Fibres one by one (random sequential addition): one that leaves the box or is too close to an earlier one is drawn anew.
-/// @throws std::invalid_argument if the box is full before all have found a place
+/// @throws std::invalid_argument if the box is full before all have found a place, or is too small for what is cut
 inline std::vector<MatFibre> random_fibres(const MatParameters& parameters) {
     parameters.validate();
     Draws draw(parameters.seed);
@@ -205,10 +217,15 @@ inline std::vector<MatFibre> random_fibres(const MatParameters& parameters) {
     const double reach = (2.0 + parameters.clearance) * parameters.radius, r = parameters.radius;
     detail::PieceGrid grid(parameters, std::max(reach, 0.0));
     // Where fibres are cut, the length that is still to come: never less than a tenth of a fibre, but nothing.
-    const double shortest = 0.1 * parameters.length;
+    const double shortest = shortest_piece * parameters.length;
     double missing = static_cast<double>(parameters.fibres) * parameters.length;
     const auto full = [&] { return parameters.cut ? !(missing > 0.0) : core::count(fibres) >= parameters.fibres; };
-    for (Index tries = 0; !full(); ++tries) {
+    for (Index tries = 0, short_ones = 0; !full(); ++tries) {
+        if (tries >= parameters.draws && 2 * short_ones > tries)
+            core::refuse("MatParameters.length", core::text(parameters.length),
+                         "less, or width more: of " + std::to_string(tries) +
+                             " fibres that were drawn the box has a tenth or more of " + std::to_string(tries - short_ones) +
+                             ", and shorter pieces are left out");
         if (tries >= parameters.draws)
             core::refuse("MatParameters.fibres", std::to_string(parameters.fibres),
                          "at most " + std::to_string(fibres.size()) + ", which are all that " + std::to_string(tries) +
@@ -220,7 +237,10 @@ inline std::vector<MatFibre> random_fibres(const MatParameters& parameters) {
                 fibre.length = missing;
             else if (fibre.length > missing - shortest)
                 fibre.length = missing - shortest;
-            if (fibre.length < (1.0 - 1e-9) * shortest) continue;
+            if (fibre.length < (1.0 - 1e-9) * shortest) {
+                ++short_ones;
+                continue;
+            }
         }
         const std::vector<Vec3> points = grid.pieces(fibre);
         const bool inside = std::all_of(points.begin(), points.end(), [&](const Vec3& x) {
