@@ -43,7 +43,7 @@ observe::PlotLine write_levels(observe::CsvWriter& table, std::uint64_t seed, co
     for (std::size_t k = 0; k < increments.rows(); ++k) {
         if (increments.cell(k, stage) != "level" || (k + 1 < increments.rows() && increments.cell(k + 1, stage) == "level"))
             continue;
-        const auto figure = [&](const char* name) { return std::stod(increments.cell(k, increments.column(name))); };
+        const auto figure = [&](const char* name) { return example::number_of(increments.cell(k, increments.column(name))); };
         const mat::LevelState level{{.volume_fraction = figure("volume_fraction"),
                                      .pressure = figure("pressure_over_modulus"),
                                      .lower_pressure = figure("lower_pressure_over_modulus")},

@@ -47,6 +47,7 @@ struct Scene {
     Index elements = 40, increments = 4;
     scene::ElasticMaterial material;
     law::FrictionShape friction;
+    double step_tolerance() const { return std::min(0.01 * tolerance, 1e-5); }  ///< of Newton's method, over the radius
     bool own_laws() const { return material.transverse.given() || !friction.coulomb(); }
 };
 
@@ -61,7 +62,7 @@ bool draw_with(const Scene& given, const scene::Assembly& assembly, const Parame
     model.friction = law::friction_parameters<typename Strand::Friction>(given.mu, given.reversible * radius, given.friction);
     model.contact.stiffness.allowed_penetration = given.allowed * radius;
     model.contact.stiffness.initial_fraction = 0.2;
-    model.iteration.step_tolerance = model.iteration.residual_tolerance = std::min(0.01 * given.tolerance, 1e-5);
+    model.iteration.step_tolerance = model.iteration.residual_tolerance = given.step_tolerance();
     model.iteration.normal_step_tolerance = model.iteration.normal_tolerance = 0.1 * given.tolerance;
     model.iteration.contact_tolerance = given.tolerance, model.iteration.newton_limit = 30;
     simulation::Simulator<Strand> simulator(assembly, model);
@@ -82,10 +83,10 @@ bool draw_with(const Scene& given, const scene::Assembly& assembly, const Parame
     const strand::StrandState state = strand::measure(simulator, parameters);
     example::write_pictures(output, simulator.snapshot(), -60.0, 20.0, std::pair{Index{2}, 0.5 * given.length});
     figures.insert(figures.begin(),
-                   {{"force", state.force},
-                    {"torque", state.torque},
-                    {"metal_stiffness", parameters.metal_stiffness()},
-                    {"force_over_metal_stiffness_and_strain", state.force / (parameters.metal_stiffness() * given.strain)}});
+                   {{"force", state.force}, {"torque", state.torque}, {"metal_stiffness", parameters.metal_stiffness()}});
+    if (given.strain != 0.0)
+        figures.emplace_back("force_over_metal_stiffness_and_strain",
+                             state.force / (parameters.metal_stiffness() * given.strain));
     figures.insert(figures.end(), {{"external_work", report.energy.external},
                                    {"dissipated", report.energy.dissipated},
                                    {"energy_error", report.energy.error()}});
@@ -143,9 +144,14 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.check(example::has_own_laws || !given.material.transverse.given(), "material.law", "kind", example::no_own_laws);
     file.check(example::has_own_laws || given.friction.coulomb(), "contact.friction", example::told_shape(file),
                example::no_own_laws);
+    file.check(given.sinking >= given.step_tolerance(), "contact", "largest_penetration_over_radius",
+               ">= a hundredth of contact.tolerance_over_radius, " + core::text(given.step_tolerance()) +
+                   ", to which Newton's steps are solved, or multipliers do not settle");
     const bool roped = rope_lay != 0.0;
     if (roped && wires != 7) file.refuse("strand", "wires", "7 in a rope");
     if (roped && core_radius > 0.0) file.refuse("strand", "core_radius", "left out in a rope, whose cores are found");
+    for (const char* key : {"apart_over_radius", "overlap_over_radius"})
+        file.check(roped || !file.given("rope", key), "rope", key, "left out, for rope.lay_angle_deg = 0: there is no rope");
     file.check(core_radius <= 4.0 * given.radius, "strand", "core_radius",
                "<= 4 strand.radius = " + core::text(4.0 * given.radius));
     file.check(given.length >= 4.0 * given.radius, "strand", "length", ">= 4 strand.radius = " + core::text(4.0 * given.radius));

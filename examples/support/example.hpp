@@ -86,11 +86,15 @@ struct Output {
                              found.empty() ? "" : (", for a run was ended before its first checkpoint (" + found + ")").c_str());
             resume = false;
         }
-        if (resume && std::filesystem::exists(checkpoint())) {
+        std::vector<std::filesystem::path> resumed = parts;
+        resumed.push_back(folder);
+        for (const std::filesystem::path& part : resumed) {  // also of those that are come to later
+            const std::string left = (part / "checkpoint.bin").string();
+            if (!resume || !std::filesystem::exists(left)) continue;
             if (other_scene)
-                scene_of(checkpoint(), "--resume");  // a damaged one is told before any work
+                scene_of(left, "--resume");  // a damaged one is told before any work
             else
-                require_scene_of(checkpoint(), told, "--resume");
+                require_scene_of(left, told, "--resume");
         }
         if (overwrite || begins)  // what is left of an earlier run would be taken for this one's where it is stopped
             for (const char* left : {"checkpoint.bin", "checkpoint.bin.before", "settled.bin", "settled.bin.before",

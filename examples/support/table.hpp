@@ -5,14 +5,23 @@
 #include <fibrant/observe/svg_plot.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace example {
+
+/// The number of a cell, however small (std::stod refuses what has less than sixteen digits left); NaN if it is none.
+inline double number_of(std::string_view cell) {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    return value;
+}
 
 /// Cells of a CSV file without quotes, the first row its names. A last row that is cut short is left out.
 class Table {
@@ -38,7 +47,7 @@ public:
         const std::size_t c = column(where);
         if (std::max(x, y) >= names_.size() || (!where.empty() && c == names_.size())) return answer;
         for (const auto& row : rows_)
-            if (where.empty() || row[c] == what) answer.points.emplace_back(std::stod(row[x]), std::stod(row[y]));
+            if (where.empty() || row[c] == what) answer.points.emplace_back(number_of(row[x]), number_of(row[y]));
         return answer;
     }
 

@@ -234,6 +234,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.check(!over || asked.fibres == 1, "yarn", "fibres", "1, for kind = \"pin\"");
     file.check(!over || asked.travel > 0.0, "pin", "travel", "> 0: nothing would be drawn");
     file.check(over || asked.travel == 0.0, "pin", "travel", "left out, for kind = \"bundle\"");
+    file.check(over || asked.mu == 0.0, "contact", "friction_coefficient",
+               "0, for kind = \"bundle\", whose fibres do not touch each other");
     if (over) {
         const double around = 1.2 * pi * (asked.pin + asked.radius);
         file.check(asked.length >= around, "yarn", "length", ">= " + core::text(around) + ", to go round the pin by half a turn");

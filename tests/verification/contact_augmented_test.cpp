@@ -23,7 +23,7 @@ simulation::ModelParameters<M> parameters(double fraction, double largest) {
     auto all = test::pressed_parameters<Smooth>(0.05 * r);
     simulation::ModelParameters<M> own;
     own.contact = all.contact, own.iteration = all.iteration;
-    own.iteration.multiplier_limit = 40;
+    own.iteration.multiplier_limit = 3;  // those that bring contacts nearer do not count, however many a soft penalty takes
     if constexpr (core::Active<typename M::Friction>)
         own.friction = {.friction_coefficient = 0.0, .reversible_displacement = 0.02 * r};
     if constexpr (law::Augmenting<typename M::Normal>) {

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace fibrant::solver {
 
@@ -52,6 +53,9 @@ inline constexpr double coarsest_step = 0.02;                   ///< of an itera
 inline constexpr double coarsest_by_looseness = 2e-5, coarsest_of_all = 0.05;  ///< the same, of a path looser than 1000
 /// The same over what is expected to move, of a path: of one that creeps a coarser iteration leaves more than it moves [1].
 inline constexpr double of_expected = 0.5;
+/// What one renewal of multipliers leaves of what contacts miss, where it counts as one that brings nothing: slower than that,
+/// a decade takes more than twenty.
+inline constexpr double hardly_less = 0.9;
 inline constexpr double finer = 0.1;  ///< part of a tolerance that a loop inside need not go below [1]
 // Extrapolation of passes that follow one mode, as a geometric series (Aitken 1926).
 inline constexpr double least_ratio = 0.4;  ///< of two travels, from which it pays [1]
@@ -118,6 +122,7 @@ public:
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
         Vector searched, travel, last_travel;  // state of the last search, displacements of the last pass and of the one before
+        double missed = std::numeric_limits<double>::infinity();  // by contacts, at the last renewal of their multipliers
         turn_ = 0.0, closing_ = false;
         Index passes = 0, searches = 0, moves = 0, renewals = 0, stiffenings = 0;
         // Further than so many searches reach: what hardly anything holds goes on for ever, and where displacements have a bound,
@@ -212,10 +217,15 @@ public:
                 }
                 if (!multipliers_change()) break;
             }
-            if (++renewals > parameters_.multiplier_limit) {
-                report.reason = "multipliers do not settle: a contact misses its surface by " +
-                                core::text(contacts_->misfit() / radius_) + " radii";
-                return report;
+            // Those that get nearer go on: what is asked for may be many decades below what the penalty leaves.
+            if constexpr (with_multipliers) {
+                const double misses = contacts_->misfit();
+                if (misses > with::hardly_less * std::exchange(missed, misses)) ++renewals;
+                if (renewals > parameters_.multiplier_limit) {
+                    report.reason = "multipliers do not settle: a contact misses its surface by " + core::text(misses / radius_) +
+                                    " radii, and may by " + core::text(contacts_->normal_law().largest_penetration() / radius_);
+                    return report;
+                }
             }
         }
         contact::DepthOverAllowed depth;
@@ -236,6 +246,7 @@ public:
     }
 
 private:
+    static constexpr bool with_multipliers = requires(const Contacts contacts) { contacts.normal_law().largest_penetration(); };
     /// Of zones, within an increment: each a factor StiffnessAdaptation.largest_change, so that ten are five decades by default.
     static constexpr Index most_stiffenings = 10;
 
@@ -273,8 +284,7 @@ private:
 
     /// Contacts of a law with multipliers carry them on at the next pass, and are not yet where they should be.
     bool multipliers_change() const {
-        if constexpr (requires { contacts_->normal_law().largest_penetration(); })
-            return contacts_->misfit() > contacts_->normal_law().largest_penetration();
+        if constexpr (with_multipliers) return contacts_->misfit() > contacts_->normal_law().largest_penetration();
         return false;
     }
 

@@ -28,7 +28,7 @@ struct IterationParameters {
     Index newton_limit = 15;         ///< iterations of one inner loop
     Index normal_limit = 6;          ///< normal passes of one set of contact elements
     Index contact_limit = 8;         ///< contact passes of an increment
-    Index multiplier_limit = 20;     ///< contact passes that change nothing but multipliers, where a law has them
+    Index multiplier_limit = 20;     ///< contact passes that change nothing but multipliers, and hardly what contacts miss
     double margin = 0.2;             ///< least reach of the search beyond touching [radius], > 0
     double largest_margin = 2.0;     ///< greatest reach of the search beyond touching [radius]
     bool mixed = true;               ///< independent point stresses (falls back to the plain form)
