@@ -272,7 +272,8 @@ TEST_CASE("no piece of fibres that are cut is longer than the sides of the box a
                                   .fibres = 4,
                                   .cut = true,
                                   .tilt_deg = 0.0,
-                                  .clearance = -2.0};
+                                  .clearance = -2.0,
+                                  .material = {7300.0, 0.3}};
     parameters.draws = 20000;
     REQUIRE(mat::shortest_piece * parameters.length > mat::longest_piece(parameters));
     const std::string refused = test::refusal([&] { mat::random_fibres(parameters); });
