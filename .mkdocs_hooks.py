@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Links that leave docs (to examples, tests, the README) lead to copies of these files beside the site's pages."""
+"""Links that leave docs (to examples, tests, the README) lead to copies of these files beside the site's pages. The index of the
+search is a script as well, which a page that is opened from a file may load (docs/site.js)."""
 import posixpath
 import re
 import shutil
@@ -28,3 +29,5 @@ def on_post_build(config):
         to = Path(config["site_dir"]) / "source" / (path + ".txt")
         to.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(ROOT / path, to)
+    index = Path(config["site_dir"]) / "search" / "search_index.json"
+    index.with_name("index.js").write_text("window.searchIndex = " + index.read_text() + ";\n")
