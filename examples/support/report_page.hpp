@@ -4,16 +4,15 @@
 /// figures and curves.
 
 #include "figure_meanings.hpp"
+#include "report_plots.hpp"
 #include "report_viewer.hpp"
 #include "table.hpp"
 
 #include <fibrant/observe/json.hpp>
 #include <fibrant/observe/snapshot.hpp>
-#include <fibrant/observe/svg_curves.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -44,11 +43,6 @@ inline std::string value_of(const observe::JsonObject& summary, std::string_view
 inline double number_of(const observe::JsonObject& summary, std::string_view key) {
     const std::string text = value_of(summary, key);
     return text.empty() || text == "null" ? fibrant::core::unset : std::strtod(text.c_str(), nullptr);
-}
-inline std::string short_number(double value, const char* format = "%.4g") {
-    char text[40];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
 }
 /// Lists and objects with the numbers in them of four digits; texts in them as they are.
 inline std::string short_numbers(const std::string& value) {
@@ -101,10 +95,11 @@ inline std::vector<Warning> warnings(const observe::JsonObject& summary, const T
     const auto number = [&](const char* key) { return number_of(summary, key); };
     const auto is_false = [&](const char* key) { return value_of(summary, key) == "false"; };
     if (is_false("converged"))
-        list.push_back(
-            {"The run stopped: " + shown(value_of(summary, "reason")),
-             "Forces do not balance in the state that is shown. The how-to page \"When it says ...\" has cause and remedy.",
-             true});
+        list.push_back({"The run stopped: " + shown(value_of(summary, "reason")),
+                        "What is shown is its last state that was accepted. The page \"When it says ...\" "
+                        "(docs/how-to/messages.md) has cause "
+                        "and remedy.",
+                        true});
     const double gap = number("least_gap_over_radius"), depth = number("greatest_penetration_over_radius");
     const double wrong = number("wrong_crossings"), missing = number("missing_crossings");
     const bool ended = !is_false("converged");  // what a run that stopped had not yet mended says nothing more
@@ -167,40 +162,6 @@ inline std::string fibres_json(const observe::Snapshot& snapshot, const ReportPa
     return text + "]}";
 }
 
-/// A plot of columns over the increments; empty where no column is there.
-inline std::string plot(const Table& table, const std::string& title, const std::string& label,
-                        const std::vector<std::string>& names, bool powers = false) {
-    observe::CurvePlot curves{title, "increment", label, {}, false, 520.0, 300.0};
-    for (const std::string& name : names) {
-        observe::PlotLine line = table.line(name, table.column("increment"), table.column(name));
-        if (powers) {
-            std::erase_if(line.points, [](const auto& point) { return !(point.second > 0.0); });
-            for (auto& point : line.points) point.second = std::log10(point.second);
-        }
-        std::replace(line.name.begin(), line.name.end(), '_', ' ');
-        if (line.points.size() > 1) curves.lines.push_back(std::move(line));
-    }
-    return curves.lines.empty() ? std::string() : "<figure>" + observe::curves_svg(curves) + "</figure>\n";
-}
-
-/// Which increments each stage took: a row a stage.
-inline std::string stages(const Table& table) {
-    const std::size_t stage = table.column("stage"), iterations = table.column("newton_iterations"),
-                      seconds = table.column("seconds");
-    if (table.rows() == 0 || std::max({stage, iterations, seconds}) == table.names().size()) return {};
-    std::string text = "<table><tr><th>stage</th><th>increments</th><th>Newton iterations</th><th>seconds</th></tr>\n";
-    for (std::size_t from = 0, to = 0; from < table.rows(); from = to) {
-        double newton = 0.0, taken = 0.0;
-        for (to = from; to < table.rows() && table.cell(to, stage) == table.cell(from, stage); ++to)
-            newton += std::strtod(table.cell(to, iterations).c_str(), nullptr),
-                taken += std::strtod(table.cell(to, seconds).c_str(), nullptr);
-        text += "<tr><td>" + observe::xml_escaped(table.cell(from, stage)) + "</td><td>" + table.cell(from, 0) + " to " +
-                table.cell(to - 1, 0) + "</td><td>" + short_number(newton) + "</td><td>" + short_number(taken, "%.3g") +
-                "</td></tr>\n";
-    }
-    return text + "</table>\n";
-}
-
 inline constexpr const char* report_style = R"style(
 body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#f4f5f7;margin:0}
 main{max-width:1120px;margin:0 auto;padding:16px 20px 60px}
@@ -214,11 +175,15 @@ canvas{width:100%;height:480px;touch-action:none;cursor:grab;display:block}
 button,select{font:inherit;padding:2px 10px;border:1px solid #bbb;border-radius:6px;background:#fafafa;cursor:pointer}
 table{border-collapse:collapse;width:100%;font-size:14px;background:#fff}
 td,th{text-align:left;padding:4px 8px;border-bottom:1px solid #e5e5e5;vertical-align:top}
-td.n{font-variant-numeric:tabular-nums;white-space:nowrap}td small{color:#666}
-.plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(420px,1fr));gap:16px}
-figure{margin:0;background:#fff;border-radius:8px;padding:8px;box-shadow:0 1px 3px #0002}figure svg{width:100%;height:auto}
-pre{font-size:13px;overflow:auto;margin:0}details{margin:10px 0}summary{cursor:pointer}
-@media(max-width:820px){.two,.plots{grid-template-columns:minmax(0,1fr)}}
+td{overflow-wrap:anywhere}td.n{font-variant-numeric:tabular-nums;min-width:6em}td small{color:#666}
+.plots,.slices{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(320px,100%),1fr));gap:16px}
+.slices{grid-template-columns:repeat(auto-fit,minmax(min(480px,100%),1fr))}
+.load{grid-template-columns:repeat(auto-fill,minmax(min(440px,100%),1fr))}
+figure{margin:0;background:#fff;border-radius:8px;padding:8px;box-shadow:0 1px 3px #0002}
+figure svg,figure img{width:100%;height:auto;display:block}figcaption{font-size:13px;color:#444;padding:2px 8px}
+figcaption span{white-space:nowrap;margin-right:10px}figcaption i{display:inline-block;width:18px;height:3px;margin:0 5px 3px 0}
+pre{font-size:13px;overflow:auto;margin:0}td pre{white-space:pre-wrap}details{margin:10px 0}summary{cursor:pointer}
+@media(max-width:820px){.two{grid-template-columns:minmax(0,1fr)}canvas{height:min(480px,90vw)}main{padding:10px 10px 40px}}
 )style";
 
 }  // namespace detail
@@ -250,20 +215,30 @@ inline std::string report_page(const std::filesystem::path& folder, const Report
     text +=
         "<label>cut across <select id=\"axis\"><option value=\"0\">x</option><option value=\"1\">y</option><option "
         "value=\"2\">z</option></select></label>"
-        "<input id=\"cut\" type=\"range\" min=\"0\" max=\"1000\" value=\"1000\"><small>drag: turn; shift and drag: move; wheel: "
-        "zoom</small></div></div>\n";
+        "<input id=\"cut\" type=\"range\" min=\"0\" max=\"1000\" value=\"1000\" aria-label=\"where it is cut\"><small>drag: "
+        "turn; shift "
+        "and drag: move; wheel: zoom; two fingers: move and zoom</small></div>\n<noscript>The view needs scripts, which this "
+        "browser "
+        "does not run. view.svg is a picture of it.</noscript></div>\n";
     text += "<div class=\"card\"><table>\n";
     for (const std::string& key : page.foremost)
         if (const std::string value = detail::value_of(page.summary, key); !value.empty()) text += row(key, value);
-    text += "</table></div></div>\n<h2>Over the increments</h2>\n<div class=\"plots\">\n";
-    text += detail::plot(table, "What is out of balance; stages on the way may be loose", "power of ten of the residual",
-                         {"residual"}, true);
-    text += detail::plot(table, "Deepest contact", "power of ten of depth / radius", {"greatest_penetration_over_radius"}, true);
-    text += detail::plot(table, "Iterations", "of Newton's method", {"newton_iterations"});
-    text += detail::plot(table, "Part of the forces that damping holds", "power of ten", {"damping_share"}, true);
-    text += detail::plot(table, "Energies", "energy",
-                         {"external_work", "elastic_energy", "contact_energy", "dissipated", "damped", "energy_error"});
-    text += detail::plot(table, "Contacts", "number", {"active_contacts"});
+    text += "</table></div></div>\n";
+    text += detail::load(folder, table, page.unit);
+    for (const char* part : {"", "after"}) text += detail::slices(folder / part);
+    text += "<h2>Over the increments</h2>\n<div class=\"plots\">\n";
+    text += detail::plot(table, "What is out of balance", "residual", {"residual"}, true,
+                         "Over the greatest force. Stages on the way may be loose; the last one is not.");
+    text += detail::plot(table, "Deepest contact", "depth / radius", {"greatest_penetration_over_radius"}, true);
+    text += detail::plot(table, "What damping holds", "part of the forces", {"damping_share"}, true,
+                         "Near zero at rest. Well above a hundredth, shape and forces are not those of rest.");
+    text += detail::plot(table, "Iterations of Newton's method", "number in the increment", {"newton_iterations"});
+    text += detail::plot(table, "Contacts that press", "number", {"active_contacts"});
+    text += detail::plot(
+        table, "Energies", "[N " + page.unit + "]",
+        {"external_work", "elastic_energy", "contact_energy", "dissipated", "damped", "energy_error"}, false,
+        "<br>Energy error: what the balance misses. It arises in increments in which fibres part, slide or leap far, "
+        "and is no error of the shape.");
     text += "</div>\n<h2>Stages</h2>\n" + detail::stages(table);
     text += "<details><summary>All figures of the run</summary><table>\n";
     for (const auto& [key, value] : page.summary.members()) text += row(key, value);
@@ -282,14 +257,14 @@ void write_report(const Output& output, const ReportPage& page, const observe::S
     observe::write_file(output.folder / "report.html", report_page(output.folder, page, snapshot));
     if (output.ended) output.ended(snapshot, page.summary);
 }
-/// The same with what the summary says before the counts of iterations shown first.
+/// The same with what the summary says before the counts of iterations shown first, but for those of single edges.
 template <class Output>
 void write_report(const Output& output, const char* program, const observe::JsonObject& summary,
                   const observe::Snapshot& snapshot) {
     ReportPage page{program, output.unit, summary, {}, {}};
     for (const auto& [key, value] : summary.members()) {
         if (key == "increments") break;
-        if (key != "reason" && value.find_first_of("{[") == std::string::npos) page.foremost.push_back(key);
+        if (key != "reason" && value.find_first_of("{[") == std::string::npos && is_known(key)) page.foremost.push_back(key);
     }
     page.foremost.push_back("wall_seconds");
     write_report(output, page, snapshot);

@@ -68,10 +68,14 @@ private:
 
 /// Name of a figure with its unit, forces in N as in the scene files.
 inline std::string axis_label(const std::string& name, const std::string& unit_of_length) {
-    if (name == "angle_deg") return "angle [degrees]";
-    if (name == "strain" || name == "shear") return name + " [1]";
-    if (name == "force") return "force [N]";
+    if (name == "angle_deg" || name == "helix_angle_deg") return "angle [degrees]";
+    for (const char* pure : {"strain", "shear", "turns", "ratio", "compression", "volume_fraction", "pressure_over_modulus"})
+        if (name == pure) return name + " [1]";
+    if (name == "rotation") return "rotation [rad / " + unit_of_length + "]";
+    if (name == "slack" || name.ends_with("force")) return name + " [N]";
     if (name == "moment" || name == "torque") return name + " [N " + unit_of_length + "]";
+    if (name == "stress") return name + " [N / " + unit_of_length + "^2]";
+    if (name == "line_load") return name + " [N / " + unit_of_length + "]";
     if (name == "curvature") return "curvature [1 / " + unit_of_length + "]";
     return name + " [" + unit_of_length + "]";
 }

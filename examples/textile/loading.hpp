@@ -3,6 +3,7 @@
 /// @file A load case of the settled textile: its programme, its curve, and what it comes to.
 
 #include "../support/example.hpp"
+#include "../support/report_page.hpp"
 #include "output.hpp"
 #include "scene_file.hpp"
 
@@ -221,7 +222,8 @@ std::pair<fibrant::observe::JsonObject, bool> run_load_case(const example::Outpu
     simulator.start_from(whole.checkpoint());
     example::Output output = whole;
     output.folder = whole.folder / "loading";
-    output.resume = false;  // it begins at the settled state, which a run that resumes has
+    output.resume = false;   // it begins at the settled state, which a run that resumes has
+    output.ended = nullptr;  // told of the settled state already
     std::filesystem::create_directories(output.folder);
     std::vector<std::pair<double, double>> forth;
     const auto names = cloth::figure_names(load.parameters.name);
@@ -264,15 +266,17 @@ std::pair<fibrant::observe::JsonObject, bool> run_load_case(const example::Outpu
         .add("work", work)
         .add("lost_to_friction", report.energy.dissipated - before.dissipated);
     json.add("lost_to_damping", damped).add("missing_energy", report.energy.error() - before.error());
-    example::write_summary(output, report, audit, radius, {}, json);
+    const observe::JsonObject summary = example::write_summary(output, report, audit, radius, {}, json);
     if (output.pictures) {
         observe::PlotLine line{names.second, forth};
-        observe::write_file(
-            output.folder / "curve.svg",
-            observe::curves_svg(
-                {.title = load.parameters.name, .x_label = names.first, .y_label = names.second, .lines = {line}}));
+        observe::write_file(output.folder / "curve.svg",
+                            observe::curves_svg({.title = load.parameters.name,
+                                                 .x_label = example::axis_label(names.first, output.unit),
+                                                 .y_label = example::axis_label(names.second, output.unit),
+                                                 .lines = {line}}));
     }
     observe::write_file(output.folder / "centrelines.csv", fibrant::exchange::csv_of(cloth::curves_of(after, assembled.path_of)));
+    example::write_report(output, "textile", summary, by_family(scene.textile, assembled, after));
     return {json, report.converged && audit.clean() && topology.clean()};
 }
 

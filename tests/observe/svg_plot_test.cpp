@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "refusal.hpp"
 
+#include <fibrant/observe/svg_curves.hpp>
 #include <fibrant/observe/svg_plot.hpp>
 
 #include <near.hpp>
@@ -52,6 +53,26 @@ TEST_CASE("within a decade its multiples are marked") {
     // From side to side; a cube between the marks of 100 and 10,000.
     CHECK(page.find("M78 ") != std::string::npos);
     CHECK(page.find("L470 ") != std::string::npos);
+}
+
+TEST_CASE("over increments a power of ten each is a straight line on decades, and what is not above zero is left out") {
+    observe::CurvePlot plot{
+        "", "increment", "residual", {{"a", {{1.0, 1e-1}, {2.0, 1e-2}, {3.0, 0.0}, {4.0, -1.0}, {5.0, 1e-5}}}}};
+    plot.decades = true;
+    const std::string page = observe::curves_svg(plot);
+    CHECK(times(page, "<circle") == 3);
+    for (const char* decade : {">1e-1<", ">1e-2<", ">1e-3<", ">1e-4<", ">1e-5<"}) CHECK(times(page, decade) == 1);
+    // left 84 to right 610 for 0 to 5, top 46 to bottom 384 for 1e-1 to 1e-5
+    CHECK(page.find("M189.2 46L294.4 130.5L610 384") != std::string::npos);
+}
+
+TEST_CASE("names of several lines stand beside them, or are left to the page around it") {
+    observe::CurvePlot plot{"", "x", "y", {{"upper", {{0.0, 1.0}, {1.0, 2.0}}}, {"lower", {{0.0, 0.0}, {1.0, 1.0}}}}};
+    CHECK(times(observe::curves_svg(plot), ">upper<") == 1);
+    plot.names = false;
+    const std::string page = observe::curves_svg(plot);
+    CHECK(times(page, ">upper<") == 0);
+    CHECK(page.find("610 46") != std::string::npos);  // the plot has the room
 }
 
 TEST_CASE("a plot of nothing is refused") {

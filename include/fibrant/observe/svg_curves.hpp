@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// @file A plot of lines on two linear axes as an SVG file: loading curves, say.
+/// @file A plot of lines over a linear axis as an SVG file: loading curves, say.
 
 #include <fibrant/observe/svg_plot.hpp>
 
@@ -19,6 +19,8 @@ struct CurvePlot {
     std::vector<PlotLine> lines;
     bool marks = true;                     ///< a dot at each point
     double width = 640.0, height = 440.0;  ///< [pixel]
+    bool decades = false;                  ///< the axis of y is logarithmic; points with y <= 0 are left out
+    bool names = true;                     ///< of several lines, beside the plot
 };
 
 namespace detail {
@@ -48,24 +50,26 @@ inline PlotAxis round_axis(double low, double high) {
 }
 }  // namespace detail
 
-/// The plot as a whole SVG file. Axes hold zero where that costs less than half of the range.
+/// The plot as a whole SVG file. Linear axes hold zero where that costs less than half of the range.
 /// @throws std::invalid_argument if no point can be shown
 inline std::string curves_svg(const CurvePlot& plot) {
     std::array<double, 2> low{1e300, 1e300}, high{-1e300, -1e300};
     std::vector<PlotLine> lines;
     for (const PlotLine& line : plot.lines) {
         lines.push_back({line.name, {}});
-        for (const auto& [x, y] : line.points) {
+        for (const auto& [x, given] : line.points) {
+            const double y = plot.decades ? std::log10(std::max(given, 0.0)) : given;
             if (!(std::isfinite(x) && std::isfinite(y))) continue;
             low = {std::min(low[0], x), std::min(low[1], y)}, high = {std::max(high[0], x), std::max(high[1], y)};
             lines.back().points.emplace_back(x, y);
         }
     }
     if (low[0] > high[0]) core::refuse("CurvePlot.lines", "no point", "a point with finite numbers");
-    const bool names = plot.lines.size() > 1;
+    const bool names = plot.names && plot.lines.size() > 1;
     return detail::plot_svg({plot.title, plot.x_label, plot.y_label, plot.width, plot.height, 84.0, names ? 190.0 : 30.0,
-                             detail::round_axis(low[0], high[0]), detail::round_axis(low[1], high[1]), std::move(lines),
-                             plot.marks ? 2.5 : 0.0, names});
+                             detail::round_axis(low[0], high[0]),
+                             plot.decades ? detail::decade_axis(low[1], high[1]) : detail::round_axis(low[1], high[1]),
+                             std::move(lines), plot.marks ? 2.5 : 0.0, names});
 }
 
 }  // namespace fibrant::observe

@@ -58,6 +58,23 @@ struct PlotFrame {
     bool names;         ///< of the lines, beside the plot
 };
 
+/// An axis over logarithms to the base of ten. Within one decade its multiples are marked, otherwise each power of ten.
+inline PlotAxis decade_axis(double low, double high) {
+    // Within one decade its multiples are marked, from the last before the points to the first behind them.
+    const double unit = std::pow(10.0, std::floor(low + 1e-9));
+    const double first = std::floor(std::pow(10.0, low) / unit + 1e-9), last = std::ceil(std::pow(10.0, high) / unit - 1e-9);
+    if (last > first && last <= 10.0) {
+        PlotAxis axis{std::log10(first * unit), std::log10(last * unit), {}};
+        const Index digits = std::max<Index>(0, static_cast<Index>(-std::floor(low + 1e-9)));
+        for (double k = first; k <= last; k += 1.0)
+            axis.ticks.emplace_back(std::log10(k * unit), rounded(k * unit, static_cast<int>(digits)));
+        return axis;
+    }
+    PlotAxis axis{std::floor(low), std::max(std::ceil(high), std::floor(low) + 1.0), {}};
+    for (double k = axis.low; k <= axis.high; k += 1.0) axis.ticks.emplace_back(k, "1e" + rounded(k, 0));
+    return axis;
+}
+
 /// A plot as SVG, its axes, curves and legend.
 inline std::string plot_svg(const PlotFrame& plot) {
     const double left = plot.left, right = plot.width - plot.right_margin, top = 46.0, bottom = plot.height - 56.0;
@@ -116,23 +133,9 @@ inline std::string log_log_svg(const LogLogPlot& plot) {
         }
     }
     if (low_x > high_x) core::refuse("LogLogPlot.lines", "no point", "a point with both numbers > 0");
-    const auto decades = [](double low, double high) {
-        // Within one decade its multiples are marked, from the last before the points to the first behind them.
-        const double unit = std::pow(10.0, std::floor(low + 1e-9));
-        const double first = std::floor(std::pow(10.0, low) / unit + 1e-9), last = std::ceil(std::pow(10.0, high) / unit - 1e-9);
-        if (last > first && last <= 10.0) {
-            detail::PlotAxis axis{std::log10(first * unit), std::log10(last * unit), {}};
-            const Index digits = std::max<Index>(0, static_cast<Index>(-std::floor(low + 1e-9)));
-            for (double k = first; k <= last; k += 1.0)
-                axis.ticks.emplace_back(std::log10(k * unit), rounded(k * unit, static_cast<int>(digits)));
-            return axis;
-        }
-        detail::PlotAxis axis{std::floor(low), std::max(std::ceil(high), std::floor(low) + 1.0), {}};
-        for (double k = axis.low; k <= axis.high; k += 1.0) axis.ticks.emplace_back(k, "1e" + rounded(k, 0));
-        return axis;
-    };
-    return detail::plot_svg({plot.title, plot.x_label, plot.y_label, plot.width, plot.height, 78.0, 170.0, decades(low_x, high_x),
-                             decades(low_y, high_y), std::move(lines), 3.5, true});
+    return detail::plot_svg({plot.title, plot.x_label, plot.y_label, plot.width, plot.height, 78.0, 170.0,
+                             detail::decade_axis(low_x, high_x), detail::decade_axis(low_y, high_y), std::move(lines), 3.5,
+                             true});
 }
 
 }  // namespace fibrant::observe
