@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Makes parts.md, an index of the public names of the headers, or checks that it is up to date.
 
-A public name is a class, structure, concept or function of a namespace of fibrant that is not called detail. One without a
-comment is an error.
+A public name is a class, structure, concept, function, alias or constant of a namespace of fibrant that is not called detail. One
+without a comment is an error. Constants are not listed.
 usage: make_parts.py [--check]
 """
 import re
@@ -14,8 +14,11 @@ from header_pages import by_folder, cell, finish, headers
 
 NAME = re.compile(r"(?:(?:inline|constexpr|extern|static) )*(?:"
                   r"(?:struct|class|concept|enum class) (?P<type>\w+)(?! *(?:\w|;|<))|"
+                  r"using (?P<alias>\w+) =|"
                   r"(?!using|namespace|return|friend|#|static_assert|requires|extern|template)"
                   r"[\w:<>,&* \[\]]*?[\w>&*\]] [&*]?(?P<function>\w+)\()")
+
+CONSTANT = re.compile(r"(?:inline )?constexpr [\w:<>,* ]+? (\w+)(?:\[\w*\])?(?: =|\{)")
 
 
 def without(text):
@@ -24,7 +27,8 @@ def without(text):
 
 
 def names(source):
-    """(name, its comment or nothing) of a header, in order; names that follow each other without a blank line share a comment."""
+    """(name, its comment or nothing, whether it is a constant) of a header, in order; names that follow each other without a blank
+    line share a comment."""
     found, comment, group, inner, head = [], [], "", False, ""
     for line in without(source).split("\n"):
         if inner:  # a namespace of details
@@ -43,9 +47,10 @@ def names(source):
         if line.startswith(("template", "requires", "[[")) or head:
             head = (head + " " + line).strip()
         name = NAME.match(line) or (NAME.match(re.sub(r"^template <.*?> (?=\w)|^\[\[\w+\]\] ?", "", head)) if head else None)
-        if name and not line.startswith(" "):
-            group = " ".join(comment) or group
-            found.append((name["type"] or name["function"], group))
+        constant = CONSTANT.match(line)
+        if (name or constant) and not line.startswith(" "):
+            group = " ".join(comment) or (line.split("///<")[1].strip() if "///<" in line else "") or group
+            found.append((constant[1] if constant else name["type"] or name["alias"] or name["function"], group, bool(constant)))
         if not line.startswith((" ", "template", "requires", "[[")):
             comment, head = [], ""
     return found
@@ -62,14 +67,16 @@ def page():
     for folder, own in by_folder():
         rows = []
         for header in own:
-            said, place = {}, header.relative_to(headers)
-            for name, comment in names(header.read_text()):
+            said, unlisted, place = {}, set(), header.relative_to(headers)
+            for name, comment, constant in names(header.read_text()):
                 said[name] = said.get(name) or sentence(comment)
+                unlisted |= {name} if constant else set()
             for name, comment in said.items():
                 count += 1
                 if not comment:
                     missing.append(f"fibrant/{place}: {name} has no sentence")
-                rows.append(f"| `{name}` | `{place}` | {cell(comment)} |")
+                if name not in unlisted:
+                    rows.append(f"| `{name}` | `{place}` | {cell(comment)} |")
         if rows:
             text.append(f"## {folder.name}\n\n| name | header | what it is |\n|---|---|---|\n" + "\n".join(rows) + "\n")
     head = ("# Index of the C++ parts\n\nMade from the headers by [make_parts.py](make_parts.py): each public name, the header "

@@ -114,6 +114,7 @@ template <class System>
 const System& seen(const System& system) noexcept {
     return system;
 }
+/// What `seen` makes of a system of this type.
 template <class System>
 using Seen = std::remove_cvref_t<decltype(seen(std::declval<const System&>()))>;
 

@@ -13,6 +13,7 @@
 
 namespace fibrant::core {
 
+/// Two numbers, and a matrix of them: what needs no more of Eigen compiles in less time.
 using Two = std::array<double, 2>;
 using TwoByTwo = std::array<Two, 2>;  ///< rows
 using Four = std::array<double, 4>;

@@ -12,6 +12,7 @@ namespace fibrant::core {
 
 /// Parts of a run whose time is told apart.
 enum class Part : std::size_t { search, contact, assembly, preparation, solution, output };
+/// How many they are, and what they are called.
 inline constexpr std::size_t part_count = 6;
 inline constexpr std::array<const char*, part_count> part_names{"search",      "contact",  "assembly",
                                                                 "preparation", "solution", "output"};

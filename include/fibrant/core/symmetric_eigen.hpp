@@ -12,6 +12,7 @@
 
 namespace fibrant::core {
 
+/// Rows of the largest matrix that SymmetricEigen takes.
 inline constexpr int most_eigen_rows = 16;
 
 /// Eigenvalues and eigenvectors of a symmetric matrix of plain numbers, by Jacobi's rotations (Golub and Van Loan, Matrix

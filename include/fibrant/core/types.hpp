@@ -11,6 +11,7 @@
 
 namespace fibrant {
 
+/// Compressed by columns, with the indices that solver libraries take.
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
 }  // namespace fibrant

@@ -23,10 +23,12 @@ using Matrix = Eigen::MatrixXd;  ///< dense, column-major
 
 namespace core {
 
+/// Whether a type is a matrix that stores its columns one after the other.
 template <class T>
 inline constexpr bool by_columns = false;
 template <int rows, int columns>
 inline constexpr bool by_columns<Eigen::Matrix<double, rows, columns, Eigen::ColMajor, rows, columns>> = true;
+/// Whether a type is three numbers that lie one after the other.
 template <class T>
 inline constexpr bool three_numbers = std::is_same_v<T, Vec3>;
 template <class M>
@@ -38,8 +40,10 @@ inline constexpr bool three_numbers<Eigen::Block<M, 3, 1, true>> = by_columns<st
 template <class T>
 concept Triple = three_numbers<T>;
 
+/// A matrix of a size that is known to the compiler.
 template <int rows, int columns>
 using SmallMatrix = Eigen::Matrix<double, rows, columns>;
+/// Whether a type is such a matrix of at most sixteen numbers, and no Vec3.
 template <class T>
 inline constexpr bool small_matrix = false;
 template <int rows, int columns>

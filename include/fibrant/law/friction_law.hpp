@@ -92,6 +92,7 @@ struct FrictionAnswer<L> {
     using Type = SeenFriction<typename L::History>;
 };
 }  // namespace detail
+/// What a friction law answers with: a SeenFriction if it sees, a FrictionResponse else.
 template <FrictionLaw L>
 using FrictionAnswer = typename detail::FrictionAnswer<L>::Type;
 

@@ -14,6 +14,7 @@
 
 namespace fibrant::observe {
 
+/// A point of a section [length].
 using Vec2 = Eigen::Vector2d;
 
 /// Ellipse { centre + cos a axis_1 + sin a axis_2 }.

@@ -36,6 +36,7 @@ struct NoGapLimit {
     constexpr double value_or(double otherwise) const noexcept { return otherwise; }
     constexpr void reset() const noexcept {}
 };
+/// The gap limit of a stage: a number, or nothing at all where the normal law has none.
 template <class Normal>
 using GapLimitOf = std::conditional_t<law::GapLimiting<Normal>, std::optional<double>, NoGapLimit<Normal>>;
 

@@ -17,6 +17,7 @@
 
 namespace fibrant::simulation {
 
+/// First line of a checkpoint; its number changes with what is in the file.
 inline constexpr const char* checkpoint_format = "fibrant checkpoint 23";
 
 /// Tells how fibres are cut and grouped: the same in programs whose compilers round differently.

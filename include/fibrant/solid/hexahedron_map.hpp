@@ -18,6 +18,7 @@ namespace fibrant::solid {
 using CellNodes = Eigen::Matrix<double, 8, 3>;
 /// A row a node: derivatives of its shape function.
 using ShapeGradient = Eigen::Matrix<double, 8, 3>;
+/// A number a node.
 using CellWeights = Eigen::Matrix<double, 8, 1>;
 
 /// Corner k of the cell from -1 to 1, k in [0, 8) [1].

@@ -99,9 +99,9 @@ struct NewtonReport {
 /// Numbers of Newton's method that no scene has had to change. Where no source is named, they were chosen by trial on the scenes
 /// of the examples and the tests of stability.
 namespace newton_numbers {
-// Forcing terms of inexact Newton: eta = 0.9 (r / r_before)^2, at most 1e-2 (Eisenstat and Walker 1996, choice 2; their bound is
-// 0.9, but contact changes less along steps that are better solved), or half of the step in radii that an iteration may end with:
-// by trial on 608 fibres, those that end with 0.05 radii take the same steps at 5e-2 as at 1e-3.
+/// Forcing terms of inexact Newton: eta = 0.9 (r / r_before)^2, at most 1e-2 (Eisenstat and Walker 1996, choice 2; their bound is
+/// 0.9, but contact changes less along steps that are better solved), or half of the step in radii that an iteration may end
+/// with: by trial on 608 fibres, those that end with 0.05 radii take the same steps at 5e-2 as at 1e-3.
 inline constexpr double forcing_factor = 0.9, loosest_forcing = 1e-2, forcing_by_step = 0.5, loosest_of_all = 5e-2;
 inline constexpr double enough_of_residual = 0.1;  ///< what the residual may have left, times this, is as good as nothing [1]
 inline constexpr double undriven = 1e-6;           ///< square of what is prescribed over that of a step: it has one energy [1]
@@ -111,7 +111,7 @@ inline constexpr double reach_used = 0.5;  ///< part of a search's reach after w
 inline constexpr Index settling = 3;       ///< iterations in which residuals may rise: the mixed form starts with large ones
 inline constexpr Index growing_mixed = 2,
                        growing_plain = 3;  ///< rises beyond the worst of those: fall back to the plain form, give up
-// Search along a step (regula falsi on the slope of the energy, kept away from its ends).
+/// Search along a step (regula falsi on the slope of the energy, kept away from its ends).
 inline constexpr int most_shortenings = 4;
 inline constexpr double least_shortening = 0.1, most_shortening = 0.8;
 inline constexpr double hard_cut = 0.3;  ///< part of a step, below which slack fibres are held to their neighbours

@@ -15,12 +15,16 @@ namespace fibrant::compositions::weave {
 
 /// The four edges: ends of warp tows at the least and the greatest x, ends of weft tows at the least and the greatest y.
 enum class Edge : int { west = 0, east = 1, south = 2, north = 3 };
+/// All four, in this order.
 inline constexpr std::array<Edge, 4> all_edges{Edge::west, Edge::east, Edge::south, Edge::north};
+/// What it is called in tables and messages.
 inline const char* edge_name(Edge edge) noexcept {
     static constexpr std::array names{"west", "east", "south", "north"};
     return names[static_cast<std::size_t>(edge)];
 }
+/// The tows whose ends it has.
 constexpr Family family_of(Edge edge) noexcept { return edge == Edge::west || edge == Edge::east ? Family::warp : Family::weft; }
+/// Whether these are the last ends of their fibres.
 constexpr bool at_last_end(Edge edge) noexcept { return edge == Edge::east || edge == Edge::north; }
 
 /// How the body of an edge moves, and how tow ends hang on it (Durville, section 15.3.4).

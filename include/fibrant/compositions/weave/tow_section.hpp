@@ -14,7 +14,9 @@ namespace fibrant::compositions::weave {
 using observe::convex_hull;
 using observe::section_of;
 using observe::SectionEllipse;
+/// Section of a tow at a place.
 using TowSection = observe::YarnSection;
+/// A point of a section [length].
 using Vec2 = observe::Vec2;
 
 /// Section of a tow in the plane orthogonal to its centre line at parameter t, in [0, nodes - 1]. Fibres' sections are
