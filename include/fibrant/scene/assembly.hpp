@@ -213,16 +213,19 @@ public:
         hold(condition);
     }
 
+    /// A force that keeps its direction, on a place of a fibre.
     void apply(const DeadForce& load) {
         check(load.at, load);
         forces_.push_back(load);
     }
 
+    /// A moment on a place of a fibre.
     void apply(const Moment& load) {
         check(load.at, load);
         moments_.push_back(load);
     }
 
+    /// A pressure along a whole fibre.
     void apply(const LinePressure& load) {
         check(first_end(load.fibre));
         core::with_place([&] { return label("fibre", load.fibre, fibres_[core::at(load.fibre)].name); },
@@ -234,6 +237,7 @@ public:
         pressures_.push_back(load);
     }
 
+    /// One group is to be above another one where they cross, or at one crossing.
     void force_order(const ForcedOrder& order) {
         for (const Index group : {order.above, order.below})
             if (group < 0 || group >= core::count(groups_))
@@ -291,6 +295,7 @@ public:
         return core::count(bodies_) - 1;
     }
 
+    /// Ties the mean of places on fibres or of nodes of solids to a body.
     void connect(AverageConnection connection) {
         if (connection.body < 0 || connection.body >= core::count(bodies_))
             core::refuse("AverageConnection.body", std::to_string(connection.body), "a body of this assembly");
@@ -372,7 +377,7 @@ public:
     void begin_at(Vector state) { start_ = std::move(state); }
     const Vector& start() const noexcept { return start_; }
 
-    // What stands in the scene, in the order in which it was added.
+    /// What stands in the scene, in the order in which it was added.
     const std::vector<FibreSpecification>& fibres() const noexcept { return fibres_; }
     const std::vector<Group>& groups() const noexcept { return groups_; }
     const std::vector<Hold>& holds() const noexcept { return holds_; }
