@@ -71,6 +71,16 @@ inline std::string shown(const std::string& value) {
     return short_number(std::strtod(value.c_str(), nullptr));
 }
 
+/// A sentence with the units of the scene for those of its brackets, forces in N as in the scene files.
+inline std::string with_units(std::string sentence, const std::string& unit_of_length) {
+    const std::size_t open = sentence.find('[');
+    for (const auto& [general, unit] :
+         {std::pair<std::string, std::string>{"force length", "N " + unit_of_length}, {"force", "N"}, {"length", unit_of_length}})
+        if (const std::size_t at = open == std::string::npos ? open : sentence.find(general, open); at != std::string::npos)
+            sentence.replace(at, general.size(), unit);
+    return sentence;
+}
+
 /// What a reader has to know before the figures are used: what is seen, and what it means.
 struct Warning {
     std::string seen, means;
@@ -206,8 +216,9 @@ inline std::string report_page(const std::filesystem::path& folder, const Report
                 warning.means + "</p>\n";
 
     const auto row = [&](const std::string& key, const std::string& value) {
-        return "<tr><td>" + std::string(key) + "<br><small>" + observe::xml_escaped(meaning_of(key)) +
-               "</small></td><td class=\"n\">" + detail::shown(value) + "</td></tr>\n";
+        return "<tr><td>" + std::string(key) + "<br><small>" +
+               observe::xml_escaped(detail::with_units(meaning_of(key), page.unit)) + "</small></td><td class=\"n\">" +
+               detail::shown(value) + "</td></tr>\n";
     };
     text += "<div class=\"two\"><div class=\"card\">\n<canvas id=\"view\"></canvas>\n<div class=\"bar\">";
     for (const char* view : {"oblique", "front", "side", "top"})
