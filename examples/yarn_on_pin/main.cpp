@@ -40,10 +40,12 @@ Vec3 ply(double side, double t) {
     return {length * (t - 0.5), rho + side * radius * std::sin(angle), side * radius * std::cos(angle)};
 }
 
-/// Way of an end of the yarn, -1 or 1. To amplitude 1 it is wound on by a quarter of a turn, and stretched; to 2 it is drawn on.
+/// Way of an end of the yarn, -1 or 1. To amplitude 1 it is wound on by a quarter of a turn, and stretched.
+/// To 2 it is drawn on.
 Vec3 way(double end, double amplitude) {
-    const double wound = std::min(amplitude, 1.0), angle = 0.5 * pi * wound, drawn = 0.1 * std::max(0.0, amplitude - 1.0);
-    const double free = 0.5 * length * (1.0 + 0.01 * std::min(1.0, 20.0 * wound)) - rho * angle;  // taut from the start on
+    const double wound = std::min(amplitude, 1.0), drawn = 0.1 * std::max(0.0, amplitude - 1.0);
+    const double stretch = 0.01 * std::min(1.0, 20.0 * wound);  // taut from the start on
+    const double angle = 0.5 * pi * wound, free = 0.5 * length * (1.0 + stretch) - rho * angle;
     return {end * (rho * std::sin(angle) + free * std::cos(angle) - 0.5 * length),
             rho * std::cos(angle) - free * std::sin(angle) - rho - end * drawn, 0.0};
 }
@@ -86,7 +88,8 @@ int main() {
 
     const auto pull = [&](auto end) { return (simulator.reaction(end(0)) + simulator.reaction(end(1))).norm(); };
     const double slack = pull(scene::first_end), tight = pull(scene::last_end), ratio = tight / slack;
-    const double expected = std::exp(mu * pi * pin / rho);  // it rubs on the skin of the pin, and pulls on the line of the yarn
+    // It rubs on the skin of the pin, and pulls on the line of the yarn.
+    const double expected = std::exp(mu * pi * pin / rho);
     std::printf("pulls %.4f and %.4f N, ratio %.4f, of a smooth yarn %.4f\n", slack, tight, ratio, expected);
     // That line is between 1 and 2 radii off the skin, for plies take turns to lie below: 2.5 % of the ratio.
     const bool close = std::abs(ratio - expected) < 0.03 * expected;
