@@ -127,6 +127,10 @@ inline std::vector<Warning> warnings(const observe::JsonObject& summary, const T
         list.push_back(
             {"The true gap, " + short_number(gap) + " radii, is deeper than contact points say, " + short_number(depth) + ".",
              "Between contact points the mesh is coarse: fibres bend or flatten within an element. Compare with more elements."});
+    if (const double loose = number("residual_over_tolerance"); ended && loose > 1.0)
+        list.push_back(
+            {"At the end forces balance to " + short_number(loose, "%.3g") + " times solver.residual_tolerance.",
+             "The last stage is a path that was solved loosely (looseness). Make that 1 there before you read small forces."});
     if (const double missed = number("energy_error_over_work"); std::abs(missed) > energy_share)
         list.push_back(
             {"The energy balance misses " + short_number(100.0 * missed, "%.2g") + " % of what was turned over.",
@@ -237,20 +241,21 @@ inline std::string report_page(const std::filesystem::path& folder, const Report
     text += "</table></div></div>\n";
     text += detail::load(folder, table, page.unit);
     for (const char* part : {"", "after"}) text += detail::slices(folder / part);
-    text += "<h2>Over the increments</h2>\n<div class=\"plots\">\n";
-    text += detail::plot(table, "What is out of balance", "residual", {"residual"}, true,
-                         "Over the greatest force. Stages on the way may be loose; the last one is not.");
-    text += detail::plot(table, "Deepest contact", "depth / radius", {"greatest_penetration_over_radius"}, true);
-    text += detail::plot(table, "What damping holds", "part of the forces", {"damping_share"}, true,
-                         "Near zero at rest. Well above a hundredth, shape and forces are not those of rest.");
-    text += detail::plot(table, "Iterations of Newton's method", "number in the increment", {"newton_iterations"});
-    text += detail::plot(table, "Contacts that press", "number", {"active_contacts"});
-    text += detail::plot(
+    std::string curves;
+    curves += detail::plot(table, "What is out of balance", "residual", {"residual"}, true,
+                           "Over the greatest force. Stages on the way may be loose.");
+    curves += detail::plot(table, "Deepest contact", "depth / radius", {"greatest_penetration_over_radius"}, true);
+    curves += detail::plot(table, "What damping holds", "part of the forces", {"damping_share"}, true,
+                           "Near zero at rest. Well above a hundredth, shape and forces are not those of rest.");
+    curves += detail::plot(table, "Iterations of Newton's method", "number in the increment", {"newton_iterations"});
+    curves += detail::plot(table, "Contacts that press", "number", {"active_contacts"});
+    curves += detail::plot(
         table, "Energies", "[N " + page.unit + "]",
         {"external_work", "elastic_energy", "contact_energy", "dissipated", "damped", "energy_error"}, false,
         "<br>Energy error: what the balance misses. It arises in increments in which fibres part, slide or leap far, "
         "and is no error of the shape.");
-    text += "</div>\n<h2>Stages</h2>\n" + detail::stages(table);
+    if (!curves.empty()) text += "<h2>Over the increments</h2>\n<div class=\"plots\">\n" + curves + "</div>\n";
+    text += "<h2>Stages</h2>\n" + detail::stages(table);
     text += "<details><summary>All figures of the run</summary><table>\n";
     for (const auto& [key, value] : page.summary.members()) text += row(key, value);
     text += "</table></details>\n";

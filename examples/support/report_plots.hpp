@@ -58,7 +58,9 @@ inline void add_line(observe::CurvePlot& curves, const Table& table, std::size_t
     observe::PlotLine line = table.line(name, x, table.column(name));
     std::erase_if(line.points, [&](const auto& point) { return curves.decades && !(point.second > 0.0); });
     line.name = words(line.name);
-    if (line.points.size() > 1) curves.lines.push_back(std::move(line));
+    const bool nothing =
+        std::all_of(line.points.begin(), line.points.end(), [](const auto& point) { return point.second == 0.0; });
+    if (line.points.size() > 1 && !nothing) curves.lines.push_back(std::move(line));
 }
 
 /// A plot of columns over the increments; empty where no column is there.

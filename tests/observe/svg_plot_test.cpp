@@ -66,6 +66,15 @@ TEST_CASE("over increments a power of ten each is a straight line on decades, an
     CHECK(page.find("M189.2 46L294.4 130.5L610 384") != std::string::npos);
 }
 
+TEST_CASE("numbers along the axis that would run into each other are left out, their marks are not") {
+    observe::CurvePlot plot{"", "strain", "stress", {{"a", {{0.0, 0.0}, {0.016, 1.0}}}}};
+    plot.width = 400.0;
+    const std::string page = observe::curves_svg(plot);
+    CHECK(times(page, "class=\"g\"") == 9 + 6);  // 0, 0.002, ... and 0, 0.2, ...
+    CHECK(times(page, ">0.004<") == 1);
+    CHECK(times(page, ">0.002<") == 0);  // 41 pixels of room and 45 of text
+}
+
 TEST_CASE("names of several lines stand beside them, or are left to the page around it") {
     observe::CurvePlot plot{"", "x", "y", {{"upper", {{0.0, 1.0}, {1.0, 2.0}}}, {"lower", {{0.0, 0.0}, {1.0, 1.0}}}}};
     CHECK(times(observe::curves_svg(plot), ">upper<") == 1);

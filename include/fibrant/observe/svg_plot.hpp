@@ -81,10 +81,16 @@ inline std::string plot_svg(const PlotFrame& plot) {
     const auto place_x = [&](double x) { return left + plot.x.share(x) * (right - left); };
     const auto place_y = [&](double y) { return bottom - plot.y.share(y) * (bottom - top); };
     std::string body;
-    for (const auto& [value, text] : plot.x.ticks) {
-        const double x = place_x(value);
-        body += "<path class=\"g\" d=\"M" + rounded(x, 1) + " " + rounded(top, 1) + "V" + rounded(bottom, 1) + "\"/>\n" +
-                svg_text(x, bottom + 18.0, text, " class=\"t\" text-anchor=\"middle\"");
+    // Texts that would run into each other stand at every second mark, or every third, and so on.
+    constexpr double letter = 7.5, between = 8.0;  // of a digit of 13 pixels, and what is left between two texts [pixel]
+    std::size_t longest = 1;
+    for (const auto& tick : plot.x.ticks) longest = std::max(longest, tick.second.size());
+    const double room = (right - left) / std::max(1.0, static_cast<double>(plot.x.ticks.size()) - 1.0);
+    const auto every = static_cast<std::size_t>(std::ceil((letter * static_cast<double>(longest) + between) / room));
+    for (std::size_t k = 0; k < plot.x.ticks.size(); ++k) {
+        const double x = place_x(plot.x.ticks[k].first);
+        body += "<path class=\"g\" d=\"M" + rounded(x, 1) + " " + rounded(top, 1) + "V" + rounded(bottom, 1) + "\"/>\n";
+        if (k % every == 0) body += svg_text(x, bottom + 18.0, plot.x.ticks[k].second, " class=\"t\" text-anchor=\"middle\"");
     }
     for (const auto& [value, text] : plot.y.ticks) {
         const double y = place_y(value);
