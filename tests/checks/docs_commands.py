@@ -29,13 +29,13 @@ problems, unfinished, counts = [], set(), {"run": 0, "stopped": 0, "left out": 0
 
 def run(command, where):
     """Runs one command of a page."""
-    arguments = shlex.split(command.replace("$PWD", str(scratch)))
+    arguments = shlex.split(command)
     if not Path(arguments[0]).name in {path.name for path in programs.iterdir()} or any(
             f"out/{name}/" in argument for name in unfinished for argument in arguments):
         counts["left out"] += 1
         return print(f"left out: {command}")
     output = arguments[arguments.index("--output") + 1] if "--output" in arguments else ""
-    child = subprocess.Popen(arguments, cwd=scratch, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    child = subprocess.Popen(["sh", "-c", "exec " + command], cwd=scratch, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     try:
         said = child.communicate(timeout=ENOUGH if Path(arguments[0]).name in LONG else PATIENCE)[0]
         counts["run"] += 1
