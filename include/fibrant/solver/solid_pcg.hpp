@@ -414,6 +414,7 @@ private:
     Workspace<Work> work_;
 };
 
+/// With the two levels of TwoLevelPcg for the fibres.
 using SolidPcg = SolidPcgWith<TwoLevelPcg>;
 
 }  // namespace fibrant::solver
