@@ -36,6 +36,20 @@ TEST_CASE("area and second moments are those of the ellipse") {
     CHECK(scene::circular(0.02).torsion_factor() == test::near(1.0, 1e-12));
 }
 
+TEST_CASE("a hollow section has the area and the second moments of a ring") {
+    const scene::CrossSection section = scene::hollow(0.03, 0.02, 0.5);
+    CHECK(section.area() == test::near(pi * (9e-4 - 4e-4), 1e-14));
+    CHECK(section.second_moment_1() == test::near(0.5 * pi / 4.0 * (81e-8 - 16e-8), 1e-14));
+    CHECK(section.second_moment_2() == section.second_moment_1());
+    CHECK(section.radius() == 0.03);
+    CHECK(scene::hollow(0.03, 1e-300).area() == scene::circular(0.03).area());  // the same bits
+    CHECK(refusal([] { scene::hollow(0.03, 0.03); }) == "CrossSection.bore = 0.03, but it must be < semi_axis_1 = 0.03");
+    CHECK(refusal([] { scene::hollow(0.03, 0.0); }) == "hollow.bore = 0, but it must be finite and > 0");
+    CHECK(refusal([] {
+              scene::CrossSection{0.03, 0.02, 1.0, 0.01}.validate();
+          }) == "CrossSection.bore = 0.01, but it must be 0, of a section that is not round");
+}
+
 TEST_CASE("the greatest extent of a section is the greatest of all directions, also where its directors are sheared") {
     const scene::CrossSection section = scene::elliptical(0.03, 0.02);
     for (const Vec3& g_2 : {Vec3(0, 1, 0), Vec3(0.6, 0.9, 0), Vec3(-0.5, 1.2, 0)}) {

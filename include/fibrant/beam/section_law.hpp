@@ -47,12 +47,14 @@ inline constexpr int q11 = 12, q12 = 13, q22 = 14;          ///< g_a' . g_b' (ha
 inline constexpr int count(QuadraticStrain quadratic) noexcept { return quadratic == QuadraticStrain::complete ? 15 : 12; }
 }  // namespace strain
 
-/// Integrals over a section. Any shape with axes of symmetry along g_1 and g_2; the fourth moments are an ellipse's.
+/// Integrals over a section. Any shape with axes of symmetry along g_1 and g_2; the fourth moments are an ellipse's, also of a
+/// hollow one.
 struct SectionConstants {
     double area = core::unset;             ///< [length^2], > 0
     double second_moment_1 = core::unset;  ///< integral of xi_1^2 [length^4], > 0
     double second_moment_2 = core::unset;  ///< integral of xi_2^2 [length^4], > 0
     double torsion_factor = 1.0;           ///< torsion constant over second_moment_1 + second_moment_2 [1], > 0
+    double bore = 0.0;                     ///< radius of a round hole along the axis, which the others are without [length], >= 0
 
     void validate() const {
         core::require_positive("SectionConstants.area", area);
@@ -65,7 +67,7 @@ struct SectionConstants {
 /// Throws std::invalid_argument if the section is not valid.
 inline SectionConstants section_constants(const scene::CrossSection& section) {
     section.validate();
-    return {section.area(), section.second_moment_1(), section.second_moment_2(), section.torsion_factor()};
+    return {section.area(), section.second_moment_1(), section.second_moment_2(), section.torsion_factor(), section.bore};
 }
 
 /// St Venant-Kirchhoff law integrated over the section; the energy a unit of rest length is quadratic in the strains.

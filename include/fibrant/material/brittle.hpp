@@ -65,7 +65,9 @@ public:
     using Answer = beam::SectionAnswer<History, entries.size()>;
 
     explicit Brittle(const Parameters& parameters) : p_{core::validated(parameters)} {}
+    /// Throws std::invalid_argument for a section with a hole.
     Section section(const beam::SectionConstants& shape, const scene::ElasticMaterial& elastic, double shear_factor) const {
+        core::require(shape.bore == 0.0, "Brittle: CrossSection.bore", shape.bore, "0: its points are those of a full section");
         return {ElasticSection(shape, elastic, shear_factor), elastic.young_modulus,
                 2.0 * std::sqrt(shape.second_moment_1 / shape.area), 2.0 * std::sqrt(shape.second_moment_2 / shape.area)};
     }

@@ -72,6 +72,7 @@ public:
         const double uneven =
             std::abs(shape.second_moment_1 / shape.second_moment_2 - 1.0) + std::abs(shape.torsion_factor - 1.0);
         core::require(uneven < 1e-9, "Wire: second_moment_1 / second_moment_2 - 1", uneven, "0: a round section");
+        core::require(shape.bore == 0.0, "Wire: CrossSection.bore", shape.bore, "0: its points are those of a full section");
         s.area = shape.area, s.radius = 2.0 * std::sqrt(shape.second_moment_1 / shape.area);
         s.young = elastic.young_modulus, s.shear = elastic.shear_modulus();
         s.extra_shear = (shear_factor - 1.0) * s.shear * s.area;
