@@ -4,6 +4,8 @@
 
 #include <fibrant/contact/acting_state.hpp>
 #include <fibrant/contact/allowed_depth.hpp>
+#include <fibrant/contact/bore.hpp>
+#include <fibrant/contact/bore_passage.hpp>
 #include <fibrant/contact/carried_tools.hpp>
 #include <fibrant/contact/closest_places.hpp>
 #include <fibrant/contact/contact_detection.hpp>
@@ -30,6 +32,7 @@
 #include <fibrant/contact/pair_rules.hpp>
 #include <fibrant/contact/particle.hpp>
 #include <fibrant/contact/passage.hpp>
+#include <fibrant/contact/passed_pair.hpp>
 #include <fibrant/contact/section_extents.hpp>
 #include <fibrant/contact/section_gap.hpp>
 #include <fibrant/contact/seen_touch.hpp>

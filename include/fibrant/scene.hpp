@@ -18,3 +18,4 @@
 #include <fibrant/scene/tool.hpp>
 #include <fibrant/scene/tool_surface.hpp>
 #include <fibrant/scene/triangle_surface.hpp>
+#include <fibrant/scene/tube.hpp>

@@ -411,6 +411,7 @@ private:
         StiffnessSink<System, B, moves> sink{system_, *mesh_, state};
         term::Couplings couplings(sink);
         terms_.each([&](const auto& term) { term.add_couplings(state, couplings); });
+        contacts_->bores().add_points(*mesh_, state, *contacts_, points);
         if constexpr (requires { contacts_->tools().add_points(points); }) contacts_->tools().add_points(points);
     }
     /// @param positive  without negative parts

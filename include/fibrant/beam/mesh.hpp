@@ -29,7 +29,7 @@
 namespace fibrant::beam {
 
 /// All fibres of a scene in elements of one kind. Abscissae u along a fibre are counted in elements, 0 <= u <= elements;
-/// rest arc length is u * element_length.
+/// rest arc length is u element_length.
 template <BeamElement B>
 class Mesh {
 public:
@@ -78,7 +78,7 @@ public:
         if (3 * first > std::numeric_limits<std::int32_t>::max())
             core::refuse("assembly.fibres", std::to_string(3 * first) + " unknowns",
                          "<= " + std::to_string(std::numeric_limits<std::int32_t>::max()));
-        set_units(layout_, fibres_);
+        set_units(layout_, fibres_), set_tubes(fibres_, assembly);
         rest_state_.resize(3 * first);
         for (Index v = 0; v < first; ++v) rest_state_.segment<3>(3 * v) = layout_.value[core::at(v)];
         start_state_.resize(3 * first);
@@ -101,7 +101,7 @@ public:
             },
             grain());
     }
-    /// What messages call a fibre, an element with its ends at rest, and a node with its place at the start.
+    /// What messages call a fibre, an element with its ends at rest, a node with its place at the start.
     std::string label(Index f) const {
         if (const Index of = fibre(f).image_of; of >= 0) return "the image of " + label(of) + " across a seam";
         return scene::label("fibre", f, fibre(f).name);
@@ -122,11 +122,11 @@ public:
     }
 
     Index fibre_count() const noexcept { return core::count(fibres_) - images_; }
-    /// Fibres and, behind them, their images: what contact sees.
+    /// Fibres and, behind them, images: what contact sees.
     Index line_count() const noexcept { return core::count(fibres_); }
     /// The fibre itself, or that which it is an image of.
     Index source(Index f) const noexcept { return fibre(f).image_of >= 0 ? fibre(f).image_of : f; }
-    /// Of a loop over the fibres: a small mesh is left to one thread.
+    /// Of a loop over fibres: a small mesh is left to one thread.
     Index grain() const noexcept { return scene::grain(layout_, fibre_count()); }
     Index element_count() const noexcept { return first_element_.back(); }
     std::span<const MeshFibre> fibres() const noexcept { return std::span(fibres_).first(core::at(fibre_count())); }
@@ -143,7 +143,7 @@ public:
     Index node_at(const scene::Station& at) const {
         return static_cast<Index>(std::lround(at.fraction * static_cast<double>(node_count(at.fibre) - 1)));
     }
-    /// Nodes that have unknowns of their own: all but the last one of a closed fibre.
+    /// Nodes with unknowns of their own: all but the last one of a closed fibre.
     Index own_nodes(Index f) const noexcept { return node_count(f) - (fibre(f).closed ? 1 : 0); }
     /// A vector of a node; of the last node of a closed fibre that of its first one.
     Index node_vector(Index f, Index node, Index vector = 0) const noexcept {
@@ -312,7 +312,7 @@ public:
     }
 
 private:
-    /// Adds a fibre that is an image of another one, with vectors that are images of its. @param first  its first vector, and
+    /// Adds a fibre that is an image of another one, with its vectors. @param first  its first vector, and
     /// then that behind its last one
     void add_image(const scene::Assembly& assembly, const scene::FibreImage& image, Index& first, std::vector<Vec3>& start) {
         const MeshFibre source = fibres_[core::at(image.fibre)];

@@ -84,6 +84,8 @@ void count_from(const beam::Mesh<B>& mesh, const NormalRule& rule, const Normal&
                 ContactElement<B, Normal, Friction>& element, const Vector& state, const PairTangents& tangents,
                 const Vector& accepted, double unseen, const Vec3* followed) {
     [[maybe_unused]] const auto earlier = [&](const PairTangents& then, const Vec3& present) {
+        if (element.in_bore())  // a rod that lay at the middle has no direction there: the present one as both fibres have turned
+            return turned(present, mean_tangent(tangents.i, tangents.j), mean_tangent(then.i, then.j));
         return followed ? *followed : element_normal(mesh, accepted, element, then, rule, present);
     };
     const bool within = ActingState<Normal>::within(law) && element.place < 0;

@@ -84,13 +84,15 @@ struct ContactElement {
     std::int32_t fibre_i = -1, fibre_j = -1;
     std::int32_t first_i = 0, first_j = 0;  ///< first unknown of each side's element
     std::int32_t zone = -1;
-    std::int32_t place = -1;  ///< of a crossing that is followed, or -1
+    std::int32_t place = -1;  ///< of a crossing that is followed, or `beside`, `bore_of_i` or `bore_of_j` (contact/bore.hpp)
     bool crossing = false, end_i = false, end_j = false;
     std::int8_t slide = 0;  ///< of a crossing that is followed: how its place slides (FollowedPlaces)
     [[no_unique_address]] GapShift<Normal> shift;
     [[no_unique_address]] MeetingPoint<B> meeting;
     [[no_unique_address]] FrictionState<B, Friction> friction;
 
+    /// One fibre is in the other one's bore.
+    bool in_bore() const noexcept { return place < -1; }
     /// Particle j - particle i [length].
     Vec3 offset(const Vector& state) const noexcept {
         return beam::Mesh<B>::point(state, first_j, weights_j) - beam::Mesh<B>::point(state, first_i, weights_i);

@@ -44,7 +44,8 @@ public:
           normal_{normal},
           friction_{friction},
           accepted_{mesh.periods()},
-          places_{parameters.places} {}
+          places_{parameters.places},
+          bores_{mesh} {}
 
     Normal& normal_law() noexcept { return normal_; }
     const Normal& normal_law() const noexcept { return normal_; }
@@ -79,6 +80,7 @@ public:
     void regenerate(const Vector& state, const Vector& accepted) {
         const Memory last(accepted_.periods(), records(state));
         const Memory& memory = last.records().empty() ? accepted_ : last;
+        bores_.keep(acting(state, accepted));
         ValleyStations<B>::join(*mesh_, acting(state, accepted), parameters_.spacing, memory, zones_);
         generate(state, accepted, memory, acting(state, accepted));
         places_.number(elements_, zones_, accepted);
@@ -95,17 +97,18 @@ public:
         const Vector& acting = this->acting(state, accepted);
         for_elements([&](Index k) {
             Element& element = elements_[core::at(k)];
-            const Vec3 before = element.normal;
+            const Vec3 before = element.in_bore() ? plane(k) : element.normal;
             if (!slides(k)) placing().place(element, zones_[core::at(element.zone)], acting, state, accepted, before);
             const double turn = slides(k) ? follow(k, state) : turn_between(before, element.normal);
             if (k < core::count(responses_) && responses_[core::at(k)].reaction != 0.0) turned[core::at(k)] = turn;
         });
+        bores_.keep(acting);
         hold_reactions();
         return turned.empty() ? 0.0 : *std::max_element(turned.begin(), turned.end());
     }
 
-    /// Middle loop: the last reactions bound friction from now on. Without the change of its own bound,
-    /// friction has a convex potential and Newton does not cycle between stick and slip.
+    /// Middle loop: the last reactions bound friction from now on. Its bound held, friction has a convex potential and Newton
+    /// does not cycle between stick and slip.
     void hold_reactions() {
         if constexpr (core::Active<Friction>)
             if (!follows())
@@ -123,6 +126,7 @@ public:
             Element& element = elements_[core::at(k)];
             const Zone& zone = zones_[core::at(element.zone)];
             if (slides(k) && !start) places_.follow(*mesh_, state, zone, element);
+            if (element.in_bore()) bores_.turn(*mesh_, acting, element);
             if (slides(k))
                 places_.take(*mesh_, state, zone, element);
             else
@@ -145,7 +149,7 @@ public:
         });
     }
 
-    /// Fibres along each other as they stood in another state; `turn_forth` takes back what it returns.
+    /// Fibres along each other as they stood in another state; `turn_forth` takes it back.
     auto turn_back(const Vector& start) {
         std::vector<std::pair<Vec3, MeetingPoint<B>>> present;
         present.reserve(elements_.size());
@@ -173,31 +177,34 @@ public:
         if constexpr (core::Active<Friction>) return elements_[core::at(k)].friction.bound > 0.0;
         return false;
     }
-    /// Stiffness of element k between particles, symmetric and positive semidefinite, as its friction bound stands [force /
-    /// length].
+    /// Stiffness of element k between particles, symmetric, positive semidefinite, at its friction bound [force / length].
     Mat3 tangent(Index k) const noexcept {
         const Vec3& normal = elements_[core::at(k)].normal;
         return friction_tangent(k) - responses_[core::at(k)].slope * normal * normal.transpose();
     }
 
-    /// Crossings with places and normals of the moment.
+    /// Crossings that are followed.
     FollowedPlaces<B>& places() noexcept { return places_; }
     const FollowedPlaces<B>& places() const noexcept { return places_; }
+    const BorePass& bores() const noexcept { return bores_; }
     /// Element k is one: its normal force acts on patches, and has a stiffness of its own.
     bool slides(Index k) const noexcept { return elements_[core::at(k)].place >= 0; }
     SlidingStiffness sliding(Index k, bool positive) const {
         const ContactResponse& response = responses_[core::at(k)];
         return places_.stiffness(elements_[core::at(k)], response.reaction, response.slope, positive);
     }
+    /// Its normal force acts on centres (bore.hpp).
+    bool pushes_centres(Index k) const noexcept { return pushed_at_centres<B> && elements_[core::at(k)].in_bore(); }
     /// Of `force` and `tangent`, what acts on particles.
     Vec3 point_force(Index k) const noexcept {
-        return slides(k) ? Vec3(force(k) + responses_[core::at(k)].reaction * elements_[core::at(k)].normal) : force(k);
+        const bool all = !slides(k) && !pushes_centres(k);
+        return all ? force(k) : Vec3(force(k) + responses_[core::at(k)].reaction * elements_[core::at(k)].normal);
     }
-    Mat3 point_tangent(Index k) const noexcept { return slides(k) ? friction_tangent(k) : tangent(k); }
+    Mat3 point_tangent(Index k) const noexcept { return slides(k) || pushes_centres(k) ? friction_tangent(k) : tangent(k); }
 
     /// Present reactions bound friction.
     bool follows() const noexcept { return core::Active<Friction> && parameters_.friction_bound == FrictionBound::following; }
-    /// What `tangent` leaves out if the bound follows: slope of element k's friction force by its gap [force / length].
+    /// What `tangent` leaves out if the bound follows: slope of friction by the gap [force / length].
     Vec3 friction_by_gap(Index k) const noexcept {
         const ContactResponse& response = responses_[core::at(k)];
         if constexpr (core::Active<Friction>)
@@ -210,15 +217,8 @@ public:
     void section_stiffness_terms(Index fibre, const Vector& state, const Add& add) const {
         for (const std::int32_t side : sides(fibre)) {
             const Index k = side / 2;
-            const Element& element = elements_[core::at(k)];
             if (slides(k)) continue;
-            const double reaction = responses_[core::at(k)].reaction;
-            if (side % 2 == 1)
-                section_stiffness_term(*mesh_, state, fibre, element.u_j, element.first_j, element.normal, reaction,
-                                       element.end_j, add);
-            else
-                section_stiffness_term(*mesh_, state, fibre, element.u_i, element.first_i, element.normal, reaction,
-                                       element.end_i, add);
+            side_stiffness_term(*mesh_, state, elements_[core::at(k)], side % 2 == 1, responses_[core::at(k)].reaction, add);
         }
     }
 
@@ -236,6 +236,7 @@ public:
                     if (slides(k))
                         spread(places_.of(element), element.normal, of_j ? 1.0 : -1.0, responses_[core::at(k)].reaction,
                                residual);
+                    if (pushes_centres(k)) push_centre(*mesh_, element, of_j, responses_[core::at(k)].reaction, residual);
                     beam::spread(of_j ? element.weights_j : element.weights_i, value, of_j ? element.first_j : element.first_i,
                                  residual);
                 }
@@ -258,7 +259,7 @@ public:
 
     ContactFigures figures(const Vector& state) const { return contact::figures(*this, *mesh_, state); }
 
-    /// Penetration that zones adapt to from now on [length], > 0.
+    /// That zones adapt to from now on [length], > 0.
     void allow_penetration(double length) {
         parameters_.stiffness.allowed_penetration = length;
         parameters_.stiffness.validate();
@@ -304,7 +305,7 @@ private:
         keep_watch(zone, before);
         zone.stiffness = before ? before->stiffness : parameters_.stiffness.initial_fraction * zone.reference;
         if (!accepted_zones_.empty()) zone.deepest = before ? before->deepest : 0.0;
-        if (zone.forced) return;
+        if (zone.forced || bore_between(*mesh_, zone.span.fibre_i, zone.span.fibre_j) != beside) return;
         places_.mark(*mesh_, state, zone, before, all);
         const double angle = crossing_angle_deg(*mesh_, state, zone.span, !zone.followed);
         const double shift = !before ? 0.0 : parameters_.spacing.angle_hysteresis_deg * (before->crossing ? -1.0 : 1.0);
@@ -383,8 +384,9 @@ private:
         return places_.renew(*mesh_, state, element, core::Active<Friction>);
     }
     /// Normal to an element's friction, and its stiffness.
-    const Vec3& plane(Index k) const noexcept {
-        return slides(k) ? places_.plane(elements_[core::at(k)]) : elements_[core::at(k)].normal;
+    Vec3 plane(Index k) const {
+        const Element& element = elements_[core::at(k)];
+        return slides(k) ? places_.plane(element) : element.in_bore() ? bores_.normal(*mesh_, element) : element.normal;
     }
     Mat3 friction_tangent([[maybe_unused]] Index k) const noexcept {
         if constexpr (core::Active<Friction>) {
@@ -401,6 +403,7 @@ private:
         element.zone = static_cast<std::int32_t>(z);
         element.u_i = pair.u_i, element.u_j = pair.u_j;
         element.crossing = pair.crossing, element.slide = pair.slide, element.end_i = pair.end_i, element.end_j = pair.end_j;
+        element.place = bore_between(*mesh_, zone.span.fibre_i, zone.span.fibre_j);
         places_.host(*mesh_, element);
         see_length(element, pair);
         return element;
@@ -413,22 +416,7 @@ private:
     }
 
     std::vector<typename Memory::Record> records(const Vector& state) const {
-        std::vector<typename Memory::Record> list(elements_.size());
-        for_elements([&](Index k) {
-            const Element& element = elements_[core::at(k)];
-            typename Memory::Record& record = list[core::at(k)];
-            record.fibre_i = element.fibre_i, record.fibre_j = element.fibre_j;
-            record.u_i = element.u_i, record.u_j = element.u_j;
-            record.normal = element.normal;
-            if constexpr (law::Augmenting<Normal>)
-                if (k < core::count(responses_)) record.multiplier.force = responses_[core::at(k)].reaction;
-            if constexpr (core::Active<Friction>) {
-                if (k < core::count(frictions_) && responses_[core::at(k)].reaction != 0.0)
-                    record.friction = recorded_friction<Friction>(pair_tangents(*mesh_, state, element), element.normal,
-                                                                  frictions_[core::at(k)].history);
-            }
-        });
-        return list;
+        return records_of<Normal, Friction>(*mesh_, state, elements_, responses_, frictions_);
     }
 
     const beam::Mesh<B>* mesh_;
@@ -445,6 +433,7 @@ private:
     SideIndex sides_;
     Memory accepted_;
     FollowedPlaces<B> places_;
+    BorePass bores_;
     [[no_unique_address]] ActingState<Normal> acting_;
 };
 

@@ -46,4 +46,29 @@ void give_friction(const PairTangents& tangents, Element& element, const Recorde
     recorded.give(TangentPlane(heading(tangents, element.normal, recorded.sign), element.normal), element.friction.history);
 }
 
+/// What is remembered of contact elements that have been evaluated in a state.
+template <law::NormalLaw Normal, law::FrictionLaw Friction, class B, class Elements, class Responses, class Frictions>
+auto records_of(const beam::Mesh<B>& mesh, const Vector& state, const Elements& elements, const Responses& responses,
+                const Frictions& frictions) {
+    std::vector<typename ContactMemory<Normal, Friction>::Record> list(elements.size());
+    core::parallel_for(
+        core::count(elements),
+        [&](Index k) {
+            const auto& element = elements[core::at(k)];
+            auto& record = list[core::at(k)];
+            record.fibre_i = element.fibre_i, record.fibre_j = element.fibre_j;
+            record.u_i = element.u_i, record.u_j = element.u_j;
+            record.normal = element.normal;
+            if constexpr (law::Augmenting<Normal>)
+                if (k < core::count(responses)) record.multiplier.force = responses[core::at(k)].reaction;
+            if constexpr (core::Active<Friction>) {
+                if (k < core::count(frictions) && responses[core::at(k)].reaction != 0.0)
+                    record.friction = recorded_friction<Friction>(pair_tangents(mesh, state, element), element.normal,
+                                                                  frictions[core::at(k)].history);
+            }
+        },
+        core::light_items);
+    return list;
+}
+
 }  // namespace fibrant::contact

@@ -3,6 +3,7 @@
 /// @file The normal of a contact element in a state, by what its sections are.
 
 #include <fibrant/beam/mesh.hpp>
+#include <fibrant/contact/bore.hpp>
 #include <fibrant/contact/contact_tangent.hpp>
 #include <fibrant/contact/normal_direction.hpp>
 #include <fibrant/contact/section_gap.hpp>
@@ -35,6 +36,8 @@ template <class B, class Element>
 Vec3 element_normal(const beam::Mesh<B>& mesh, const Vector& state, const Element& element, const PairTangents& tangents,
                     const NormalRule& rule, const Vec3& remembered) noexcept {
     const Index i = element.fibre_i, j = element.fibre_j;
+    if constexpr (requires { element.in_bore(); })
+        if (element.in_bore()) return bore_normal(mesh, state, element, tangents, remembered);
     const Vec3 centres = mesh.position(state, j, element.u_j) - mesh.position(state, i, element.u_i);
     if (element.end_i || element.end_j) {
         const Vec3 side = remembered.isZero() ? centres : remembered;

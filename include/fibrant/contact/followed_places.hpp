@@ -52,7 +52,8 @@ public:
     template <class Elements>
     void number(Elements& elements, const std::vector<Zone>& zones, const Vector& accepted) {
         std::int32_t count = 0;
-        for (auto& element : elements) element.place = is_followed(element, zones[core::at(element.zone)]) ? count++ : -1;
+        for (auto& element : elements)
+            if (element.place >= -1) element.place = is_followed(element, zones[core::at(element.zone)]) ? count++ : -1;
         held_.clear();
         held_.resize(core::at(count));
         if (count > 0) accepted_ = accepted;

@@ -2,6 +2,7 @@
 #pragma once
 /// @file Where the forces of a pair act, so that they are without a moment.
 
+#include <fibrant/contact/bore.hpp>
 #include <fibrant/contact/contact_element.hpp>
 #include <fibrant/contact/contact_tangent.hpp>
 #include <fibrant/contact/support.hpp>
@@ -66,6 +67,7 @@ void shift_to_meeting_point(const beam::Mesh<B>& mesh, const Vector& state, Elem
 /// Particles of the meeting point that was found last.
 template <class B, class Element>
 void follow_particles(const beam::Mesh<B>& mesh, const Vector& state, Element& element) {
+    if (element.in_bore()) return follow_in_bore(mesh, state, element);
     follow_support(mesh, state, element);
     if constexpr (!beam::CentreTouched<B>) shift_to_meeting_point(mesh, state, element);
 }
@@ -89,6 +91,7 @@ inline std::pair<Vec3, Vec3> ways_to_crossing(const PairTangents& tangents, cons
 template <class B, class Element>
 void find_meeting_point(const beam::Mesh<B>& mesh, const Vector& state, [[maybe_unused]] const PairTangents& tangents,
                         Element& element) {
+    if (element.in_bore()) return follow_in_bore(mesh, state, element);
     follow_support(mesh, state, element);
     if constexpr (!beam::CentreTouched<B>) {
         Vec3 half = 0.5 * element.offset(state);
@@ -105,6 +108,20 @@ void find_meeting_point(const beam::Mesh<B>& mesh, const Vector& state, [[maybe_
                            std::max(0.0, -2.0 * along)};
         shift_to_meeting_point(mesh, state, element);
     }
+}
+
+/// `section_stiffness_term` of the section on one side of an element. The wall of a bore has none: there the support distance is
+/// taken off the gap the other way round, and its part of the tangent would be negative.
+template <class B, class Element, class Add>
+void side_stiffness_term(const beam::Mesh<B>& mesh, const Vector& state, const Element& element, bool of_j, double reaction,
+                         const Add& add) {
+    if (element.place == (of_j ? bore_of_j : bore_of_i)) return;
+    if (of_j)
+        section_stiffness_term(mesh, state, element.fibre_j, element.u_j, element.first_j, element.normal, reaction,
+                               element.end_j, add);
+    else
+        section_stiffness_term(mesh, state, element.fibre_i, element.u_i, element.first_i, element.normal, reaction,
+                               element.end_i, add);
 }
 
 }  // namespace fibrant::contact

@@ -4,7 +4,9 @@
 /// seen.
 
 #include <fibrant/beam/mesh.hpp>
+#include <fibrant/contact/bore_passage.hpp>
 #include <fibrant/contact/contact_detection.hpp>
+#include <fibrant/contact/passed_pair.hpp>
 #include <fibrant/core/ordering.hpp>
 #include <fibrant/proximity/moving_segments.hpp>
 #include <fibrant/scene/tool.hpp>
@@ -17,36 +19,6 @@
 #include <vector>
 
 namespace fibrant::contact {
-
-/// The first two that a motion takes through each other.
-struct PassedPair {
-    Index fibre = -1, other = -1;  ///< fibres, the same one twice, or a fibre and a tool
-    bool tool = false;
-    bool image = false;                     ///< `other` is not the fibre itself but its image across a seam of a cell
-    double along = 0.0, along_other = 0.0;  ///< where on the fibres, over their rest lengths, in [0, 1]; 0 for a tool
-    Vec3 place =
-        Vec3::Zero();  ///< half way between the two when they are too close; of a tool, on the fibre as it is at the end [length]
-    double motion = 0.0;  ///< of one against the other [length]
-    double left = 0.0;    ///< distance of the two at the end over their half widths; 0 for a tool
-    double time = 0.0;    ///< when they are too close, in [0, 1]
-    /// When the first of all that pass touch, in [0, 1]: up to there the motion is sound.
-    double touch = 0.0;
-};
-
-/// For a report.
-inline std::string text(const PassedPair& pair) {
-    const auto at = [](double along) { return " at " + core::text(std::round(1e4 * along) / 1e4) + " of its length"; };
-    std::string what = "fibre " + std::to_string(pair.fibre) + at(pair.along) + " changes sides with ";
-    what += pair.tool    ? "tool " + std::to_string(pair.other)
-            : pair.image ? "the image of fibre " + std::to_string(pair.other) + " across a seam" + at(pair.along_other)
-            : pair.fibre == pair.other ? "itself" + at(pair.along_other)
-                                       : "fibre " + std::to_string(pair.other) + at(pair.along_other);
-    what += ", near (";
-    for (int axis = 0; axis < 3; ++axis) what += (axis > 0 ? ", " : "") + core::text(pair.place[axis]);
-    what += "), in a motion of " + core::text(pair.motion) + " against each other";
-    return pair.tool ? what
-                     : what + ", after which they are " + core::text(std::round(1e4 * pair.left) / 1e4) + " of touching apart";
-}
 
 /// No check: for scenes in which nothing can pass through anything. A model says `using Passage = contact::NoPassage;`.
 struct NoPassage : core::Inactive {
@@ -68,8 +40,8 @@ struct NoPassage : core::Inactive {
 /// another one by 120 degrees at once counts as having passed, and is cut. Where a fibre ends, it may slip off: within a touching
 /// distance of its ends only centrelines that meet have passed. Pairs that a law with a limited gap parts have no side yet, and
 /// those in a forced order may go the way it forces them. Images of fibres across the seams of a cell are fibres, which go on
-/// where another one ends. Owes nothing to contact elements, and what moves together costs
-/// nothing. The number of threads changes no bit.
+/// where another one ends. Fibres in a tube pass if they come into its wall. Owes nothing to contact elements, and what moves
+/// together costs nothing. The number of threads changes no bit.
 struct Swept {
     using Parameters = core::NoParameters;
     explicit Swept(const Parameters& = {}) {}
@@ -88,6 +60,8 @@ struct Swept {
             if (!from.allFinite() || !to.allFinite()) return {};
             const Lines lines(*mesh_, from, to);
             std::vector<PassedPair> passed = between_fibres(lines, contacts, forced);
+            const std::vector<PassedPair> out = through_walls(*mesh_, from, to);
+            core::append(passed, out);
             if constexpr (requires { contacts.tools(); }) {
                 const std::vector<PassedPair> through = through_tools(lines, contacts.tools(), tools_moved);
                 core::append(passed, through);
@@ -200,6 +174,7 @@ struct Swept {
             tree.visit_pairs([&](Index task, Index k, Index l) {
                 const Index i = lines.of(k), j = lines.of(l);
                 if (i == j ? !self_ || !lines.beyond_arc(k, l) : !lines.apart(k, l)) return;
+                if (bore_between(*mesh_, i, j) != beside) return;
                 const proximity::MovingSegment &a = lines.segments[core::at(k)], &b = lines.segments[core::at(l)];
                 const double widths = lines.half[core::at(i)] + lines.half[core::at(j)],
                              motion = proximity::relative_motion(a, b);

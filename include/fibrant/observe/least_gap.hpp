@@ -141,6 +141,7 @@ public:
                 bound = std::max(bound, least_along_centres(i, j, p, q, t, s));
             found[core::at(n)] = {bound, t, s, i, j, p, q};
         });
+        std::erase_if(found, [&](const Candidate& one) { return inside(one.i, one.j) || inside(one.j, one.i); });
         std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
             if (a.bound != b.bound) return a.bound < b.bound;
             return std::tie(a.i, a.p, a.j, a.q) < std::tie(b.i, b.p, b.j, b.q);
@@ -191,6 +192,11 @@ public:
     }
 
 private:
+    /// A fibre in a tube has its wall about it, and no surface of it beside.
+    bool inside(Index rod, Index tube) const noexcept {
+        const std::vector<Index>& tubes = snapshot_->fibres[core::at(rod)].inside;
+        return std::find(tubes.begin(), tubes.end(), tube) != tubes.end();
+    }
     /// Least gap of two node intervals along the line between two points of their curves: any one direction bounds the gap from
     /// below. This spares most pairs of fibres side by side the search [length].
     double least_along_centres(Index i, Index j, Index p, Index q, double t, double u) const noexcept {

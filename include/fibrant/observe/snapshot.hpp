@@ -29,6 +29,7 @@ struct FibreSnapshot {
     scene::CrossSection section;     ///< at rest
     Index group = -1;                ///< innermost group of the scene
     bool closed = false;             ///< its last node is its first one
+    std::vector<Index> inside;       ///< tubes that it is in
 };
 
 /// One contact element; fibre i < j, the normal points from i to j.

@@ -11,6 +11,7 @@
 #include <fibrant/scene/rigid_body.hpp>
 #include <fibrant/scene/solid.hpp>
 #include <fibrant/scene/tool.hpp>
+#include <fibrant/scene/tube.hpp>
 
 #include <Eigen/Geometry>
 
@@ -272,6 +273,12 @@ public:
         rules_.push_back(rule);
     }
 
+    /// A hollow fibre and what is in it. To be added when these fibres are.
+    void add(Tube tube) {
+        require_tube(tube, fibres_);
+        tubes_.push_back(std::move(tube));
+    }
+
     /// A rigid tool, for models that have a part `Tools`.
     /// @returns index of the tool, counted from 0
     Index add(Tool tool) {
@@ -386,6 +393,7 @@ public:
     const std::vector<LinePressure>& pressures() const noexcept { return pressures_; }
     const std::vector<ForcedOrder>& orders() const noexcept { return orders_; }
     const std::vector<PairRule>& rules() const noexcept { return rules_; }
+    const std::vector<Tube>& tubes() const noexcept { return tubes_; }
     const std::vector<Tool>& tools() const noexcept { return tools_; }
     const std::vector<RigidBody>& bodies() const noexcept { return bodies_; }
     const std::vector<AverageConnection>& averages() const noexcept { return averages_; }
@@ -436,6 +444,7 @@ private:
     std::vector<ForcedOrder> orders_;
     std::map<std::pair<Index, Index>, Index> order_of_;  // by the groups above and below
     std::vector<PairRule> rules_;
+    std::vector<Tube> tubes_;
     std::vector<Tool> tools_;
     std::vector<RigidBody> bodies_;
     std::vector<AverageConnection> averages_;

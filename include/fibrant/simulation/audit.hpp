@@ -3,6 +3,7 @@
 /// @file Audit of the state that a run has come to, which takes nothing from contact elements: the true least gap, and sections
 /// right side out.
 
+#include <fibrant/contact/bore.hpp>
 #include <fibrant/observe/least_gap.hpp>
 #include <fibrant/observe/tool_gap.hpp>
 #include <fibrant/proximity/grid_search.hpp>
@@ -21,12 +22,13 @@ namespace fibrant::simulation {
 /// True gaps of a state against what is allowed, whatever contact elements say.
 struct Audit {
     observe::LeastGap least_gap;  ///< of any two fibres, and of a fibre and itself where contact is asked to see that
+    contact::BoreGap bore_gap;    ///< of any fibre in a tube and the wall
     observe::ToolGap tool_gap;    ///< of any fibre and any tool, where the model has tools
     double allowed = 0.0;         ///< how deep those may be [length]
     std::optional<beam::InsideOut> inside_out;
 
-    /// No fibres deeper in each other or in a tool than allowed, anywhere, and no section inside out.
-    bool clean() const noexcept { return !inside_out && !(std::min(least_gap.gap, tool_gap.gap) < -allowed); }
+    /// No fibres deeper in each other, in a wall or in a tool than allowed, anywhere, and no section inside out.
+    bool clean() const noexcept { return !inside_out && !(std::min({least_gap.gap, tool_gap.gap, bore_gap.gap}) < -allowed); }
 };
 
 /// How deep fibres may be in each other between contact points as well, by what the parameters state: the greatest penetration
@@ -52,7 +54,7 @@ observe::Snapshot curves_of(const beam::Mesh<B>& mesh, const Vector& state) {
         for (Index f = 0; f < mesh.fibre_count(); ++f) {
             observe::FibreSnapshot fibre;
             fibre.section = mesh.fibre(f).section;
-            fibre.group = mesh.fibre(f).group, fibre.closed = mesh.fibre(f).closed;
+            fibre.group = mesh.fibre(f).group, fibre.closed = mesh.fibre(f).closed, fibre.inside = mesh.fibre(f).inside;
             for (Index k = 0; k <= 4 * mesh.fibre(f).elements; ++k) {
                 const double u = 0.25 * static_cast<double>(k);
                 const auto [one, two] = mesh.directors(state, f, u);
@@ -80,6 +82,7 @@ Audit audit(const Simulator& simulator, double allowed = core::unset) {
     answer.least_gap =
         observe::least_gap(shot, proximity::GridSearch{},
                            parameters.detection.self_contact ? observe::OwnTurns::counted : observe::OwnTurns::left_out);
+    answer.bore_gap = contact::least_bore_gap(simulator.mesh(), simulator.state());
     if constexpr (requires { simulator.contacts().tools(); })
         answer.tool_gap = observe::least_tool_gap(shot, simulator.contacts().tools());
     return answer;

@@ -57,8 +57,8 @@ public:
     }
     Report run_watched(const Loading<M>& loading, std::span<const Watcher> watchers);
 
-    /// Starts from what a run of another scene of the same fibres left in a checkpoint, with what its contacts remember. What is
-    /// held, tied and applied is that of this scene: averages and periodic pairs count from there.
+    /// Starts from what a run of another scene of the same fibres left in a checkpoint, with what contacts remember. What is
+    /// held, tied and applied is of this scene: averages and periodic pairs count from there.
     /// @throws std::runtime_error if the file cannot be read or has other fibres
     void start_from(const std::string& checkpoint);
 
@@ -71,12 +71,12 @@ public:
     const Equilibrium& equilibrium() const noexcept { return equilibrium_; }
     const typename M::Solver& linear_solver() const noexcept { return linear_; }
     double amplitude(const std::string& channel) const { return amplitudes_[core::at(channels_.find(channel))]; }
-    /// Force that the support exerts on a held nodal vector, in its held directions [force].
+    /// Force of the support on a held nodal vector, in its held directions [force].
     Vec3 reaction(const scene::Station& at, scene::NodeVector vector = scene::NodeVector::position) const {
         return equilibrium_.reaction().size() > 0 ? Vec3(equilibrium_.reaction().template segment<3>(first_of(at, vector)))
                                                   : Vec3(Vec3::Zero());
     }
-    /// Value of a nodal vector now.
+    /// Of a nodal vector now.
     Vec3 value(const scene::Station& at, scene::NodeVector vector = scene::NodeVector::position) const {
         return state_.segment<3>(first_of(at, vector));
     }
@@ -84,7 +84,7 @@ public:
     /// The present state as plain data.
     observe::Snapshot snapshot() const;
 
-    /// Takes over what contacts and laws remember from a run of the same fibres, whose state the assembly begins at.
+    /// Takes over what contacts and laws remember from a run of these fibres, whose state the assembly begins at.
     /// @throws std::invalid_argument if the fibres are not where that run left them
     template <Model Other>
     void go_on_from(const Simulator<Other>& other) {
@@ -339,6 +339,7 @@ Simulator<M>::Simulator(const scene::Assembly& assembly, const ModelParameters<M
     }
     if constexpr (HasSolid<M>) state_ = equilibrium_.solid().with_rest(state_);
     require_agreement(equilibrium_.motion(), mesh_, channels_);
+    contact::require_in_bores(mesh_);
     if constexpr (!Equilibrium::moves) loose_ = loose_direction(assembly, mesh_);
     radius_ = mesh_.fibre(0).section.radius();
     for (const beam::MeshFibre& fibre : mesh_.fibres()) radius_ = std::min(radius_, fibre.section.radius());

@@ -30,7 +30,7 @@ observe::Snapshot snapshot_of(const beam::Mesh<Beam>& mesh, const Vector& state)
             observe::FibreSnapshot& fibre = shot.fibres[core::at(f)];
             fibre.interpolation = interpolation<Beam>;
             fibre.section = mesh.fibre(f).section;
-            fibre.group = mesh.fibre(f).group, fibre.closed = mesh.fibre(f).closed;
+            fibre.group = mesh.fibre(f).group, fibre.closed = mesh.fibre(f).closed, fibre.inside = mesh.fibre(f).inside;
             for (Index a = 0; a < mesh.node_count(f); ++a) {
                 const double u = static_cast<double>(a) / static_cast<double>(Beam::nodes - 1);
                 const Vec3 position = mesh.position(state, f, u);
