@@ -4,6 +4,7 @@
 
 #include <fibrant/beam/kirchhoff_cable.hpp>
 #include <fibrant/beam/rigid_section_rod.hpp>
+#include <fibrant/contact/bore_passage.hpp>
 #include <fibrant/contact/contact_set.hpp>
 #include <fibrant/law/regularised_coulomb.hpp>
 #include <fibrant/law/regularised_penalty.hpp>
@@ -189,6 +190,37 @@ TEST_CASE("the gap of a rod in a bore is the clearance less the distance of the 
     CHECK(std::abs(gap.gap) < 1e-9 * r);
     CHECK(gap.tube == 0);
     CHECK(gap.rod == 1);
+}
+
+TEST_CASE("a motion takes a rod through the wall of its tube, or by the end of it, or along with it") {
+    using B = beam::RigidSectionRod;
+    scene::Assembly assembly;
+    assembly.add(tube({-0.3, 0, 0}, {0.3, 0, 0}, 6));
+    assembly.add(straight_fibre({-0.4, 0.3 * r, 0}, {0.2, 0.3 * r, 0}, r, 6));
+    assembly.add(scene::Tube{0, {1}});
+    const beam::Mesh<B> mesh(assembly, B{});
+    const auto moved = [&](const Vec3& tube_by, const Vec3& rod_by) {
+        Vector to = mesh.rest_state();
+        for (Index f = 0; f < 2; ++f)
+            for (Index node = 0; node < mesh.node_count(f); ++node)
+                to.segment<3>(3 * mesh.node_vector(f, node)) += f == 0 ? tube_by : rod_by;
+        return contact::through_walls(mesh, mesh.rest_state(), to);
+    };
+    const Vec3 still = Vec3::Zero();
+    CHECK(moved(still, still).empty());
+    CHECK(moved(still, {0, 0.5 * r, 0}).empty());              // deep, but its axis is in the bore
+    CHECK(moved(still, {-2.0, 0, 0}).empty());                 // drawn out
+    CHECK(moved({0, 40.0 * r, 0}, {0, 40.0 * r, 0}).empty());  // with the tube
+    CHECK(moved(still, {-0.45, 0, 0}).empty());                // nearly out
+    const auto through = moved(still, {0, 2.0 * r, 0}), far = moved({0, 0, -0.5}, {0, 0, 0.5});
+    REQUIRE(through.size() == 1);
+    REQUIRE(far.size() == 1);
+    CHECK(through.front().bore);
+    CHECK(through.front().fibre == 1);
+    CHECK(through.front().other == 0);
+    CHECK(through.front().touch <= 0.1);  // its clearance is 0.2 r
+    CHECK(contact::text(through.front()).starts_with("fibre 1 at 0.1667 of its length leaves through the wall of fibre 0 at 0"));
+    CHECK(far.front().time < 0.1);
 }
 
 TEST_CASE("tubes and rods that cannot be are refused by fibre and value") {
