@@ -29,7 +29,7 @@ static_assert(simulation::Model<Bowden>);
 
 // Lengths in mm, forces in N.
 constexpr double radius = 60.0, angle = 0.5 * std::numbers::pi, arc = radius * angle, tail = 4.0;
-constexpr double wire_radius = 0.75, bore = 1.0, outside = 2.5, friction = 0.1, load = 30.0, travel = 2.0;
+constexpr double wire_radius = 0.75, bore = 1.0, outside = 2.5, friction = 0.1, weight = 30.0, travel = 2.0;
 constexpr double slip = 0.01, depth = 0.005;  // reversible displacement, allowed penetration
 
 /// At a length along the housing, and straight on beyond both of its ends.
@@ -49,7 +49,7 @@ scene::Assembly cable() {
     assembly.add(scene::Tube{outer, {inner}});
     assembly.clamp(scene::first_end(outer)), assembly.clamp(scene::last_end(outer));
     // A load at one end of the wire, and the lever at the other one, which leaves it free across.
-    assembly.apply(scene::DeadForce{.at = scene::first_end(inner), .force = {-load, 0, 0}});
+    assembly.apply(scene::DeadForce{.at = scene::first_end(inner), .force = {-weight, 0, 0}});
     const Vec3 along(std::cos(angle), std::sin(angle), 0.0);
     scene::Hold lever;
     lever.at = scene::last_end(inner), lever.directions = along * along.transpose(), lever.displacement = travel * along;
@@ -77,11 +77,11 @@ int main() {
     const simulation::Report report = simulator.run(loading);
     if (!report.converged) return std::printf("stopped: %s\n", report.reason.c_str()), 1;
 
-    const double pull = simulator.reaction(scene::last_end(1)).norm(), ratio = pull / load,
+    const double pull = simulator.reaction(scene::last_end(1)).norm(), ratio = pull / weight,
                  moved = (simulator.value(scene::first_end(1)) - place(-tail)).norm();
     // Friction acts on the wire's skin, nearer to the middle of the bend than its axis.
     const double expected = std::exp(friction * angle * (1.0 - wire_radius / radius));
-    std::printf("pull %.3f N against %.0f N: %.4f, by e^(mu theta (1 - r / R)) %.4f\n", pull, load, ratio, expected);
+    std::printf("pull %.3f N against %.0f N: %.4f, by e^(mu theta (1 - r / R)) %.4f\n", pull, weight, ratio, expected);
     std::printf("lever %.3f mm, load %.3f mm; middle of the housing moves by %.3f mm\n", travel, moved,
                 (simulator.value({0, 0.5}) - place(0.5 * arc)).norm());
     const simulation::Audit audit = simulation::audit(simulator);

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -21,16 +22,8 @@ namespace contact_tubes_test {
 
 const double pi = std::numbers::pi;
 
-struct Threaded {
-    using Beam = beam::RigidSectionRod;
-    using Proximity = proximity::GridSearch;
-    using Normal = law::RegularisedPenalty;
-    using Friction = law::RegularisedCoulomb;
-    using Solver = solver::DoubleBlockCholesky;
-};
-struct Deforming : Threaded {
-    using Beam = beam::DirectorBeam<3>;
-};
+using Threaded = test::EveryRod;
+using Deforming = test::EveryDirector;
 
 scene::FibreSpecification fibre(const Vec3& from, const Vec3& to, const scene::CrossSection& section, double young,
                                 Index elements) {
@@ -102,52 +95,90 @@ TEST_CASE("a tube bends alone until its clearance is closed, and with the rod in
     }
 }
 
-struct Pulled {
-    double ratio = 0.0;
-    bool clean = false;
+/// A rod bent to an arc like its tube, which is held all along, drawn through it against a force.
+struct Drawn {
+    double radius, angle, mu;
+    Index elements;
+    static constexpr double back = 10.0;
+
+    Vec3 out() const { return {std::cos(angle), std::sin(angle), 0.0}; }
+    template <class M>
+    scene::Assembly assembly() const {
+        const double r = 1.0, bore = 1.2, wall = 1.6, tail = 5.0, arc = radius * angle, whole = arc + 2.0 * tail;
+        const auto place = [arc, bend = radius](double s) {  // along the arc, straight on beyond both ends
+            const double on = std::clamp(s, 0.0, arc), a = on / bend, off = s - on;
+            return Vec3(bend * std::sin(a) + off * std::cos(a), bend * (1.0 - std::cos(a)) + off * std::sin(a), 0.0);
+        };
+        scene::FibreSpecification tube, rod;
+        tube.curve = [=](double t) { return place(t * arc); };
+        rod.curve = [=](double t) { return place(t * whole - tail); };
+        tube.section = scene::hollow(wall, bore), rod.section = scene::circular(r);
+        tube.material = {1000.0, 0.3}, rod.material = {1000.0, 0.3};
+        tube.elements = elements, rod.elements = elements + 2;
+        scene::Assembly assembly;
+        assembly.add(tube), assembly.add(rod), assembly.add(scene::Tube{0, {1}});
+        const Index nodes = elements * (M::Beam::nodes - 1);
+        for (Index k = 0; k <= nodes; ++k) assembly.clamp_section({0, static_cast<double>(k) / static_cast<double>(nodes)});
+        assembly.apply(scene::DeadForce{.at = scene::first_end(1), .force = Vec3(-back, 0, 0)});
+        scene::Hold pull;
+        pull.at = scene::last_end(1), pull.directions = out() * out().transpose(), pull.displacement = out();
+        assembly.hold(pull);
+        assembly.hold_axial_rotation(scene::first_end(1));
+        return assembly;
+    }
+    template <class M>
+    simulation::Loading<M> loading() const {
+        simulation::Loading<M> loading = test::stage<M>({{"load", 1.0}}, 4);
+        loading.stages.push_back(test::stage<M>({{"motion", 1.0}}, 10).stages.front());
+        loading.stages.back().friction.emplace(law::RegularisedCoulomb::Parameters{mu, 0.01});
+        return loading;
+    }
+    /// Force at the one end over that at the other.
+    template <class M>
+    double ratio() const {
+        const scene::Assembly scene = assembly<M>();
+        simulation::Simulator<M> simulator(scene, parameters<M>(0.005, 0.0, 0.01));
+        const simulation::Report report = simulator.run(loading<M>());
+        CAPTURE(report.reason);
+        REQUIRE(report.converged);
+        CHECK(simulation::audit(simulator).clean());
+        const double found = simulator.reaction(scene::last_end(1)).dot(out()) / back;
+        std::printf(
+            "radius %.0f, %ld elements: %.5f, off Euler's by %+.1e; %ld Newton, %ld cuts; energy: missing %.1e, rearranged %.1e, "
+            "slid %.2f of the work\n",
+            radius, static_cast<long>(elements), found, found / std::exp(mu * angle) - 1.0,
+            static_cast<long>(report.counts.newton), static_cast<long>(report.rejected_increments),
+            report.energy.error() / report.energy.external, report.energy.rearranged / report.energy.external,
+            report.energy.dissipated / report.energy.external);
+        return found;
+    }
 };
 
-/// A rod bent to an arc like its tube, which is held all along, drawn through it against a force.
-template <class M>
-Pulled drawn(double radius, double angle, double mu, Index elements) {
-    const double r = 1.0, bore = 1.2, wall = 1.6, tail = 5.0, back = 10.0, arc = radius * angle, whole = arc + 2.0 * tail;
-    const auto place = [=](double s) {  // along the arc, straight on beyond both ends
-        const double on = std::clamp(s, 0.0, arc), a = on / radius, off = s - on;
-        return Vec3(radius * std::sin(a) + off * std::cos(a), radius * (1.0 - std::cos(a)) + off * std::sin(a), 0.0);
-    };
-    scene::FibreSpecification tube, rod;
-    tube.curve = [=](double t) { return place(t * arc); };
-    rod.curve = [=](double t) { return place(t * whole - tail); };
-    tube.section = scene::hollow(wall, bore), rod.section = scene::circular(r);
-    tube.material = {1000.0, 0.3}, rod.material = {1000.0, 0.3};
-    tube.elements = elements, rod.elements = elements + 2;
-    scene::Assembly assembly;
-    assembly.add(tube), assembly.add(rod), assembly.add(scene::Tube{0, {1}});
-    const Index nodes = elements * (M::Beam::nodes - 1);
-    for (Index k = 0; k <= nodes; ++k) assembly.clamp_section({0, static_cast<double>(k) / static_cast<double>(nodes)});
-    const Vec3 out(std::cos(angle), std::sin(angle), 0.0);
-    assembly.apply(scene::DeadForce{.at = scene::first_end(1), .force = Vec3(-back, 0, 0)});
-    scene::Hold pull;
-    pull.at = scene::last_end(1), pull.directions = out * out.transpose(), pull.displacement = out;
-    assembly.hold(pull);
-    assembly.hold_axial_rotation(scene::first_end(1));
-    simulation::Simulator<M> simulator(assembly, parameters<M>(0.005, 0.0, 0.01));
-    simulation::Stage<M> taut = test::stage<M>({{"load", 1.0}}, 4).stages.front(),
-                         drawn = test::stage<M>({{"motion", 1.0}}, 10).stages.front();
-    drawn.friction.emplace(law::RegularisedCoulomb::Parameters{mu, 0.01});
-    simulation::Loading<M> loading;
-    loading.stages = {taut, drawn};
-    const simulation::Report report = simulator.run(loading);
-    CAPTURE(report.reason);
-    REQUIRE(report.converged);
-    Pulled answer;
-    answer.ratio = simulator.reaction(scene::last_end(1)).dot(out) / back;
-    answer.clean = simulation::audit(simulator).clean();
-    std::printf("radius %.0f, %ld elements: %.5f, %.5f by Euler, off by %+.1e; %ld Newton, %ld cuts, depth %.1e\n", radius,
-                static_cast<long>(elements), answer.ratio, std::exp(mu * angle), answer.ratio / std::exp(mu * angle) - 1.0,
-                static_cast<long>(report.counts.newton), static_cast<long>(report.rejected_increments),
-                report.contact.greatest_penetration);
-    return answer;
+struct Interruption {};
+struct Interrupter {
+    Index after;
+    void reported(const simulation::IncrementReport& increment) const {
+        if (increment.number == after) throw Interruption{};
+    }
+};
+
+TEST_CASE("a rod that is drawn through a tube goes on to the same bits where it was interrupted") {
+    const Drawn scene{100.0, 0.5 * pi, 0.3, 6};
+    const scene::Assembly assembly = scene.assembly<Deforming>();
+    const simulation::ModelParameters<Deforming> all = parameters<Deforming>(0.005, 0.0, 0.01);
+    simulation::Loading<Deforming> loading = scene.loading<Deforming>();
+    simulation::Simulator<Deforming> whole(assembly, all), first(assembly, all), second(assembly, all);
+    REQUIRE(whole.run(loading).converged);
+    const std::filesystem::path file = std::filesystem::temp_directory_path() / "fibrant_contact_tubes_test";
+    std::filesystem::remove(file);
+    loading.checkpoint = file.string();
+    Interrupter stop{9};
+    CHECK_THROWS_AS(first.run(loading, stop), Interruption);
+    loading.resume = true;
+    const simulation::Report resumed = second.run(loading);
+    std::filesystem::remove(file);
+    REQUIRE(resumed.converged);
+    CHECK(second.state() == whole.state());
 }
 
 TEST_CASE("a rod drawn through a bent tube is held back by e^(mu theta), whatever the radius") {
@@ -159,13 +190,12 @@ TEST_CASE("a rod drawn through a bent tube is held back by e^(mu theta), whateve
         const double expected = test::capstan_ratio({r, radius - clear - r, 1e-9, mu}, 10.0, angle);
         double before = 0.0;
         for (const Index elements : {6, 12, 24}) {
-            const Pulled found = drawn<Deforming>(radius, angle, mu, elements);
-            std::printf("%.5f by the reference, off by %+.1e\n", expected, found.ratio / expected - 1.0);
-            CHECK(found.clean);
+            const double found = Drawn{radius, angle, mu, elements}.ratio<Deforming>();
+            std::printf("%.5f by the reference, off by %+.1e\n", expected, found / expected - 1.0);
             // The end of the wall takes what is left of friction's moment by a force of mu r / radius of the tension.
-            CHECK(found.ratio == test::near(expected, mu * mu * r / radius));
-            if (elements == 24) CHECK(found.ratio == test::near(before, 2e-4));  // it is that of a fine mesh
-            before = found.ratio;
+            CHECK(found == test::near(expected, mu * mu * r / radius));
+            if (elements == 24) CHECK(found == test::near(before, 2e-4));  // it is that of a fine mesh
+            before = found;
         }
         off.push_back(before / std::exp(mu * angle) - 1.0);
     }

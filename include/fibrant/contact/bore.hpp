@@ -15,13 +15,14 @@
 
 namespace fibrant::contact {
 
-/// What the place of a contact element says where no crossing is followed: fibres beside each other, or one in the other's bore.
-inline constexpr std::int32_t beside = -1, bore_of_i = -2, bore_of_j = -3;
+/// What the place of a contact element says where no crossing is followed: fibres touch from outside, or one is in the other's
+/// bore.
+inline constexpr std::int32_t no_bore = -1, bore_of_i = -2, bore_of_j = -3;
 
-/// Of two fibres.
+/// Which of these it is for two fibres.
 template <class B>
 std::int32_t bore_between(const beam::Mesh<B>& mesh, Index i, Index j) noexcept {
-    return beam::is_inside(mesh.fibre(j), i) ? bore_of_i : beam::is_inside(mesh.fibre(i), j) ? bore_of_j : beside;
+    return beam::is_inside(mesh.fibre(j), i) ? bore_of_i : beam::is_inside(mesh.fibre(i), j) ? bore_of_j : no_bore;
 }
 
 /// The wall pushes inwards: from one centre to the other, across both fibres.
@@ -179,7 +180,8 @@ struct BorePlace {
     bool beyond = false;       ///< an end of the tube
 };
 
-/// @param u  of a place near the nearest one
+/// The place of a tube's centreline that is nearest to a point.
+/// @param u  of one near it
 template <class B>
 BorePlace place_in_bore(const beam::Mesh<B>& mesh, const Vector& state, Index tube, const Vec3& point, double u) {
     const double end = static_cast<double>(mesh.fibre(tube).elements), settled = 1e-10;

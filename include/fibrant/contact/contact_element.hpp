@@ -84,7 +84,7 @@ struct ContactElement {
     std::int32_t fibre_i = -1, fibre_j = -1;
     std::int32_t first_i = 0, first_j = 0;  ///< first unknown of each side's element
     std::int32_t zone = -1;
-    std::int32_t place = -1;  ///< of a crossing that is followed, or `beside`, `bore_of_i` or `bore_of_j` (contact/bore.hpp)
+    std::int32_t place = -1;  ///< of a crossing that is followed, or what contact/bore.hpp says
     bool crossing = false, end_i = false, end_j = false;
     std::int8_t slide = 0;  ///< of a crossing that is followed: how its place slides (FollowedPlaces)
     [[no_unique_address]] GapShift<Normal> shift;

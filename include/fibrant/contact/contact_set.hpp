@@ -305,7 +305,7 @@ private:
         keep_watch(zone, before);
         zone.stiffness = before ? before->stiffness : parameters_.stiffness.initial_fraction * zone.reference;
         if (!accepted_zones_.empty()) zone.deepest = before ? before->deepest : 0.0;
-        if (zone.forced || bore_between(*mesh_, zone.span.fibre_i, zone.span.fibre_j) != beside) return;
+        if (zone.forced || bore_between(*mesh_, zone.span.fibre_i, zone.span.fibre_j) != no_bore) return;
         places_.mark(*mesh_, state, zone, before, all);
         const double angle = crossing_angle_deg(*mesh_, state, zone.span, !zone.followed);
         const double shift = !before ? 0.0 : parameters_.spacing.angle_hysteresis_deg * (before->crossing ? -1.0 : 1.0);

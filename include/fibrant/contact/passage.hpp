@@ -174,7 +174,7 @@ struct Swept {
             tree.visit_pairs([&](Index task, Index k, Index l) {
                 const Index i = lines.of(k), j = lines.of(l);
                 if (i == j ? !self_ || !lines.beyond_arc(k, l) : !lines.apart(k, l)) return;
-                if (bore_between(*mesh_, i, j) != beside) return;
+                if (bore_between(*mesh_, i, j) != no_bore) return;
                 const proximity::MovingSegment &a = lines.segments[core::at(k)], &b = lines.segments[core::at(l)];
                 const double widths = lines.half[core::at(i)] + lines.half[core::at(j)],
                              motion = proximity::relative_motion(a, b);

@@ -139,7 +139,7 @@ private:
     std::pair<Vec3, double> facing(double u_i, double u_j) const noexcept {
         const Vec3 centres = mesh_.position(state_, j_, u_j) - mesh_.position(state_, i_, u_i);
         const auto round = [&](Index f) { return mesh_.fibre(f).section.semi_axis_1 == mesh_.fibre(f).section.semi_axis_2; };
-        if (bore_between(mesh_, i_, j_) != contact::beside)  // the wall is on the other side, and parts from no line that slants
+        if (bore_between(mesh_, i_, j_) != no_bore)  // the wall is on the other side, and parts from no line that slants
             return {-centres.normalized(), std::numeric_limits<double>::infinity()};
         if ((round(i_) && round(j_)) || beam::CentreTouched<B>) return {centres.normalized(), 2.0 * r_};
         const Vec3 tangent =
@@ -373,7 +373,7 @@ void station_pairs(const beam::Mesh<B>& mesh, const Vector& state, const proximi
         stations.place_crossing();
     else
         stations.place_along(earlier);
-    if (bore_between(mesh, zone.fibre_i, zone.fibre_j) != beside)  // ends have no caps there: what is beyond an end is free
+    if (bore_between(mesh, zone.fibre_i, zone.fibre_j) != no_bore)  // ends have no caps there: what is beyond an end is free
         pairs.erase(std::remove_if(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end(),
                                    [](const StationPair& pair) { return pair.end_i || pair.end_j; }),
                     pairs.end());
