@@ -143,13 +143,16 @@ struct Drawn {
         REQUIRE(report.converged);
         CHECK(simulation::audit(simulator).clean());
         const double found = simulator.reaction(scene::last_end(1)).dot(out()) / back;
+        // Where the load is put on, the slack rod leaps to the wall, which gives energy away. While all of it slides none is
+        // missing.
+        const simulation::EnergyBalance &half = report.increments[report.increments.size() - 6].energy, &end = report.energy;
+        const double missing = (end.error() - half.error()) / (end.external - half.external);
         std::printf(
-            "radius %.0f, %ld elements: %.5f, off Euler's by %+.1e; %ld Newton, %ld cuts; energy: missing %.1e, rearranged %.1e, "
-            "slid %.2f of the work\n",
+            "radius %.0f, %ld elements: %.5f, off Euler's by %+.1e; %ld Newton, %ld cuts; energy missing %+.1e of the work\n",
             radius, static_cast<long>(elements), found, found / std::exp(mu * angle) - 1.0,
-            static_cast<long>(report.counts.newton), static_cast<long>(report.rejected_increments),
-            report.energy.error() / report.energy.external, report.energy.rearranged / report.energy.external,
-            report.energy.dissipated / report.energy.external);
+            static_cast<long>(report.counts.newton), static_cast<long>(report.rejected_increments), missing);
+        CHECK(std::abs(missing) < 2e-3);  // of second order in the increment
+        CHECK(end.dissipated > 0.3 * end.external);
         return found;
     }
 };
