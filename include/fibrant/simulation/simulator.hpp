@@ -172,7 +172,7 @@ private:
             const Index most = std::max<Index>(1, attempt.counts.normal_passes) * iteration.newton_limit;
             effort = static_cast<double>(attempt.counts.newton) / static_cast<double>(most);
             if (attempt.converged) attempt.refuse(laws_.refusal(mesh_, beam_, trial));
-            // What nothing foretells is held back: the first tells.
+            // What nothing foretells is held back.
             if (attempt.converged && stage.damping_carried && stage.damping > 0.0 && !rehearsed && !motion_.foretells(change)) {
                 motion_.learn(mesh_, state_, trial, change);
                 contacts_.restore(), equilibrium_.restore(), rehearsed = true;
