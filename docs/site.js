@@ -5,7 +5,7 @@
 if (window.location.protocol === 'file:') {
   window.Worker = class {
     constructor(script) {
-      this.folder = script.replace(/worker\.js$/, '');
+      this.folder = script.slice(0, -'worker.js'.length);
       this.documents = new Map();
     }
     postMessage(message) {

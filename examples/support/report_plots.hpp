@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -150,8 +149,7 @@ inline std::string stages(const Table& table) {
     for (std::size_t from = 0, to = 0; from < table.rows(); from = to) {
         double newton = 0.0, taken = 0.0;
         for (to = from; to < table.rows() && table.cell(to, stage) == table.cell(from, stage); ++to)
-            newton += std::strtod(table.cell(to, iterations).c_str(), nullptr),
-                taken += std::strtod(table.cell(to, seconds).c_str(), nullptr);
+            newton += number_of(table.cell(to, iterations)), taken += number_of(table.cell(to, seconds));
         text += "<tr><td>" + observe::xml_escaped(table.cell(from, stage)) + "</td><td>" + table.cell(from, 0) +
                 (to - from > 1 ? " to " + table.cell(to - 1, 0) : std::string()) + "</td><td>" + short_number(newton) +
                 "</td><td>" + short_number(taken, "%.3g") + "</td></tr>\n";

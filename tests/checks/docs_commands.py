@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the commands of the README, the tutorials and the how-to pages as they stand there, in a folder that looks like a clone with its
-programs built: those of a page in their order, with the scenes that it says to save. What takes long is stopped by a signal once it
-runs, and what needs its results is left out. Programs that this build has not are left out too, and told.
+"""Runs the commands of the README, the tutorials and the how-to pages as they stand there, in a folder that looks like a clone
+with its programs built: those of a page in their order, with the scenes that it says to save. What takes long is stopped by a
+signal once it runs, and what needs its results is left out. Programs that this build has not are left out too, and told.
 Presets and targets that pages name are there, and blocks of Python and TOML can be read.
 usage: docs_commands.py PROJECT_FOLDER BIN_FOLDER SCRATCH_FOLDER"""
 import ast
@@ -22,7 +22,9 @@ shutil.rmtree(scratch, ignore_errors=True)
 (scratch / "build" / "release").mkdir(parents=True)
 (scratch / "build" / "release" / "bin").symlink_to(programs)
 (scratch / "examples").symlink_to(project / "examples")
-presets = {one["name"] for kind in json.loads((project / "CMakePresets.json").read_text()).values() if isinstance(kind, list) for one in kind}
+kinds = json.loads((project / "CMakePresets.json").read_text()).values()
+presets = {one["name"] for kind in kinds if isinstance(kind, list) for one in kind}
+built = {path.name for path in programs.iterdir()}
 targets = {path.name for path in (project / "examples").iterdir() if path.is_dir()} | {"fibrant_python"}
 problems, unfinished, counts = [], set(), {"run": 0, "stopped": 0, "left out": 0}
 
@@ -30,7 +32,7 @@ problems, unfinished, counts = [], set(), {"run": 0, "stopped": 0, "left out": 0
 def run(command, where):
     """Runs one command of a page."""
     arguments = shlex.split(command)
-    if not Path(arguments[0]).name in {path.name for path in programs.iterdir()} or any(
+    if not Path(arguments[0]).name in built or any(
             f"out/{name}/" in argument for name in unfinished for argument in arguments):
         counts["left out"] += 1
         return print(f"left out: {command}")

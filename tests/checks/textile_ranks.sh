@@ -13,13 +13,7 @@ small="--set solver.subdomains=8 --set output.paraview=false --set output.pictur
 . "$(dirname "$0")/ranks.sh"
 tables="yarns centrelines crossings"
 
-on 1 1 "$textile" "$scene" --output "$out/1" $small || fail "the braid did not settle on one rank"
-figures "$out/1" $tables >"$out/expected" || fail "tables are missing"
-for run in "2 1" "2 2" "4 1"; do
-  set -- $run
-  on "$1" "$2" "$textile" "$scene" --output "$out/$1x$2" $small || fail "the braid did not settle on $1 ranks of $2 threads"
-  figures "$out/$1x$2" $tables | cmp -s - "$out/expected" || fail "$1 ranks of $2 threads have other bits than one of one"
-done
+alike "a braid" "$tables" "$textile" "$scene" $small
 
 knit=$(dirname "$scene")/knit_plain.toml
 for run in "1 1" "3 2"; do

@@ -17,13 +17,7 @@ small="--set fabric.warp_tows=$tows --set fabric.weft_tows=$tows --set fabric.el
 . "$(dirname "$0")/ranks.sh"
 tables="fibres tows sections"
 
-on 1 1 "$weave" "$scene" --output "$out/1" $small || fail "the small scene did not settle on one rank"
-figures "$out/1" $tables >"$out/expected"
-for run in "2 1" "2 2" "4 1"; do
-  set -- $run
-  on "$1" "$2" "$weave" "$scene" --output "$out/$1x$2" $small || fail "the small scene did not settle on $1 ranks of $2 threads"
-  figures "$out/$1x$2" $tables | cmp -s - "$out/expected" || fail "$1 ranks of $2 threads have other bits than one of one"
-done
+alike "a small weave" "$tables" "$weave" "$scene" $small
 
 # Stopped on two ranks, gone on with on one: the checkpoint has all that a state is.
 on 2 1 "$weave" "$scene" --output "$out/parts" $small --set settle.separation_increments=6

@@ -65,6 +65,14 @@ concept CentrelineOnly = requires {
 /// Particles that touch are those of the centreline: a force has no lever.
 template <class B>
 concept CentreTouched = CentrelineOnly<B> || TouchedOnCentreline<B>;
+/// Weights of the particle that is touched there, at xi in [-1, 1].
+template <CentreTouched B>
+constexpr auto touched_centre(double xi) noexcept {
+    if constexpr (CentrelineOnly<B>)
+        return B::centreline_weights(xi);
+    else
+        return B::centre_weights(xi);
+}
 /// Contact acts on the contours of sections that directors deform: particles are weighted sums of positions and directors.
 template <class B>
 concept DeformableSections = !CentrelineOnly<B> && !TurningSections<B> && !TouchedOnCentreline<B>;

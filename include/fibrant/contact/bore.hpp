@@ -48,11 +48,8 @@ template <class B>
 double particle_along(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, Index first, const Vec3& direction,
                       double distance, beam::Particle<B>& weights) {
     const double xi = mesh.locate(fibre, u).second;
-    if constexpr (beam::CentrelineOnly<B>) {
-        weights = B::centreline_weights(xi);
-        return distance;
-    } else if constexpr (beam::TouchedOnCentreline<B>) {
-        weights = B::centre_weights(xi);
+    if constexpr (beam::CentreTouched<B>) {
+        weights = beam::touched_centre<B>(xi);
         return distance;
     } else if constexpr (beam::TurningSections<B>) {
         const auto element = state.segment<beam::Mesh<B>::element_unknowns>(first);

@@ -20,11 +20,8 @@ template <class B>
 double support_weights(const beam::Mesh<B>& mesh, const Vector& state, Index fibre, double u, Index first, const Vec3& direction,
                        bool end, beam::Particle<B>& weights) {
     const double xi = mesh.locate(fibre, u).second;
-    if constexpr (beam::CentrelineOnly<B>) {
-        weights = B::centreline_weights(xi);
-        return mesh.fibre(fibre).section.radius();
-    } else if constexpr (beam::TouchedOnCentreline<B>) {
-        weights = B::centre_weights(xi);
+    if constexpr (beam::CentreTouched<B>) {
+        weights = beam::touched_centre<B>(xi);
         return mesh.fibre(fibre).section.radius();
     } else {
         const auto [g_1, g_2] = beam::Mesh<B>::element_directors(state, first, xi);

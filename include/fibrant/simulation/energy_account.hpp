@@ -82,9 +82,11 @@ public:
                 if (term.begins()) external_ = equilibrium.external() + equilibrium.reaction();
                 balance_.kinetic = term.kinetic(to);
             });
-        const Vector before = external_.size() == to.size() ? external_ : Vector(Vector::Zero(to.size()));
-        balance_.external += trapezium(way, external_, equilibrium.external() + equilibrium.reaction());
-        balance_.external += equilibrium.beyond_chords({amplitudes, {&from, &to}, {&before, &external_}});
+        if (external_.size() != to.size()) external_ = Vector::Zero(to.size());
+        const Vector force = equilibrium.external() + equilibrium.reaction();
+        const double turned = equilibrium.beyond_chords({amplitudes, {&from, &to}, {&external_, &force}});
+        balance_.external += trapezium(way, external_, force);
+        balance_.external += turned;
         balance_.damped += trapezium(way, damping_, equilibrium.damping_force(to));
         if constexpr (requires { contacts.tools(); })
             balance_.external += contacts.tools().half_work(), contacts.tools().stand_back(true);
