@@ -3,6 +3,7 @@
 /// @file The iteration and all strategies for linear systems, but those that need a library of their own.
 
 #include <fibrant/solver/any_solver.hpp>
+#include <fibrant/solver/attempt_report.hpp>
 #include <fibrant/solver/automatic_solver.hpp>
 #include <fibrant/solver/block_band_cholesky.hpp>
 #include <fibrant/solver/block_cholesky.hpp>

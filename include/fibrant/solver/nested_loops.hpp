@@ -3,8 +3,7 @@
 /// @file The three nested loops of an increment: contact elements, normal directions, Newton (Durville, section 15.3.2).
 
 #include <fibrant/contact/allowed_depth.hpp>
-#include <fibrant/solver/newton.hpp>
-#include <fibrant/solver/tolerance_use.hpp>
+#include <fibrant/solver/attempt_report.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,33 +13,6 @@
 
 namespace fibrant::solver {
 
-/// Outcome of one attempt at an increment.
-struct AttemptReport {
-    bool converged = false;
-    bool astray = false;  ///< Newton's method or contact passes have not found their way
-    std::string reason;   ///< why not
-    IterationCounts counts;
-    double residual = 0.0;      ///< over loads, reactions and contact forces [1]
-    double force_scale = 0.0;   ///< norm of those [force]
-    double step = 0.0;          ///< last Newton step [length]
-    double displacement = 0.0;  ///< greatest of the increment [length]
-    ToleranceUse use;           ///< of one that has converged
-    Vector unsettled;           ///< last step, or displacement of the last pass or of the whole, of an attempt that has failed
-    double allowed = 0.0;       ///< what that may be anywhere without harm [length]
-
-    /// It has forces, and has moved by more than rounding of a radius: where nothing acts a part of them is rounding by rounding.
-    bool acts(double radius) const noexcept {
-        constexpr double rounding = 1e-12;  // some ten times that of a place in a scene of a few hundred radii
-        return force_scale > 0.0 && displacement > rounding * radius;
-    }
-
-    /// One that has converged is not accepted, if there is a reason why: whoever moved most is not at fault.
-    void refuse(std::string why) {
-        reason = std::move(why);
-        if (!reason.empty()) converged = false, unsettled.resize(0);
-    }
-};
-
 /// Numbers of the nested loops that no scene has had to change. Where no source is named, they were chosen by trial on the scenes
 /// of the examples and the tests of stability.
 namespace nested_numbers {
@@ -49,6 +21,7 @@ inline constexpr double both = 2.0;   ///< two fibres may each move by what is e
 inline constexpr double kept = 0.25;  ///< part of a search's reach that is moved before the next one [1]
 inline constexpr Index most_moves = 6, most_moves_bounded = 2;  ///< searches after such motions; where displacements are bounded
 inline constexpr Index first_searches = 2;                      ///< of an increment, which no small motion makes up for
+inline constexpr Index standing_passes = 2, most_swings = 2;    ///< last passes, in which points may stand; what shows a swing
 inline constexpr double coarsest_step = 0.02;                   ///< of an iteration within a pass [radius]
 inline constexpr double coarsest_by_looseness = 2e-5, coarsest_of_all = 0.05;  ///< the same, of a path looser than 1000
 /// The same over what is expected to move, of a path: of one that creeps a coarser iteration leaves more than it moves [1].
@@ -122,8 +95,10 @@ public:
         const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
         Vector searched, travel, last_travel;  // state of the last search, displacements of the last pass and of the one before
+        Vector made;                           // state that contact points were made in
         double missed = std::numeric_limits<double>::infinity();  // by contacts, at the last renewal of their multipliers
         turn_ = 0.0, closing_ = false;
+        bool stands = false;  // points are those of an earlier pass
         Index passes = 0, searches = 0, moves = 0, renewals = 0, stiffenings = 0;
         // Further than so many searches reach: what hardly anything holds goes on for ever, and where displacements have a bound,
         // more damping or a smaller increment costs less than to follow it.
@@ -140,10 +115,17 @@ public:
             const bool search = searches < with::first_searches || !contact_possible_ ||
                                 equilibrium_->greatest(state - searched) > with::kept * bound;
             if (search) searched = state, ++searches;
+            // Points that are made anew may carry fibres to and fro for ever, however small the increment: in the last passes
+            // they stand as they were made close by.
+            stands = !search && passes >= std::max(parameters_.contact_limit - with::standing_passes, with::most_swings) &&
+                     stood(state, made) < 1.0;
+            if (!stands) made = state;
             clock_->time(search ? core::Part::search : core::Part::contact, [&] {
                 const double far = std::isfinite(bound) ? bound : parameters_.margin * radius_;
                 if (search)
                     contacts_->detect(state, accepted, far, forced), equilibrium_->detect(state, accepted, far);
+                else if (stands)
+                    equilibrium_->refresh(state, accepted, contacts_->refresh(state, accepted)), last_travel.resize(0);
                 else
                     contacts_->regenerate(state, accepted);
             });
@@ -230,8 +212,11 @@ public:
         }
         contact::DepthOverAllowed depth;
         if (contact_possible_) depth = contact::depth_over_allowed(*contacts_, contacts_->parameters().stiffness);
+        // Of points that stand it is how far they were made from here that is stated.
+        const double over = change / (parameters_.contact_tolerance * radius_),
+                     travelled = std::max(over, stands ? stood(state, made) : 0.0);
         report.use = {report.residual / parameters_.residual_tolerance, turn_ / parameters_.normal_tolerance,
-                      contact_possible_ ? change / (parameters_.contact_tolerance * radius_) : 0.0, depth.value};
+                      contact_possible_ ? travelled : 0.0, depth.value};
         if (strict && report.use.turn > 1.0) {
             report.reason = "normals do not settle: the last pass turned them by " + core::text(turn_) + " radians";
             report.unsettled = travel, report.astray = true;
@@ -249,6 +234,11 @@ private:
     static constexpr bool with_multipliers = requires(const Contacts contacts) { contacts.normal_law().largest_penetration(); };
     /// Of zones, within an increment: each a factor StiffnessAdaptation.largest_change, so that ten are five decades by default.
     static constexpr Index most_stiffenings = 10;
+
+    /// How far from here contact points were made, over how far those that stand may be [1].
+    double stood(const Vector& state, const Vector& made) const {
+        return equilibrium_->greatest(state - made) / (parameters_.standing_points * radius_);
+    }
 
     /// Greatest displacement of what is driven [length].
     double driven(const Vector& state) const {

@@ -20,7 +20,10 @@ struct IterationParameters {
     double normal_tolerance = 1e-3;       ///< turn of normals in a normal pass [radian], > 0
     double normal_step_tolerance = 1e-3;  ///< displacement in a normal pass [radius], > 0
     double contact_tolerance = 1e-2;      ///< displacement in a contact pass [radius], > 0
-    double inexact = 0.3;                 ///< inner tolerance over the last change of the loop outside [1], in [0, 1]
+    /// Where contact passes go to and fro, contact points stand as they were made no further from the end than this [radius], >
+    /// 0. A crossing whose point stands aside by d is nearer by up to d^2 / (4 r) than it says.
+    double standing_points = 0.25;
+    double inexact = 0.3;  ///< inner tolerance over the last change of the loop outside [1], in [0, 1]
     /// Slope of the energy at the end of a Newton step over that at its start, beyond which the step is cut [1], > 0. Once
     /// Newton's method has failed `most_astray` times at an increment it is `watched_overshoot` at most.
     double overshoot = std::numeric_limits<double>::infinity();
@@ -52,6 +55,7 @@ struct IterationParameters {
         core::require_positive("IterationParameters.normal_tolerance", normal_tolerance);
         core::require_positive("IterationParameters.normal_step_tolerance", normal_step_tolerance);
         core::require_positive("IterationParameters.contact_tolerance", contact_tolerance);
+        core::require_positive("IterationParameters.standing_points", standing_points);
         core::require_between("IterationParameters.inexact", inexact, 0.0, 1.0);
         core::require(overshoot > 0.0, "IterationParameters.overshoot", overshoot, "> 0");
         core::require_positive("IterationParameters.largest_approach", largest_approach);

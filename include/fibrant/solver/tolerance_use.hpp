@@ -11,7 +11,8 @@ namespace fibrant::solver {
 struct ToleranceUse {
     double residual = 0.0;     ///< over IterationParameters.residual_tolerance
     double turn = 0.0;         ///< of normals in the last normal pass, over normal_tolerance
-    double travel = 0.0;       ///< displacement of the last contact pass, over contact_tolerance
+    double travel = 0.0;       ///< displacement of the last contact pass, over contact_tolerance; of what points stand aside
+                               ///< by, over standing_points, where that is more
     double penetration = 0.0;  ///< deepest contact over the penetration that is allowed to its pair of groups in the stage
 
     /// Deepest place of two fibres by the true gap, between contact points as well, over what is allowed there; 0 where nothing
