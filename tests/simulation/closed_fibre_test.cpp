@@ -176,6 +176,10 @@ TEST_CASE("a closed fibre is refused where it does not close") {
     fibre = ring.specification<beam::DirectorBeam<3>>();
     fibre.closed = false, fibre.twist = 1.0;
     CHECK(test::refusal([&] { fibre.validate(); }).find("fibre.twist") != std::string::npos);
+    fibre.start = fibre.curve;  // which may be turned along itself, if it has an end
+    fibre.validate();
+    fibre.repeats = true;
+    CHECK(test::refusal([&] { fibre.validate(); }).find("fibre.twist") != std::string::npos);
 }
 
 }  // namespace closed_fibre_test

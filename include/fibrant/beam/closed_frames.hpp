@@ -17,8 +17,6 @@ namespace fibrant::beam {
 template <BeamElement B>
 void closed_frames(const scene::FibreSpecification& fibre, Index nodes, std::vector<scene::NodeFrame>& starts,
                    std::vector<scene::NodeFrame>& frames) {
-    if constexpr (CentrelineOnly<B>)
-        core::require(fibre.twist == 0.0, "fibre.twist", fibre.twist, "0, of a beam that does not turn");
     starts = scene::reference_frames(fibre.start ? fibre.start : fibre.curve, nodes, fibre.director, true);
     constexpr double turn = 2.0 * std::numbers::pi;
     const double closing = scene::closing_angle(starts) + turn * std::round(fibre.twist / turn);

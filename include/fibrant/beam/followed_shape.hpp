@@ -75,9 +75,12 @@ void cut_fibre(const scene::FibreSpecification& fibre, Index nodes, std::vector<
         rest = {scene::straight_frames(fibre.from, fibre.to, nodes, fibre.director), {}, (fibre.to - fibre.from).norm()};
     if (fibre.start) begun = shape_of(fibre.start, "fibre.start", fibre.closed);
     if (fibre.start && !fibre.straightened()) require_as_long(begun.length, rest.length);
+    if constexpr (CentrelineOnly<B>)
+        core::require(fibre.twist == 0.0, "fibre.twist", fibre.twist, "0, of a beam that does not turn");
     if (fibre.closed) return closed_frames<B>(fibre, nodes, starts, frames);
     frames = std::move(rest.frames);
     starts = fibre.start ? std::move(begun.frames) : frames;
+    if (fibre.twist != 0.0) scene::turn_along(starts, fibre.twist);
     if (!fibre.repeats) return;
     const double closing = scene::closing_angle(starts);
     scene::turn_along(frames, closing), scene::turn_along(starts, closing);

@@ -42,7 +42,7 @@ struct FibreSpecification {
     /// It goes on beyond both ends as its image: where it lies at first, and at rest, it is turned evenly along itself until its
     /// last section is that of its first one.
     bool repeats = false;
-    double twist = 0.0;  ///< of a closed fibre: by which it is turned along itself before it is closed [radian]
+    double twist = 0.0;  ///< by which it is turned along itself before it is closed, or evenly along its `start` [radian]
 
     std::string law_channel{};  ///< that drives the law of its section: heat, shrinkage, growth; empty: none
 
@@ -64,8 +64,9 @@ struct FibreSpecification {
             core::require_at_least("fibre.elements, of a closed fibre", elements, 3);
             if (!start && !curve)
                 core::refuse("fibre.closed", "a straight fibre", "a curve, or a start, that ends where it begins");
-        } else {
-            core::require(twist == 0.0, "fibre.twist", twist, "0, of a fibre that is not closed");
+        } else if (!start || repeats) {
+            core::require(twist == 0.0, "fibre.twist", twist,
+                          repeats ? "0, of a fibre that repeats" : "0, of a fibre without a start that is not closed");
         }
         if (curve || straightened()) return;
         require_finite("fibre.from", from);

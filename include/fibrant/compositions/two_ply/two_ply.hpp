@@ -45,9 +45,10 @@ struct TwoPlyParameters {
     }
 };
 
-/// Ends are held to the direction of the axis and turn with the carriers, half of the way each; the far ones slide along the
-/// axis under the pull.
-inline scene::Assembly straight_rods(const TwoPlyParameters& parameters) {
+namespace detail {
+
+/// The rods on helices of an angle, 0: straight.
+inline scene::Assembly rods(const TwoPlyParameters& parameters, double angle) {
     parameters.validate();
     scene::Assembly assembly;
     for (const double side : {1.0, -1.0}) {
@@ -58,6 +59,13 @@ inline scene::Assembly straight_rods(const TwoPlyParameters& parameters) {
                                       .material = parameters.material,
                                       .elements = parameters.elements,
                                       .director = Vec3::UnitX()};
+        if (angle > 0.0) {
+            const double r = parameters.radius, length = parameters.length, turn = length * std::sin(angle) / r;
+            rod.start = [=](double t) -> Vec3 {
+                return {side * r * std::cos(turn * t), side * r * std::sin(turn * t), length * std::cos(angle) * t};
+            };
+            rod.twist = turn * std::cos(angle);
+        }
         const Index fibre = assembly.add(rod);
         for (const double end : {0.0, 1.0}) {
             scene::Hold hold;
@@ -84,6 +92,22 @@ inline scene::Assembly straight_rods(const TwoPlyParameters& parameters) {
         }
     }
     return assembly;
+}
+
+}  // namespace detail
+
+/// Ends are held to the direction of the axis and turn with the carriers, half of the way each; the far ones slide along the
+/// axis under the pull.
+inline scene::Assembly straight_rods(const TwoPlyParameters& parameters) { return detail::rods(parameters, 0.0); }
+
+/// The same rods, straight at rest as well, that begin wound on helices of an angle, their sections turned with the carriers.
+/// Nothing balances their bending yet: a stage with damping brings them to where they press on each other. Ends are held to the
+/// directions of the helices, and turn with the carriers from there.
+/// @param angle  of the rods to the axis [radian], > 0 and at most 45 degrees: steeper rods of this radius would overlap
+inline scene::Assembly wound_rods(const TwoPlyParameters& parameters, double angle) {
+    const double steepest = 0.25 * std::numbers::pi;
+    core::require(angle > 0.0 && angle <= steepest, "two_ply.wound_rods: angle", angle, "> 0 and <= pi / 4");
+    return detail::rods(parameters, angle);
 }
 
 /// The ply at mid-length, and what its ends carry.
