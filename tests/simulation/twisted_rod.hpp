@@ -5,6 +5,7 @@
 
 #include <simulation/scenes.hpp>
 
+#include <algorithm>
 #include <numbers>
 
 namespace fibrant::test {
@@ -37,7 +38,7 @@ struct Twisted {
         loading.calmed = true;
         loading.stages.push_back({.name = "turn", .increments = 30, .ramps = {{"turn", 1.0}}, .damping = damping});
         loading.stages.push_back({.name = "slack", .increments = increments, .ramps = {{"slack", 1.0}}, .damping = damping});
-        loading.stages.back().most_increments = 20 * increments;
+        loading.stages.back().most_increments = std::max<Index>(20 * increments, 1000);
         if (damping > 0.0) {
             loading.stages.push_back(
                 {.name = "rest", .increments = 1, .damping = damping, .damping_decay = 0.3, .damping_share = 1e-8});

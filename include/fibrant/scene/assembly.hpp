@@ -65,8 +65,7 @@ struct FibreSpecification {
             if (!start && !curve)
                 core::refuse("fibre.closed", "a straight fibre", "a curve, or a start, that ends where it begins");
         } else if (!start || repeats) {
-            core::require(twist == 0.0, "fibre.twist", twist,
-                          repeats ? "0, of a fibre that repeats" : "0, of a fibre without a start that is not closed");
+            core::require(twist == 0.0, "fibre.twist", twist, "0, of a fibre that repeats, or neither closes nor has a start");
         }
         if (curve || straightened()) return;
         require_finite("fibre.from", from);
