@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
     app.add_option("--scale", clean.scale, "on all lengths of the file");
     app.add_option("--metre", metre, "one metre in the unit of lengths, for .glb");
     app.add_option("--largest-turn", clean.largest_turn_deg, "between neighbouring chords, more is refused [degree]");
-    app.add_flag("--report", wanted, "print counts, lengths and the orientation tensor");
+    app.add_flag("--report", wanted, "print counts, lengths and the orientation tensor")->disable_flag_override();
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -104,11 +104,17 @@ int run(int argc, char** argv, const Program& program) {
     app.add_option("--output", folder, "folder for the results, made if need be");
     app.add_option("--set", set, "section.key=value, in the place of what the file says")->allow_extra_args(false);
     app.add_option("--threads", threads, "0: as many as the machine has");
-    auto* overwrite = app.add_flag("--overwrite", output.overwrite, "begin anew in a folder that holds results");
-    app.add_flag("--resume", output.resume, "go on from the last accepted increment in the folder")->excludes(overwrite);
-    app.add_flag("--other-scene", output.other_scene, "take a checkpoint although it is of another scene");
-    app.add_flag("--quiet", output.quiet, "print nothing but errors");
-    app.add_flag("--help-scene", keys, "print the keys of a scene file, with their units, bounds and defaults");
+    // A flag has no value: --quiet=3 would be taken for --quiet.
+    auto* overwrite =
+        app.add_flag("--overwrite", output.overwrite, "begin anew in a folder that holds results")->disable_flag_override();
+    app.add_flag("--resume", output.resume, "go on from the last accepted increment in the folder")
+        ->disable_flag_override()
+        ->excludes(overwrite);
+    app.add_flag("--other-scene", output.other_scene, "take a checkpoint although it is of another scene")
+        ->disable_flag_override();
+    app.add_flag("--quiet", output.quiet, "print nothing but errors")->disable_flag_override();
+    app.add_flag("--help-scene", keys, "print the keys of a scene file, with their units, bounds and defaults")
+        ->disable_flag_override();
     try {
         app.parse(argc, argv);
         if (!keys && scene.empty()) throw CLI::RequiredError("scene");
@@ -124,6 +130,7 @@ int run(int argc, char** argv, const Program& program) {
     };
     try {
         if (!keys) require_folder(folder);
+        if (app.count("--threads") > 0) threads_of(threads, "--threads");  // also where it is empty, which says nothing
         SceneReader reader = keys ? SceneReader::of_keys() : SceneReader(scene, set);
         output.folder = folder, output.scene = scene;
         if (!output.quiet)
