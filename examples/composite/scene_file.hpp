@@ -85,6 +85,12 @@ inline Scene read_scene(example::SceneReader& file) {
         file.read("solver", "carried", scene.carried, "the part of the preconditioner in which the matrix takes fibres along");
     };
     file.names({{"MatrixParameters.material.", "matrix."}, {"MatrixParameters.", "matrix."}, {"LoadParameters.", "load."}});
+    // What only the settled fabric tells of its layers.
+    file.names({{"LayerParameters.penetration_depth", "matrix.penetration_depth_over_radius is too large: the depth"},
+                {"LayerParameters.upper_face", "matrix.cover is too small: the upper face"},
+                {"LayerParameters.lower_face", "matrix.cover is too small: the lower face"},
+                {"LayerParameters.low, high", "matrix.cells_along or matrix.cells_across is too small: the grid of nodes"},
+                {"Solid.cells", "matrix: cells"}});
     scene.weave = weave::read_fabric(file, keys);
     matrix.sides = sides == "both"    ? fibrant::solid::Sides::both
                    : sides == "upper" ? fibrant::solid::Sides::upper
