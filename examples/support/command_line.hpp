@@ -12,6 +12,8 @@ namespace example {
 /// The message of a parser in the words of all others: which option, what it has, and what it must have.
 inline std::string told(const CLI::ParseError& error) {
     std::string text = error.what();
+    const std::size_t flag = text.find(" was given a disallowed flag override");
+    if (flag != std::string::npos) return "--" + text.substr(0, flag) + " has a value, but it must have none";
     const std::size_t colon = text.find(": ");
     if (error.get_name() != "ArgumentMismatch" || colon == std::string::npos) return text;
     const std::string option = text.substr(0, colon), rest = text.substr(colon + 2);

@@ -84,7 +84,7 @@ try "$name: " "$scene" "$scene" --output "$out/results"
 try "--no-such-option" "$scene" --output "$out/results" --no-such-option
 try "--resume" "$scene" --output "$out/results" --resume --overwrite
 for flag in --quiet=3 --quiet=false --resume=true --overwrite=0 --other-scene=1; do
-  try "${flag%=*} was given" "$scene" --output "$out/results" "$flag"
+  try "${flag%=*} has a value, but it must have none" "$scene" --output "$out/results" "$flag"
 done
 try "--output is empty" "$scene" --output ""
 try "is a file, but it must be a folder" "$scene" --output "$out/file"

@@ -101,7 +101,7 @@ of options
 try "input is required" --report
 try "--output = not given, but it must be given, or --report" "$good"
 option "--no-such-option" --report --no-such-option
-option "--report was given" --report=3
+option "--report has a value, but it must have none" --report=3
 option "--output has too few values, but it must have 1" --output
 option "--box has 5 values, but it must have at least 6" --output "$out/results.vti" --voxels 0.05 --box 0 0 0 1 1
 option "--scale has 2 values, but it must have at most 1" --report --scale 1 --scale 2
