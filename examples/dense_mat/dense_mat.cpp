@@ -36,7 +36,7 @@ struct Mat {
 };
 
 /// A row a level: the last increment of each in the table of increments, which a run that was resumed has whole.
-/// @returns its pressures over volume fractions, of levels at rest
+/// @returns its pressures over volume fractions, of levels at rest that carry any
 observe::PlotLine write_levels(observe::CsvWriter& table, std::uint64_t seed, const example::Table& increments) {
     observe::PlotLine line{"seed " + std::to_string(seed), {}};
     const std::size_t stage = increments.column("stage");
@@ -54,7 +54,7 @@ observe::PlotLine write_levels(observe::CsvWriter& table, std::uint64_t seed, co
             columns.push_back({name, figure(name)});
         columns.push_back({"springs", level.springs}), columns.push_back({"at_rest", level.at_rest()});
         table.row(columns);
-        if (level.at_rest()) line.points.emplace_back(level.mat.volume_fraction, level.mat.pressure);
+        if (level.at_rest() && level.mat.pressure > 0.0) line.points.emplace_back(level.mat.volume_fraction, level.mat.pressure);
     }
     return line;
 }
@@ -86,7 +86,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
               "volume fraction of a level over that of the one before");
     file.read("levels", "step", levels.step, example::between(1e-4, 1e3), "radius", "motion of the plate in an increment");
     file.read("levels", "damping", levels.damping, example::above(0.0, 1e6), "1",
-              "stiffness of the damping, over what bends a tenth of a fibre; it moves on with the mean motion of the mat");
+              "stiffness of the damping, over what bends a tenth of a fibre, or a diameter of it; it moves on with the mean "
+              "motion of the mat");
     file.read("levels", "rest_share", levels.rest_share, example::above(0.0, 0.01), "1",
               "a level is at rest when damping holds less than this part of the forces,");
     file.read("levels", "rest_increments", levels.rest_increments, example::between(1, 100000),

@@ -49,7 +49,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.require("loading", "height", press.height, example::positive(), "length", "height to which the mat is compacted");
     file.read("loading", "increments", press.increments, example::increments(), "increments of the pressing");
     file.read("loading", "damping", press.damping, example::above(0.0, 1e6), "1",
-              "stiffness of the damping, over what bends a tenth of a fibre");
+              "stiffness of the damping, over what bends a tenth of a fibre, or a diameter of it");
     file.read("loading", "looseness", press.looseness, example::looseness(), "1", "factor on the tolerances of passes");
     file.read("solver", "overshoot", press.overshoot, {.low = 0.0, .high = 1e6, .above = true, .endless = true}, "1",
               "Newton's step is cut where the energy rises at its end by more than this part of the slope at which it fell");
@@ -60,6 +60,10 @@ bool solve(example::SceneReader& file, example::Output& output) {
                "> 2 mat.radius = " + core::text(2.0 * parameters.radius));
     file.check(parameters.length >= 2.0 * parameters.radius, "mat", "length",
                ">= 2 mat.radius = " + core::text(2.0 * parameters.radius));
+    const double across = parameters.width - 2.0 * parameters.radius, up = parameters.height - 2.0 * parameters.radius,
+                 diagonal = std::hypot(across, across, up);
+    file.check(parameters.bend_deg > 0.0 || parameters.length <= diagonal, "mat", "length",
+               "<= " + core::text(diagonal) + ", the diagonal of the box, a radius from its sides");
     file.check(parameters.length <= 1e5 * parameters.radius, "mat", "length",
                "<= 100000 mat.radius = " + core::text(1e5 * parameters.radius));
     file.check(parameters.width <= 1e5 * parameters.radius, "mat", "width",

@@ -280,6 +280,16 @@ TEST_CASE("no piece of fibres that are cut is longer than the sides of the box a
     CHECK(refused.find("MatParameters.length = 20, but it must be less, or width more: of 20000 fibres") == 0);
 }
 
+TEST_CASE(
+    "few short fibres are drawn in a box as wide and high as may be, and one that fits in no box is refused by its length") {
+    mat::MatParameters parameters{
+        .radius = 0.02, .length = 0.04, .width = 2000.0, .height = 2000.0, .fibres = 3, .material = {7300.0, 0.3}};
+    CHECK(mat::random_fibres(parameters).size() == 3);  // cells of the size of a fibre would take 2e14 bytes
+    parameters.width = parameters.height = 0.041, parameters.length = 0.4, parameters.draws = 2000;
+    const std::string refused = test::refusal([&] { mat::random_fibres(parameters); });
+    CHECK(refused.find("MatParameters.length = 0.4, but it must be less, or width or height more: of 2000 fibres") == 0);
+}
+
 TEST_CASE("a box that is full, and what is not a mat, is refused by name") {
     mat::MatParameters parameters{
         .radius = 0.02, .length = 0.8, .width = 1.2, .height = 0.2, .fibres = 1000, .material = {7300.0, 0.3}};

@@ -108,14 +108,21 @@ MatState measure(const simulation::Simulator<M>& simulator, const MatParameters&
     return state;
 }
 
+/// What bends a fibre between supports that are a tenth of its length apart, or a diameter where that is more: springs that are
+/// measured by it are not stiffer than the sections of short fibres [force / length].
+inline double bending_stiffness(const MatParameters& parameters) {
+    const double span = std::max(0.1 * parameters.length, parameters.diameter());
+    return 192.0 * parameters.material.young_modulus * scene::circular(parameters.radius).second_moment_1() / std::pow(span, 3);
+}
+
 /// How a mat is pressed.
 struct PressParameters {
     double height = core::unset;        ///< between the plates at the end [length], > 0 and below the mat's
     Index increments = 60;              ///< >= 1
     double friction_coefficient = 0.2;  ///< of fibres on each other [1], >= 0
     double allowed_penetration = 2e-2;  ///< [radius], > 0
-    /// Spring from every centre to its last place, without which fibres that nothing holds yet have no place: over what bends a
-    /// fibre between supports that are a tenth of its length apart [1], > 0.
+    /// Spring from every centre to its last place, without which fibres that nothing holds yet have no place: over
+    /// `bending_stiffness` [1], > 0.
     double damping = 1e-5;
     double looseness = 20.0;  ///< on the tolerances of contact and normal passes [1], in [1, 1000]
     double overshoot = 0.5;   ///< `IterationParameters::overshoot` [1]
@@ -127,7 +134,7 @@ struct PressParameters {
         core::require_positive("PressParameters.allowed_penetration", allowed_penetration);
         core::require_positive("PressParameters.damping", damping);
         core::require_between("PressParameters.looseness", looseness, 1.0, 1000.0);
-        core::require_positive("PressParameters.overshoot", overshoot);
+        core::require(overshoot > 0.0, "PressParameters.overshoot", overshoot, "> 0");
     }
 };
 
@@ -153,13 +160,12 @@ simulation::ModelParameters<M> model_parameters(const MatParameters& parameters,
 template <simulation::Model M>
 simulation::Loading<M> pressing(const MatParameters& parameters, const PressParameters& press) {
     parameters.validate(), press.validate(parameters);
-    const double bending = parameters.material.young_modulus * scene::circular(parameters.radius).second_moment_1();
     simulation::Loading<M> loading;
     loading.stages.resize(1);
     simulation::Stage<M>& down = loading.stages[0];
     down.name = "press", down.ramps = {{mat::press_channel, parameters.height - press.height}};
     down.increments = press.increments, down.most_increments = 40 * press.increments;
-    down.damping = press.damping * 192.0 * bending / std::pow(0.1 * parameters.length, 3), down.looseness = press.looseness;
+    down.damping = press.damping * bending_stiffness(parameters), down.looseness = press.looseness;
     return loading;
 }
 

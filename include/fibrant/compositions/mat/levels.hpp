@@ -26,8 +26,8 @@ struct LevelParameters {
     double softest = 1e-2;
     double rest_share = 5e-4;    ///< at rest, springs hold no more than this of the forces [1], > 0;
     Index rest_increments = 20;  ///< or so many increments have gone by: a mat with friction creeps for long, >= 1
-    /// Springs from every centre to its last place while fibres are pressed, over what bends a fibre between supports that are a
-    /// tenth of its length apart [1], > 0. They go along with the mean motion, and are let go at each level.
+    /// Springs from every centre to its last place while fibres are pressed, over `bending_stiffness` [1], > 0. They go along
+    /// with the mean motion, and are let go at each level.
     double damping = 1e-3;
     double looseness = 20.0;  ///< on the tolerances of contact and normal passes while a mat is pressed [1], in [1, 1000]
     void validate(const MatParameters& mat) const {
@@ -72,15 +72,17 @@ template <simulation::Model M>
 simulation::Loading<M> pressing_by_levels(const MatParameters& parameters, const LevelParameters& levels,
                                           const scene::Assembly& mat) {
     parameters.validate(), levels.validate(parameters);
-    const double r = parameters.radius, unit = 192.0 * parameters.material.young_modulus * scene::circular(r).second_moment_1() /
-                                               std::pow(0.1 * parameters.length, 3);
+    const double r = parameters.radius;
     simulation::SettleParameters settle{.friction_coefficient = levels.friction_coefficient,
                                         .allowed_penetration_over_radius = levels.allowed_penetration,
                                         .gap_limit_over_radius = levels.gap_limit,
                                         .rest_increments = levels.rest_increments,
                                         .rest_share = levels.rest_share};
     simulation::Loading<M> loading = simulation::settling<M>(mat, settle);
+    // Increments that are cut are no rest yet: few are enough only once one was whole.
+    constexpr Index whole = 20;
     loading.stages.back().enough_increments = levels.rest_increments;
+    loading.stages.back().most_increments = std::max(whole, levels.rest_increments);
     if constexpr (core::Active<typename M::Friction>)
         for (simulation::Stage<M>& stage : loading.stages)
             if (stage.friction)
@@ -95,7 +97,8 @@ simulation::Loading<M> pressing_by_levels(const MatParameters& parameters, const
     };
     level.enough_increments = levels.rest_increments, level.most_increments = std::max<Index>(200, levels.rest_increments);
     simulation::Stage<M> press;
-    press.name = "press", press.damping = levels.damping * unit, press.damping_carried = true, press.looseness = levels.looseness;
+    press.name = "press", press.damping = levels.damping * bending_stiffness(parameters), press.damping_carried = true,
+    press.looseness = levels.looseness;
     press.largest_displacement = 2.0 * r;
     level.damping = press.damping;
     // Springs that cuts make harder are let go again at each level: attempts that fail do little harm.

@@ -131,8 +131,12 @@ class PieceGrid {
 public:
     PieceGrid(const MatParameters& p, double reach)
         : reach_{reach}, piece_{std::min(p.length, std::max(4.0 * p.radius, p.length / 64.0))} {
-        cell_ = reach_ + piece_;
-        across_ = static_cast<Index>(p.width / cell_) + 1, up_ = static_cast<Index>(p.height / cell_) + 1;
+        // Larger than what they have to find where a wide box has few fibres: no more cells than this for each piece.
+        constexpr double most_cells = 100.0;
+        const double pieces = static_cast<double>(p.fibres) * std::ceil(p.length / piece_);
+        const auto count = [&](double size) { return std::floor(size / cell_) + 1.0; };
+        for (cell_ = reach_ + piece_; count(p.width) * count(p.width) * count(p.height) > most_cells * pieces;) cell_ *= 1.25;
+        across_ = static_cast<Index>(count(p.width)), up_ = static_cast<Index>(count(p.height));
         cells_.resize(core::at(across_ * across_ * up_));
     }
     std::vector<Vec3> pieces(const MatFibre& fibre) const {
@@ -226,6 +230,10 @@ inline std::vector<MatFibre> random_fibres(const MatParameters& parameters) {
                          "less, or width more: of " + std::to_string(tries) +
                              " fibres that were drawn the box has a tenth or more of " + std::to_string(tries - short_ones) +
                              ", and shorter pieces are left out");
+        if (tries >= parameters.draws && fibres.empty())
+            core::refuse(
+                "MatParameters.length", core::text(parameters.length),
+                "less, or width or height more: of " + std::to_string(tries) + " fibres that were drawn none lies in the box");
         if (tries >= parameters.draws)
             core::refuse("MatParameters.fibres", std::to_string(parameters.fibres),
                          "at most " + std::to_string(fibres.size()) + ", which are all that " + std::to_string(tries) +
@@ -242,14 +250,15 @@ inline std::vector<MatFibre> random_fibres(const MatParameters& parameters) {
                 continue;
             }
         }
-        const std::vector<Vec3> points = grid.pieces(fibre);
-        const bool inside = std::all_of(points.begin(), points.end(), [&](const Vec3& x) {
+        const auto inside = [&](const Vec3& x) {
             // Ends that were cut lie at the sides to the last bit, which is no reason to draw them anew.
             const bool between =
                 parameters.cut || (x.head<2>().minCoeff() >= r && x.head<2>().maxCoeff() <= parameters.width - r);
             return between && x.z() >= r && x.z() <= parameters.height - r;
-        });
-        if (!inside || (reach > 0.0 && !grid.free(points))) continue;
+        };
+        if (!inside(fibre(0.0)) || !inside(fibre(1.0))) continue;  // as most that are too long are told
+        const std::vector<Vec3> points = grid.pieces(fibre);
+        if (!std::all_of(points.begin(), points.end(), inside) || (reach > 0.0 && !grid.free(points))) continue;
         grid.add(points);
         fibres.push_back(fibre);
         missing = fibre.length == missing ? 0.0 : missing - fibre.length;
