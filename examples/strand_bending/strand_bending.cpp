@@ -211,7 +211,7 @@ bool solve(example::SceneReader& file, example::Output& output) {
     // Sixteen a turn follow a helix; wires of opposite hands cross each other every two diameters, and hardly bend in between.
     const double round = length > 0.0 ? length / pitch : turns, sixteen = 16.0 * std::max(turns, round);
     parameters.elements =
-        elements > 0 ? elements : static_cast<Index>(std::ceil(std::max(sixteen, parameters.length / (7.0 * radius))));
+        elements > 0 ? elements : static_cast<Index>(std::ceil(std::max({2.0, sixteen, parameters.length / (7.0 * radius)})));
     file.check(static_cast<double>(parameters.elements) >= 4.0 * round, "strand", "elements",
                ">= " + core::text(std::ceil(4.0 * round)) + ", for wires go around " + core::text(round) +
                    " times: an element may not turn by more than 90 degrees");
