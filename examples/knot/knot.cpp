@@ -16,6 +16,7 @@
 #include <fibrant/solver/sparse_cholesky.hpp>
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <string>
 #include <type_traits>
@@ -79,8 +80,11 @@ bool solve(example::SceneReader& file, example::Output& output) {
     file.read("loading", "hold", asked.hold, example::not_negative(), "time",
               "how long the ends are held after that, for a rod that is viscoelastic");
     file.complete();
-    file.check(parameters.loop_radius > 20.0 * parameters.radius, "knot", "loop_radius",
-               "> 20 knot.radius = " + core::text(20.0 * parameters.radius));
+    parameters.crossings = static_cast<int>(crossings);
+    const double least = parameters.least_loop_radius();
+    file.check(parameters.loop_radius > least, "knot", "loop_radius",
+               "> " + core::text(least / parameters.radius) + " knot.radius = " + core::text(least) +
+                   ", for knot.crossings = " + std::to_string(crossings));
     file.check(parameters.loop_radius <= 1e5 * parameters.radius, "knot", "loop_radius",
                "<= 100000 knot.radius = " + core::text(1e5 * parameters.radius));
     file.check(parameters.tail <= 1000.0 * parameters.loop_radius, "knot", "tail",
@@ -93,8 +97,10 @@ bool solve(example::SceneReader& file, example::Output& output) {
                "<= " + core::text(std::floor(length / parameters.radius)) + ", or elements are shorter than a radius");
     example::require_room(file, "knot", "elements", example::unknowns_of(1, parameters.elements), 20000.0);
     file.names({{"KnotParameters.", "knot."}, {"fibre.start: turn", "knot.elements is too small: turn"}});
-    parameters.crossings = static_cast<int>(crossings);
     parameters.validate();
+    const Index fewest = knot::TiedShape(parameters).least_elements();
+    file.check(parameters.elements >= fewest, "knot", "elements",
+               ">= " + std::to_string(fewest) + ", or an element of the braid goes round by more than half a turn");
     const bool flows = kind == "viscoelastic";
     const std::string when = flows ? "given, for kind = \"viscoelastic\"" : "left out, for kind = \"elastic\"";
     file.check(shared == flows, "material.law", "share", when);
@@ -173,12 +179,19 @@ bool tie(const Asked& asked, const example::SceneReader& file, example::Output& 
     const observe::JsonObject summary =
         example::write_summary(output, report, audit, radius,
                                {{"force", state.force},
+                                {"contact_force", state.contact_force},
                                 {"force_of_loose_knots", loose(state)},
                                 {"shortening", state.shortening},
                                 {"radius_over_loop_radius", 2.0 * std::numbers::pi * radius / state.shortening},
                                 {"imbalance", state.imbalance}});
     example::write_report(output, "knot", summary, simulator.snapshot());
-    return report.converged && audit.clean();
+    // What is tied presses on itself. An end that was drawn through, or strands that went through each other, leave a rod.
+    const bool tied = state.contact_force > 0.0;
+    if (report.converged && !tied)
+        std::fprintf(stderr,
+                     "knot: nothing of the rod presses on itself, so the knot came undone: take a longer knot.tail, more "
+                     "knot.elements or a larger knot.loop_radius\n");
+    return report.converged && audit.clean() && tied;
 }
 
 }  // namespace

@@ -70,6 +70,7 @@ inline constexpr FigureMeaning figure_meanings[] = {
     {"distance", "of the plates [length]"},
     {"stroke", "way of the punch [length]"},
     {"force", "that the load takes [force]"},
+    {"contact_force", "sum of what contacts press with [force]"},
     {"moment", "that the load takes [force length]"},
     {"torque", "that the load takes [force length]"},
     {"line_load", "force over length"},

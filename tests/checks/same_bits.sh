@@ -37,7 +37,7 @@ for which in before after; do
     [ ! -x "$bin/crossing" ] || "$bin/crossing" > "$out/crossing.txt"
     run "$bin" "$out" weave plain.toml --set fabric.warp_tows=2 --set fabric.weft_tows=2 --set fabric.elements=20 --set warp.fibres=3 \
       --set warp.real_fibres=60 --set warp.aspect=1
-    run "$bin" "$out" knot knot.toml --set knot.elements=80 --set loading.increments=6 --set loading.draw=1.0
+    run "$bin" "$out" knot knot.toml --set knot.elements=100 --set loading.increments=6 --set loading.draw=1.0
     run "$bin" "$out" strand strand.toml --set strand.elements=8 --set contact.friction_coefficient=0.1 --set loading.increments=2
     run "$bin" "$out" mat mat.toml --set mat.fibres=20 --set mat.elements=6 --set loading.increments=12
     run "$bin" "$out" composite strip.toml --set fabric.weft_tows=2 --set fabric.elements=8 --set warp.fibres=3 --set matrix.cells_along=6 \

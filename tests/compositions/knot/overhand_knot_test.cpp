@@ -11,6 +11,8 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
+#include <string>
 
 using namespace fibrant;
 
@@ -101,6 +103,10 @@ TEST_CASE("a rod is tied without being stretched, and nothing of it is nearer th
     knot::KnotParameters parameters = tied(0.1, 200);
     CHECK(test::refusal([&] { parameters.validate(); }).find("KnotParameters.loop_radius = 0.201, but it must be > 20 radii") ==
           0);
+    // Of fifteen crossings the strands would begin a third of a radius in each other there.
+    parameters = tied(2.0, 200), parameters.crossings = 15, parameters.loop_radius = 50.0 * parameters.radius;
+    const std::string told = "KnotParameters.loop_radius = 1.005, but it must be > 20 radii, and > 5.6 radii for each crossing";
+    CHECK(test::refusal([&] { parameters.validate(); }).find(told) == 0);
 }
 
 TEST_CASE("a loose overhand knot pulls and presses as the theory says, the better the thinner the rod") {

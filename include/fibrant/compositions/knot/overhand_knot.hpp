@@ -20,14 +20,19 @@ inline const std::string draw = "draw";
 /// A knot of one loop, whose two strands wind around each other in a braid.
 struct KnotParameters {
     double radius = core::unset;       ///< of the rod [length], > 0
-    double loop_radius = core::unset;  ///< that it is tied with [length], > 20 radii
+    double loop_radius = core::unset;  ///< that it is tied with [length], > `least_loop_radius`
     double tail = core::unset;         ///< of each end, beyond the braid [length], > 0
     int crossings = 3;                 ///< of the braid: 3 overhand (trefoil), 5 double overhand (cinquefoil); odd
     scene::ElasticMaterial material;
     Index elements = 200;  ///< along the rod, >= 16
+
+    /// The braid has room for half a turn of its strands a crossing in a part of the loop: in smaller ones they would begin in
+    /// each other [length].
+    double least_loop_radius() const noexcept { return std::max(20.0, 5.6 * crossings) * radius; }
     void validate() const {
         core::require_positive("KnotParameters.radius", radius);
-        core::require(loop_radius > 20.0 * radius, "KnotParameters.loop_radius", loop_radius, "> 20 radii");
+        core::require(loop_radius > least_loop_radius(), "KnotParameters.loop_radius", loop_radius,
+                      "> 20 radii, and > 5.6 radii for each crossing");
         core::require_positive("KnotParameters.tail", tail);
         if (crossings < 3 || crossings % 2 == 0)
             core::refuse("KnotParameters.crossings", std::to_string(crossings), "3, 5, 7, ...");
@@ -70,6 +75,14 @@ public:
             default:
                 return {reach_ + share * p_.tail, 0.0, 0.0};
         }
+    }
+
+    /// With fewer an element of the braid goes round by more than half a turn: its nodes do not tell by which side the strands
+    /// pass each other, and it may be no knot that is tied.
+    Index least_elements() const {
+        constexpr double steepest = 1.875;                                    // slope of `smooth`, in its middle
+        const double turns = 0.5 * steepest * p_.crossings / (2.0 * braid_);  // a length of the axis
+        return static_cast<Index>(std::ceil(2.0 * turns * length_));
     }
 
 private:
