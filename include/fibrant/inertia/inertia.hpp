@@ -179,7 +179,7 @@ public:
         if (!(allowed_ < std::numeric_limits<double>::infinity()) || !(duration_ > 0.0)) return {};
         error_ = error(state);
         if (error_ <= allowed_) return {};
-        return "the step of time errs by " + core::text(error_) + ", more than Inertia.allowed_error = " + core::text(allowed_);
+        return "the step of time errs by " + core::text(error_) + ", more than the allowed error, " + core::text(allowed_);
     }
     /// The same of its energy: half of what is left over may go into one step. What half of the step misses nearly as well is of
     /// contact, and no step resolves it: half of what the rest of the stage may miss goes into it, and later steps make up for
@@ -199,7 +199,7 @@ public:
         if (step_missed_ <= most) return {};
         refused_missed_ = step_missed_, refused_duration_ = duration_;
         return "the balance of energy of the step of time misses " + core::text(step_missed_) + ", more than " +
-               core::text(most) + ", which Inertia.allowed_loss = " + core::text(loss_) + " lets it";
+               core::text(most) + ", which an allowed loss of " + core::text(loss_) + " lets it";
     }
     /// What the balances of all accepted steps miss, whether lost or gained [force length].
     double missed() const noexcept { return missed_; }
