@@ -128,7 +128,7 @@ public:
             if (!reason.empty()) return reason;
             const EnergyAccount before = *this;
             book(equilibrium, contacts, amplitudes, from, to, leap), laws(*this);
-            term::StepEnergy step = of_step(before.balance_);
+            term::StepEnergy step = of_step(before.balance_, equilibrium.rounding_energy());
             step.part = part, step.left = left;
             equilibrium.terms().moving([&](auto& term) { reason = term.refusal(step); });
             if (!reason.empty()) *this = before;
@@ -164,8 +164,8 @@ public:
     void each(auto&& see) { see(external_), see(damping_), see(contact_), see(balance_); }
 
 private:
-    /// What has happened since another balance, but for what rounding makes of sums.
-    term::StepEnergy of_step(const EnergyBalance& before) const {
+    /// What has happened since another balance, but for what rounding makes of sums and of strains.
+    term::StepEnergy of_step(const EnergyBalance& before, double rounding) const {
         const auto change = [&](double EnergyBalance::*kind) { return std::abs(balance_.*kind - before.*kind); };
         term::StepEnergy step;
         for (const auto kind :
@@ -173,7 +173,8 @@ private:
               &EnergyBalance::dissipated, &EnergyBalance::lost, &EnergyBalance::damped})
             step.turned += 0.5 * change(kind);  // it is counted where it comes from and where it goes
         step.held = balance_.kinetic + balance_.elastic + balance_.contact;
-        const double digits = 16.0 * std::numeric_limits<double>::epsilon() * (std::abs(balance_.external) + step.held);
+        const double digits =
+            16.0 * std::numeric_limits<double>::epsilon() * (std::abs(balance_.external) + step.held) + rounding;
         step.missed = balance_.error() - before.error();
         if (std::abs(step.missed) <= digits) step.missed = 0.0;
         return step;
