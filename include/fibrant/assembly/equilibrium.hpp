@@ -58,14 +58,16 @@ public:
           system_{system(mesh, solid_)},
           terms_{term::SiteOf<B>(assembly, mesh, channels, std::as_const(system_).layout()), terms},
           stresses_(core::at(mesh.element_count())) {
-        extent_ = scene::extent_of(mesh.layout(), mesh.rest_state());
+        const double extent = scene::extent_of(mesh.layout(), mesh.rest_state());
         double solid_scale = 0.0;
-        if constexpr (has_solid) solid_scale = solid_.rounding_scale(extent_);
-        rounding_ = rounding_of(mesh, extent_, solid_scale);
+        if constexpr (has_solid) solid_scale = solid_.rounding_scale(extent);
+        rounding_ = rounding_of(mesh, extent, solid_scale);
     }
 
     /// That which rounding leaves where nothing acts: its forces, over the digits of places [force length].
-    double rounding_energy() const noexcept { return std::numeric_limits<double>::epsilon() * extent_ * rounding_; }
+    double rounding_energy() const {
+        return std::numeric_limits<double>::epsilon() * scene::extent_of(mesh_->layout(), mesh_->rest_state()) * rounding_;
+    }
 
     Equilibrium(const Equilibrium&) = delete;  // its terms look at its layout
     Equilibrium& operator=(const Equilibrium&) = delete;
@@ -454,7 +456,7 @@ private:
     std::vector<Vec3> targets_;
     Vector external_, reaction_;
     [[no_unique_address]] std::conditional_t<moves, Vector, core::Inactive> fibres_;  // forces of the fibres
-    double rounding_ = 0.0, extent_ = 0.0;
+    double rounding_ = 0.0;
 };
 
 }  // namespace fibrant::assembly
