@@ -153,6 +153,20 @@ TEST_CASE("points that carry a node further are made anew until the attempt is g
     CHECK(report.reason.find("contact passes do not settle") != std::string::npos);
 }
 
+TEST_CASE("what is accepted stands aside by no more than it may") {
+    int accepted = 0, refused = 0;
+    for (int k = 1; k <= 50; ++k) {
+        Aside points{0.01 * k};
+        Vector state = Vec3::Zero();
+        const solver::AttemptReport report = attempt(points, state);
+        CAPTURE(points.by);
+        ++(report.converged ? accepted : refused);
+        if (report.converged) CHECK(report.use.travel <= 1.0);
+    }
+    CHECK(accepted > 20);
+    CHECK(refused > 10);
+}
+
 TEST_CASE("points that hold a node where it is are made anew in each pass") {
     Aside points{0.0};
     Vector state = Vec3::Zero();

@@ -92,13 +92,15 @@ public:
             std::clamp(with::both * expected, parameters_.margin * radius_, parameters_.largest_margin * radius_);
         contacts_->parameters().detection.wanted = with::both * expected;
         const double bound = contact_possible_ ? std::max(reach, radius_) : std::numeric_limits<double>::infinity();
-        const double contact_tolerance = looseness * parameters_.contact_tolerance * radius_;
         double change = std::numeric_limits<double>::infinity();  // displacement in the last contact pass
         Vector searched, travel, last_travel;  // state of the last search, displacements of the last pass and of the one before
         Vector made;                           // state that contact points were made in
         double missed = std::numeric_limits<double>::infinity();  // by contacts, at the last renewal of their multipliers
         turn_ = 0.0, closing_ = false;
         bool stands = false;  // points are those of an earlier pass
+        const auto restless = [&] {
+            return change >= looseness * parameters_.contact_tolerance * radius_ || (stands && stood(state, made) > 1.0);
+        };
         Index passes = 0, searches = 0, moves = 0, renewals = 0, stiffenings = 0;
         // Further than so many searches reach: what hardly anything holds goes on for ever, and where displacements have a bound,
         // more damping or a smaller increment costs less than to follow it.
@@ -165,7 +167,7 @@ public:
                 last_travel.resize(0);
                 continue;
             }
-            if (change >= contact_tolerance) {
+            if (restless()) {
                 ++passes;
                 settle_swing(state, travel, last_travel);
                 continue;
@@ -193,7 +195,7 @@ public:
                 report.displacement = equilibrium_->greatest(state - accepted);
                 change = equilibrium_->greatest(state - before_pass);
                 if (stiffer()) continue;
-                if (change >= contact_tolerance) {
+                if (restless()) {
                     ++passes;
                     continue;
                 }
