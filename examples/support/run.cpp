@@ -105,16 +105,14 @@ int run(int argc, char** argv, const Program& program) {
     app.add_option("--set", set, "section.key=value, in the place of what the file says")->allow_extra_args(false);
     app.add_option("--threads", threads, "0: as many as the machine has");
     // A flag has no value: --quiet=3 would be taken for --quiet.
-    auto* overwrite =
-        app.add_flag("--overwrite", output.overwrite, "begin anew in a folder that holds results")->disable_flag_override();
-    app.add_flag("--resume", output.resume, "go on from the last accepted increment in the folder")
-        ->disable_flag_override()
-        ->excludes(overwrite);
-    app.add_flag("--other-scene", output.other_scene, "take a checkpoint although it is of another scene")
-        ->disable_flag_override();
-    app.add_flag("--quiet", output.quiet, "print nothing but errors")->disable_flag_override();
-    app.add_flag("--help-scene", keys, "print the keys of a scene file, with their units, bounds and defaults")
-        ->disable_flag_override();
+    const auto flag = [&](const char* name, bool& value, const char* what) {
+        return app.add_flag(name, value, what)->disable_flag_override();
+    };
+    auto* overwrite = flag("--overwrite", output.overwrite, "begin anew in a folder that holds results");
+    flag("--resume", output.resume, "go on from the last accepted increment in the folder")->excludes(overwrite);
+    flag("--other-scene", output.other_scene, "take a checkpoint although it is of another scene");
+    flag("--quiet", output.quiet, "print nothing but errors");
+    flag("--help-scene", keys, "print the keys of a scene file, with their units, bounds and defaults");
     try {
         app.parse(argc, argv);
         if (!keys && scene.empty()) throw CLI::RequiredError("scene");

@@ -3,6 +3,7 @@
 #include <fibrant/solver/newton.hpp>
 
 #include <near.hpp>
+#include <solver/one_node.hpp>
 
 #include <doctest/doctest.h>
 
@@ -14,42 +15,8 @@ namespace newton_test {
 
 /// One node whose energy is x atan x - log(1 + x^2) / 2 in each component: convex, and its force goes to a bound as that of
 /// contacts that let go. Beyond |x| = 1.3917 Newton's method goes further out with each step.
-struct Bounded {
-    struct System {
-        scene::DofLayout own;
-        const scene::DofLayout& layout() const { return own; }
-        double coupling = 0.0;  // of the held node, which is the second one, to the first
-        void apply_unheld(const Vector& x, Vector& y) const {
-            y = x;
-            if (x.size() > 3) y.head<3>() -= coupling * x.tail<3>();
-        }
-        Matrix row(Index, Index) const { return Matrix::Identity(3, 3); }
-    };
-    struct Fibre {
-        scene::CrossSection section{.semi_axis_1 = 1e3, .semi_axis_2 = 1e3};
-    };
-    struct Mesh {
-        Fibre only;
-        Index fibre_count() const { return 0; }
-        Index node_count(Index) const { return 0; }
-        const Fibre& fibre(Index) const { return only; }
-    };
-    System own{{.chains = {{.nodes = 1, .vectors_per_node = 1}},
-                .kind = {scene::VectorKind::position},
-                .value = {Vec3::Zero()},
-                .length = {1.0},
-                .held = {},
-                .images = {},
-                .ties = {},
-                .motions = {}},
-               0.0};
-    Mesh fibres;
+struct Bounded : test::OneNode {
     Vector stiffness;
-    const System& system() const { return own; }
-    const Mesh& mesh() const { return fibres; }
-    void close_chains(Vector&, const Vector&) const {}
-    void evaluate(const Vector&) const {}
-    double largest_part(const Vector&, double, double part) const { return part; }
     void prescribed_step(const Vector& x, Vector& step) const {
         step = Vector::Zero(x.size());
         if (x.size() > 3) step[3] = 1.0 - x[3];
@@ -60,34 +27,8 @@ struct Bounded {
         if (x.size() > 3) r.tail<3>().setZero();
         return {r.norm(), 1.0, 0.0};
     }
-    void predict_stresses(const Vector&, const Vector&) {}
-    void reset_stresses(const Vector&) {}
-    double greatest(const Vector& step) const { return step.norm(); }
-    double norm(const Vector& forces) const { return forces.norm(); }
-    double product(const Vector& a, const Vector& b) const { return a.dot(b); }
-    contact::LearnedContacts memory;
-    contact::LearnedContacts& learned() { return memory; }
-    void add_learned(Vector&) const {}
 };
-struct NoPlaces {
-    bool rehosted() const { return false; }
-};
-struct Untouched {
-    NoPlaces places() const { return {}; }
-    struct Element {
-        Vec3 normal;
-        Index fibre_i = 0, fibre_j = 1;
-        Vec3 motion(const Vector&) const { return Vec3::Zero(); }
-    };
-    std::vector<Element> none;
-    const std::vector<Element>& elements() const { return none; }
-    bool forced(const Element&) const { return false; }
-    void evaluate(const Vector&) {}
-    Vec3 force(Index) const { return Vec3::Zero(); }
-    Mat3 tangent(Index) const { return Mat3::Zero(); }
-    std::vector<contact::ContactResponse> nothing;
-    const std::vector<contact::ContactResponse>& responses() const { return nothing; }
-};
+using test::Untouched;
 struct Exact {
     const Bounded* problem;
     std::vector<double> tolerances{};
@@ -257,7 +198,7 @@ TEST_CASE(
 
 /// Nodes on soft springs along x, each pushed at its own wall, of which some are so near that a step goes far into them.
 struct Walls {
-    NoPlaces places() const { return {}; }
+    Untouched::Places places() const { return {}; }
     static constexpr double spring = 1.0, wall = 1e4, push = 1.0;
     struct Element {
         Index node;

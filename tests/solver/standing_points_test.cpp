@@ -5,6 +5,7 @@
 #include <fibrant/solver/nested_loops.hpp>
 
 #include <near.hpp>
+#include <solver/one_node.hpp>
 
 #include <doctest/doctest.h>
 
@@ -16,7 +17,8 @@ using namespace fibrant;
 namespace standing_points_test {
 
 /// Points that hold one node aside of where it was when they were made, to the other side each time.
-struct Aside {
+struct Aside : test::Untouched {
+    explicit Aside(double aside) : by{aside} {}
     double by;  // [length]
     Vec3 held = Vec3::Zero();
     int made = 0;
@@ -24,88 +26,35 @@ struct Aside {
     struct Law {
         static double largest_penetration() { return 1.0; }
     };
-    struct Element {
-        Vec3 normal;
-        Index fibre_i = 0, fibre_j = 1;
-        Vec3 motion(const Vector&) const { return Vec3::Zero(); }
-    };
-    struct Places {
-        bool rehosted() const { return false; }
-    };
-    std::vector<Element> none{};
-    std::vector<contact::ContactResponse> nothing{};
 
     contact::ContactParameters& parameters() { return own; }
     void detect(const Vector& state, const Vector& accepted, double, bool) { regenerate(state, accepted); }
     void regenerate(const Vector&, const Vector&) { held = Vec3(made++ % 2 == 0 ? by : 0.0, 0.0, 0.0); }
     double refresh(const Vector&, const Vector&) const { return 0.0; }
-    void evaluate(const Vector&) {}
     void hold_reactions() {}
     double misfit() const { return 0.0; }
     Law normal_law() const { return {}; }
-    Places places() const { return {}; }
-    const std::vector<Element>& elements() const { return none; }
-    bool forced(const Element&) const { return false; }
-    Vec3 force(Index) const { return Vec3::Zero(); }
-    Mat3 tangent(Index) const { return Mat3::Zero(); }
-    const std::vector<contact::ContactResponse>& responses() const { return nothing; }
 };
 
 /// One node on a spring to where points hold it.
-struct Sprung {
-    struct System {
-        scene::DofLayout own;
-        const scene::DofLayout& layout() const { return own; }
-        void apply_unheld(const Vector& x, Vector& y) const { y = x; }
-        Matrix row(Index, Index) const { return Matrix::Identity(3, 3); }
-    };
-    struct Fibre {
-        scene::CrossSection section{.semi_axis_1 = 1.0, .semi_axis_2 = 1.0};
-    };
-    struct Mesh {
-        Fibre only;
-        Index fibre_count() const { return 0; }
-        Index node_count(Index) const { return 0; }
-        const Fibre& fibre(Index) const { return only; }
-    };
+struct Sprung : test::OneNode {
+    explicit Sprung(const Aside& aside) : points{&aside} {}
     struct Most {
         Index chain = -1;
         double along = 0.0;
     };
     const Aside* points;
-    System own{{.chains = {{.nodes = 1, .vectors_per_node = 1}},
-                .kind = {scene::VectorKind::position},
-                .value = {Vec3::Zero()},
-                .length = {1.0},
-                .held = {},
-                .images = {},
-                .ties = {},
-                .motions = {}}};
-    Mesh fibres{};
-    contact::LearnedContacts memory{};
 
-    const System& system() const { return own; }
-    const Mesh& mesh() const { return fibres; }
     void detect(const Vector&, const Vector&, double) {}
     double refresh(const Vector&, const Vector&, double turn) { return turn; }
-    void evaluate(const Vector&) const {}
     void outline(const Vector&) const {}
-    void close_chains(Vector&, const Vector&) const {}
     void close_ties(Vector&) const {}
-    double largest_part(const Vector&, double, double part) const { return part; }
     void prescribed_step(const Vector& x, Vector& step) const { step = Vector::Zero(x.size()); }
     void linearise(const Vector&, bool, double) {}
     assembly::ResidualFigures residual(const Vector& x, Vector& r) const {
         r = x - points->held;
         return {r.norm(), 1.0, 0.0};
     }
-    void predict_stresses(const Vector&, const Vector&) {}
-    void reset_stresses(const Vector&) {}
-    double greatest(const Vector& step) const { return step.norm(); }
-    double norm(const Vector& forces) const { return forces.norm(); }
-    double product(const Vector& a, const Vector& b) const { return a.dot(b); }
-    contact::LearnedContacts& learned() { return memory; }
-    void add_learned(Vector&) const {}
     Most moves_most(const Vector&) const { return {}; }
 };
 struct Exact {
@@ -118,7 +67,7 @@ struct Exact {
 };
 
 solver::AttemptReport attempt(Aside& points, Vector& state) {
-    Sprung problem{&points};
+    Sprung problem(points);
     Exact linear;
     contact::NoPassage passage;
     solver::IterationParameters parameters;
