@@ -104,9 +104,11 @@ int run(int argc, char** argv, const Program& program) {
     app.add_option("--output", folder, "folder for the results, made if need be");
     app.add_option("--set", set, "section.key=value, in the place of what the file says")->allow_extra_args(false);
     app.add_option("--threads", threads, "0: as many as the machine has");
-    // A flag has no value: --quiet=3 would be taken for --quiet.
+    // A flag has no value: --quiet=3 would be taken for --quiet. A parser that is told so still takes --resume=true.
+    std::vector<std::string> flags;
     const auto flag = [&](const char* name, bool& value, const char* what) {
-        return app.add_flag(name, value, what)->disable_flag_override();
+        flags.push_back(name);
+        return app.add_flag(name, value, what);
     };
     auto* overwrite = flag("--overwrite", output.overwrite, "begin anew in a folder that holds results");
     flag("--resume", output.resume, "go on from the last accepted increment in the folder")->excludes(overwrite);
@@ -114,6 +116,9 @@ int run(int argc, char** argv, const Program& program) {
     flag("--quiet", output.quiet, "print nothing but errors");
     flag("--help-scene", keys, "print the keys of a scene file, with their units, bounds and defaults");
     try {
+        for (const std::string& name : flags)
+            if (std::any_of(argv, argv + argc, [&](const std::string& given) { return given.starts_with(name + "="); }))
+                throw CLI::ArgumentMismatch(name + " has a value, but it must have none");
         app.parse(argc, argv);
         if (!keys && scene.empty()) throw CLI::RequiredError("scene");
         if (!keys && app.count("--output") == 0) throw CLI::RequiredError("--output");
