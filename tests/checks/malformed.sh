@@ -79,6 +79,8 @@ of options
 try "$name: scene is required" --output "$out/results"
 try "--output is required" "$scene"
 try "$name: --threads has too few values, but it must have 1" "$scene" --output "$out/results" --threads
+try "$name: --threads has too few values, but it must have 1" "$scene" --output "$out/results" --threads=
+try "--threads = , but it must be a whole number from 0" "$scene" --output "$out/results" --quiet --threads ""
 try "$name: --output has 2 values, but it must have at most 1" "$scene" --output "$out/results" --output "$out/others"
 try "$name: " "$scene" "$scene" --output "$out/results"
 try "--no-such-option" "$scene" --output "$out/results" --no-such-option
@@ -91,7 +93,7 @@ try "is a file, but it must be a folder" "$scene" --output "$out/file"
 try "cannot be made" "$scene" --output "$out/file/below"
 try "cannot be made" "$scene" --output "$out/file/far/below"
 try "File name too long" "$scene" --output "$out/$(head -c 300 /dev/zero | tr '\0' 'a')" --quiet
-for threads in -1 1.5 2x 0x2 "1 2" 100000 99999999999999999999 nan 0,5 ""; do
+for threads in -1 1.5 2x 0x2 "1 2" 100000 99999999999999999999 nan 0,5; do
   try "--threads = $threads, but it must be a whole number from 0" "$scene" --output "$out/results" --quiet --threads="$threads"
 done
 OMP_NUM_THREADS=100000
