@@ -4,6 +4,7 @@
 
 #include <fibrant/core/blocks.hpp>
 #include <fibrant/core/config.hpp>
+#include <fibrant/core/eigen_threads.hpp>
 #include <fibrant/core/few_of.hpp>
 #include <fibrant/core/large_array.hpp>
 #include <fibrant/core/ordering.hpp>

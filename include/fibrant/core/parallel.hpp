@@ -82,19 +82,6 @@ void parallel_for(Index n, const Body& body, [[maybe_unused]] Index grain = 1) {
 #endif
 }
 
-/// While it lives, Eigen's dense products run on the thread that calls them. Left to itself Eigen cuts long sums where the
-/// number of threads says, and the bits with them.
-class EigenOnOneThread {
-public:
-    EigenOnOneThread() { Eigen::setNbThreads(1); }
-    ~EigenOnOneThread() { Eigen::setNbThreads(before_ == threads() ? 0 : before_); }  // 0: as OpenMP says, what Eigen begins with
-    EigenOnOneThread(const EigenOnOneThread&) = delete;
-    EigenOnOneThread& operator=(const EigenOnOneThread&) = delete;
-
-private:
-    int before_ = Eigen::nbThreads();
-};
-
 /// whole = all parts, one behind the other.
 template <class Value>
 void join(const std::vector<std::vector<Value>>& parts, std::vector<Value>& whole) {

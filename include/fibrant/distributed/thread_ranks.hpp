@@ -2,6 +2,7 @@
 #pragma once
 /// @file Ranks that are threads of one process: for tests, and for machines without MPI.
 
+#include <fibrant/core/eigen_threads.hpp>
 #include <fibrant/distributed/exchange.hpp>
 
 #include <algorithm>
@@ -111,6 +112,7 @@ static_assert(Exchange<ThreadRank>);
 template <class Body>
 void run_on_threads(int ranks, const Body& body) {
     core::require_at_least("run_on_threads.ranks", ranks, 1);
+    const core::EigenOnOneThread products;  // what one rank sets, all would have
     ThreadMeeting meeting(ranks);
     std::exception_ptr failure;
     std::mutex guard;

@@ -2,6 +2,7 @@
 #pragma once
 /// @file Sparse Cholesky factor of a symmetric matrix of small blocks, multifrontal: all work is on dense matrices.
 
+#include <fibrant/core/eigen_threads.hpp>
 #include <fibrant/core/large_array.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/solver/compressed_panel.hpp>
