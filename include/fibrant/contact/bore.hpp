@@ -19,10 +19,22 @@ namespace fibrant::contact {
 /// bore.
 inline constexpr std::int32_t no_bore = -1, bore_of_i = -2, bore_of_j = -3;
 
+/// Of a radius: centres that are no further apart say no direction, that is rounding.
+inline constexpr double centred = 1e-12;
+
 /// Which of these it is for two fibres.
 template <class B>
 std::int32_t bore_between(const beam::Mesh<B>& mesh, Index i, Index j) noexcept {
     return beam::is_inside(mesh.fibre(j), i) ? bore_of_i : beam::is_inside(mesh.fibre(i), j) ? bore_of_j : no_bore;
+}
+
+/// Unit vector of what a way has across a direction.
+/// @param along      unit
+/// @param nothing    length of a way that says no direction: what rounding leaves of it may lie along as well
+/// @param otherwise  unit and across, where the way is no longer than that
+inline Vec3 across_or(const Vec3& way, const Vec3& along, double nothing, const Vec3& otherwise) noexcept {
+    const Vec3 across = way - way.dot(along) * along;
+    return across.norm() > nothing ? across.normalized() : otherwise;
 }
 
 /// The wall pushes inwards: from one centre to the other, across both fibres.
@@ -33,11 +45,9 @@ template <class B, class Element>
 Vec3 bore_normal(const beam::Mesh<B>& mesh, const Vector& state, const Element& element, const PairTangents& tangents,
                  const Vec3& otherwise) noexcept {
     const Vec3 centres = mesh.position(state, element.fibre_j, element.u_j) - mesh.position(state, element.fibre_i, element.u_i),
-               along = mean_tangent(tangents.i, tangents.j), across = centres - centres.dot(along) * along;
-    const double nothing = 1e-12 * mesh.fibre(element.fibre_i).section.radius();  // no direction is left of such a distance
-    if (across.norm() > nothing) return -across.normalized();
-    const Vec3 flat = otherwise - otherwise.dot(along) * along;
-    return unit_or(flat, along.unitOrthogonal());
+               along = mean_tangent(tangents.i, tangents.j), flat = otherwise - otherwise.dot(along) * along;
+    return -across_or(centres, along, centred * mesh.fibre(element.fibre_i).section.radius(),
+                      -unit_or(flat, along.unitOrthogonal()));
 }
 
 namespace detail {
@@ -229,15 +239,15 @@ BoreGap least_bore_gap(const beam::Mesh<B>& mesh, const Vector& state) {
         for (const Index tube : mesh.fibre(rod).inside)
             along_bore(mesh, state, tube, rod, points, [&](double u, const BorePlace& place) {
                 if (place.beyond) return;
-                const double distance = place.from.norm();
-                const Vec3 outwards = unit_or(place.from, Vec3::UnitZ());
+                const double distance = place.from.norm(), bore = mesh.fibre(tube).section.bore;
+                const Vec3 along = mesh.derivative(state, tube, place.u).normalized(),
+                           outwards = across_or(place.from, along, centred * bore, along.unitOrthogonal());
                 const auto extent = [&](Index fibre, double at, double radius) {
                     const auto [g_1, g_2] = mesh.directors(state, fibre, at);
                     if constexpr (!beam::DeformableSections<B>) return radius;
                     return scene::circular(radius).extent(g_1, g_2, outwards);
                 };
-                const double gap = extent(tube, place.u, mesh.fibre(tube).section.bore) - distance -
-                                   extent(rod, u, mesh.fibre(rod).section.radius());
+                const double gap = extent(tube, place.u, bore) - distance - extent(rod, u, mesh.fibre(rod).section.radius());
                 if (gap < least.gap) least = {gap, tube, rod, mesh.position(state, rod, u)};
             });
     return least;
