@@ -3,6 +3,7 @@
 /// @file A run that several ranks share: exchange between them, subdomains, and a solver whose bits no number of ranks changes.
 /// Ranks by MPI are in fibrant/distributed/mpi_exchange.hpp, for those who link it.
 
+#include <fibrant/distributed/agreement.hpp>
 #include <fibrant/distributed/chain_joints.hpp>
 #include <fibrant/distributed/cut_report.hpp>
 #include <fibrant/distributed/exchange.hpp>

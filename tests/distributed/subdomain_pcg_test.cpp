@@ -14,7 +14,9 @@
 #endif
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 using namespace fibrant;
@@ -258,6 +260,34 @@ TEST_CASE("what ranks cannot share yet is refused by name") {
     CHECK(test::refusal([&] { Pcg().analyse(test::least(closed)); }).starts_with("SubdomainLevels.system"));
     CHECK(test::refusal([] { Pcg({.levels = {.cut = {.parts = 0}}}); }).starts_with("Subdomains.parts"));
     CHECK(test::refusal([] { Pcg({.levels = {.cut = {.parts = 4097}}}); }).starts_with("Subdomains.parts"));
+}
+
+TEST_CASE("ranks that have come to other last bits end with a message, and do not wait for each other") {
+    const test::FabricSystem system(fabric);
+    const Vector b = test::pulled_middles(system.layout());
+    const Index last = b.size() - 1;
+    for (const double factor : {1.0, 1.0 + std::numeric_limits<double>::epsilon()}) {
+        const std::string message = [&]() -> std::string {
+            try {
+                distributed::run_on_threads(3, [&](const auto& own) {
+                    Vector mine = b, x;
+                    mine[last] = 0.1;
+                    if (own.rank == 2) mine[last] *= factor;
+                    distributed::SubdomainPcg<distributed::ThreadRank> pcg({.levels = {.cut = {.parts = 6}, .exchange = own}});
+                    pcg.analyse(test::least(system));
+                    pcg.prepare(test::least(system));
+                    pcg.solve(test::least(system), mine, 1e-6, x);
+                });
+            } catch (const std::runtime_error& error) {
+                return error.what();
+            }
+            return {};
+        }();
+        CHECK(message.empty() == (factor == 1.0));
+        if (factor != 1.0) CHECK(message.starts_with("rank 2 has come to other last digits than rank 0"));
+    }
+    CHECK(distributed::fingerprint(std::vector{0.0}) != distributed::fingerprint(std::vector{-0.0}));
+    CHECK(distributed::fingerprint(std::vector{1.0, 2.0}) != distributed::fingerprint(std::vector{2.0, 1.0}));
 }
 
 TEST_CASE("what is sent arrives where it is wanted, and is told in bytes") {

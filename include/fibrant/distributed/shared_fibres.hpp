@@ -22,7 +22,9 @@ public:
     void analyse(const assembly::SystemView& system) { levels_.analyse(system); }
     solver::SolveStatus prepare(const assembly::SystemView& system) { return levels_.prepare(system); }
     /// z = M^-1 r; all ranks know r, and get all of z.
+    /// @throws std::runtime_error if they know another one each
     void precondition(const assembly::SystemView& system, const Vector& r, Vector& z) {
+        levels_.require_alike(r);
         if (z.size() != r.size()) z.setZero(r.size());
         levels_.balance(system.layout(), r, z);
         levels_.share(z);

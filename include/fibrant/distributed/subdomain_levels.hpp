@@ -3,6 +3,7 @@
 /// @file A linear system shared by ranks: its product, and a preconditioner of two levels, pieces of chains in subdomains and the
 /// rigid motions of clusters of chains. What iterates with them is in `subdomain_pcg.hpp` and `petsc_krylov.hpp`.
 
+#include <fibrant/distributed/agreement.hpp>
 #include <fibrant/distributed/chain_joints.hpp>
 #include <fibrant/distributed/halo.hpp>
 #include <fibrant/distributed/part_product.hpp>
@@ -146,6 +147,8 @@ public:
         if (left.size() != r.size()) left.setZero(r.size());
         balance(layout, r, z, left);
     }
+    /// Throws std::runtime_error on all ranks if they do not know the same x (require_alike).
+    void require_alike(const Vector& x) const { distributed::require_alike(exchange_, {x.data(), core::at(x.size())}); }
     /// All ranks get all of x, of which each has its own vectors.
     void share(Vector& x) {
         timed(work_->use.waiting_seconds, [&] { gather_owned(exchange_, work_->cut, work_->runs, x, work_->use.traffic); });
@@ -166,6 +169,7 @@ public:
     /// @param iterate  (free part of b, norm of b) -> SolveReport; begins with x = 0, and leaves x in own vectors
     template <class Iterate>
     solver::SolveReport solve(const scene::DofLayout& layout, const Vector& b, Vector& x, const Iterate& iterate) {
+        require_alike(b);
         x.setZero(b.size());
         if (status() == solver::SolveStatus::not_finite || !b.allFinite()) return {};
         const double norm = solver::scaled_norm(layout, b);
