@@ -221,14 +221,17 @@ inline cloth::Textile generate(SceneReader& file, const std::string& generator, 
         std::vector<std::string> rows, lifts;
         std::vector<std::string> kinds;
         plan.warp = plan.weft = yarn, plan.binder = binder, plan.periodic = periodic;
-        file.read("levels", "levels", rows,
-                  "one text for each warp, a digit for each column: how many wefts of the column lie below the warp");
+        file.read(
+            "levels", "levels", rows,
+            "one text for each warp, a digit for each column, a to z for 10 to 35: how many wefts of the column lie below the "
+            "warp");
         file.read("levels", "lifts", lifts,
                   "in place of levels: one text for each warp, a digit for each pick: 1 where the warp is up; picks go column by "
                   "column, from the lowest layer up");
         file.read("levels", "kinds", kinds, "one text for each warp, warp or binder; left out: all warp");
         file.is_one_of_several_ways("levels", "levels"), file.is_one_of_several_ways("levels", "lifts");
-        file.read("levels", "layers", plan.layers, example::between(1, 9), "number of layers of wefts");
+        file.read("levels", "layers", plan.layers, example::between(1, static_cast<double>(cloth::highest_level)),
+                  "number of layers of wefts");
         file.read("levels", "columns", plan.columns, example::between(0, 10000),
                   "number of columns of wefts; 0: as many as are drawn");
         file.require("levels", "column_spacing", plan.column_spacing, positive, "length",

@@ -788,4 +788,21 @@ TEST_CASE("heights at which fibres of several would lie on the wrong side are re
     }
 }
 
+TEST_CASE("texts say levels up to 35") {
+    // An interlock of twelve layers, drawn by its rule and said by texts.
+    const Index layers = 12;
+    std::vector<std::string> rows;
+    std::vector<std::vector<Index>> drawn;
+    for (Index w = 0; w < 2 * layers; ++w) {
+        drawn.push_back(angle_interlock(layers, w));
+        std::string row;
+        for (const Index level : drawn.back()) row += "0123456789abcdefghijklmnopqrstuvwxyz"[core::at(level)];
+        rows.push_back(row);
+    }
+    CHECK(levels_of(rows) == drawn);
+    CHECK(levels_of({"z"}) == std::vector<std::vector<Index>>{{highest_level}});
+    for (const char* row : {"0A", "0 ", "0{", "0/", "0:", "0`"})
+        CHECK(refusal([&] { levels_of({row}); }).starts_with("levels: \"0"));
+}
+
 }  // namespace textile_generators_test

@@ -112,14 +112,19 @@ inline void require_wefts_held(const LevelPlan& plan, const std::string& field =
     }
 }
 
-/// Levels from texts of digits, a text a warp.
+/// The highest level that a text can say.
+inline constexpr Index highest_level = 35;
+
+/// Levels from texts, a text a warp, a sign a column: 0 to 9, and a to z for 10 to 35.
 inline std::vector<std::vector<Index>> levels_of(const std::vector<std::string>& rows) {
     std::vector<std::vector<Index>> levels;
     for (const std::string& row : rows) {
         levels.emplace_back();
         for (const char c : row) {
-            if (c < '0' || c > '9') core::refuse("levels: \"" + row + "\"", std::string(1, c), "digits, a column each");
-            levels.back().push_back(c - '0');
+            const bool digit = c >= '0' && c <= '9';
+            if (!digit && (c < 'a' || c > 'z'))
+                core::refuse("levels: \"" + row + "\"", std::string(1, c), "digits, or a to z for 10 to 35, a column each");
+            levels.back().push_back(digit ? c - '0' : 10 + (c - 'a'));
         }
     }
     return levels;
