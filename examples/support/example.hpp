@@ -163,6 +163,11 @@ inline void write_pictures(const Output& output, const observe::Snapshot& snapsh
     observe::write_file(output.folder / "section.svg", observe::svg_slice(snapshot, slice));
 }
 
+/// Says where sections swell and shrink in turn, if fibres come nearer to each other by that than is allowed [length].
+inline void tell(const observe::Swelling& swelling, double allowed) {
+    if (swelling.exceeds(allowed)) std::fprintf(stderr, "warning: %s\n", observe::text(swelling).c_str());
+}
+
 /// Audits the state that a run has come to, and says what is wrong with it. What it finds decides the exit status.
 /// @param radius  of the thinnest fibre [length]
 template <class Simulator>
@@ -179,6 +184,7 @@ fibrant::simulation::Audit audit(const Output& output, const Simulator& simulato
         std::fprintf(stderr, "audit: fibre %td is %.4f radii deep in tool %td at (%g, %g, %g), and may be %.4f\n", tool.fibre,
                      -tool.gap / radius, tool.tool, tool.position.x(), tool.position.y(), tool.position.z(),
                      answer.allowed / radius);
+    tell(answer.swelling, answer.allowed);
     return answer;
 }
 
@@ -194,6 +200,7 @@ inline observe::JsonObject write_summary(const Output& output, const fibrant::si
     if (!report.converged && !stopped()) std::fprintf(stderr, "the run stopped: %s\n", report.reason.c_str());  // also if quiet
     json.add("least_gap_over_radius", audit.least_gap.gap_over_radius).add("deepest_allowed_over_radius", audit.allowed / radius);
     if (audit.tool_gap.tool >= 0) json.add("least_tool_gap_over_radius", audit.tool_gap.gap / radius);
+    json.add("swelling_in_turn", audit.swelling.strain);
     // Of the last increment, then the most of any, over what is stated: 1 or less where that was kept.
     json.add("residual_over_tolerance", report.use.residual).add("penetration_over_allowed", report.use.penetration);
     json.add("most_residual_over_tolerance", report.most_use.residual)

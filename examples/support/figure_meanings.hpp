@@ -46,6 +46,8 @@ inline constexpr FigureMeaning figure_meanings[] = {
     {"greatest_penetration_over_radius", "deepest contact element, over the radius"},
     {"least_gap_over_radius", "true least gap between any two fibres, over the radius; negative: in each other"},
     {"least_tool_gap_over_radius", "true least gap between any fibre and any tool, over the radius"},
+    {"swelling_in_turn",
+     "strain by which sections swell and shrink in turn from node to node: elements are long where it is great"},
     {"deepest_allowed_over_radius", "how deep fibres may be in each other, over the radius"},
     {"least_gap_fibre_i", "one fibre of that pair"},
     {"least_gap_fibre_j", "the other fibre of that pair"},

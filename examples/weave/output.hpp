@@ -131,6 +131,7 @@ struct Summary {
     double least_gap_over_radius = fibrant::core::unset;             ///< true, between any two fibres [1]
     Index least_gap_fibre_i = -1, least_gap_fibre_j = -1;            ///< which these are,
     fibrant::Vec3 least_gap_place = fibrant::Vec3::Zero();           ///< and where [length]
+    observe::Swelling swelling;                                      ///< of sections in turn from node to node
     double crimp_warp = fibrant::core::unset, crimp_weft = fibrant::core::unset;
     double thickness = fibrant::core::unset;
     double energy_error_over_work = fibrant::core::unset;              ///< of the report's energy balance [1]
@@ -169,6 +170,7 @@ inline void fill(Summary& summary, const fibrant::simulation::Report& report, co
     summary.least_gap_over_radius = audit.least_gap.gap / radius;
     summary.least_gap_fibre_i = audit.least_gap.fibre_i, summary.least_gap_fibre_j = audit.least_gap.fibre_j;
     summary.least_gap_place = audit.least_gap.position;
+    summary.swelling = audit.swelling;
     summary.crimp_warp = crimp.warp;
     summary.crimp_weft = crimp.weft;
 }
@@ -201,6 +203,7 @@ inline observe::JsonObject write_summary(const std::filesystem::path& folder, co
         .add("least_gap_x", summary.least_gap_place.x())
         .add("least_gap_y", summary.least_gap_place.y())
         .add("least_gap_z", summary.least_gap_place.z())
+        .add("swelling_in_turn", summary.swelling.strain)
         .add("crimp_warp", summary.crimp_warp)
         .add("crimp_weft", summary.crimp_weft)
         .add("thickness", summary.thickness)

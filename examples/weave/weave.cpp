@@ -66,10 +66,10 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
     const auto audit = weave::cloth::audit(snapshot, scene.fabric, proximity::GridSearch());
     const auto crimp = weave::cloth::crimp_measures(snapshot, scene.fabric);
     weave::Summary summary;
-    weave::fill(
-        summary, report, audit, crimp, radius,
-        (std::isnan(output.deepest_over_radius) ? scene.settle.allowed_penetration_over_radius : output.deepest_over_radius) *
-            radius);
+    const double deepest = radius * (std::isnan(output.deepest_over_radius) ? scene.settle.allowed_penetration_over_radius
+                                                                            : output.deepest_over_radius);
+    weave::fill(summary, report, audit, crimp, radius, deepest);
+    example::tell(audit.swelling, deepest);
     summary.fibres = simulator.mesh().fibre_count();
     summary.dofs = simulator.mesh().layout().unknowns();
     summary.nodes = summary.dofs / M::Beam::dofs_per_node;

@@ -22,6 +22,7 @@
 #include <fibrant/observe/svg_slice.hpp>
 #include <fibrant/observe/svg_solid.hpp>
 #include <fibrant/observe/svg_view.hpp>
+#include <fibrant/observe/swelling.hpp>
 #include <fibrant/observe/text_file.hpp>
 #include <fibrant/observe/tool_gap.hpp>
 #include <fibrant/observe/vtk_writer.hpp>

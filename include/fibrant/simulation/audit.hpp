@@ -5,6 +5,7 @@
 
 #include <fibrant/contact/bore.hpp>
 #include <fibrant/observe/least_gap.hpp>
+#include <fibrant/observe/swelling.hpp>
 #include <fibrant/observe/tool_gap.hpp>
 #include <fibrant/proximity/grid_search.hpp>
 #include <fibrant/simulation/acceptance.hpp>
@@ -26,6 +27,7 @@ struct Audit {
     observe::ToolGap tool_gap;    ///< of any fibre and any tool, where the model has tools
     double allowed = 0.0;         ///< how deep those may be [length]
     std::optional<beam::InsideOut> inside_out;
+    observe::Swelling swelling;  ///< of sections in turn from node to node, by which a pressed stack gives way
 
     /// No fibres deeper in each other, in a wall or in a tool than allowed, anywhere, and no section inside out.
     bool clean() const noexcept { return !inside_out && !(std::min({least_gap.gap, tool_gap.gap, bore_gap.gap}) < -allowed); }
@@ -83,6 +85,7 @@ Audit audit(const Simulator& simulator, double allowed = core::unset) {
         observe::least_gap(shot, proximity::GridSearch{},
                            parameters.detection.self_contact ? observe::OwnTurns::counted : observe::OwnTurns::left_out);
     answer.bore_gap = contact::least_bore_gap(simulator.mesh(), simulator.state());
+    if constexpr (Simulator::Beam::nodes == 3) answer.swelling = observe::greatest_swelling(shot);
     if constexpr (requires { simulator.contacts().tools(); })
         answer.tool_gap = observe::least_tool_gap(shot, simulator.contacts().tools());
     return answer;

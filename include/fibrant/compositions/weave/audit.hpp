@@ -5,6 +5,7 @@
 #include <fibrant/compositions/weave/tow_geometry.hpp>
 #include <fibrant/core/parallel.hpp>
 #include <fibrant/observe/least_gap.hpp>
+#include <fibrant/observe/swelling.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -28,6 +29,7 @@ struct Audit {
     double least_height = std::numeric_limits<double>::infinity();  ///< over all crossings [length]
     std::vector<AuditedCrossing> worst;                             ///< the lowest, lowest first
     observe::LeastGap least_gap;
+    observe::Swelling swelling;  ///< of sections in turn from node to node
 
     /// All crossings as the pattern says, and no fibres deeper in each other than allowed [length].
     bool clean(double allowed_penetration) const noexcept {
@@ -84,6 +86,7 @@ template <proximity::ProximitySearch Search>
 Audit audit(const observe::Snapshot& snapshot, const FabricParameters& fabric, const Search& search, Index keep = 8) {
     Audit answer = audit_crossings(snapshot, fabric, std::max(keep, Index{1}));
     answer.least_gap = least_gap(snapshot, search);
+    answer.swelling = observe::greatest_swelling(snapshot);
     return answer;
 }
 
