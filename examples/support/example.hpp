@@ -5,6 +5,7 @@
 #include "increment_columns.hpp"
 #include "process.hpp"
 #include "progress.hpp"
+#include "remedies.hpp"
 #include "results_folder.hpp"
 #include "room.hpp"
 #include "same_scene.hpp"
@@ -197,7 +198,10 @@ inline observe::JsonObject write_summary(const Output& output, const fibrant::si
                                          observe::JsonObject begin = {}) {
     observe::JsonObject& json = begin;
     json.add("converged", report.converged).add("audit_clean", audit.clean()).add("reason", report.reason);
-    if (!report.converged && !stopped()) std::fprintf(stderr, "the run stopped: %s\n", report.reason.c_str());  // also if quiet
+    if (!report.converged && !stopped()) {  // also if quiet
+        std::fprintf(stderr, "the run stopped: %s\n", report.reason.c_str());
+        tell_remedy(report.reason);
+    }
     json.add("least_gap_over_radius", audit.least_gap.gap_over_radius).add("deepest_allowed_over_radius", audit.allowed / radius);
     if (audit.tool_gap.tool >= 0) json.add("least_tool_gap_over_radius", audit.tool_gap.gap / radius);
     json.add("swelling_in_turn", audit.swelling.strain);

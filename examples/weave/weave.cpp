@@ -96,6 +96,7 @@ bool settle(const weave::Scene& scene, const example::SceneReader& file, example
         std::fprintf(stderr,
                      "weave: the audit is not clean: %td crossings against the pattern, %td missing, least gap %.4f radii\n",
                      summary.wrong_crossings, summary.missing_crossings, summary.least_gap_over_radius);
+    if (!summary.converged && !example::stopped()) example::tell_remedy(summary.reason);
     return summary.converged && summary.clean;
 }
 
