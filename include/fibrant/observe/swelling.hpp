@@ -32,7 +32,7 @@ struct Swelling {
 inline std::string text(const Swelling& found) {
     return "sections of fibre " + std::to_string(found.fibre) + " swell and shrink in turn from node to node, by " +
            core::text(found.strain) + " of their width at element " + std::to_string(found.element) +
-           ": elements are too long for what presses them, take twice as many";
+           ": elements are too long for what presses them, take twice as many, or less tension and pressure";
 }
 
 /// Greatest swelling in turn of a state.
