@@ -13,8 +13,8 @@
 
 namespace fibrant::distributed {
 
-/// A whole number below 2^52 that tells values with other bits apart, but for a chance of 2^-52. It is the hash FNV-1a (G. Fowler,
-/// L. C. Noll, K.-P. Vo) of words of 64 bits.
+/// A whole number below 2^52 that tells values with other bits apart, but for a chance of 2^-52. It is the hash FNV-1a (G.
+/// Fowler, L. C. Noll, K.-P. Vo) of words of 64 bits.
 inline double fingerprint(std::span<const double> values) noexcept {
     std::uint64_t hash = 14695981039346656037u;  // its offset basis
     for (const double value : values) {
