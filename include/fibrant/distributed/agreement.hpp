@@ -30,9 +30,7 @@ inline double fingerprint(std::span<const double> values) noexcept {
 template <Exchange E>
 void require_alike(const E& exchange, std::span<const double> values) {
     if (exchange.ranks() == 1) return;
-    const double own = fingerprint(values);
-    std::vector<double> all(core::at(exchange.ranks()));
-    exchange.gather(std::span(&own, 1), std::vector<Index>(all.size(), 1), all);
+    const std::vector<double> all = gather_one(exchange, fingerprint(values));
     for (std::size_t r = 1; r < all.size(); ++r)
         if (all[r] != all[0])
             throw std::runtime_error(

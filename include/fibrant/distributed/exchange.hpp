@@ -54,6 +54,14 @@ struct OneRank : core::Inactive {
 };
 static_assert(Exchange<OneRank> && std::is_empty_v<OneRank>);
 
+/// One number of each rank, known to all.
+template <Exchange E>
+std::vector<double> gather_one(const E& exchange, double own) {
+    std::vector<double> all(core::at(exchange.ranks()));
+    exchange.gather(std::span(&own, 1), std::vector<Index>(all.size(), 1), all);
+    return all;
+}
+
 /// Blocks of a sum, dealt to ranks in runs: block k of n is of the rank whose run has it.
 class BlockRuns {
 public:

@@ -395,9 +395,7 @@ solver::SolveStatus SubdomainLevels<E>::prepare(const System& system) {
         if (coarse != solver::SolveStatus::converged && work.status != solver::SolveStatus::not_finite) work.status = coarse;
 
         // The worst of all ranks, so that all go on alike.
-        const double own = static_cast<double>(static_cast<int>(work.status));
-        std::vector<double> all(core::at(exchange_.ranks()));
-        exchange_.gather(std::span(&own, 1), std::vector<Index>(all.size(), 1), all);
+        const std::vector<double> all = gather_one(exchange_, static_cast<double>(static_cast<int>(work.status)));
         work.status = static_cast<solver::SolveStatus>(static_cast<int>(*std::max_element(all.begin(), all.end())));
     });
     return work.status;
