@@ -6,6 +6,7 @@
 #include "../support/program.hpp"
 #include "../support/report_page.hpp"
 #include "../support/usual_keys.hpp"
+#include "stack.hpp"
 
 #include <fibrant/beam/with_law.hpp>
 #include <fibrant/contact/contacts_with_tools.hpp>
@@ -32,31 +33,6 @@ struct Tow {
     using Solver = solver::FloatBlockCholesky;
     using Tools = contact::RigidTools;
 };
-
-/// Along z, one above the other; plates below (tool 0) and above (tool 1), which comes down by `depth` on the channel "press".
-scene::Assembly stacked(Index fibres, double radius, double length, Index elements, const scene::ElasticMaterial& material,
-                        double depth) {
-    scene::Assembly assembly;
-    for (Index f = 0; f < fibres; ++f) {
-        const double height = 2.0 * radius * static_cast<double>(f);
-        assembly.add({.from = {0, height, 0},
-                      .to = {0, height, length},
-                      .section = scene::circular(radius),
-                      .material = material,
-                      .elements = elements,
-                      .director = Vec3::UnitX()});
-        // Ends stay above each other and do not turn; up and down they go where contacts push them.
-        for (const double end : {0.0, 1.0})
-            assembly.hold_position({f, end}, Vec3(1, 0, 1).asDiagonal()), assembly.hold_rotation({f, end});
-    }
-    scene::Tool below, above;
-    below.origin = {0, -radius, 0}, below.axis = Vec3::UnitY(), below.channel = "press";
-    above.origin = {0, (2.0 * static_cast<double>(fibres) - 1.0) * radius, 0}, above.axis = -Vec3::UnitY(),
-    above.channel = "press";
-    above.displacement = {0, -depth, 0};
-    assembly.add(below), assembly.add(above);
-    return assembly;
-}
 
 bool solve(example::SceneReader& file, example::Output& output) {
     Index fibres = 4, elements = 2, increments = 5;
@@ -110,7 +86,8 @@ bool solve(example::SceneReader& file, example::Output& output) {
     model.contact.stiffness.allowed_penetration = depth * radius;
     model.contact.stiffness.cap_fraction = 1e3;  // so stiff that what gives way is the sections
     simulation::Simulator<Tow> simulator(
-        stacked(fibres, radius, length, elements, material, compression * 2.0 * radius * static_cast<double>(fibres)), model);
+        example::stacked(fibres, radius, length, elements, material, compression * 2.0 * radius * static_cast<double>(fibres)),
+        model);
     output.open(file);
     const auto line_load = [&] { return simulator.contacts().tools().reaction(1).force.y() / length; };
     // q 2 r = A S_22 for opposite line loads on a section that stays an ellipse.

@@ -8,7 +8,8 @@ cd "$1"
 said=$(mktemp)
 trap 'rm -f "$said"' EXIT
 # Texts of one statement in one line, so that a message may be put together from pieces.
-find include examples \( -name '*.hpp' -o -name '*.cpp' \) ! -name remedies.hpp | sort | xargs cat | grep '"' | sed 's/" *+ *"//g' > "$said"
+find include examples \( -name '*.hpp' -o -name '*.cpp' \) ! -name remedies.hpp | sort | xargs cat |
+  grep '"' | sed 's/" *+ *"//g' > "$said"
 sed -n 's/^### //p' docs/how-to/messages.md | tr '`' '\n' | sed 's/\.\.\./\n/g' | sed 's/^[ ,:(]*//; s/[ ,:()]*$//' | awk 'length($0) >= 10' | sort -u |
   while read -r words; do
     grep -qF -e "$words" "$said" || echo "docs/how-to/messages.md explains \"$words\", which nothing says"

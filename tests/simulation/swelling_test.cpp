@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include "../../examples/tow/stack.hpp"
+
 #include <fibrant/simulation/audit.hpp>
 
 #include <near.hpp>
@@ -19,28 +21,10 @@ constexpr double pi = std::numbers::pi, radius = 0.02, compression = 0.02, depth
 constexpr Index fibres = 4, elements = 2;
 const scene::ElasticMaterial material{7300.0, 0.2};
 
-// Fibres one above the other between two plates, the upper of which comes down by a fiftieth of the height. Ends stay above each
-// other. @param slenderness  length of an element over the radius
+/// Pressed by a fiftieth of its height. @param slenderness  length of an element over the radius
 scene::Assembly stack(double slenderness) {
-    const double length = slenderness * radius * elements;
-    scene::Assembly assembly;
-    for (Index f = 0; f < fibres; ++f) {
-        const double height = 2.0 * radius * static_cast<double>(f);
-        assembly.add({.from = {0, height, 0},
-                      .to = {0, height, length},
-                      .section = scene::circular(radius),
-                      .material = material,
-                      .elements = elements,
-                      .director = Vec3::UnitX()});
-        for (const double end : {0.0, 1.0})
-            assembly.hold_position({f, end}, Vec3(1, 0, 1).asDiagonal()), assembly.hold_rotation({f, end});
-    }
-    scene::Tool below, above;
-    below.origin = {0, -radius, 0}, below.axis = Vec3::UnitY(), below.channel = "press";
-    above.origin = {0, (2.0 * fibres - 1.0) * radius, 0}, above.axis = -Vec3::UnitY(), above.channel = "press";
-    above.displacement = {0, -compression * 2.0 * radius * fibres, 0};
-    assembly.add(below), assembly.add(above);
-    return assembly;
+    return example::stacked(fibres, radius, slenderness * radius * elements, elements, material,
+                            compression * 2.0 * radius * fibres);
 }
 
 struct Pressed {
